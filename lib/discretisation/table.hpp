@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "core/vec2.hpp"
+#include "geometry/mesh.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// Everything that internal forces need from space (METHOD 2): per integration point a weight and, for each neighbour
+/// node, a reference gradient.
+struct IntegrationTable {
+  std::vector<double> weight;  ///< [points], m2; sum to the polygon's area
+  std::vector<int> start;      ///< [points + 1], rows of `node` and `gradient`
+  std::vector<int> node;       ///< [entries]
+  Points gradient;             ///< [entries], 1/m
+  std::vector<int> triangle;   ///< [points], the background triangle a point lies in
+};
+
+/// Sparse rows phi_i(x_k): values of the shape functions at given points.
+struct ShapeRows {
+  std::vector<int> start;      ///< [rows + 1]
+  std::vector<int> node;       ///< [entries]
+  std::vector<double> value;   ///< [entries]
+};
+
+/// One shape, discretised: shared by all of its grains.
+struct Discretisation {
+  FieldMesh mesh;
+  IntegrationTable table;
+  ShapeRows outline_rows;              ///< at the outline nodes
+  ShapeRows node_rows;                 ///< at all field nodes
+  std::vector<double> unit_mass;       ///< [nodes], lumped mass at density 1, m2
+  std::vector<double> nodal_distance;  ///< [nodes], distance to the nearest other node, m
+  double min_shape_value = 0;          ///< least phi met at integration points and nodes (METHOD 2)
+  double completeness_residual = 0;    ///< `mls`: largest relative residual of conditions (1) and (2)
+};
+
+/// Discretises a mesh by the scene's recipe. Throws InputError when the recipe's limits are exceeded.
+Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& settings);
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pliant {
+
+/// Files know arrays and names, no mechanics. All arrays are row-major.
+
+/// A named array over the points or cells of a grid.
+struct Field {
+  std::string name;
+  enum class Centre { point, cell } centre = Centre::point;
+  int components = 1;          ///< 1 scalar, 2 vector (written with a zero third component for ParaView)
+  std::vector<float> values;   ///< [points or cells x components]
+};
+
+/// Topology of a grid, written once. `cell_size` 3: triangles, 2: line segments.
+struct GridTopology {
+  std::string name;            ///< "bodies", "outlines"
+  int points = 0;
+  int cell_size = 3;
+  std::vector<int> cells;      ///< [cells x cell_size]
+  std::vector<Field> constant_fields;  ///< written once: kind, body
+};
+
+/// What changes from frame to frame.
+struct GridFrame {
+  std::vector<float> positions;  ///< [points x 2], m
+  std::vector<Field> fields;
+};
+
+/// frames.h5 with frames.xdmf beside it. Layout: /<grid>/cells, /<grid>/<constant field>, and
+/// /<grid>/<frame, six digits>/{position,<field>...}, with attribute `time` (s) on the frame's group; /times lists them.
+/// After every append both files are complete and readable. Throws OutputError.
+class FrameFile {
+ public:
+  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids);
+  ~FrameFile();
+  /// One GridFrame a grid, in the order of the constructor.
+  void append(double time, const std::vector<GridFrame>& frames);
+  int count() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pliant {
+
+/// Writes a whole file under a temporary name, fsyncs and renames it: the file is whole or absent. Throws OutputError.
+void write_file_atomically(const std::filesystem::path& file, const std::string& content);
+
+/// A CSV file that grows by rows, flushed when asked. Numbers are written so that they read back exactly;
+/// NaN is written as an empty cell. Throws OutputError on a full disk or an unwritable folder.
+class CsvFile {
+ public:
+  CsvFile(const std::filesystem::path& file, const std::vector<std::string>& columns);
+  ~CsvFile();
+  CsvFile(const CsvFile&) = delete;
+  CsvFile& operator=(const CsvFile&) = delete;
+  void row(const std::vector<double>& values);
+  void flush();
+
+ private:
+  std::filesystem::path path_;
+  std::FILE* file_ = nullptr;
+  std::size_t columns_ = 0;
+};
+
+/// Prepares an output folder: creates it, or with `overwrite` empties one that a run of this program wrote (it is known by its
+/// summary.json or scene.toml). Throws OutputError when it exists and is not to be overwritten, or cannot be written.
+void prepare_output_folder(const std::filesystem::path& folder, bool overwrite);
+
+}  // namespace pliant

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/vec2.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// Reference geometry of one shape, coordinates relative to the centroid of its polygon.
+struct FieldMesh {
+  Points nodes;                     ///< [nodes], the outline first, counter-clockwise
+  int outline_count = 0;            ///< the first outline_count nodes are the outline
+  std::vector<Triangle> triangles;  ///< counter-clockwise, cover the polygon
+};
+
+struct PolygonProperties {
+  double area = 0;
+  Vec2 centroid{0, 0};
+  double polar_moment = 0;  ///< integral of |x - centroid|^2 over the polygon, m4
+};
+
+PolygonProperties polygon_properties(const Points& polygon);
+
+/// Outline of a shape: a counter-clockwise closed polygon about its centroid; a disc's has the area of the circle.
+Points make_outline(const ShapeSpec& shape);
+
+/// Outline and relaxed interior nodes, constrained Delaunay triangulation. Throws InputError (self-intersection, too few nodes).
+FieldMesh make_field_mesh(const ShapeSpec& shape);
+
+/// The outline alone, triangulated without interior nodes (rigid bodies, for pictures only).
+FieldMesh make_rigid_mesh(const ShapeSpec& shape);
+
+/// Centres of a packing's grains, row by row. Throws InputError when it does not fit the period.
+Points packing_positions(const Packing& packing, const std::optional<double>& period);
+
+/// Open polyline of a wall over exactly one period, the end point (the first, shifted) left out, ordered so that the
+/// outward normal (ty, -tx) points to the grains: right to left for a wall solid below, left to right above.
+/// `spacing` is the largest segment length.
+Points wall_outline(const Wall& wall, double period, double spacing);
+
+}  // namespace pliant
