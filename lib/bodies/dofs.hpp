@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "core/lanes.hpp"
+
+namespace pliant {
+
+/// One quantity over all degrees of freedom of a model: positions, velocities or forces.
+struct Dofs {
+  std::vector<Lanes> compliant;  ///< batch after batch: [nodes x 2 components] of its group
+  std::vector<double> rigid;     ///< [rigid bodies x 3]: x, y, angle
+
+  Dofs() = default;
+  Dofs(std::size_t compliant_size, std::size_t rigid_size)
+      : compliant(compliant_size, Lanes{}), rigid(rigid_size, 0.0) {}
+};
+
+}  // namespace pliant

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "bodies/dofs.hpp"
+#include "bodies/model.hpp"
+
+namespace pliant {
+
+Dofs zero_dofs(const Model& model);
+
+/// Reference shapes, turned by each body's angle. Compliant positions are relative to the batch's centres.
+Dofs initial_positions(const Model& model);
+
+/// Uniform, rotational and linear initial velocity fields of the scene, and the imposed ones of driven walls at t = 0.
+Dofs initial_velocities(const Model& model, const Dofs& positions);
+
+}  // namespace pliant

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "bodies/dofs.hpp"
+#include "bodies/model.hpp"
+#include "bodies/outline.hpp"
+
+namespace pliant {
+
+/// Empty outlines of all bodies of a model, at their offsets.
+Outlines make_outlines(const Model& model);
+
+/// Moves all outlines to where the bodies are: phi rows for compliant bodies, rotation for rigid ones.
+void update_outlines(const Model& model, const Dofs& positions, Outlines& outlines);
+
+/// Carries the contact forces on the outline nodes of one batch to its degrees of freedom: forces [nodes x 2] += phi^T f.
+void add_outline_forces(const Model& model, const Batch& batch, const Outlines& outlines, Lanes* forces);
+
+/// Contact force and moment on a rigid body: [x, y, moment about its centre].
+void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines, const double* position,
+                             double* resultant);
+
+}  // namespace pliant

@@ -1,0 +1,74 @@
+#include "boundary/loads.hpp"
+
+#include "core/parallel.hpp"
+
+namespace pliant {
+
+double applied_load(const RigidDof& dof, double time) {
+  const bool loaded = dof.mode == Drive::Mode::force || dof.mode == Drive::Mode::pressure;
+  return loaded ? dof.force_scale * dof.history.at(time) : 0.0;
+}
+
+void add_gravity(const Model& model, const Batch& batch, Lanes* forces) {
+  const Vec2& g = model.scene.gravity;
+  if (g.x() == 0 && g.y() == 0) return;
+  const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    forces[2 * i] += batch.density * (mass[i] * g.x());
+    forces[2 * i + 1] += batch.density * (mass[i] * g.y());
+  }
+}
+
+void add_rigid_loads(const Model& model, const RigidBody& rigid, double time, double* force) {
+  force[0] += rigid.dof[0].mass * model.scene.gravity.x();
+  force[1] += rigid.dof[1].mass * model.scene.gravity.y();
+  if (!rigid.driven) return;
+  for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], time);
+}
+
+double imposed_position(const RigidDof& dof, double position, double time, double dt) {
+  return dof.mode == Drive::Mode::velocity ? position + dof.history.integral(time, time + dt) : position;
+}
+
+double imposed_velocity(const RigidDof& dof, double time) {
+  return dof.mode == Drive::Mode::velocity ? dof.history.at(time) : 0.0;
+}
+
+double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
+                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time, double dt) {
+  double work = 0;
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
+    const RigidBody& rigid = model.rigid_bodies[r];
+    if (!rigid.driven) continue;
+    for (int c = 0; c < 3; ++c) {
+      const std::size_t i = 3 * r + static_cast<std::size_t>(c);
+      const RigidDof& dof = rigid.dof[c];
+      const double moved = next_position.rigid[i] - position.rigid[i];
+      if (dof.imposed()) {
+        const double v0 = velocity.rigid[i], v1 = next_velocity.rigid[i];
+        work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
+      } else {
+        work += 0.5 * (applied_load(dof, time) + applied_load(dof, time + dt)) * moved;
+      }
+    }
+  }
+  return work;
+}
+
+double gravity_moment(const Model& model, const Dofs& position) {
+  const Vec2& g = model.scene.gravity;
+  if (g.x() == 0 && g.y() == 0) return 0;
+  double total = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
+    const Batch& batch = model.batches[b];
+    const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
+    Lanes moment{};
+    for (std::size_t i = 0; i < mass.size(); ++i)
+      moment += mass[i] * (g.x() * position.compliant[batch.offset + 2 * i] + g.y() * position.compliant[batch.offset + 2 * i + 1]);
+    return sum(moment * batch.density * batch.weight);
+  });
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (int c = 0; c < 2; ++c) total += model.rigid_bodies[r].dof[c].mass * g[c] * position.rigid[3 * r + static_cast<std::size_t>(c)];
+  return total;
+}
+
+}  // namespace pliant

@@ -1,0 +1,81 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "cli/check.hpp"
+#include "core/errors.hpp"
+#include "results/run.hpp"
+#include "scene/units.hpp"
+
+namespace pliant {
+namespace {
+
+struct Arguments {
+  std::string scene, until;
+  RunOptions run;
+};
+
+double parse_until(const std::string& text) {
+  try {
+    const double until = parse_quantity(text, "s");
+    if (until > 0) return until;
+  } catch (const UnitError& error) {
+    throw InputError(fmt::format("--until {}: {}", text, error.what()));
+  }
+  throw InputError(fmt::format("--until {}: must be a positive time, as in --until \"0.02 us\"", text));
+}
+
+Scene load(const Arguments& arguments) {
+  Scene scene = read_scene(arguments.scene);
+  if (!arguments.until.empty()) scene.time.end = parse_until(arguments.until);
+  return scene;
+}
+
+void run(Arguments arguments) {
+  const Scene scene = load(arguments);
+  if (arguments.run.out.empty()) arguments.run.out = std::filesystem::path("results") / scene.name;
+  run_scene(scene, arguments.run);
+}
+
+int main_program(int argc, char** argv) {
+  CLI::App app{"Pliant: rigid and compliant grains in one simulation"};
+  app.require_subcommand(1);
+  Arguments arguments;
+  CLI::App* run_command = app.add_subcommand("run", "Simulate a scene, e.g. run cases/two_discs.toml --threads 2");
+  CLI::App* check_command = app.add_subcommand("check", "Dry run: what a scene holds and costs, e.g. check cases/third_body.toml");
+  for (CLI::App* command : {run_command, check_command}) {
+    command->add_option("scene", arguments.scene, "Scene file (TOML)")->required();
+    command->add_option("--until", arguments.until, "End time instead of the scene's, as in \"0.02 us\"");
+    command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
+  }
+  run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>");
+  run_command->add_flag("--force", arguments.run.force, "Overwrite the results in the output folder");
+  run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+  }
+  if (arguments.run.quiet) spdlog::set_level(spdlog::level::err);
+  if (*run_command) run(arguments);
+  if (*check_command) print_check(load(arguments), arguments.run.threads);
+  return 0;
+}
+
+}  // namespace
+}  // namespace pliant
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("pliant"));
+  spdlog::set_pattern("%l: %v");
+  try {
+    return pliant::main_program(argc, argv);
+  } catch (const pliant::Error& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory; `pliant check` estimates what a scene needs\n");
+    return static_cast<int>(pliant::ExitCode::physics_failure);
+  }
+}

@@ -1,0 +1,73 @@
+#include "contact/broad_phase.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+/// A box moved into the first period, and by how many periods.
+struct SweepEntry {
+  double x_min, x_max;
+  int body, turn;
+};
+
+bool overlap_in_y(const Box& a, const Box& b, double margin) {
+  return a.y_min <= b.y_max + margin && b.y_min <= a.y_max + margin;
+}
+
+BodyPair ordered(int a, int b, int images) { return a < b ? BodyPair{a, b, images} : BodyPair{b, a, -images}; }
+
+std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>& boxes) {
+  std::vector<SweepEntry> entries;
+  for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+    if (model.bodies[i].wall) continue;
+    const double period = model.scene.period.value_or(0);
+    const int turn = period > 0 ? static_cast<int>(std::floor(boxes[i].x_min / period)) : 0;
+    entries.push_back({boxes[i].x_min - turn * period, boxes[i].x_max - turn * period, i, turn});
+  }
+  std::sort(entries.begin(), entries.end(), [](const SweepEntry& a, const SweepEntry& b) { return a.x_min < b.x_min; });
+  return entries;
+}
+
+/// Pairs of entry i with the entries after it in x, around the period.
+void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period, double margin,
+                std::vector<BodyPair>& pairs) {
+  const SweepEntry& a = entries[i];
+  for (std::size_t step = 1;; ++step) {
+    const std::size_t wrapped = i + step;
+    const int lap = static_cast<int>(wrapped / entries.size());
+    if (lap > 0 && period == 0) return;
+    const SweepEntry& b = entries[wrapped % entries.size()];
+    if (b.x_min + lap * period > a.x_max + margin || lap > 1) return;
+    if (a.body != b.body && overlap_in_y(boxes[a.body], boxes[b.body], margin))
+      pairs.push_back(ordered(a.body, b.body, a.turn - b.turn + lap));
+  }
+}
+
+}  // namespace
+
+Box bounding_box(const OutlineShape& shape, const Outlines& outlines, int body) {
+  const int offset = outlines.offset[body];
+  const auto [x_min, x_max] = std::minmax_element(&outlines.x[offset], &outlines.x[offset] + shape.count);
+  const auto [y_min, y_max] = std::minmax_element(&outlines.y[offset], &outlines.y[offset] + shape.count);
+  return {*x_min, *x_max, *y_min, *y_max};
+}
+
+std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin) {
+  std::vector<BodyPair> pairs;
+  const double period = model.scene.period.value_or(0);
+  const std::vector<SweepEntry> entries = sweep_entries(model, boxes);
+  for (std::size_t i = 0; i < entries.size(); ++i) sweep_from(entries, boxes, i, period, margin, pairs);
+  for (int wall = 0; wall < static_cast<int>(boxes.size()); ++wall) {
+    if (!model.bodies[wall].wall) continue;
+    for (int other = 0; other < static_cast<int>(boxes.size()); ++other)
+      if ((!model.bodies[other].wall || other < wall) && overlap_in_y(boxes[wall], boxes[other], margin))
+        pairs.push_back(ordered(other, wall, 0));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+}  // namespace pliant

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bodies/model.hpp"
+#include "bodies/outline.hpp"
+
+namespace pliant {
+
+struct Box {
+  double x_min, x_max, y_min, y_max;
+};
+
+/// Two bodies whose bounding boxes come closer than the margin.
+struct BodyPair {
+  int first, second;  ///< first < second
+  int images;         ///< periods to add to x of the second
+  auto operator<=>(const BodyPair&) const = default;
+};
+
+Box bounding_box(const OutlineShape& shape, const Outlines& outlines, int body);
+
+/// Sweep and prune on x, then y, periodic in x (METHOD 4, stage 1). Pairs are sorted. Walls span all x.
+std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin);
+
+}  // namespace pliant

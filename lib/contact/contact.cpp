@@ -1,0 +1,182 @@
+#include "contact/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "contact/close_phase.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+namespace {
+
+/// The broad phase looks further than the skin, so that bodies that it leaves out need no watching pair by pair.
+constexpr double extra_skins = 4;
+
+Box motion_box(const OutlineShape& shape, const Outlines& outlines, int body) {
+  const int offset = outlines.offset[body];
+  Box box{1e300, -1e300, 1e300, -1e300};
+  for (int i = offset; i < offset + shape.count; ++i) {
+    const double dx = outlines.x[i] - outlines.x_refresh[i], dy = outlines.y[i] - outlines.y_refresh[i];
+    box.x_min = std::min(box.x_min, dx), box.x_max = std::max(box.x_max, dx);
+    box.y_min = std::min(box.y_min, dy), box.y_max = std::max(box.y_max, dy);
+  }
+  return box;
+}
+
+/// Bound on the square of the relative motion of any two nodes of two bodies.
+double relative_motion(const Box& a, const Box& b) {
+  const double dx = std::max(a.x_max - b.x_min, b.x_max - a.x_min), dy = std::max(a.y_max - b.y_min, b.y_max - a.y_min);
+  return dx * dx + dy * dy;
+}
+
+MasterWindow& thread_scratch() {
+  thread_local MasterWindow window;
+  return window;
+}
+
+int padded(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
+
+}  // namespace
+
+ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(make_contact_laws(model)) {
+  double finest = 1e300;
+  for (const OutlineShape& outline : model.outlines) finest = std::min(finest, outline.spacing);
+  skin_ = model.scene.skin * finest;
+  broad_margin_ = laws_.max_reach + (1 + extra_skins) * skin_;
+  motion_.resize(model.bodies.size());
+}
+
+bool ContactSystem::refresh_needed(const Outlines& outlines) {
+  if (!fresh_) return true;
+  const int bodies = static_cast<int>(model_.bodies.size());
+  parallel_for(bodies, [&](int b) { motion_[b] = motion_box(model_.outlines[outlines.shape[b]], outlines, b); });
+  const double largest_own = parallel_max(bodies, 0, [&](int b) {
+    const Box& m = motion_[b];
+    return relative_motion(m, Box{0, 0, 0, 0});
+  });
+  const double largest_pair = parallel_max(static_cast<int>(pairs_.size()), 0, [&](int p) {
+    return relative_motion(motion_[pairs_[p].first], motion_[pairs_[p].second]);
+  });
+  return largest_pair >= skin_ * skin_ || 4 * largest_own >= std::pow((1 + extra_skins) * skin_, 2);
+}
+
+void ContactSystem::refresh(Outlines& outlines, ContactHistory& history) {
+  const int bodies = static_cast<int>(model_.bodies.size());
+  std::vector<Box> boxes(model_.bodies.size());
+  parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
+  pairs_ = broad_phase(model_, boxes, broad_margin_);
+  const std::vector<Patch> old = std::move(patches_);
+  find_patches(outlines, boxes);
+  lay_out_patches();
+  carry_history(old, history);
+  outlines.x_refresh = outlines.x;
+  outlines.y_refresh = outlines.y;
+  fresh_ = true;
+  ++refreshes_;
+}
+
+void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box>& boxes) {
+  std::vector<Patch> found(pairs_.size());
+  parallel_for_uneven(static_cast<int>(pairs_.size()), 64, [&](int p) {
+    const BodyPair& pair = pairs_[p];
+    Patch& patch = found[p];
+    patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
+    patch.law = laws_.between(pair.first, pair.second);
+    find_arcs(model_, outlines, boxes, pair, reach_of(laws_.laws[patch.law]) + skin_, patch.arc);
+  });
+  patches_.clear();
+  for (const Patch& patch : found)
+    if (patch.arc[0].count > 0) patches_.push_back(patch);
+}
+
+void ContactSystem::lay_out_patches() {
+  body_arcs_.assign(model_.bodies.size(), {});
+  int record = 0, force = 0;
+  for (Patch& patch : patches_)
+    for (int side = 0; side < 2; ++side) {
+      const Arc& arc = patch.arc[side];
+      patch.record[side] = record;
+      patch.force[side] = force;
+      body_arcs_[side == 0 ? patch.first : patch.second].push_back({arc.begin - 1, arc.count + 2, force});
+      record += padded(arc.count);
+      force += arc.count + 2;
+    }
+  records_ = record;
+  forces_.x.assign(static_cast<std::size_t>(force), 0.0);
+  forces_.y.assign(static_cast<std::size_t>(force), 0.0);
+  totals_.assign(patches_.size(), {});
+}
+
+void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory& history) const {
+  const auto key = [](const Patch& p) { return std::tie(p.first, p.second, p.images); };
+  ContactHistory next{std::vector<double>(static_cast<std::size_t>(records_), std::numeric_limits<double>::quiet_NaN()),
+                      std::vector<double>(static_cast<std::size_t>(records_), 0.0)};
+  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
+    const Patch& patch = patches_[p];
+    const auto from = std::lower_bound(old.begin(), old.end(), patch, [&](const Patch& a, const Patch& b) { return key(a) < key(b); });
+    if (from == old.end() || key(*from) != key(patch)) return;
+    for (int side = 0; side < 2; ++side) {
+      const OutlineShape& shape = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline];
+      for (int i = 0; i < patch.arc[side].count; ++i) {
+        int at = patch.arc[side].begin + i - from->arc[side].begin;
+        if (shape.turn_shift == 0) at = (at % shape.count + shape.count) % shape.count;
+        if (at < 0 || at >= from->arc[side].count) continue;
+        next.arc[patch.record[side] + i] = history.arc[from->record[side] + at];
+        next.slip[patch.record[side] + i] = history.slip[from->record[side] + at];
+      }
+    }
+  });
+  history = std::move(next);
+}
+
+PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial) {
+  trial.arc.resize(committed.arc.size());
+  trial.slip.resize(committed.slip.size());
+  const int count = static_cast<int>(patches_.size());
+  parallel_for(count, [&](int p) {
+    totals_[p] = compute_patch(model_, laws_, outlines, patches_[p], committed, trial, forces_, thread_scratch());
+  });
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    gather(forces_.x, b, outlines, outlines.force_x.data());
+    gather(forces_.y, b, outlines, outlines.force_y.data());
+  });
+  PatchTotals total;
+  for (const PatchTotals& t : totals_) {
+    total.stored += t.stored;
+    total.dissipated += t.dissipated;
+    total.deepest = std::max(total.deepest, t.deepest);
+    total.contacts += t.contacts;
+  }
+  return total;
+}
+
+void ContactSystem::gather(const std::vector<double>& buffer, int body, const Outlines& outlines, double* target) const {
+  const int n = model_.outlines[outlines.shape[body]].count;
+  double* own = target + outlines.offset[body];
+  std::fill_n(own, n, 0.0);
+  for (const ArcForce& arc : body_arcs_[body]) {
+    int node = arc.begin - turn_of(arc.begin, n) * n;
+    for (int i = 0; i < arc.count; ++i) {
+      own[node] += buffer[arc.force + i];
+      if (++node == n) node = 0;
+    }
+  }
+}
+
+std::vector<double> ContactSystem::stiffness_bound(Outlines& outlines, const std::vector<double>& compliance) {
+  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
+    const Patch& patch = patches_[p];
+    const double a = compliance[patch.first], b = compliance[patch.second];
+    // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
+    const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
+    const ContactLaw& law = laws_.laws[patch.law];
+    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), reach_of(law) + skin_, factor, forces_, thread_scratch());
+  });
+  std::vector<double> result(outlines.x.size(), 0.0);
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) { gather(forces_.x, b, outlines, result.data()); });
+  return result;
+}
+
+}  // namespace pliant

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "contact/laws/traction.hpp"
+
+namespace pliant {
+
+/// p = kn max(-g, 0), no shear (METHOD 4).
+struct Frictionless {
+  static constexpr bool has_shear = false;
+  double normal_stiffness = 0;  ///< kn, Pa/m
+  double shear_stiffness = 0;   ///< unused
+  double reach = 0;             ///< largest gap with a traction, m
+
+  Traction operator()(Lanes gap) const {
+    const Lanes pressure = max(-normal_stiffness * gap, Lanes{});
+    return {pressure, Lanes{}, 0.5 * pressure * pressure / normal_stiffness};
+  }
+};
+
+}  // namespace pliant

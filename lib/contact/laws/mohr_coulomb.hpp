@@ -1,0 +1,25 @@
+#pragma once
+
+#include "contact/laws/traction.hpp"
+
+namespace pliant {
+
+/// p = -kn g down to the tensile cut-off -t, nothing beyond; |tau| <= c + friction max(p, 0) (METHOD 4).
+/// The cut-off is a jump of the force between two branches of one potential: closing again gives back what opening took.
+struct MohrCoulomb {
+  static constexpr bool has_shear = true;
+  double normal_stiffness = 0;  ///< kn, Pa/m
+  double shear_stiffness = 0;   ///< kt, Pa/m
+  double reach = 0;             ///< t / kn, m
+  double friction = 0;
+  double cohesion = 0;  ///< Pa
+
+  Traction operator()(Lanes gap) const {
+    const LaneBits touching = gap < reach;
+    const Lanes pressure = select(touching, -normal_stiffness * gap, Lanes{});
+    const Lanes limit = select(touching, cohesion + friction * max(pressure, Lanes{}), Lanes{});
+    return {pressure, limit, select(touching, 0.5 * normal_stiffness * (gap * gap - reach * reach), Lanes{})};
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/lanes.hpp"
+
+namespace pliant {
+
+/// What a contact law answers for a gap g (negative: penetration), eight nodes at once.
+struct Traction {
+  Lanes pressure;     ///< Pa, positive in compression
+  Lanes shear_limit;  ///< Pa, the largest |tau|
+  Lanes energy;       ///< J/m2, normal part, dpsi/dg = -pressure, zero out of reach
+};
+
+}  // namespace pliant

@@ -1,0 +1,112 @@
+#include "discretisation/mls.hpp"
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+
+namespace pliant {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Share of the radius beyond which a node is no neighbour: value and gradient of its weight are below rounding there,
+// and a node at exactly the radius must not depend on the last bit.
+constexpr double support_edge = 1 - 1e-8;
+// Reciprocal condition of the moment matrix under which the neighbours count as collinear.
+constexpr double least_condition = 1e-12;
+
+struct Weight {
+  double value, slope;  // slope: derivative by q
+};
+
+// Cubic spline, q = distance / radius in [0, 1].
+Weight cubic_spline(double q) {
+  if (q <= 0.5) return {2.0 / 3 + 4 * q * q * (q - 1), 4 * q * (3 * q - 2)};
+  const double s = 1 - q;
+  return {4.0 / 3 * s * s * s, -4 * s * s};
+}
+
+struct Neighbour {
+  int node;
+  Vector3d basis;  // (1, X_i - x)
+  double weight;
+  Vec2 weight_gradient;  // by x
+};
+
+std::vector<Neighbour> find_neighbours(const MlsNodes& nodes, const Vec2& x) {
+  std::vector<Neighbour> found;
+  for (std::size_t i = 0; i < nodes.position.size(); ++i) {
+    const Vec2 r = nodes.position[i] - x;
+    const double radius = nodes.radius[i], limit = support_edge * radius;
+    if (r.squaredNorm() >= limit * limit) continue;
+    const double distance = r.norm();
+    const Weight w = cubic_spline(distance / radius);
+    const Vec2 gradient = distance > 0 ? Vec2(-w.slope / (radius * distance) * r) : Vec2(0, 0);
+    found.push_back({static_cast<int>(i), Vector3d(1, r.x(), r.y()), w.value, gradient});
+  }
+  return found;
+}
+
+Matrix3d inverse_moment(const std::vector<Neighbour>& neighbours, const Vec2& x) {
+  Matrix3d moment = Matrix3d::Zero();
+  for (const Neighbour& n : neighbours) moment += n.weight * n.basis * n.basis.transpose();
+  const Eigen::PartialPivLU<Matrix3d> lu(moment);
+  if (neighbours.size() < 3 || !(lu.rcond() > least_condition))
+    throw InputError(
+        fmt::format("discretisation: the point ({:.4g}, {:.4g}) (in mean node distances from the centroid) has "
+                    "{} neighbour nodes, not three off one line; raise `support`",
+                    x.x(), x.y(), neighbours.size()));
+  return lu.inverse();
+}
+
+}  // namespace
+
+MlsNodes make_mls_nodes(const Points& nodes, int support) {
+  if (static_cast<int>(nodes.size()) <= support)
+    throw InputError(fmt::format("discretisation: support = {} needs more than {} nodes; the shape has {}", support,
+                                 support, nodes.size()));
+  MlsNodes result{nodes, {}};
+  std::vector<double> squared(nodes.size());
+  for (const Vec2& x : nodes) {
+    std::transform(nodes.begin(), nodes.end(), squared.begin(), [&](const Vec2& y) { return (y - x).squaredNorm(); });
+    std::nth_element(squared.begin(), squared.begin() + support, squared.end());  // the node itself is number 0
+    result.radius.push_back(std::sqrt(squared[support]));
+  }
+  return result;
+}
+
+// With c(x) the first row of M^-1 in the basis centred at the fixed point, phi_i = c . p_i w_i. Moving x moves the
+// point at which the basis is taken (first term of dc) and the weights in M (second term).
+ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x) {
+  const std::vector<Neighbour> neighbours = find_neighbours(nodes, x);
+  const Matrix3d inverse = inverse_moment(neighbours, x);
+  const Vector3d c = inverse.col(0);
+  Eigen::Matrix<double, 3, 2> moment_gradient_c = Eigen::Matrix<double, 3, 2>::Zero();  // (dM/dx_a) c
+  for (const Neighbour& n : neighbours) moment_gradient_c += n.basis.dot(c) * n.basis * n.weight_gradient.transpose();
+  const Eigen::Matrix<double, 3, 2> c_gradient = inverse.rightCols<2>() - inverse * moment_gradient_c;
+  ShapeFunctions result;
+  for (const Neighbour& n : neighbours) {
+    result.node.push_back(n.node);
+    result.value.push_back(c.dot(n.basis) * n.weight);
+    result.gradient.push_back(n.weight * (c_gradient.transpose() * n.basis) + c.dot(n.basis) * n.weight_gradient);
+  }
+  return result;
+}
+
+ShapeRows mls_rows(const MlsNodes& nodes, const Points& points) {
+  ShapeRows rows;
+  rows.start.push_back(0);
+  for (const Vec2& x : points) {
+    const ShapeFunctions shape = evaluate_mls(nodes, x);
+    rows.node.insert(rows.node.end(), shape.node.begin(), shape.node.end());
+    rows.value.insert(rows.value.end(), shape.value.begin(), shape.value.end());
+    rows.start.push_back(static_cast<int>(rows.node.size()));
+  }
+  return rows;
+}
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+#include "dynamics/energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bodies/initial_state.hpp"
+#include "bodies/internal_forces.hpp"
+#include "boundary/loads.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+namespace {
+
+double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
+
+}  // namespace
+
+double kinetic_energy(const Model& model, const Dofs& velocity) {
+  double total = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
+    const Batch& batch = model.batches[b];
+    const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
+    const Lanes* v = &velocity.compliant[batch.offset];
+    Lanes energy{};
+    for (std::size_t i = 0; i < mass.size(); ++i) energy += 0.5 * mass[i] * (v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]);
+    return sum(energy * batch.density * batch.weight);
+  });
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double v = velocity.rigid[3 * r + c];
+      total += 0.5 * model.rigid_bodies[r].dof[c].mass * v * v;
+    }
+  return total;
+}
+
+Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(zero_dofs(forces.model())) {
+  gravity_start_ = gravity_moment(forces.model(), start.position);
+  energy_start_ = audit(start).energy.mechanical();
+}
+
+Audit Auditor::audit(const State& state) {
+  const Model& model = forces_.model();
+  Audit result;
+  // The same forces once more: the history stands still at an accepted state, so nothing slips.
+  ContactHistory history = state.history;
+  const Evaluation evaluation = forces_.evaluate(state.position, state.time, history, scratch_, force_);
+  result.contacts = evaluation.contact.contacts;
+  result.energy.contact = evaluation.contact.stored;
+  result.energy.kinetic = kinetic_energy(model, state.velocity);
+  result.energy.strain = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
+    return sum(strain_energy(model, model.batches[b], &state.position.compliant[model.batches[b].offset]));
+  });
+  result.energy.dissipated = state.dissipated;
+  result.energy.external_work = state.external_work + gravity_moment(model, state.position) - gravity_start_;
+  result.momentum_error = std::max(contact_imbalance(), internal_imbalance(state.position));
+  return result;
+}
+
+double Auditor::balance_error(const Energies& energy) const {
+  const double imbalance = energy.mechanical() - energy_start_ - energy.external_work + energy.dissipated;
+  return ratio(std::abs(imbalance), std::max(std::abs(energy.external_work), std::abs(energy_start_)));
+}
+
+/// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but a force's
+/// lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a period.
+double Auditor::contact_imbalance() const {
+  const Model& model = forces_.model();
+  const Outlines& o = forces_.outlines();
+  double fx = 0, fy = 0, moment = 0, magnitude = 0, lever = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (int i = o.offset[b]; i < o.offset[b] + model.outlines[o.shape[b]].count; ++i) {
+      fx += o.force_x[i], fy += o.force_y[i];
+      moment += o.x[i] * o.force_y[i] - o.y[i] * o.force_x[i];
+      magnitude += std::hypot(o.force_x[i], o.force_y[i]);
+      lever += std::abs(o.x[i] * o.force_y[i]) + std::abs(o.y[i] * o.force_x[i]);
+    }
+  const double linear = ratio(std::hypot(fx, fy), magnitude);
+  return model.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
+}
+
+double Auditor::internal_imbalance(const Dofs& position) const {
+  const Model& model = forces_.model();
+  return parallel_max(static_cast<int>(model.batches.size()), 0, [&](int b) {
+    const Batch& batch = model.batches[b];
+    const std::size_t nodes = static_cast<std::size_t>(model.shape_of(batch).nodes());
+    std::vector<Lanes> f(2 * nodes, Lanes{});
+    const Lanes* q = &position.compliant[batch.offset];
+    add_internal_forces(model, batch, q, f.data());
+    Lanes fx{}, fy{}, moment{}, magnitude = broadcast(1e-300), lever = broadcast(1e-300);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      fx += f[2 * i], fy += f[2 * i + 1];
+      magnitude += abs(f[2 * i]) + abs(f[2 * i + 1]);
+      moment += q[2 * i] * f[2 * i + 1] - q[2 * i + 1] * f[2 * i];
+      lever += abs(q[2 * i] * f[2 * i + 1]) + abs(q[2 * i + 1] * f[2 * i]);
+    }
+    // Rounding of an unloaded grain is not an imbalance: forces count relative to the elastic scale of the grain.
+    const double scale = std::sqrt(model.bodies[model.groups[batch.group].bodies[batch.first]].area);
+    const Lanes floor = batch.mu * (1e-3 * scale);
+    const Lanes linear = max(abs(fx), abs(fy)) / max(magnitude, floor);
+    return largest(max(linear, abs(moment) / max(lever, floor * scale)));
+  });
+}
+
+}  // namespace pliant

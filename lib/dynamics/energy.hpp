@@ -1,0 +1,48 @@
+#pragma once
+
+#include "dynamics/forces.hpp"
+#include "dynamics/state.hpp"
+
+namespace pliant {
+
+/// Energies of a state, J per metre of thickness.
+struct Energies {
+  double kinetic = 0, strain = 0;
+  double contact = 0;        ///< stored in contacts; negative where cohesive surfaces are joined
+  double dissipated = 0;     ///< by slip, summed from the laws' own work
+  double external_work = 0;  ///< of loads, imposed motions and gravity
+  double mechanical() const { return kinetic + strain + contact; }
+};
+
+double kinetic_energy(const Model& model, const Dofs& velocity);
+
+/// Sums and checks of one state: energies, and what should vanish in the balances of momentum.
+struct Audit {
+  Energies energy;
+  double momentum_error = 0;  ///< |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes
+  int contacts = 0;
+};
+
+/// Books the energy of a run from a given start.
+class Auditor {
+ public:
+  /// `start` must hold forces of its own positions, as after the first evaluation.
+  Auditor(Forces& forces, const State& start);
+  Audit audit(const State& state);
+
+  /// |mechanical - mechanical at start - external work + dissipated| over the larger of external work and initial mechanical energy; 0 when both
+  /// vanish.
+  double balance_error(const Energies& energy) const;
+
+ private:
+  double internal_imbalance(const Dofs& position) const;
+  double contact_imbalance() const;
+
+  Forces& forces_;
+  double gravity_start_ = 0;
+  double energy_start_ = 0;
+  Dofs force_;
+  ContactHistory scratch_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "dynamics/forces.hpp"
+#include "dynamics/state.hpp"
+
+namespace pliant {
+
+/// Positions and forces under trial: they become the state's own when the step is accepted.
+struct Trial {
+  Dofs position, velocity, force;
+  ContactHistory history;
+};
+
+/// One accepted step.
+struct StepReport {
+  double dt = 0, error = 0;
+  int rejections = 0;
+  Evaluation evaluation;     ///< the last one
+  const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"
+};
+
+/// Throws PhysicsError when dt has fallen under 1e-9 of `reference`: with the error that forced it down.
+void check_time_step(double dt, double reference, double error, double time);
+
+}  // namespace pliant

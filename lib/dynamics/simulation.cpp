@@ -1,0 +1,39 @@
+#include "dynamics/simulation.hpp"
+
+#include <limits>
+
+#include "bodies/initial_state.hpp"
+
+namespace pliant {
+
+Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
+  state_.position = initial_positions(model);
+  state_.velocity = initial_velocities(model, state_.position);
+  state_.force = zero_dofs(model);
+  ContactHistory trial;
+  forces_.evaluate(state_.position, 0, state_.history, trial, state_.force);
+  std::swap(state_.history, trial);
+  ++state_.evaluations;
+  auditor_ = std::make_unique<Auditor>(forces_, state_);
+  if (model.scene.time.integrator == Integrator::verlet)
+    integrator_.emplace<Verlet>(forces_, state_);
+  else
+    integrator_.emplace<StepDoubling>(forces_, state_);
+}
+
+StepReport Simulation::step(double until) {
+  if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) return verlet->step(state_, until);
+  return std::get<StepDoubling>(integrator_).step(state_, until);
+}
+
+double Simulation::largest_dt() const {
+  const Verlet* verlet = std::get_if<Verlet>(&integrator_);
+  return verlet ? verlet->bound().largest_dt() : std::numeric_limits<double>::infinity();
+}
+
+std::string Simulation::governing() const {
+  const Verlet* verlet = std::get_if<Verlet>(&integrator_);
+  return verlet ? verlet->bound().governing() : "error control";
+}
+
+}  // namespace pliant

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <variant>
+
+#include "dynamics/energy.hpp"
+#include "dynamics/state.hpp"
+#include "dynamics/step_doubling.hpp"
+#include "dynamics/verlet.hpp"
+
+namespace pliant {
+
+/// A model in motion: state, forces, integrator and energy books.
+class Simulation {
+ public:
+  explicit Simulation(const Model& model);
+
+  /// One accepted step, ending at `until` at the latest.
+  StepReport step(double until);
+  Audit audit() { return auditor_->audit(state_); }
+  double balance_error(const Energies& energy) const { return auditor_->balance_error(energy); }
+
+  const Model& model() const { return model_; }
+  const State& state() const { return state_; }
+  const Forces& forces() const { return forces_; }
+  double largest_dt() const;      ///< stability bound, s; infinite for step-doubling
+  std::string governing() const;  ///< what limits the stability bound
+
+ private:
+  const Model& model_;
+  State state_;
+  Forces forces_;
+  std::unique_ptr<Auditor> auditor_;
+  std::variant<std::monostate, Verlet, StepDoubling> integrator_;
+};
+
+}  // namespace pliant

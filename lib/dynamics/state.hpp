@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "bodies/dofs.hpp"
+#include "bodies/model.hpp"
+#include "contact/patch.hpp"
+
+namespace pliant {
+
+/// Everything that changes during a run. It enumerates itself (visit), so that hash, comparison and checkpoint cannot forget a part.
+struct State {
+  double time = 0;             ///< s
+  double next_dt = 0;          ///< what the controller proposes, s
+  double external_work = 0;    ///< of loads and imposed motions, J/m
+  double dissipated = 0;       ///< by contact laws, J/m
+  std::int64_t steps = 0, rejections = 0, evaluations = 0;
+  Dofs position, velocity, force;
+  ContactHistory history;
+
+  /// visitor(name, value) for every member; arrays come as vectors.
+  template <class Visitor>
+  void visit(Visitor&& visitor) const {
+    visitor("time", time);
+    visitor("next_dt", next_dt);
+    visitor("external_work", external_work);
+    visitor("dissipated", dissipated);
+    visitor("steps", steps);
+    visitor("rejections", rejections);
+    visitor("evaluations", evaluations);
+    visitor("position.compliant", position.compliant);
+    visitor("position.rigid", position.rigid);
+    visitor("velocity.compliant", velocity.compliant);
+    visitor("velocity.rigid", velocity.rigid);
+    visitor("force.compliant", force.compliant);
+    visitor("force.rigid", force.rigid);
+    visitor("history.arc", history.arc);
+    visitor("history.slip", history.slip);
+  }
+};
+
+/// 64-bit FNV-1a hash of every bit of the state.
+std::uint64_t state_hash(const State& state);
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dynamics/forces.hpp"
+
+namespace pliant {
+
+/// Stability bound of explicit central differences, dt <= safety x 2/sqrt(1.05 w_b^2 + w_c^2), body by body (METHOD 6).
+class TimeStepBound {
+ public:
+  TimeStepBound(const Model& model, const ContactLaws& laws);
+
+  /// Two more power iterations on the internal forces of every compliant body.
+  void update_internal(const Dofs& position, int iterations = 2);
+  /// The a-priori contact bound, after a refresh of the contact candidates.
+  void update_contact(Forces& forces);
+
+  double largest_dt() const;  ///< s, with the safety factor; infinite when nothing is stiff
+  /// Name of the limiting body and share of contact in its w^2, for messages.
+  std::string governing() const;
+
+ private:
+  void iterate_batch(const Batch& batch, const Lanes* position, int iterations);
+  double contact_frequency(const Body& body, const double* stiffness) const;
+  std::size_t limiting_body() const;
+  double total(std::size_t body) const;
+
+  const Model& model_;
+  std::vector<Lanes> direction_;            ///< power iteration's vectors, as Dofs::compliant
+  std::vector<Lanes> internal_;             ///< [batches] w_b^2, 1/s2
+  std::vector<double> contact_;             ///< [bodies] w_c^2, 1/s2
+  std::vector<double> contact_floor_;       ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
+  std::vector<double> compliance_;          ///< [bodies] w^2 per unit contact stiffness
+};
+
+}  // namespace pliant

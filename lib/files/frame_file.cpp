@@ -1,0 +1,169 @@
+#include "files/frame_file.hpp"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "core/errors.hpp"
+#include "files/hdf5_file.hpp"
+#include "files/text_files.hpp"
+#include "files/xdmf.hpp"
+
+namespace pliant {
+namespace {
+
+/// Room for the groups and indices of one frame.
+constexpr std::uintmax_t overhead_bytes = 1 << 20;
+/// More frames are as welcome, but their index then grows by more than one write.
+constexpr unsigned expected_frames = 2000;
+
+void require_size(const std::filesystem::path& file, const std::string& what, std::size_t found, std::size_t expected) {
+  if (found == expected) return;
+  throw OutputError(fmt::format("{}: '{}' has {} values, its grid needs {}; give one value for each point or cell and "
+                                "component",
+                                file.string(), what, found, expected));
+}
+
+std::size_t cell_count(const GridTopology& grid) {
+  return grid.cells.size() / static_cast<std::size_t>(grid.cell_size);
+}
+
+void check_field(const std::filesystem::path& file, const GridTopology& grid, const Field& field) {
+  const std::size_t entries =
+      field.centre == Field::Centre::point ? static_cast<std::size_t>(grid.points) : cell_count(grid);
+  if (field.components < 1 || field.components > 3) {
+    throw OutputError(fmt::format("{}: '{}/{}' has {} components; allowed are 1 to 3", file.string(), grid.name,
+                                  field.name, field.components));
+  }
+  require_size(file, grid.name + "/" + field.name, field.values.size(),
+               entries * static_cast<std::size_t>(field.components));
+}
+
+void check_grid(const std::filesystem::path& file, const GridTopology& grid) {
+  if (grid.cell_size != 2 && grid.cell_size != 3) {
+    throw OutputError(fmt::format("{}: grid '{}' has cells of {} points; allowed are 2 (segments) and 3 (triangles)",
+                                  file.string(), grid.name, grid.cell_size));
+  }
+  require_size(file, grid.name + "/cells", grid.cells.size(), cell_count(grid) * grid.cell_size);
+  for (const int point : grid.cells) {
+    if (point >= 0 && point < grid.points) continue;
+    throw OutputError(fmt::format("{}: grid '{}' has a cell with point {}; allowed are 0 to {}", file.string(),
+                                  grid.name, point, grid.points - 1));
+  }
+  for (const Field& field : grid.constant_fields) check_field(file, grid, field);
+}
+
+/// Throws unless every grid can be written.
+std::vector<GridTopology> checked(const std::filesystem::path& file, std::vector<GridTopology> grids) {
+  for (const GridTopology& grid : grids) check_grid(file, grid);
+  return grids;
+}
+
+void check_frame(const std::filesystem::path& file, const GridTopology& grid, const GridFrame& frame) {
+  require_size(file, grid.name + "/position", frame.positions.size(), 2 * static_cast<std::size_t>(grid.points));
+  for (const Field& field : frame.fields) check_field(file, grid, field);
+}
+
+/// [entries x 2] to [entries x 3] with zeros; anything else as it is.
+std::vector<float> stored_values(const Field& field) {
+  if (field.components != 2) return field.values;
+  std::vector<float> values(field.values.size() / 2 * 3, 0.0F);
+  for (std::size_t i = 0; i < field.values.size() / 2; ++i) {
+    values[3 * i] = field.values[2 * i];
+    values[3 * i + 1] = field.values[2 * i + 1];
+  }
+  return values;
+}
+
+void write_field(Hdf5Group& group, const Field& field) {
+  group.write(field.name, stored_values(field), stored_components(field));
+}
+
+void write_topology(Hdf5File& file, const GridTopology& grid) {
+  Hdf5Group group = file.new_group(expected_frames);
+  group.write("cells", grid.cells, grid.cell_size);
+  for (const Field& field : grid.constant_fields) write_field(group, field);
+  file.publish(group, "/" + grid.name);
+}
+
+Hdf5Group write_frame(Hdf5File& file, double time, const GridFrame& frame) {
+  Hdf5Group group = file.new_group();
+  group.write_attribute("time", time);
+  group.write("position", frame.positions, 2);
+  for (const Field& field : frame.fields) write_field(group, field);
+  return group;
+}
+
+/// What a frame may add to the file at most, should nothing compress.
+std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames) {
+  std::uintmax_t values = 0;
+  for (const GridFrame& frame : frames) {
+    values += frame.positions.size();
+    for (const Field& field : frame.fields) values += field.values.size() * 3 / 2;
+  }
+  return values * sizeof(float) * 21 / 20 + overhead_bytes;
+}
+
+} // namespace
+
+struct FrameFile::Implementation {
+  std::filesystem::path heavy, light;
+  std::vector<GridTopology> grids;
+  XdmfDocument document;
+  int count = 0;
+
+  Implementation(const std::filesystem::path& folder, std::vector<GridTopology> topologies)
+      : heavy(folder / "frames.h5"), light(folder / "frames.xdmf"), grids(checked(heavy, std::move(topologies))),
+        document(heavy, grids) {
+    Hdf5File file(heavy, Hdf5File::Mode::create);
+    for (const GridTopology& grid : grids) write_topology(file, grid);
+    file.write_empty_list("/times");
+    file.close();
+    write_file_atomically(light, document.text());
+  }
+
+  /// Opened and closed for each frame: between frames both files are complete, whatever ends the run. A frame is
+  /// published when it is in the file, grid by grid, and its time listed last: it counts when it is whole.
+  void append(double time, const std::vector<GridFrame>& frames) {
+    check(frames);
+    reserve_disk_space(heavy, frame_bytes(frames));
+    write(time, frames);
+    document.add(count, time, grids, frames);
+    write_file_atomically(light, document.text());
+    ++count;
+  }
+
+  void write(double time, const std::vector<GridFrame>& frames) const {
+    Hdf5File file(heavy, Hdf5File::Mode::append);
+    std::vector<Hdf5Group> groups;
+    groups.reserve(frames.size());
+    for (const GridFrame& frame : frames) groups.push_back(write_frame(file, time, frame));
+    file.flush();
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+      file.publish(groups[g], frame_group(grids[g].name, count));
+      file.flush();
+    }
+    groups.clear(); // before the file closes: an open group would keep it open
+    file.append_value("/times", time);
+    file.close();
+  }
+
+  void check(const std::vector<GridFrame>& frames) const {
+    if (frames.size() != grids.size()) {
+      throw OutputError(fmt::format("{}: a frame of {} grids was given, the file has {}; give one for each grid",
+                                    heavy.string(), frames.size(), grids.size()));
+    }
+    for (std::size_t g = 0; g < grids.size(); ++g) check_frame(heavy, grids[g], frames[g]);
+  }
+};
+
+FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids)
+    : implementation_(std::make_unique<Implementation>(folder, std::move(grids))) {}
+
+FrameFile::~FrameFile() = default;
+
+void FrameFile::append(double time, const std::vector<GridFrame>& frames) { implementation_->append(time, frames); }
+
+int FrameFile::count() const { return implementation_->count; }
+
+} // namespace pliant

@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "geometry/mesh.hpp"
+
+namespace pliant {
+namespace {
+
+// Segments of at most `spacing`; the margin keeps rounding from adding one to an exact multiple.
+int segment_count(double length, double spacing) {
+  return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
+}
+
+// Points from a to b, b left out.
+void append_line(Points& chain, const Vec2& a, const Vec2& b, double spacing) {
+  const int n = segment_count((b - a).norm(), spacing);
+  for (int k = 0; k < n; ++k) chain.push_back(a + static_cast<double>(k) / n * (b - a));
+}
+
+// One cap's arc, from left to right.
+struct Arc {
+  Vec2 centre;
+  double radius, half_angle, side;  // side: +1 when the grains are above the wall, -1 below
+  Vec2 at(double angle) const { return centre + radius * Vec2(std::sin(angle), side * std::cos(angle)); }
+  Vec2 left() const { return at(-half_angle); }
+  Vec2 right() const { return at(half_angle); }
+};
+
+void append_arc(Points& chain, const Arc& arc, double spacing) {
+  const int n = segment_count(2 * arc.half_angle * arc.radius, spacing);
+  for (int k = 0; k < n; ++k) chain.push_back(arc.at((2.0 * k / n - 1) * arc.half_angle));
+}
+
+void require_valid_caps(const Wall& wall) {
+  const Caps& caps = *wall.caps;
+  if (caps.count < 1 || !(caps.diameter > 0))
+    throw InputError(fmt::format("wall '{}': {} caps of diameter {:.6g} m; both must be positive", wall.name,
+                                 caps.count, caps.diameter));
+  if (caps.heights.empty() || caps.half_angles.empty())
+    throw InputError(fmt::format("wall '{}': caps need at least one height and one half angle", wall.name));
+  for (const double angle : caps.half_angles)
+    if (!(angle > 0 && angle < std::numbers::pi / 2))
+      throw InputError(
+          fmt::format("wall '{}': cap half angle {:.6g} rad; allowed: above 0, below pi/2", wall.name, angle));
+}
+
+// The arcs of one period, and the first one repeated behind them.
+std::vector<Arc> cap_arcs(const Wall& wall, double period) {
+  const Caps& caps = *wall.caps;
+  const double side = wall.solid == Wall::Solid::below ? 1 : -1;
+  std::vector<Arc> arcs;
+  for (int j = 0; j < caps.count; ++j) {
+    const double height = caps.heights[j % caps.heights.size()];
+    arcs.push_back({Vec2(caps.first + j * period / caps.count, wall.level + side * height), caps.diameter / 2,
+                    caps.half_angles[j % caps.half_angles.size()], side});
+  }
+  arcs.push_back(arcs.front());
+  arcs.back().centre.x() += period;
+  return arcs;
+}
+
+Points capped_chain(const Wall& wall, double period, double spacing) {
+  require_valid_caps(wall);
+  const std::vector<Arc> arcs = cap_arcs(wall, period);
+  Points chain;
+  for (std::size_t j = 0; j + 1 < arcs.size(); ++j) {
+    const Vec2 from = arcs[j].right(), to = arcs[j + 1].left();
+    if (!(from.x() < to.x()))
+      throw InputError(
+          fmt::format("wall '{}': cap {} ends at x = {:.6g} m, beyond the start of the next at {:.6g} m; take "
+                      "fewer caps or smaller half angles",
+                      wall.name, j, from.x(), to.x()));
+    append_arc(chain, arcs[j], spacing);
+    append_line(chain, from, to, spacing);
+  }
+  return chain;
+}
+
+// The same periodic line, beginning with its first point in [0, period).
+Points wrapped(Points chain, double period) {
+  for (Vec2& p : chain) {
+    p.x() -= std::floor(p.x() / period) * period;
+    if (p.x() >= period) p.x() = 0;  // of a tiny negative number
+  }
+  const auto leftmost = std::min_element(chain.begin(), chain.end(), [](auto& a, auto& b) { return a.x() < b.x(); });
+  std::rotate(chain.begin(), leftmost, chain.end());
+  return chain;
+}
+
+}  // namespace
+
+Points wall_outline(const Wall& wall, double period, double spacing) {
+  if (!(period > 0) || !(spacing > 0))
+    throw InputError(fmt::format("wall '{}': period {:.6g} m, outline spacing {:.6g} m; both must be positive",
+                                 wall.name, period, spacing));
+  Points chain;
+  if (wall.caps)
+    chain = wrapped(capped_chain(wall, period, spacing), period);
+  else
+    append_line(chain, Vec2(0, wall.level), Vec2(period, wall.level), spacing);
+  if (wall.solid == Wall::Solid::below) std::reverse(chain.begin(), chain.end());
+  return chain;
+}
+
+}  // namespace pliant

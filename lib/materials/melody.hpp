@@ -1,0 +1,35 @@
+#pragma once
+
+#include "core/log_inverse.hpp"
+#include "materials/tensor.hpp"
+
+namespace pliant {
+
+/// The form used by the code MELODY (METHOD 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2 mu/3;
+/// P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
+struct Melody {
+  template <class T>
+  static Response<T> stress(const Tensor<T>& F, T mu, T lambda) {
+    const T J = determinant(F);
+    const T root = inverse_cube_root(J);
+    const T isochoric = mu * root * root;
+    const T bulk = lambda + mu * (2.0 / 3.0);
+    return {combine<T>(isochoric, F, bulk * (J - 1.0) - isochoric * first_invariant(F) / (3.0 * J)), J};
+  }
+
+  template <class T>
+  static T energy(const Tensor<T>& F, T mu, T lambda) {
+    const T J = determinant(F);
+    const T root = inverse_cube_root(J);
+    const T bulk = lambda + mu * (2.0 / 3.0);
+    return 0.5 * bulk * (J - 1.0) * (J - 1.0) + 0.5 * mu * (root * root * first_invariant(F) - 3.0);
+  }
+
+  static double sigma_zz(const Tensor<double>& F, double mu, double lambda) {
+    const double J = determinant(F);
+    const double deviatoric = mu * std::pow(J, -5.0 / 3.0) * (1.0 - first_invariant(F) / 3.0);
+    return (lambda + mu * 2.0 / 3.0) * (J - 1.0) + deviatoric;
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+#include "scene/polygon_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant {
+
+namespace {
+
+int side(const Vec2& a, const Vec2& b, const Vec2& p) {
+  const double z = cross(b - a, p - a);
+  return (z > 0) - (z < 0);
+}
+
+bool boxes_apart(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  return (a.cwiseMax(b).array() < c.cwiseMin(d).array()).any() || (c.cwiseMax(d).array() < a.cwiseMin(b).array()).any();
+}
+
+/// Whether two segments share a point; touching counts.
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  if (boxes_apart(a, b, c, d)) return false;
+  return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
+}
+
+/// An edge that runs back over the one before it.
+bool folds_back(const Vec2& before, const Vec2& corner, const Vec2& after) {
+  return side(before, corner, after) == 0 && (corner - before).dot(after - corner) < 0;
+}
+
+}  // namespace
+
+std::string polygon_defect(const Points& polygon) {
+  const std::size_t n = polygon.size();
+  const auto point = [&](std::size_t i) -> const Vec2& { return polygon[i % n]; };
+  for (std::size_t i = 0; i < n; ++i) {
+    if (point(i) == point(i + 1)) return fmt::format("points {} and {} coincide", i + 1, (i + 1) % n + 1);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (folds_back(point(i), point(i + 1), point(i + 2))) {
+      return fmt::format("edges {} and {} fold back", i + 1, (i + 1) % n + 1);
+    }
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if ((j + 1) % n == i) continue;
+      if (segments_meet(point(i), point(i + 1), point(j), point(j + 1))) {
+        return fmt::format("edges {} and {} cross or touch", i + 1, j + 1);
+      }
+    }
+  }
+  return {};
+}
+
+double signed_area(const Points& polygon) {
+  // About the first point: far from the origin, products of coordinates would cancel.
+  double twice = 0;
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    twice += cross(polygon[i - 1] - polygon[0], polygon[i] - polygon[0]);
+  }
+  return 0.5 * twice;
+}
+
+double largest_extent(const Points& polygon) {
+  double squared = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) squared = std::max(squared, (polygon[i] - polygon[j]).squaredNorm());
+  }
+  return std::sqrt(squared);
+}
+
+}  // namespace pliant

@@ -1,0 +1,158 @@
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <system_error>
+
+#include "core/errors.hpp"
+#include "scene/read_tables.hpp"
+
+namespace pliant {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_text(const fs::path& file) {
+  constexpr std::uintmax_t largest = 256u << 20;
+  const auto refuse = [&](const std::string& why) { throw InputError(fmt::format("{}: {}", file.string(), why)); };
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (!fs::exists(status))
+    refuse(error && status.type() == fs::file_type::none ? error.message() : "no such file; check the path");
+  if (fs::is_directory(status)) refuse("is a folder; name a scene file (.toml) in it");
+  if (!fs::is_regular_file(status)) refuse("is not a regular file; name a scene file (.toml)");
+  if (fs::file_size(file, error) > largest) refuse("is larger than 256 MiB: not a scene file");
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  if (!stream.is_open() || stream.bad()) refuse("cannot be read; check its permissions");
+  return text;
+}
+
+toml::table parse(const std::string& text, const std::string& file) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    fail_at(file, {1, 1}, "the file is empty; see cases/ for examples");
+  try {
+    return toml::parse(std::string_view(text), std::string_view(file));
+  } catch (const toml::parse_error& error) {
+    fail_at(file, error.source().begin, fmt::format("not valid TOML: {}", error.description()));
+  }
+}
+
+/// Names of grains, walls and the two kinds of body are one set: a probe may be of any of them.
+void check_new_name(const TableReader& table, const std::string& name, std::set<std::string>& taken) {
+  if (taken.insert(name).second) return;
+  const std::string message = fmt::format("the name '{}' in {} is taken; choose another", name, table.title());
+  table.fail(message);
+}
+
+void read_materials_and_shapes(TableReader& root, Scene& scene) {
+  for (const char* key : {"materials", "shapes"}) {
+    if (!root.has(key)) root.fail_missing(key, fmt::format("at least one table [{}.NAME]", key));
+  }
+  for (auto& [name, table] : root.named_tables("materials")) scene.materials.push_back(read_material(table, name));
+  for (auto& [name, table] : root.named_tables("shapes")) scene.shapes.push_back(read_shape(table, name));
+}
+
+void read_bodies(TableReader& root, Scene& scene) {
+  std::set<std::string> taken{"compliant", "rigid"};
+  if (!root.has("grains")) root.fail_missing("grains", "at least one table [[grains]]");
+  for (TableReader& table : root.tables("grains")) {
+    scene.grains.push_back(read_grains(table, scene));
+    check_new_name(table, scene.grains.back().name, taken);
+  }
+  if (scene.grains.empty()) root.fail("grains", "empty; allowed: at least one table [[grains]]");
+  for (TableReader& table : root.tables("walls")) {
+    scene.walls.push_back(read_wall(table, scene));
+    check_new_name(table, scene.walls.back().name, taken);
+  }
+}
+
+void read_outputs(TableReader& root, Scene& scene) {
+  std::set<std::string> taken;
+  for (TableReader& table : root.tables("probes")) {
+    scene.probes.push_back(read_probe(table, scene));
+    check_new_name(table, scene.probes.back().name, taken);
+  }
+  if (root.has("frames")) scene.frames = read_frames(root.required_table("frames"), scene);
+}
+
+/// Pairs of materials that can meet in the scene, each in alphabetical order. Walls do not meet walls.
+std::set<std::pair<std::string, std::string>> meeting_pairs(const Scene& scene) {
+  std::set<std::pair<std::string, std::string>> pairs;
+  const auto meet = [&](const std::string& a, const std::string& b) { pairs.insert(std::minmax(a, b)); };
+  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
+    for (const MixEntry& one : scene.grains[i].mix) {
+      for (const Wall& wall : scene.walls) meet(one.material, wall.material);
+      for (std::size_t j = body_count(scene.grains[i]) > 1 ? i : i + 1; j < scene.grains.size(); ++j) {
+        for (const MixEntry& other : scene.grains[j].mix) meet(one.material, other.material);
+      }
+    }
+  }
+  return pairs;
+}
+
+/// Number of the rule that applies to a pair of materials; -1: none.
+int rule_of(const Scene& scene, const std::string& a, const std::string& b) {
+  int found = -1;
+  for (int i = 0; i < static_cast<int>(scene.contacts.size()); ++i) {
+    const auto& [first, second] = std::tie(scene.contacts[i].first, scene.contacts[i].second);
+    if ((first == a && second == b) || (first == b && second == a)) return i;
+    if (first == "all") found = i;
+  }
+  return found;
+}
+
+void check_rules(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables) {
+  bool compliant = false;
+  for (const Grains& grains : scene.grains) compliant = compliant || has_body(grains, BodyKind::compliant);
+  for (const auto& [a, b] : meeting_pairs(scene)) {
+    const int rule = rule_of(scene, a, b);
+    if (rule < 0) {
+      const std::string message = fmt::format(
+          "no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
+          "[\"{0}\", \"{1}\"] or between = \"all\"",
+          a, b);
+      if (tables.empty()) root.fail(message);
+      tables.back().fail(message);
+    }
+    if (compliant || scene.contacts[rule].stiffness) continue;
+    tables[rule].fail(
+        fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
+                    "bodies; add stiffness in {} (Pa/m)",
+                    a, b, tables[rule].title()));
+  }
+}
+
+void read_contacts(TableReader& root, Scene& scene) {
+  const std::vector<TableReader> tables = root.tables("contacts");
+  for (const TableReader& table : tables) scene.contacts.push_back(read_contact(table, scene));
+  check_rules(root, scene, tables);
+  if (!root.has("contact")) return;
+  TableReader settings = root.required_table("contact");
+  settings.optional("skin", scene.skin, Quantity{"1", positive});
+  settings.finish();
+}
+
+}  // namespace
+
+Scene read_scene(const fs::path& file) {
+  const std::string file_name = file.string();
+  const toml::table document = parse(read_text(file), file_name);
+  TableReader root(document, "the scene", file_name);
+  Scene scene;
+  scene.file = file;
+  scene.name = file.stem().string();
+  scene.title = scene.name;
+  root.optional("title", scene.title, Text{});
+  read_domain(root.optional_table("domain"), scene);
+  scene.time = read_time(root.required_table("time"));
+  scene.discretisation = read_discretisation(root.optional_table("discretisation"));
+  read_materials_and_shapes(root, scene);
+  read_bodies(root, scene);
+  read_contacts(root, scene);
+  read_outputs(root, scene);
+  root.finish();
+  return scene;
+}
+
+}  // namespace pliant

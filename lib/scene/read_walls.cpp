@@ -1,0 +1,116 @@
+#include <cmath>
+#include <numbers>
+
+#include "scene/read_tables.hpp"
+
+namespace pliant {
+
+namespace {
+
+struct DriveKind {
+  std::string key;
+  std::string unit;
+  Drive::Mode mode;
+};
+
+/// What may drive a wall along one axis; a pressure has no meaning along the wall.
+std::vector<DriveKind> drive_kinds(bool normal) {
+  std::vector<DriveKind> kinds{{"velocity", "m/s", Drive::Mode::velocity}, {"force", "N/m", Drive::Mode::force}};
+  if (normal) kinds.push_back({"pressure", "Pa", Drive::Mode::pressure});
+  return kinds;
+}
+
+Drive read_drive_table(TableReader table, const std::vector<DriveKind>& kinds) {
+  Drive drive;
+  int given = 0;
+  for (const DriveKind& kind : kinds) {
+    if (!table.optional(kind.key, drive.history, HistoryOf{{kind.unit}})) continue;
+    drive.mode = kind.mode;
+    if (++given > 1)
+      table.fail(kind.key, "only one of velocity, force and pressure can drive an axis; remove the others");
+  }
+  table.finish();
+  if (given == 0)
+    table.fail(fmt::format("nothing drives the wall in {}; give one of velocity, force, pressure", table.title()));
+  return drive;
+}
+
+/// "fixed" (the default), "free", or a table with one history.
+Drive read_drive(TableReader& table, const std::string& axis) {
+  if (!table.has(axis)) return {};
+  if (table.value(axis).node.is_table()) return read_drive_table(table.required_table(axis), drive_kinds(axis == "y"));
+  Drive drive;
+  const Value value = table.value(axis);
+  if (!value.node.is_string()) value.reject("\"fixed\", \"free\" or a table such as { velocity = \"1 m/s\" }");
+  drive.mode = Choice<Drive::Mode>{{{"fixed", Drive::Mode::fixed}, {"free", Drive::Mode::free}}}(value);
+  return drive;
+}
+
+bool needs_mass(const Drive& drive) { return drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity; }
+
+/// Caps side by side must leave room for the straight segments that join them.
+void check_caps(const TableReader& table, const Caps& caps, double period) {
+  const auto half_width = [&](int i) {
+    return caps.diameter / 2 * std::sin(caps.half_angles[static_cast<std::size_t>(i) % caps.half_angles.size()]);
+  };
+  const double pitch = period / caps.count;
+  for (int i = 0; i < caps.count; ++i) {
+    const double taken = half_width(i) + half_width((i + 1) % caps.count);
+    if (taken < pitch) continue;
+    table.fail("half_angles",
+               fmt::format("caps {} and {} take {} m side by side; allowed: less than period / count = {} m", i + 1,
+                           (i + 1) % caps.count + 1, taken, pitch));
+  }
+}
+
+Caps read_caps(TableReader table, double period) {
+  const Range acute{.low = 0, .high = std::numbers::pi / 2, .low_open = true, .high_open = true};
+  Caps caps;
+  caps.heights = {0.0};
+  table.required("diameter", caps.diameter, Quantity{"m", positive});
+  table.required("count", caps.count, Integer{1, SceneLimits::wall_nodes});
+  table.optional("first", caps.first, Quantity{"m"});
+  table.optional("heights", caps.heights, List<Quantity>{{"m"}});
+  table.required("half_angles", caps.half_angles, List<Quantity>{{"rad", acute}});
+  check_caps(table, caps, period);
+  table.finish();
+  return caps;
+}
+
+void check_levels(const TableReader& table, const Wall& wall, const std::vector<Wall>& others) {
+  for (const Wall& other : others) {
+    if (other.solid == wall.solid) continue;
+    const bool below = wall.solid == Wall::Solid::below;
+    if (below ? wall.level < other.level : wall.level > other.level) continue;
+    table.fail("level", fmt::format("{} m; allowed: {} {} m, the level of wall '{}', which is solid on the other side",
+                                    wall.level, below ? "<" : ">", other.level, other.name));
+  }
+}
+
+}  // namespace
+
+Wall read_wall(TableReader table, const Scene& scene) {
+  Wall wall;
+  table.required("name", wall.name, Identifier{});
+  if (!scene.period)
+    table.fail(fmt::format("wall '{}' spans the period, and the scene has none; add [domain] period", wall.name));
+  table.required("material", wall.material, OneOf{"material", names_of(scene.materials)});
+  table.required("solid", wall.solid,
+                 Choice<Wall::Solid>{{{"below", Wall::Solid::below}, {"above", Wall::Solid::above}}});
+  table.required("level", wall.level, Quantity{"m"});
+  check_levels(table, wall, scene.walls);
+  const double finest = *scene.period / SceneLimits::wall_nodes;
+  table.optional("spacing", wall.spacing, Quantity{"m", Range{.low = finest, .high = *scene.period}});
+  if (table.has("caps")) wall.caps = read_caps(table.required_table("caps"), *scene.period);
+  wall.x = read_drive(table, "x");
+  wall.y = read_drive(table, "y");
+  if (needs_mass(wall.x) || needs_mass(wall.y)) {
+    table.required("thickness", wall.thickness, Quantity{"m", positive});
+  } else {
+    table.optional("thickness", wall.thickness, Quantity{"m", non_negative});
+  }
+  table.finish();
+  return wall;
+}
+
+}  // namespace pliant

@@ -1,0 +1,109 @@
+#include "scene/table_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace pliant {
+
+namespace {
+
+bool earlier(const toml::source_position& a, const toml::source_position& b) {
+  return std::pair(a.line, a.column) < std::pair(b.line, b.column);
+}
+
+}  // namespace
+
+bool TableReader::has(const std::string& key) {
+  known_.insert(key);
+  return table_->contains(key);
+}
+
+Value TableReader::value(const std::string& key) {
+  known_.insert(key);
+  return {*table_->get(key), fmt::format("'{}' in {}", key, title_), *file_};
+}
+
+TableReader TableReader::required_table(const std::string& key) {
+  if (!has(key)) fail_missing(key, fmt::format("a table [{}]", key));
+  return optional_table(key);
+}
+
+TableReader TableReader::optional_table(const std::string& key) {
+  static const toml::table empty;
+  if (!has(key)) return {empty, child_title(key), *file_};
+  const Value found = value(key);
+  if (!found.node.is_table()) found.reject("a table");
+  return {*found.node.as_table(), child_title(key), *file_};
+}
+
+std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const std::string& key) {
+  if (!has(key)) return {};
+  const Value all = value(key);
+  if (!all.node.is_table()) all.reject(fmt::format("tables [{}.NAME]", key));
+  std::vector<std::pair<std::string, TableReader>> named;
+  for (auto&& [name, node] : *all.node.as_table()) {
+    const Value one{node, fmt::format("'{}.{}'", key, name.str()), *file_};
+    if (!node.is_table()) one.reject("a table");
+    if (!Identifier::valid(name.str())) one.fail(fmt::format("{}: allowed: {}", one.label, Identifier{}.allowed()));
+    named.emplace_back(name.str(), TableReader(*node.as_table(), fmt::format("[{}.{}]", key, name.str()), *file_));
+  }
+  std::stable_sort(named.begin(), named.end(), [](const auto& a, const auto& b) {
+    return earlier(a.second.table_->source().begin, b.second.table_->source().begin);
+  });
+  return named;
+}
+
+std::vector<TableReader> TableReader::tables(const std::string& key) {
+  if (!has(key)) return {};
+  const std::string allowed = fmt::format("an array of tables [[{}]]", key);
+  std::vector<TableReader> all;
+  for (const Value& element : value(key).elements(allowed)) {
+    if (!element.node.is_table()) element.reject("a table");
+    const auto number = all.size() + 1;
+    const std::string title =
+        nested() ? fmt::format("{} {} of {}", key, number, title_) : fmt::format("[[{}]] {}", key, number);
+    all.emplace_back(*element.node.as_table(), title, *file_);
+  }
+  return all;
+}
+
+std::string TableReader::child_title(const std::string& key) const {
+  return nested() ? fmt::format("{} of {}", key, title_) : fmt::format("[{}]", key);
+}
+
+void TableReader::fail(const std::string& message) const { fail_at(*file_, table_->source().begin, message); }
+
+void TableReader::fail(const std::string& key, const std::string& message) const {
+  fail_at(*file_, table_->get(key)->source().begin, fmt::format("'{}' in {}: {}", key, title_, message));
+}
+
+void TableReader::fail_missing(const std::string& key, const std::string& allowed) const {
+  for (const toml::key* other : unknown_keys()) {
+    const int misspelt = std::max(1, static_cast<int>(key.size()) / 3);
+    if (edit_distance(other->str(), key) <= misspelt) fail_unknown(*other, {key});
+  }
+  fail(fmt::format("missing key '{}' in {}: add {}", key, title_, allowed));
+}
+
+std::vector<const toml::key*> TableReader::unknown_keys() const {
+  std::vector<const toml::key*> unknown;
+  for (auto&& [key, node] : *table_) {
+    if (!known_.contains(std::string(key.str()))) unknown.push_back(&key);
+  }
+  std::sort(unknown.begin(), unknown.end(),
+            [](const toml::key* a, const toml::key* b) { return earlier(a->source().begin, b->source().begin); });
+  return unknown;
+}
+
+void TableReader::fail_unknown(const toml::key& key, const std::vector<std::string>& names) const {
+  fail_at(*file_, key.source().begin,
+          fmt::format("unknown key '{}' in {}; {}", key.str(), title_, allowed_names(key.str(), names)));
+}
+
+void TableReader::finish() const {
+  const auto unknown = unknown_keys();
+  if (!unknown.empty()) fail_unknown(*unknown.front(), {known_.begin(), known_.end()});
+}
+
+}  // namespace pliant

@@ -1,0 +1,93 @@
+#include "scene/units.hpp"
+
+#include <fmt/format.h>
+#include <udunits2.h>
+
+#include <charconv>
+#include <cmath>
+#include <memory>
+#include <string_view>
+
+#include "core/errors.hpp"
+
+namespace pliant {
+
+namespace {
+
+template <class T, void (*release)(T*)>
+struct Release {
+  void operator()(T* pointer) const { release(pointer); }
+};
+using Unit = std::unique_ptr<ut_unit, Release<ut_unit, ut_free>>;
+using Converter = std::unique_ptr<cv_converter, Release<cv_converter, cv_free>>;
+
+/// The unit database, loaded once. UDUNITS-2 has no "deg", which everybody writes.
+ut_system* unit_system() {
+  static ut_system* const system = [] {
+    ut_set_error_message_handler(ut_ignore);
+    ut_system* loaded = ut_read_xml(nullptr);
+    if (!loaded)
+      throw InputError("the unit database of UDUNITS-2 cannot be read: install the package libudunits2-data");
+    const Unit degree(ut_parse(loaded, "degree", UT_UTF8));
+    ut_map_name_to_unit("deg", UT_UTF8, degree.get());
+    return loaded;
+  }();
+  return system;
+}
+
+/// UDUNITS-2 tolerates a stray ")", ignores what follows it, and takes "2 1000 kg" for a unit of 1000 kg.
+bool well_formed(std::string_view unit) {
+  if (!unit.empty() && std::string_view("0123456789.+-").find(unit.front()) != std::string_view::npos) return false;
+  if (unit.find('@') != std::string_view::npos) return false;
+  int depth = 0;
+  for (const char c : unit) {
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (depth < 0) return false;
+  }
+  return depth == 0;
+}
+
+/// Same dimension, not the reciprocal one (which UDUNITS-2 also calls convertible: 1 MHz would pass for 1 us).
+bool same_dimension(const ut_unit* a, const ut_unit* b) {
+  const Unit ratio(ut_divide(a, b));
+  const Unit one(ut_get_dimensionless_unit_one(unit_system()));
+  return ratio && ut_are_convertible(ratio.get(), one.get());
+}
+
+double convert(const std::string& from_text, const std::string& to_text, double number) {
+  const Unit from(well_formed(from_text) ? ut_parse(unit_system(), from_text.c_str(), UT_UTF8) : nullptr);
+  if (!from) throw UnitError(fmt::format("unknown unit \"{}\"", from_text));
+  const Unit to(ut_parse(unit_system(), to_text.c_str(), UT_UTF8));
+  if (!same_dimension(from.get(), to.get())) {
+    throw UnitError(from_text.empty() ? std::string("no unit") : fmt::format("wrong unit \"{}\"", from_text));
+  }
+  const Converter converter(ut_get_converter(from.get(), to.get()));
+  if (!converter || cv_convert_double(converter.get(), 0.0) != 0) {
+    throw UnitError(fmt::format("unit \"{}\" with an offset", from_text));
+  }
+  return cv_convert_double(converter.get(), number);
+}
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+}  // namespace
+
+double parse_quantity(const std::string& text, const std::string& unit) {
+  const std::string quantity = trimmed(text);
+  const char* begin = quantity.data() + (quantity.starts_with('+') ? 1 : 0);
+  const char* end = quantity.data() + quantity.size();
+  double number = 0;
+  const auto [rest, status] = std::from_chars(begin, end, number);
+  if (status == std::errc::result_out_of_range) throw UnitError("a number that double precision cannot hold");
+  if (status != std::errc{}) throw UnitError("no number at its start");
+  if (!std::isfinite(number)) throw UnitError("a number that is not finite");
+  const double converted = convert(trimmed({rest, static_cast<std::size_t>(end - rest)}), unit, number);
+  if (!std::isfinite(converted)) throw UnitError("a number that double precision cannot hold");
+  return converted;
+}
+
+}  // namespace pliant

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace pliant {
+
+/// A quantity that cannot be read; the message says why, the reader of the file adds the place.
+struct UnitError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Number and unit such as "2 GPa", "87 um", "60 deg" or "10 m/s", converted to `unit` (UDUNITS-2 names; "1": no unit).
+/// Throws UnitError for a bad number, an unknown unit, another dimension, an offset or logarithmic unit.
+double parse_quantity(const std::string& text, const std::string& unit);
+
+}  // namespace pliant

@@ -1,0 +1,159 @@
+#include "scene/value.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.hpp"
+#include "scene/units.hpp"
+
+namespace pliant {
+
+void fail_at(const std::string& file, const toml::source_position& at, const std::string& message) {
+  throw InputError(fmt::format("{}:{}:{}: {}", file, at.line, at.column, message));
+}
+
+void Value::fail(const std::string& message) const { fail_at(file, node.source().begin, message); }
+
+void Value::reject(const std::string& allowed) const {
+  fail(fmt::format("{}: found {}; allowed: {}", label, found(), allowed));
+}
+
+std::vector<Value> Value::elements(const std::string& allowed) const {
+  const toml::array* array = node.as_array();
+  if (!array) reject(allowed);
+  std::vector<Value> all;
+  all.reserve(array->size());
+  for (const toml::node& element : *array) {
+    all.push_back({element, fmt::format("element {} of {}", all.size() + 1, label), file});
+  }
+  return all;
+}
+
+std::string Value::text(const std::string& allowed) const {
+  const auto* string = node.as_string();
+  if (!string) reject(allowed);
+  return string->get();
+}
+
+std::string Value::found() const {
+  constexpr std::size_t longest_shown = 60;
+  if (const auto* text = node.as_string()) {
+    const std::string& all = text->get();
+    return all.size() <= longest_shown ? fmt::format("{:?}", all)
+                                       : fmt::format("{:?}...", all.substr(0, longest_shown));
+  }
+  if (const auto* number = node.as_integer()) return fmt::format("the integer {}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("the number {}", number->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  if (node.is_table()) return "a table";
+  if (const auto* array = node.as_array()) return fmt::format("an array of {} elements", array->size());
+  return "a date or time";
+}
+
+bool Range::contains(double x) const {
+  const bool above = low_open ? x > low : x >= low;
+  const bool below = high_open ? x < high : x <= high;
+  return std::isfinite(x) && above && below;
+}
+
+std::string Range::text() const {
+  const std::string from = std::isinf(low) ? "" : fmt::format("{} {}", low_open ? ">" : ">=", low);
+  const std::string to = std::isinf(high) ? "" : fmt::format("{} {}", high_open ? "<" : "<=", high);
+  if (from.empty() && to.empty()) return "any";
+  return from.empty() || to.empty() ? from + to : from + " and " + to;
+}
+
+std::string Quantity::allowed() const {
+  const std::string kind = unit == "1" ? "a number" : fmt::format("a quantity in {}", unit);
+  return range.text() == "any" ? kind : fmt::format("{}, {}", kind, range.text());
+}
+
+double Quantity::operator()(const Value& value) const {
+  double number = 0;
+  if (const auto* text = value.node.as_string()) {
+    try {
+      number = parse_quantity(text->get(), unit);
+    } catch (const UnitError& error) {
+      value.fail(fmt::format("{}: found {}, {}; allowed: {}", value.label, value.found(), error.what(), allowed()));
+    }
+  } else if (value.node.is_number()) {
+    number = *value.node.value<double>();
+  } else {
+    value.reject(allowed());
+  }
+  if (!range.contains(number)) value.reject(allowed());
+  return number;
+}
+
+std::optional<double> QuantityOr::operator()(const Value& value) const {
+  const auto* text = value.node.as_string();
+  if (text && text->get() == keyword) return std::nullopt;
+  if (!text && !value.node.is_number()) value.reject(allowed());
+  if (text && edit_distance(text->get(), keyword) <= 1) value.reject(allowed());
+  return quantity(value);
+}
+
+std::int64_t Integer::operator()(const Value& value) const {
+  const auto* number = value.node.as_integer();
+  if (!number || number->get() < low || number->get() > high) value.reject(allowed());
+  return number->get();
+}
+
+bool Identifier::valid(std::string_view name) {
+  const auto in_names = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && name.size() <= 64 && std::all_of(name.begin(), name.end(), in_names);
+}
+
+std::string Identifier::operator()(const Value& value) const {
+  const std::string name = value.text(allowed());
+  if (!valid(name)) value.reject(allowed());
+  return name;
+}
+
+std::string OneOf::operator()(const Value& value) const {
+  const std::string name = value.text(allowed());
+  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  value.fail(fmt::format("{}: unknown {} {}; {}", value.label, what, value.found(), allowed_names(name, names)));
+}
+
+Vec2 Vector::operator()(const Value& value) const {
+  const std::vector<Value> parts = value.elements(allowed());
+  if (parts.size() != 2) value.reject(allowed());
+  const Quantity component{unit};
+  return {component(parts[0]), component(parts[1])};
+}
+
+Eigen::Matrix2d Matrix::operator()(const Value& value) const {
+  const std::vector<Value> rows = value.elements(allowed());
+  if (rows.size() != 2) value.reject(allowed());
+  // Read first: Eigen's comma initializer aborts when an exception leaves it half done.
+  const Vec2 first = Vector{unit}(rows[0]), second = Vector{unit}(rows[1]);
+  Eigen::Matrix2d matrix;
+  matrix << first.transpose(), second.transpose();
+  return matrix;
+}
+
+History HistoryOf::operator()(const Value& value) const {
+  if (!value.node.is_array()) {
+    if (!value.node.is_string() && !value.node.is_number()) value.reject(allowed());
+    return {{0.0}, {quantity(value)}};
+  }
+  const std::vector<Value> rows = value.elements(allowed());
+  if (rows.empty()) value.reject(allowed());
+  History history;
+  for (const Value& row : rows) {
+    const std::vector<Value> entry = row.elements("[time, value]");
+    if (entry.size() != 2) row.reject("[time, value]");
+    const double time = Quantity{"s"}(entry[0]);
+    if (!history.time.empty() && time <= history.time.back()) {
+      entry[0].reject(fmt::format("a time after the one before it, {} s", history.time.back()));
+    }
+    history.time.push_back(time);
+    history.value.push_back(quantity(entry[1]));
+  }
+  return history;
+}
+
+}  // namespace pliant

@@ -1,0 +1,158 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/vec2.hpp"
+#include "scene/names.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// One value of a scene file and what it is called in messages.
+struct Value {
+  const toml::node& node;
+  std::string label;        ///< such as 'density' in [materials.soft]
+  const std::string& file;  ///< name of the scene file, for messages
+
+  /// Throws InputError "file:line:column: message" at the value.
+  [[noreturn]] void fail(const std::string& message) const;
+  /// Throws InputError "... label: found ..., allowed: ...".
+  [[noreturn]] void reject(const std::string& allowed) const;
+  /// Throws unless the value is an array; then its elements, labelled by their number.
+  std::vector<Value> elements(const std::string& allowed) const;
+  /// Throws unless the value is a string.
+  std::string text(const std::string& allowed) const;
+  /// What stands in the file, shortened: a string in quotes, a number, "a table".
+  std::string found() const;
+};
+
+[[noreturn]] void fail_at(const std::string& file, const toml::source_position& at, const std::string& message);
+
+/// Interval of allowed numbers.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false, high_open = false;
+  bool contains(double x) const;
+  std::string text() const;  ///< "> 0", ">= 0 and < 0.5", or "any"
+};
+inline constexpr Range any_number{};
+inline constexpr Range positive{.low = 0, .low_open = true};
+inline constexpr Range non_negative{.low = 0};
+
+// What a key may hold. Each type has `allowed()`, the text for messages, and converts a Value or throws InputError.
+
+/// A number in SI units or a string with a unit ("2 GPa"), in `unit` afterwards ("1": a pure number).
+struct Quantity {
+  std::string unit;
+  Range range = any_number;
+  std::string allowed() const;
+  double operator()(const Value& value) const;
+};
+
+/// A quantity, or a keyword ("auto", "random") that leaves it open (std::nullopt).
+struct QuantityOr {
+  std::string keyword;
+  Quantity quantity;
+  std::string allowed() const { return fmt::format("\"{}\" or {}", keyword, quantity.allowed()); }
+  std::optional<double> operator()(const Value& value) const;
+};
+
+struct Integer {
+  std::int64_t low, high;
+  std::string allowed() const { return fmt::format("an integer from {} to {}", low, high); }
+  std::int64_t operator()(const Value& value) const;
+};
+
+/// Free text on one line.
+struct Text {
+  std::string allowed() const { return "a string"; }
+  std::string operator()(const Value& value) const { return value.text(allowed()); }
+};
+
+/// A name that the scene gives to one of its parts: it also becomes part of file names.
+struct Identifier {
+  std::string allowed() const { return "a name of 1 to 64 letters, digits, '_' and '-'"; }
+  std::string operator()(const Value& value) const;
+  static bool valid(std::string_view name);
+};
+
+/// One of a list of names.
+struct OneOf {
+  std::string what;  ///< such as "material"
+  std::vector<std::string> names;
+  std::string allowed() const { return fmt::format("a {} ({})", what, fmt::join(names, ", ")); }
+  std::string operator()(const Value& value) const;
+};
+
+/// One of the names of an enumeration.
+template <class Enum>
+struct Choice {
+  std::vector<std::pair<std::string, Enum>> entries;
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& entry : entries) all.push_back(entry.first);
+    return all;
+  }
+  std::string allowed() const { return fmt::format("one of \"{}\"", fmt::join(names(), "\", \"")); }
+  Enum operator()(const Value& value) const {
+    const std::string name = OneOf{"name", names()}(value);
+    for (const auto& entry : entries) {
+      if (entry.first == name) return entry.second;
+    }
+    value.reject(allowed());
+  }
+};
+
+/// An array of values of one kind, of `least` to `most` elements.
+template <class Element>
+struct List {
+  static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+  Element element;
+  std::size_t least = 1, most = unlimited;
+
+  std::string allowed() const {
+    const std::string count = least == most ? fmt::format("{}", least) : fmt::format("at least {}", least);
+    return fmt::format("an array of {} elements, each {}", count, element.allowed());
+  }
+  auto operator()(const Value& value) const {
+    const std::vector<Value> elements = value.elements(allowed());
+    if (elements.size() < least || elements.size() > most) value.reject(allowed());
+    std::vector<decltype(element(value))> converted;
+    converted.reserve(elements.size());
+    for (const Value& one : elements) converted.push_back(element(one));
+    return converted;
+  }
+};
+
+/// [x, y].
+struct Vector {
+  std::string unit;
+  std::string allowed() const { return fmt::format("[x, y], each {}", Quantity{unit}.allowed()); }
+  Vec2 operator()(const Value& value) const;
+};
+
+/// [[xx, xy], [yx, yy]].
+struct Matrix {
+  std::string unit;
+  std::string allowed() const { return fmt::format("[[xx, xy], [yx, yy]], each {}", Quantity{unit}.allowed()); }
+  Eigen::Matrix2d operator()(const Value& value) const;
+};
+
+/// A constant or a table [[time, value], ...] with growing times.
+struct HistoryOf {
+  Quantity quantity;
+  std::string allowed() const { return fmt::format("{}, or a table [[time, value], ...] of them", quantity.allowed()); }
+  History operator()(const Value& value) const;
+};
+
+}  // namespace pliant

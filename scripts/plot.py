@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""Draws the pictures of a run into its result folder.
+
+    ./pliant plot out/third_body_mini
+    ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
+
+grains.png (kinds at four times), velocity.png, von_mises.png, steps.png, forces.png, energy.png: what the run has data for;
+the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from plots import curves, maps
+from plots.run_data import BadFolder, Run, read_run
+
+BAD_INPUT, OUTPUT_FAILED = 2, 4
+DOTS_PER_INCH = 200
+
+
+def parse_arguments(arguments: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="pliant plot", description="Draws the pictures of a run into its result folder.",
+        epilog="example: ./pliant plot out/third_body_mini",
+    )  # fmt: skip
+    parser.add_argument("folder", type=Path, help="result folder of `pliant run`")
+    parser.add_argument("--times", type=float, nargs="+", metavar="SECONDS",
+                        help="times of the maps; the nearest frames are drawn (default: four, evenly spread)")  # fmt: skip
+    return parser.parse_args(arguments)
+
+
+def chosen_frames(run: Run, times: list[float] | None) -> list[int]:
+    """Indices of the frames that maps show, in order, each once."""
+    if run.frames is None:
+        return []
+    count = len(run.frames.times)
+    wanted = [run.frames.nearest(t) for t in times] if times else np.linspace(0, count - 1, 4).round().astype(int)
+    return sorted({int(index) for index in wanted})
+
+
+def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[], Figure | None], str]]:
+    """For each file what draws it, and what it needs."""
+    chosen = chosen_frames(run, times)
+    frames = run.frames is not None and "bodies" in run.frames.grids
+    return {
+        "grains.png": (lambda: maps.grains(run, chosen) if frames else None, "frames"),
+        "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with the field velocity"),
+        "von_mises.png": (lambda: maps.von_mises(run, chosen[-1]) if frames else None, "frames with the field von_mises"),
+        "steps.png": (lambda: curves.steps(run), "steps.csv"),
+        "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
+        "energy.png": (lambda: curves.energy(run), "a probe of energy in probes.csv"),
+    }
+
+
+def save(figure: Figure, file: Path) -> None:
+    """The file is whole or absent: written under another name first."""
+    temporary = file.with_name(file.name + ".tmp")
+    try:
+        figure.savefig(temporary, format="png", dpi=DOTS_PER_INCH)
+        temporary.replace(file)
+    finally:
+        temporary.unlink(missing_ok=True)
+        plt.close(figure)
+
+
+def draw_all(run: Run, times: list[float] | None) -> None:
+    for name, (draw, needs) in pictures(run, times).items():
+        figure = draw()
+        if figure is None:
+            print(f"{name}: left out, the run has no {needs}")
+            continue
+        save(figure, run.folder / name)
+        print(run.folder / name)
+
+
+def main(arguments: list[str]) -> int:
+    options = parse_arguments(arguments)
+    try:
+        run = read_run(options.folder)
+    except BadFolder as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
+    try:
+        draw_all(run, options.times)
+    except OSError as error:
+        print(f"error: {options.folder}: a picture cannot be written: {error.strerror or error}; "
+              "check the permissions and the free disk space", file=sys.stderr)  # fmt: skip
+        return OUTPUT_FAILED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

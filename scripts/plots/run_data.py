@@ -1,0 +1,173 @@
+"""Reads what a run wrote. Nothing here draws."""
+
+import io
+import re
+import tomllib
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from plots import units
+
+COMPLIANT, RIGID, WALL = 0, 1, 2
+
+
+class BadFolder(Exception):
+    """The folder is no result folder, or one of its files cannot be read; the message names it."""
+
+
+@dataclass
+class Column:
+    """One quantity of a table: "lower.force_x [N/m]" has source "lower", name "force_x", unit "N/m"."""
+
+    source: str
+    name: str
+    unit: str
+    values: np.ndarray
+
+
+@dataclass
+class Table:
+    """A CSV file: a time for each row, and the other columns."""
+
+    time: np.ndarray
+    columns: list[Column]
+
+    def get(self, name: str, source: str | None = None) -> Column | None:
+        found = (c for c in self.columns if c.name == name and source in (None, c.source))
+        return next(found, None)
+
+    def sampled(self, column: Column) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values where the column has some."""
+        there = np.isfinite(column.values)
+        return self.time[there], column.values[there]
+
+
+@dataclass
+class Grid:
+    """Topology of "bodies" (triangles) or "outlines" (segments), with what kind and which body each cell is of."""
+
+    cells: np.ndarray  # [cells x points a cell]
+    kind: np.ndarray  # [cells]
+    body: np.ndarray  # [cells]
+
+    @cached_property
+    def point_body(self) -> np.ndarray:
+        """[points] body of each point."""
+        bodies = np.zeros(self.cells.max(initial=-1) + 1, dtype=int)
+        bodies[self.cells] = self.body[:, None]
+        return bodies
+
+
+def read_table(file: Path) -> Table | None:
+    """The CSV file, empty cells as NaN; None when there is none or it has no row yet."""
+    if not file.exists():
+        return None
+    header, _, rows = file.read_text().partition("\n")
+    if not rows.strip():
+        return None
+    names = [name.strip('"') for name in header.split(",")]
+    filled = re.sub(r"(?<=,)(?=[,\n])", "nan", rows)
+    try:
+        data = np.loadtxt(io.StringIO(filled), delimiter=",", ndmin=2)
+    except ValueError as error:
+        raise BadFolder(f"{file}: not a table of numbers: {error}") from error
+    if data.shape[1] != len(names):
+        raise BadFolder(f"{file}: {len(names)} names in the header, {data.shape[1]} columns below")
+    columns = [_column(name, values) for name, values in zip(names, data.T)]
+    return Table(columns[0].values, columns[1:])
+
+
+def _column(text: str, values: np.ndarray) -> Column:
+    match = re.fullmatch(r"(?:(.*)\.)?(.*?)(?: \[(.*)\])?", text)
+    assert match is not None  # every part is optional
+    return Column(match[1] or "", match[2], match[3] or "-", values)
+
+
+class Frames:
+    """frames.h5, read frame by frame. Frames that a killed run did not finish are not listed, so not seen."""
+
+    def __init__(self, file: Path) -> None:
+        self.path = file
+        try:
+            self._file = h5py.File(file, "r")
+            self.times: np.ndarray = self._file["times"][()]
+            self.grids = {name: self._grid(name) for name in ("bodies", "outlines") if name in self._file}
+        except (OSError, KeyError) as error:
+            raise BadFolder(f"{file}: not a file of frames: {error}") from error
+
+    def _grid(self, name: str) -> Grid:
+        group = self._file[name]
+        return Grid(group["cells"][()], group["kind"][()].astype(int), group["body"][()].astype(int))
+
+    def positions(self, grid: str, index: int) -> np.ndarray:
+        """[points x 2], m."""
+        return self._file[f"{grid}/{index:06}/position"][()].astype(float)
+
+    def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
+        """[points or cells (x 3)]; None when the run did not store it."""
+        path = f"{grid}/{index:06}/{name}"
+        return self._file[path][()] if path in self._file else None
+
+    def nearest(self, time: float) -> int:
+        return int(np.abs(self.times - time).argmin())
+
+
+@dataclass
+class Run:
+    """All that a result folder holds; None for what it lacks."""
+
+    folder: Path
+    title: str
+    period: float | None  # m
+    probe_of: dict[str, str]  # what a probe looks at: {"force_lower": "lower"}
+    probes: Table | None
+    steps: Table | None
+    frames: Frames | None
+
+
+def read_run(folder: Path) -> Run:
+    """Throws BadFolder for what is no result folder."""
+    names = ("probes.csv", "steps.csv", "frames.h5")
+    if not folder.is_dir():
+        raise BadFolder(f"{folder}: no such folder; give the folder that `pliant run` wrote")
+    if not any((folder / name).exists() for name in names):
+        raise BadFolder(f"{folder}: holds none of {', '.join(names)}; give the folder that `pliant run` wrote")
+    try:
+        return _read(folder)
+    except (OSError, UnicodeDecodeError) as error:
+        raise BadFolder(f"{folder}: cannot be read: {error}") from error
+
+
+def _read(folder: Path) -> Run:
+    scene = _read_scene(folder / "scene.toml")
+    frames = Frames(folder / "frames.h5") if (folder / "frames.h5").exists() else None
+    return Run(
+        folder,
+        scene.get("title", folder.resolve().name),
+        _period(scene, folder),
+        {probe["name"]: probe.get("of", "") for probe in scene.get("probes", []) if "name" in probe},
+        read_table(folder / "probes.csv"),
+        read_table(folder / "steps.csv"),
+        frames if frames is not None and len(frames.times) > 0 else None,
+    )
+
+
+def _read_scene(file: Path) -> dict:
+    if not file.exists():
+        return {}
+    try:
+        return tomllib.loads(file.read_text())
+    except tomllib.TOMLDecodeError as error:
+        raise BadFolder(f"{file}: {error}") from error
+
+
+def _period(scene: dict, folder: Path) -> float | None:
+    text = scene.get("domain", {}).get("period")
+    try:
+        return None if text is None else units.length(str(text))
+    except ValueError as error:
+        raise BadFolder(f"{folder / 'scene.toml'}: period: {error}") from error

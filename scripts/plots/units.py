@@ -1,0 +1,36 @@
+"""Readable units: values in SI come out as a factor and a label such as "um" or "MPa"."""
+
+import math
+import re
+
+_PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_FACTORS = {prefix: 10.0**exponent for exponent, prefix in _PREFIXES.items()}
+_UNSCALED = ("", "-", "rad")
+
+
+def scale(largest: float, unit: str) -> tuple[float, str]:
+    """Factor and unit that bring `largest` (in `unit`, SI) to between 1 and 1000: scale(2e8, "Pa") is (1e-6, "MPa")."""
+    if unit in _UNSCALED or not math.isfinite(largest) or largest == 0:
+        return 1.0, unit
+    exponent = 3 * math.floor(math.log10(abs(largest)) / 3 + 1e-9)
+    exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**-exponent, _PREFIXES[exponent] + unit
+
+
+def label(name: str, unit: str) -> str:
+    """Axis label: name and unit in brackets, where there is one."""
+    return name if unit in _UNSCALED else f"{name} [{unit}]"
+
+
+def readable(value: float, unit: str) -> str:
+    """A number with its unit for captions: readable(1.25e-6, "s") is "1.25 us"."""
+    factor, scaled = scale(value, unit)
+    return f"{value * factor:.3g} {scaled}".strip(" -") if unit in _UNSCALED else f"{value * factor:.3g} {scaled}"
+
+
+def length(text: str) -> float:
+    """Metres of a length as scene files write it: length("87 um") is 8.7e-5. ValueError when it is none."""
+    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnumck]?)m\s*", text.replace("µ", "u").replace("μ", "u"))
+    if match is None:
+        raise ValueError(f"'{text}' is not a length such as '87 um'")
+    return float(match[1]) * (1e-2 if match[2] == "c" else _FACTORS[match[2]])

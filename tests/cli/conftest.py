@@ -1,0 +1,46 @@
+"""Runs the engine on scene files written into a fresh folder."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
+ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
+
+
+@dataclass
+class Desk:
+    """A folder with a scene file in it, from which the engine is called."""
+
+    folder: Path
+
+    @property
+    def scene(self) -> Path:
+        return self.folder / "scene.toml"
+
+    def write(self, text: str | bytes) -> None:
+        self.scene.write_bytes(text if isinstance(text, bytes) else text.encode())
+
+    def engine(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([ENGINE, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+                              stdin=subprocess.DEVNULL)
+
+    def run(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        return self.engine("run", self.scene, *arguments)
+
+    def summary(self, out: str | Path) -> dict:
+        return json.loads((self.folder / out / "summary.json").read_text())
+
+    def content(self) -> set[Path]:
+        return set(self.folder.rglob("*"))
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(tmp_path)

@@ -1,0 +1,121 @@
+"""A short run from the command line: files, keys, same bits for any number of threads."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+
+import h5py
+import numpy as np
+import pytest
+from scenes import TWO_DISCS
+
+SUMMARY_KEYS = {"state_hash", "evaluations", "steps", "rejections", "preparation_seconds", "wall_seconds",
+                "evaluations_per_second", "energy", "momentum_error", "peak_memory_bytes", "bodies", "nodes", "dofs",
+                "commit", "compiler", "threads"}
+ENERGY_KEYS = {"kinetic", "strain", "contact", "dissipated", "external_work", "balance_error"}
+
+
+@pytest.fixture
+def finished(desk):
+    """A desk with results in `out`."""
+    desk.write(TWO_DISCS)
+    result = desk.run("--out", "out", "--threads", "1", "--quiet")
+    assert result.returncode == 0, result.stderr
+    return desk
+
+
+def test_summary_has_the_documented_keys(finished) -> None:  # EXACT
+    summary = finished.summary("out")
+    assert SUMMARY_KEYS <= summary.keys()
+    assert ENERGY_KEYS <= summary["energy"].keys()
+
+
+def test_summary_counts(finished) -> None:  # EXACT
+    summary = finished.summary("out")
+    assert summary["bodies"] == 2
+    assert summary["nodes"] == 120
+    assert summary["dofs"] == 240
+    assert summary["threads"] == 1
+    assert summary["evaluations"] >= summary["steps"] > 0
+    assert re.fullmatch(r"[0-9a-f]{7,40}(-dirty)?|unknown", summary["commit"])
+
+
+def test_the_discs_met_and_energy_balances(finished) -> None:  # EXACT: 1 % of the initial energy is the promise
+    energy = finished.summary("out")["energy"]
+    assert energy["strain"] > 0
+    assert abs(energy["balance_error"]) < 0.01
+
+
+def test_momentum_balances(finished) -> None:  # EXACT: rounding over a run of some thousand evaluations
+    assert finished.summary("out")["momentum_error"] < 1e-10
+
+
+def test_tables_are_complete(finished) -> None:  # EXACT
+    for name in ["probes.csv", "steps.csv"]:
+        rows = list(csv.reader((finished.folder / "out" / name).open()))
+        assert len(rows) > 2, name
+        assert {len(row) for row in rows} == {len(rows[0])}, name
+
+
+def test_frames_read_back(finished) -> None:  # EXACT
+    with h5py.File(finished.folder / "out/frames.h5") as file:
+        times = [frame.attrs["time"] for frame in file["bodies"].values() if "time" in frame.attrs]
+        positions = [frame["position"][:] for frame in file["bodies"].values() if "position" in frame]
+    assert times == pytest.approx([0, 10e-9, 20e-9])
+    assert all(np.isfinite(position).all() for position in positions)
+    assert (finished.folder / "out/frames.xdmf").is_file()
+
+
+def test_until_ends_the_run(desk) -> None:  # EXACT: steps end on output times
+    desk.write(TWO_DISCS)
+    assert desk.run("--out", "out", "--until", "3 ns", "--quiet").returncode == 0
+    last = list(csv.DictReader((desk.folder / "out/steps.csv").open()))[-1]
+    time = next(float(value) for name, value in last.items() if name.startswith("time"))
+    assert time == pytest.approx(3e-9, rel=1e-12)
+
+
+def test_default_folder_is_named_after_the_scene(desk) -> None:  # EXACT
+    desk.write(TWO_DISCS)
+    assert desk.run("--until", "1 ns", "--quiet").returncode == 0
+    assert (desk.folder / "results/scene/summary.json").is_file()
+
+
+def test_quiet_is_quiet(desk) -> None:  # EXACT
+    desk.write(TWO_DISCS)
+    result = desk.run("--until", "1 ns", "--quiet")
+    assert result.stdout == "" and result.stderr == ""
+
+
+def test_no_temporary_files_remain(finished) -> None:  # EXACT
+    assert not [file for file in finished.content() if file.suffix in {".tmp", ".part"}]
+
+
+@pytest.mark.skipif((os.cpu_count() or 1) < 2, reason="needs two cores")
+def test_same_bits_with_one_and_two_threads(finished) -> None:  # EXACT
+    result = finished.run("--out", "two", "--threads", "2", "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert finished.summary("two")["threads"] == 2
+    assert finished.summary("two")["state_hash"] == finished.summary("out")["state_hash"]
+
+
+def test_same_bits_twice(finished) -> None:  # EXACT
+    assert finished.run("--out", "again", "--threads", "1", "--quiet").returncode == 0
+    assert finished.summary("again")["state_hash"] == finished.summary("out")["state_hash"]
+
+
+def test_hash_sees_a_small_change(finished) -> None:  # EXACT: a hash that never changes would pass the tests above
+    finished.write(TWO_DISCS.replace('"3.02 um"', '"3.020000000001 um"'))
+    assert finished.run("--out", "moved", "--threads", "1", "--quiet").returncode == 0
+    assert finished.summary("moved")["state_hash"] != finished.summary("out")["state_hash"]
+
+
+def test_check_writes_nothing_and_counts(desk) -> None:  # EXACT
+    desk.write(TWO_DISCS)
+    before = desk.content()
+    result = desk.engine("check", desk.scene)
+    assert result.returncode == 0, result.stderr
+    for word in ["bodies", "nodes", "time step", "memory"]:
+        assert word in result.stdout.lower()
+    assert desk.content() == before

@@ -1,0 +1,154 @@
+#include "discretisation/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "../geometry/shapes.hpp"
+
+namespace pliant {
+namespace {
+
+using testing::all_shapes;
+using testing::disc;
+using testing::error_of;
+using testing::outline_of;
+
+DiscretisationSettings settings(Recipe recipe, int support = 9, int gauss_points = 3) {
+  return {.recipe = recipe, .support = support, .gauss_points = gauss_points};
+}
+
+double length_of(const Discretisation& d) {
+  return std::sqrt(polygon_properties(outline_of(d.mesh)).area / static_cast<double>(d.mesh.nodes.size()));
+}
+
+// EXACT: linear completeness at every point, (1) of METHOD 2; rounding of sums of 12 terms b X, each up to 10: 1e-12.
+void expect_complete(const Discretisation& d) {
+  const double length = length_of(d);
+  for (std::size_t g = 0; g < d.table.weight.size(); ++g) {
+    Vec2 sum(0, 0);
+    Eigen::Matrix2d gradient = -Eigen::Matrix2d::Identity();
+    for (int e = d.table.start[g]; e < d.table.start[g + 1]; ++e) {
+      sum += length * d.table.gradient[e];
+      gradient += d.table.gradient[e] * d.mesh.nodes[d.table.node[e]].transpose();
+    }
+    EXPECT_LT(sum.norm(), 1e-12);
+    EXPECT_LT(gradient.norm(), 1e-12);
+  }
+}
+
+// Largest defect of (2) of METHOD 2 over all nodes, relative to the mean node distance; computed here anew.
+double balance_defect(const Discretisation& d) {
+  Points defect(d.mesh.nodes.size(), Vec2(0, 0));
+  for (std::size_t g = 0; g < d.table.weight.size(); ++g)
+    for (int e = d.table.start[g]; e < d.table.start[g + 1]; ++e)
+      defect[d.table.node[e]] += d.table.weight[g] * d.table.gradient[e];
+  for (int k = 0, n = d.mesh.outline_count; k < n; ++k) {
+    const Vec2 before = d.mesh.nodes[k] - d.mesh.nodes[(k + n - 1) % n],
+               after = d.mesh.nodes[(k + 1) % n] - d.mesh.nodes[k];
+    const Vec2 s = 0.5 * (Vec2(before.y(), -before.x()) + Vec2(after.y(), -after.x()));
+    for (int e = d.outline_rows.start[k]; e < d.outline_rows.start[k + 1]; ++e)
+      defect[d.outline_rows.node[e]] -= d.outline_rows.value[e] * s;
+  }
+  double largest = 0;
+  for (const Vec2& v : defect) largest = std::max(largest, v.norm());
+  return largest / length_of(d);
+}
+
+// EXACT, tolerance of METHOD 2: conditions (1) and (2) hold to 1e-12 for every support that `mls` takes.
+TEST(TableMls, SatisfiesBothConditions) {
+  for (const ShapeSpec& shape : all_shapes())
+    for (const int support : {7, 8, 9, 10, 12, 14}) {
+      SCOPED_TRACE(shape.name + ", support " + std::to_string(support));
+      const Discretisation d = discretise(make_field_mesh(shape), settings(Recipe::mls, support));
+      expect_complete(d);
+      EXPECT_LT(balance_defect(d), 1e-12);
+      EXPECT_LT(d.completeness_residual, 1e-12);
+      EXPECT_EQ(d.table.weight.size(), d.mesh.triangles.size());
+    }
+}
+
+// EXACT for completeness. Gauss points fail condition (2), which shows that the check above can fail.
+TEST(TableMlsGauss, IsCompleteButNotBalanced) {
+  for (const int points : {1, 3, 6}) {
+    const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls_gauss, 9, points));
+    expect_complete(d);
+    EXPECT_GT(balance_defect(d), 1e-4);
+    EXPECT_EQ(d.table.weight.size(), points * d.mesh.triangles.size());
+  }
+}
+
+// EXACT: weights sum to the polygon's area; masses are positive, sum to the area, and keep the centre of mass up to the
+// integral of x - sum phi X = 0: linear reproduction makes it exact.
+TEST(Table, AreaAndMasses) {
+  for (const ShapeSpec& shape : all_shapes())
+    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
+      const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
+      const double area = polygon_properties(outline_of(d.mesh)).area;
+      EXPECT_NEAR(std::accumulate(d.table.weight.begin(), d.table.weight.end(), 0.0) / area, 1, 1e-13);
+      EXPECT_NEAR(std::accumulate(d.unit_mass.begin(), d.unit_mass.end(), 0.0) / area, 1, 1e-13);
+      EXPECT_GT(*std::min_element(d.unit_mass.begin(), d.unit_mass.end()), 0);
+      Vec2 moment(0, 0);
+      for (std::size_t i = 0; i < d.unit_mass.size(); ++i) moment += d.unit_mass[i] * d.mesh.nodes[i];
+      EXPECT_LT(moment.norm(), 1e-13 * std::pow(area, 1.5));
+    }
+}
+
+// EXACT: rows of values sum to one and reproduce the places they belong to.
+TEST(Table, RowsReproducePlaces) {
+  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
+  for (const ShapeRows* rows : {&d.outline_rows, &d.node_rows})
+    for (std::size_t k = 0; k + 1 < rows->start.size(); ++k) {
+      Vec2 place(0, 0);
+      for (int e = rows->start[k]; e < rows->start[k + 1]; ++e) place += rows->value[e] * d.mesh.nodes[rows->node[e]];
+      EXPECT_LT((place - d.mesh.nodes[k]).norm(), 1e-12 * length_of(d));
+    }
+  EXPECT_EQ(d.outline_rows.start.size(), 49U);
+  EXPECT_EQ(d.node_rows.start.size(), 169U);
+}
+
+// FROZEN: least shape function -0.028, METHOD 2 measured down to -0.03; a rule of signs does not exist.
+TEST(Table, LeastShapeValueIsReported) {
+  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
+  EXPECT_LT(d.min_shape_value, 0);
+  EXPECT_GT(d.min_shape_value, -0.1);
+}
+
+// EXACT: brute force.
+TEST(Table, NodalDistances) {
+  const Discretisation d = discretise(make_field_mesh(disc(50)), settings(Recipe::mls));
+  for (std::size_t i = 0; i < d.mesh.nodes.size(); ++i) {
+    double least = 1;
+    for (std::size_t j = 0; j < d.mesh.nodes.size(); ++j)
+      if (i != j) least = std::min(least, (d.mesh.nodes[i] - d.mesh.nodes[j]).norm());
+    EXPECT_DOUBLE_EQ(d.nodal_distance[i], least);
+  }
+}
+
+// EXACT: a shape 1e9 times larger has the same table but for its unit, to the rounding of the solve.
+TEST(Table, DoesNotDependOnUnits) {
+  FieldMesh mesh = make_field_mesh(disc(168, 1e-6));
+  const Discretisation small = discretise(mesh, settings(Recipe::mls));
+  for (Vec2& x : mesh.nodes) x *= 1e9;
+  const Discretisation large = discretise(mesh, settings(Recipe::mls));
+  ASSERT_EQ(small.table.node, large.table.node);
+  for (std::size_t e = 0; e < small.table.gradient.size(); ++e)
+    EXPECT_LT((small.table.gradient[e] - 1e9 * large.table.gradient[e]).norm() * length_of(small), 1e-11);
+}
+
+// EXACT: limits of METHOD 2 and of the interface.
+TEST(Table, RefusesSupportsBeyondTheLimits) {
+  const FieldMesh mesh = make_field_mesh(disc(168));
+  const auto message = [&](const DiscretisationSettings& s) { return error_of([&] { discretise(mesh, s); }); };
+  EXPECT_NE(message(settings(Recipe::mls, 15)).find("allowed for `mls`: 7 to 14"), std::string::npos);
+  EXPECT_NE(message(settings(Recipe::mls, 3)).find("allowed for `mls`"), std::string::npos);
+  EXPECT_NE(message(settings(Recipe::mls_gauss, 26)).find("7 to 25"), std::string::npos);
+  EXPECT_EQ(message(settings(Recipe::mls_gauss, 15)), "");
+  EXPECT_NE(message(settings(Recipe::mls_gauss, 9, 4)).find("1, 3 or 6"), std::string::npos);
+  EXPECT_NE(error_of([] { discretise(make_rigid_mesh(disc(9)), settings(Recipe::mls, 14)); }).find("the shape has 11"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,207 @@
+#include "files/frame_file.hpp"
+
+#include <hdf5.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <random>
+
+#include "core/errors.hpp"
+#include "files/hdf5_file.hpp"
+#include "temporary_folder.hpp"
+
+// All checks here are EXACT: arrays read back as they were given.
+namespace pliant {
+namespace {
+
+namespace fs = std::filesystem;
+
+Field field(const std::string& name, Field::Centre centre, int components, std::vector<float> values) {
+  return {name, centre, components, std::move(values)};
+}
+
+/// Two triangles over four points, and two segments over three points.
+std::vector<GridTopology> small_grids() {
+  return {{"bodies", 4, 3, {0, 1, 2, 0, 2, 3}, {field("kind", Field::Centre::cell, 1, {0, 1})}},
+          {"outlines", 3, 2, {0, 1, 1, 2}, {field("body", Field::Centre::cell, 1, {7, 8})}}};
+}
+
+std::vector<GridFrame> small_frame(float shift) {
+  return {{{0, 0, 1, 0, 1, 1, 0, 1 + shift},
+           {field("velocity", Field::Centre::point, 2, {1, 2, 3, 4, 5, 6, 7, 8 + shift}),
+            field("von_mises", Field::Centre::cell, 1, {1e6F, 2e6F})}},
+          {{0, 0, 1, 0, 2, shift}, {field("contact_pressure", Field::Centre::point, 1, {0, 1, 2})}}};
+}
+
+/// A grid that a megabyte of incompressible numbers makes large.
+std::vector<GridTopology> large_grids(int points) { return {{"bodies", points, 3, {0, 1, 2}, {}}}; }
+
+std::vector<GridFrame> noise(int points) {
+  std::mt19937 generator(1);
+  GridFrame frame;
+  for (int i = 0; i < 2 * points; ++i) frame.positions.push_back(static_cast<float>(generator()));
+  return {frame};
+}
+
+class FrameFiles : public testing::TemporaryFolder {
+protected:
+  std::vector<double> read_array(const std::string& name) const {
+    const hid_t file = H5Fopen((folder_ / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t set = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+    const hid_t space = H5Dget_space(set);
+    std::vector<double> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    EXPECT_GE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << name;
+    H5Sclose(space);
+    H5Dclose(set);
+    H5Fclose(file);
+    return values;
+  }
+  /// Exit status of the independent reader.
+  int check_xdmf() const {
+    const std::string command = "/usr/bin/python3 " PLIANT_SOURCE_DIR "/tests/files/check_xdmf.py ";
+    return WEXITSTATUS(std::system((command + folder_.string()).c_str()));
+  }
+};
+
+TEST_F(FrameFiles, ArraysReadBack) {
+  FrameFile file(folder_, small_grids());
+  file.append(0.5, small_frame(0));
+  file.append(1.5, small_frame(0.25));
+  EXPECT_EQ(file.count(), 2);
+  EXPECT_EQ(read_array("/times"), (std::vector<double>{0.5, 1.5}));
+  EXPECT_EQ(read_array("/bodies/cells"), (std::vector<double>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(read_array("/outlines/body"), (std::vector<double>{7, 8}));
+  EXPECT_EQ(read_array("/bodies/000001/position"), (std::vector<double>{0, 0, 1, 0, 1, 1, 0, 1.25}));
+  EXPECT_EQ(read_array("/bodies/000001/velocity"), (std::vector<double>{1, 2, 0, 3, 4, 0, 5, 6, 0, 7, 8.25, 0}));
+  EXPECT_EQ(read_array("/outlines/000000/contact_pressure"), (std::vector<double>{0, 1, 2}));
+}
+
+TEST_F(FrameFiles, IndependentReaderResolvesTheXdmfAfterEveryFrame) {
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-h5py here";
+  FrameFile file(folder_, small_grids());
+  EXPECT_EQ(check_xdmf(), 0);
+  for (int i = 0; i < 3; ++i) {
+    file.append(i, small_frame(0));
+    EXPECT_EQ(check_xdmf(), 0) << "after frame " << i;
+  }
+}
+
+TEST_F(FrameFiles, IndependentReaderSeesAWrongShape) {
+  if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-h5py here";
+  FrameFile(folder_, small_grids()).append(0, small_frame(0));
+  std::string text = read(folder_ / "frames.xdmf");
+  text.replace(text.find("\"4 2\""), 5, "\"5 2\"");
+  std::ofstream(folder_ / "frames.xdmf") << text;
+  EXPECT_EQ(check_xdmf(), 1);
+}
+
+TEST_F(FrameFiles, EmptyGridsAreFine) {
+  FrameFile file(folder_, {{"bodies", 0, 3, {}, {field("kind", Field::Centre::cell, 1, {})}}});
+  file.append(0, {GridFrame{}});
+  EXPECT_TRUE(read_array("/bodies/000000/position").empty());
+}
+
+TEST_F(FrameFiles, SameFramesGiveTheSameBytes) {
+  const auto bytes = [this] {
+    FrameFile(folder_, small_grids()).append(1, small_frame(0));
+    return read(folder_ / "frames.h5");
+  };
+  const std::string first = bytes();
+  EXPECT_TRUE(first == bytes());
+}
+
+TEST_F(FrameFiles, WrongShapesAreRefusedBeforeAnythingIsWritten) {
+  FrameFile file(folder_, small_grids());
+  const std::string before = read(folder_ / "frames.h5");
+  std::vector<GridFrame> frames = small_frame(0);
+  frames[0].fields[1].values.pop_back();
+  const std::string message = testing::message_of<OutputError>([&] { file.append(0, frames); });
+  EXPECT_NE(message.find("frames.h5"), std::string::npos);
+  EXPECT_NE(message.find("bodies/von_mises"), std::string::npos);
+  EXPECT_THROW(file.append(0, {}), OutputError);
+  EXPECT_TRUE(before == read(folder_ / "frames.h5"));
+
+  std::vector<GridTopology> grids = small_grids();
+  grids[1].cells[0] = 3;
+  EXPECT_NE(testing::message_of<OutputError>([&] { FrameFile(folder_, grids); }).find("'outlines'"), std::string::npos);
+  grids[1].cell_size = 0;
+  EXPECT_THROW(FrameFile(folder_, grids), OutputError);
+}
+
+TEST_F(FrameFiles, MissingFolderIsNamed) {
+  const auto make = [this] { FrameFile(folder_ / "none", small_grids()); };
+  EXPECT_NE(testing::message_of<OutputError>(make).find("none/frames.h5"), std::string::npos);
+}
+
+TEST_F(FrameFiles, AReaderDoesNotStopTheRun) {
+  FrameFile file(folder_, small_grids());
+  const pid_t reader = ::fork();
+  if (reader == 0) { // holds the file open, locked as readers do, until it is killed
+    H5Fopen((folder_ / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    std::ofstream(folder_ / "reading") << "now";
+    while (true) ::pause();
+  }
+  while (!fs::exists(folder_ / "reading")) ::usleep(1000);
+  EXPECT_NO_THROW(file.append(0, small_frame(0)));
+  ::kill(reader, SIGKILL);
+  ::waitpid(reader, nullptr, 0);
+}
+
+/// In a process of its own: a file size limit stands for a full disk.
+int append_beyond_a_limit(const fs::path& folder, int points) {
+  ::signal(SIGXFSZ, SIG_IGN);
+  FrameFile file(folder, large_grids(points));
+  file.append(0, noise(points));
+  const rlimit limit = {fs::file_size(folder / "frames.h5") + 100000, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    file.append(1, noise(points));
+  } catch (const OutputError& error) {
+    return std::string(error.what()).find("frames.h5") != std::string::npos ? 0 : 1;
+  }
+  return 2;
+}
+
+TEST_F(FrameFiles, AFullDiskIsAnErrorAndEarlierFramesStay) {
+  const int points = 100000;
+  const pid_t writer = ::fork();
+  if (writer == 0) std::exit(append_beyond_a_limit(folder_, points)); // exit: HDF5 closes what it left open
+  int status = 0;
+  ::waitpid(writer, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the message does not name the file, 2: no error";
+  EXPECT_EQ(read_array("/times"), std::vector<double>{0});
+  const std::vector<double> positions = read_array("/bodies/000000/position");
+  ASSERT_EQ(positions.size(), 2U * points);
+  EXPECT_EQ(positions.back(), noise(points)[0].positions.back());
+}
+
+/// The same limit, met by HDF5 itself.
+int write_beyond_a_limit(const fs::path& file) {
+  ::signal(SIGXFSZ, SIG_IGN);
+  Hdf5File(file, Hdf5File::Mode::create).close();
+  const rlimit limit = {10000, RLIM_INFINITY};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  try {
+    Hdf5File heavy(file, Hdf5File::Mode::append);
+    heavy.new_group().write("noise", noise(100000)[0].positions, 2);
+    heavy.close();
+  } catch (const OutputError& error) {
+    return std::string(error.what()).find("File too large") != std::string::npos ? 0 : 1;
+  }
+  return 2;
+}
+
+TEST_F(FrameFiles, AFailedWriteIsAMessageAndNotACrashAtExit) {
+  const pid_t writer = ::fork();
+  if (writer == 0) std::exit(write_beyond_a_limit(folder_ / "a.h5"));
+  int status = 0;
+  ::waitpid(writer, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0) << "1: the message does not tell the cause, 2: no error";
+}
+
+} // namespace
+} // namespace pliant

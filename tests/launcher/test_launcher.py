@@ -1,0 +1,190 @@
+"""The launcher, on a copy beside a stub engine, with stubs of apt-get, cmake and ninja that log their calls. All EXACT."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+STUBS = {
+    "dpkg-query": 'for p in $INSTALLED; do printf "ii %s " "$p"; done',
+    "apt-get": 'echo "apt-get $*" >>"$LOG"; case "$*" in *${APT_FAILS:-nothing-fails}*) exit 100 ;; esac',
+    "sudo": 'exec "$@"',
+    "cmake": 'echo "cmake $*" >>"$LOG"; mkdir -p build/release; touch build/release/build.ninja; exit ${CMAKE_EXIT:-0}',
+    "ninja": 'echo "ninja start" >>"$LOG"; sleep ${NINJA_SECONDS:-0}; echo "ninja end" >>"$LOG"; exit ${NINJA_EXIT:-0}',
+    "ctest": 'echo "ctest $*" >>"$LOG"; printf "%s\\n" "      Start  1: a.b" "1/2 Test  #1: a.b ....   Passed    0.01 sec"'
+             ' "2/2 Test  #2: c.d ....***Failed    0.02 sec"; while [ "$1" != --output-junit ]; do shift; done;'
+             ' printf "<testsuite name=\\"x\\"\\n\\ttests=\\"2\\"\\n\\tfailures=\\"1\\"\\n\\tdisabled=\\"0\\"\\n\\tskipped=\\"0\\"\\n'
+             '\\t>" >"$2"; exit 8',
+}
+ENGINE = 'printf "[%s]" "$@"; echo " places=${OMP_PLACES-none} wait=${OMP_WAIT_POLICY-none}"; exit ${ENGINE_EXIT:-0}'
+
+
+@dataclass
+class Launcher:
+    root: Path
+    log: Path
+    environment: dict[str, str]
+
+    def start(self, *arguments: str, **environment: str) -> subprocess.Popen[str]:
+        (self.root / "elsewhere").mkdir(exist_ok=True)
+        return subprocess.Popen([self.root / "pliant", *arguments], text=True, cwd=self.root / "elsewhere",
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
+                                env=self.environment | environment)
+
+    def __call__(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+        process = self.start(*arguments, **environment)
+        output, errors = process.communicate(timeout=60)
+        return subprocess.CompletedProcess(arguments, process.returncode, output, errors)
+
+    def calls(self, program: str) -> list[str]:
+        lines = self.log.read_text().splitlines() if self.log.exists() else []
+        return [line for line in lines if line.startswith(program)]
+
+
+def write_script(file: Path, body: str) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(f"#!/bin/bash\n{body}\n")
+    file.chmod(0o755)
+
+
+def all_packages() -> list[str]:
+    lines = (ROOT / "packages.txt").read_text().splitlines()
+    return [line.split()[0] for line in lines if line and not line.startswith("#")]
+
+
+@pytest.fixture
+def launcher(tmp_path: Path) -> Launcher:
+    for name in ["pliant", "packages.txt"]:
+        shutil.copy(ROOT / name, tmp_path / name)
+    for name, body in STUBS.items():
+        write_script(tmp_path / "stubs" / name, body)
+    write_script(tmp_path / "build/release/pliant_engine", ENGINE)
+    (tmp_path / "scripts").mkdir()
+    (tmp_path / "scripts/plot.py").write_text("import sys\nprint('plot', *sys.argv[1:])\n")
+    kept = {name: value for name, value in os.environ.items() if not name.startswith("OMP_")}
+    environment = kept | {"PATH": f"{tmp_path / 'stubs'}:{os.environ['PATH']}", "LOG": str(tmp_path / "log"),
+                          "INSTALLED": " ".join(all_packages())}
+    return Launcher(tmp_path, tmp_path / "log", environment)
+
+
+def test_missing_packages_are_installed_once(launcher: Launcher) -> None:
+    present = " ".join(name for name in all_packages() if name not in {"cmake", "libeigen3-dev", "clang-tidy-19"})
+    result = launcher("check", "a.toml", INSTALLED=present)
+    update, install = launcher.calls("apt-get")
+    assert " update" in update
+    assert install.endswith(" cmake libeigen3-dev") and "--no-install-recommends" in install
+    assert "installing 2 Debian packages" in result.stderr
+    launcher("check", "a.toml", INSTALLED="")
+    assert len(launcher.calls("apt-get")) == 2, "the second call must not look again"
+
+
+def test_packages_are_looked_for_again_when_the_list_changes(launcher: Launcher) -> None:
+    launcher("check", "a.toml")
+    with (launcher.root / "packages.txt").open("a") as file:
+        file.write("libnew-dev required something new\n")
+    launcher("check", "a.toml")
+    assert launcher.calls("apt-get")[-1].endswith(" libnew-dev")
+
+
+def test_fast_compiler_is_optional(launcher: Launcher) -> None:
+    present = " ".join(name for name in all_packages() if name != "libomp-19-dev")
+    result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS="libomp-19-dev")
+    assert result.returncode == 0
+    assert "--no-remove" in launcher.calls("apt-get")[-1]
+    assert "not installed: libomp-19-dev" in result.stderr
+
+
+def test_failed_installation_stops(launcher: Launcher) -> None:
+    present = " ".join(name for name in all_packages() if name != "cmake")
+    result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS="cmake")
+    assert result.returncode == 1
+    assert "could not install: cmake" in result.stderr
+    assert not launcher.calls("ninja")
+
+
+def test_failed_build_stops_and_looks_for_packages_again(launcher: Launcher) -> None:
+    result = launcher("check", "a.toml", NINJA_EXIT="1")
+    assert result.returncode == 1
+    assert "building failed" in result.stderr and "[check]" not in result.stdout
+    assert not (launcher.root / "build/packages.stamp").exists()
+
+
+@pytest.mark.parametrize("code", [0, 2, 3, 4])
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_exit_codes_pass_through(launcher: Launcher, command: str, code: int) -> None:
+    result = launcher(command, "a.toml", ENGINE_EXIT=str(code))
+    assert result.returncode == code
+    assert ("plot" in result.stdout) == (command == "run" and code == 0)
+
+
+@pytest.mark.parametrize("arguments, folder", [
+    (["a.toml"], "results/a"),
+    (["cases/a.b.toml", "--until", "1 us"], "results/a.b"),
+    (["--until", "1 us", "--threads", "2", "--force", "a.toml"], "results/a"),
+    (["a.toml", "--out", "my results"], "my results"),
+    (["--out=o", "a.toml"], "o"),
+], ids=lambda value: " ".join(value) if isinstance(value, list) else "")
+def test_pictures_go_where_the_results_are(launcher: Launcher, arguments: list[str], folder: str) -> None:
+    result = launcher("run", *arguments)
+    assert result.stdout.splitlines()[-1] == f"plot {folder}"
+    assert result.stdout.startswith("".join(f"[{argument}]" for argument in ["run", *arguments]))
+
+
+def test_no_plot_is_the_launchers_own(launcher: Launcher) -> None:
+    result = launcher("run", "a.toml", "--no-plot")
+    assert result.stdout.startswith("[run][a.toml] ")
+    assert "plot" not in result.stdout
+
+
+def test_threads_are_bound_when_all_cores_are_used(launcher: Launcher) -> None:
+    assert "places=cores wait=active" in launcher("run", "a.toml").stdout
+    assert "places=none wait=active" in launcher("run", "a.toml", "--threads", "999").stdout
+    chosen = launcher("run", "a.toml", OMP_PLACES="sockets", OMP_WAIT_POLICY="passive").stdout
+    assert "places=sockets wait=passive" in chosen
+
+
+def test_builds_in_one_folder_wait_for_each_other(launcher: Launcher) -> None:
+    both = [launcher.start("check", "a.toml", NINJA_SECONDS="0.5") for _ in range(2)]
+    errors = [process.communicate(timeout=60)[1] for process in both]
+    assert launcher.calls("ninja") == ["ninja start", "ninja end"] * 2
+    assert any("waiting for another" in text for text in errors)
+
+
+def test_a_run_does_not_hold_the_lock(launcher: Launcher) -> None:
+    write_script(launcher.root / "build/release/pliant_engine", 'sleep "${ENGINE_SECONDS:-0}"')
+    long_run = launcher.start("run", "a.toml", ENGINE_SECONDS="5")
+    while len(launcher.calls("ninja")) < 2:
+        time.sleep(0.02)
+    assert launcher("check", "a.toml").returncode == 0
+    assert long_run.poll() is None, "the second call waited for the first one's run"
+    long_run.communicate()
+
+
+def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) -> None:
+    result = launcher("test", "-R", "contact")
+    assert result.returncode == 8
+    assert launcher.calls("ctest")[0].endswith("-R contact")
+    assert "c.d" in result.stdout and "a.b" not in result.stdout
+    assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
+
+
+@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build", "lint", "format"])
+def test_every_command_has_help_with_an_example(launcher: Launcher, command: str) -> None:
+    result = launcher(command, "--help")
+    assert result.returncode == 0
+    assert f"Example: ./pliant {command}" in result.stdout
+    assert not launcher.log.exists(), "help must not build"
+
+
+def test_unknown_command(launcher: Launcher) -> None:
+    result = launcher("rnu", "a.toml")
+    assert result.returncode == 2
+    assert "rnu" in result.stderr and "run" in result.stderr

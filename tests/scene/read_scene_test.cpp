@@ -1,0 +1,132 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/errors.hpp"
+#include "scene_files.hpp"
+
+namespace pliant {
+namespace {
+
+using testing::good_scene;
+using testing::SceneFile;
+
+// EXACT throughout: what the file says, in SI. EXPECT_DOUBLE_EQ (4 roundings) where a unit is converted.
+
+TEST(ReadScene, Settings) {
+  const SceneFile file(good_scene);
+  const Scene scene = read_scene(file.path());
+  EXPECT_EQ(scene.title, "Good");
+  EXPECT_EQ(scene.name, "ReadScene_Settings");
+  EXPECT_EQ(scene.file, file.path());
+  EXPECT_DOUBLE_EQ(*scene.period, 10e-6);
+  EXPECT_EQ(scene.gravity, Vec2(0, -9.81));
+  EXPECT_DOUBLE_EQ(scene.time.end, 2e-6);
+  EXPECT_EQ(scene.time.integrator, Integrator::verlet);
+  EXPECT_EQ(scene.time.safety, TimeSettings{}.safety);
+  EXPECT_EQ(scene.skin, 0.4);
+  EXPECT_DOUBLE_EQ(scene.probes.at(0).period, 1e-8);
+  EXPECT_EQ(scene.probes.at(0).of, "floor");
+  EXPECT_EQ(scene.frames.fields, (std::vector<std::string>{"velocity", "von_mises"}));
+}
+
+TEST(ReadScene, MaterialsKeepTheOrderOfTheFile) {
+  const Scene scene = read_scene(SceneFile(good_scene).path());
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[0].name, "soft");
+  EXPECT_EQ(scene.materials[0].young, 2e9);
+  EXPECT_EQ(scene.materials[0].poisson, 0.4);
+  EXPECT_EQ(scene.materials[1].law, MaterialLaw::rigid);
+  EXPECT_EQ(scene.materials[1].density, 1200);
+  EXPECT_EQ(scene.shapes[0].nodes, 168);
+  EXPECT_FALSE(scene.shapes[0].spacing);
+  EXPECT_DOUBLE_EQ(*scene.shapes[1].spacing, 1e-7);
+}
+
+TEST(ReadScene, Grains) {
+  const Scene scene = read_scene(SceneFile(good_scene).path());
+  ASSERT_EQ(scene.grains.size(), 2u);
+  EXPECT_EQ(scene.grains[0].name, "grains");
+  EXPECT_EQ(scene.grains[0].seed, 7u);
+  EXPECT_FALSE(scene.grains[0].angle);
+  EXPECT_EQ(scene.grains[0].mix[1].body, BodyKind::rigid);
+  EXPECT_EQ(scene.grains[0].mix[1].share, 0.75);
+  const Grains& boxes = scene.grains[1];
+  EXPECT_DOUBLE_EQ(*boxes.angle, std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(boxes.packing.positions.at(1).x(), 5e-6);
+  EXPECT_EQ(boxes.velocity.uniform, Vec2(1, 0));
+  EXPECT_EQ(boxes.velocity.rotation, 3);
+  EXPECT_EQ(boxes.velocity.gradient(0, 1), 1);
+  EXPECT_EQ(boxes.velocity.gradient(1, 0), 0);
+}
+
+TEST(ReadScene, WallsAndContacts) {
+  const Scene scene = read_scene(SceneFile(good_scene).path());
+  EXPECT_EQ(scene.walls[0].x.mode, Drive::Mode::fixed);
+  EXPECT_EQ(scene.walls[0].caps->count, 10);
+  EXPECT_DOUBLE_EQ(scene.walls[0].caps->half_angles[0], std::numbers::pi / 6);
+  EXPECT_EQ(scene.walls[1].x.history.at(1), 10);
+  EXPECT_EQ(scene.walls[1].y.mode, Drive::Mode::pressure);
+  EXPECT_DOUBLE_EQ(scene.walls[1].y.history.at(0.5e-6), 0.5e9);
+  EXPECT_EQ(scene.contacts[0].strength, 200e6);
+  EXPECT_FALSE(scene.contacts[0].stiffness);
+  EXPECT_EQ(scene.contacts[1].first, "all");
+  EXPECT_EQ(scene.contacts[1].friction, 0.3);
+  EXPECT_EQ(*scene.contacts[1].stiffness, 1e15);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+TEST(ReadScene, ClockwisePolygonsAreReversed) {
+  const std::string clockwise = replaced(good_scene, R"([[0, 0], ["1 um", 0], ["1 um", "1 um"], [0, "1 um"]])",
+                                         R"([[0, "1 um"], ["1 um", "1 um"], ["1 um", 0], [0, 0]])");
+  EXPECT_EQ(read_scene(SceneFile(clockwise).path()).shapes[1].points,
+            read_scene(SceneFile(good_scene).path()).shapes[1].points);
+}
+
+TEST(ReadScene, RowPitchFollowsFromThePitch) {
+  const std::string hexagonal = replaced(good_scene, R"(, row_pitch = "1.1 um")", "");
+  EXPECT_DOUBLE_EQ(read_scene(SceneFile(hexagonal).path()).grains[0].packing.row_pitch, 2e-6 / std::sqrt(3.0));
+  const std::string grid = replaced(hexagonal, "hexagonal", "grid");
+  EXPECT_DOUBLE_EQ(read_scene(SceneFile(grid).path()).grains[0].packing.row_pitch, 1e-6);
+}
+
+TEST(ReadScene, StepDoublingHasItsOwnKeys) {
+  const std::string text = replaced(good_scene, "tolerance = 1e-2", "integrator = \"step-doubling\"\ntarget = 1e-5");
+  const Scene scene = read_scene(SceneFile(text).path());
+  EXPECT_EQ(scene.time.integrator, Integrator::step_doubling);
+  EXPECT_EQ(scene.time.target, 1e-5);
+  EXPECT_EQ(scene.time.alpha, 2);
+}
+
+TEST(ReadScene, FilesThatCannotBeRead) {
+  const auto message = [](const std::filesystem::path& path) -> std::string {
+    try {
+      read_scene(path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(message("/no/such/scene.toml"), "/no/such/scene.toml: no such file; check the path");
+  EXPECT_NE(message(::testing::TempDir()).find("is a folder"), std::string::npos);
+  const SceneFile empty("");
+  EXPECT_EQ(message(empty.path()), empty.path().string() + ":1:1: the file is empty; see cases/ for examples");
+  const SceneFile blank(" \n\t\r\n");
+  EXPECT_NE(message(blank.path()).find(":1:1: the file is empty"), std::string::npos);
+  for (const std::string& garbage : {std::string("\x7f"
+                                                 "ELF\x02\x01\x00\x00",
+                                                 8),
+                                     std::string("\xff\xfe\xfd"), std::string(1000, '\0'), std::string(10000, '[')}) {
+    const SceneFile file(garbage);
+    EXPECT_TRUE(message(file.path()).starts_with(file.path().string() + ":1:")) << message(file.path());
+    EXPECT_NE(message(file.path()).find("not valid TOML"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,132 @@
+"""Checks of the source tree that no compiler makes; each with its reason. Prints what it found; exit code 1 if any.
+
+Run: /usr/bin/python3 tests/structure/check_structure.py .
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+# A folder of lib/ may include itself and the folders after it: arrows point down only.
+ORDER = ["cli", "results", "dynamics", "contact", "boundary", "bodies", "materials", "discretisation", "geometry",
+         "files", "scene", "core"]
+SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts"]
+TEXT_SUFFIXES = {".hpp", ".cpp", ".py", ".sh", ".md", ".toml", ".txt", ".cmake", ".json", ".cff", ""}
+CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
+MAX_LINES = 400
+SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+
+# Not allowed in lib/: pattern, and why.
+FORBIDDEN_IN_LIB = {
+    r"\bstd::(uniform_\w+_distribution|normal_distribution|shuffle)\b": "differs between C++ libraries: map the "
+                                                                        "generator's numbers yourself",
+    r"\b(std::)?s?rand\s*\(": "one hidden state for all: use a seeded generator",
+    r"#\s*pragma\s+omp\b.*\b(atomic|critical)\b": "order of additions depends on threads: let each body gather",
+    r"#\s*pragma\s+omp\b.*\breduction\s*\(\s*[-+*]": "order of additions depends on threads: sum in fixed blocks",
+    r"#\s*include\s+\"\.\./": "include from the root of lib/",
+    r"\busing\s+namespace\s+std\b": "spell std:: out",
+}
+# Not allowed anywhere.
+FORBIDDEN = {
+    r"(?<![\w.$}~-])/(home|root|Users|work|mnt|tmp)/\w": "path of one machine: make it relative or ask for it",
+    r"-f" r"fast-math": "reorders sums, breaks the promise of the same bits",
+    r"\b(TO" r"DO|FIX" r"ME|XX" r"X)\b": "do it, or write an issue",
+}
+
+
+def files_of(root: Path, suffixes: set[str], folders: list[str] | None = None) -> list[Path]:
+    starts = [root / folder for folder in folders] if folders else [root]
+    found = (file for start in starts for file in start.rglob("*") if file.is_file() and file.suffix in suffixes)
+    return sorted(file for file in found if not is_skipped(file.relative_to(root)))
+
+
+def is_skipped(file: Path) -> bool:
+    return "__pycache__" in file.parts or SKIPPED_AT_THE_ROOT.fullmatch(file.parts[0]) is not None
+
+
+def read(file: Path) -> str:
+    return file.read_text(encoding="utf-8", errors="replace")
+
+
+def included_files(lib: Path, file: Path) -> list[Path]:
+    """Files of lib/ that a file includes; other quoted includes are the compiler's business."""
+    candidates = (lib / name for name in INCLUDE.findall(read(file)))
+    return [candidate for candidate in candidates if candidate.is_file()]
+
+
+def check_arrows(root: Path) -> list[str]:
+    lib, problems = root / "lib", []
+    for file in files_of(root, {".hpp", ".cpp"}, ["lib"]):
+        folder = file.relative_to(lib).parts[0]
+        if folder not in ORDER:
+            problems.append(f"{file.relative_to(root)}: folder {folder} has no place in the order {', '.join(ORDER)}")
+            continue
+        for included in included_files(lib, file):
+            target = included.relative_to(lib)
+            if target.parts[0] in ORDER and ORDER.index(target.parts[0]) < ORDER.index(folder):
+                problems.append(f"{file.relative_to(root)}: includes {target}, but {target.parts[0]} is above {folder}")
+    return problems
+
+
+def check_cycles(root: Path) -> list[str]:
+    """Depth-first search; a file met again while it is still on the path closes a cycle."""
+    lib, problems, done = root / "lib", [], set()
+
+    def visit(file: Path, path: list[Path]) -> None:
+        if file in path:
+            names = [str(step.relative_to(lib)) for step in path[path.index(file):] + [file]]
+            problems.append("include cycle: " + " -> ".join(names))
+        elif file not in done:
+            for included in included_files(lib, file):
+                visit(included, path + [file])
+            done.add(file)
+
+    for file in files_of(root, {".hpp", ".cpp"}, ["lib"]):
+        visit(file, [])
+    return problems
+
+
+def check_lengths(root: Path) -> list[str]:
+    lengths = {file: len(read(file).splitlines()) for file in files_of(root, CODE_SUFFIXES, SOURCE_FOLDERS)}
+    return [f"{file.relative_to(root)}: {lines} lines, at most {MAX_LINES}: split it"
+            for file, lines in lengths.items() if lines > MAX_LINES]
+
+
+def check_words(root: Path, files: list[Path], forbidden: dict[str, str]) -> list[str]:
+    problems = []
+    for file in files:
+        for number, line in enumerate(read(file).splitlines(), 1):
+            problems += [f"{file.relative_to(root)}:{number}: '{match.group().strip()}': {reason}"
+                         for pattern, reason in forbidden.items() if (match := re.search(pattern, line))]
+    return problems
+
+
+def check_pragma_once(root: Path) -> list[str]:
+    return [f"{file.relative_to(root)}: no #pragma once" for file in files_of(root, {".hpp"}, SOURCE_FOLDERS)
+            if "#pragma once" not in read(file)]
+
+
+def check_tree(root: Path) -> list[str]:
+    texts = [file for file in files_of(root, TEXT_SUFFIXES) if file.name != "LICENSE"]
+    return [*check_arrows(root), *check_cycles(root), *check_lengths(root), *check_pragma_once(root),
+            *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB),
+            *check_words(root, texts, FORBIDDEN)]
+
+
+def main(arguments: list[str]) -> int:
+    root = Path(arguments[1] if len(arguments) > 1 else ".").resolve()
+    files = files_of(root, {".hpp", ".cpp"}, ["lib"])
+    if not files:
+        print(f"no source files under {root / 'lib'}: give the root of the repository")
+        return 1
+    problems = check_tree(root)
+    print("\n".join(problems) if problems else f"{len(files)} files of lib/ and all others keep the rules")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))

@@ -1,0 +1,80 @@
+"""The checks of the source tree can fail: each finds its mistake in a small bad tree. All EXACT."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CHECK = Path(__file__).with_name("check_structure.py")
+GOOD = {
+    "lib/core/sums.hpp": '#pragma once\n#include <vector>\n',
+    "lib/scene/scene.hpp": '#pragma once\n#include "core/sums.hpp"\n',
+    "lib/contact/laws/cohesive.hpp": '#pragma once\n#include "scene/scene.hpp"\n',
+    "lib/cli/options.hpp": "#pragma once\n",
+    "lib/contact/pairs.cpp": '#include "contact/laws/cohesive.hpp"\n',
+    "tests/core/sums_test.cpp": '#include "core/sums.hpp"\n',
+}
+BAD = {
+    "arrow up": ("lib/core/up.cpp", '#include "scene/scene.hpp"\n', "scene is above core"),
+    "arrow up into a subfolder": ("lib/bodies/up.cpp", '#include "contact/laws/cohesive.hpp"\n', "above bodies"),
+    "arrow up from lib/results": ("lib/results/up.cpp", '#include "cli/options.hpp"\n', "cli is above results"),
+    "unknown folder": ("lib/helpers/x.cpp", "int f();\n", "no place in the order"),
+    "cycle": ("lib/core/sums.hpp", '#pragma once\n#include "core/sums.hpp"\n', "include cycle"),
+    "long file": ("lib/core/long.cpp", "int f();\n" * 401, "401 lines"),
+    "long test": ("tests/core/long_test.cpp", "int f();\n" * 401, "401 lines"),
+    "no pragma": ("lib/core/twice.hpp", "int f();\n", "#pragma once"),
+    "relative include": ("lib/core/near.cpp", '#include "../core/sums.hpp"\n', "root of lib/"),
+    "unportable random numbers": ("lib/core/random.cpp", "std::uniform_real_distribution<double> u;\n", "random.cpp:1"),
+    "atomic": ("lib/core/atomic.cpp", "\n#pragma omp atomic\n", "atomic.cpp:2"),
+    "unordered sum": ("lib/core/sum.cpp", "#pragma omp parallel for reduction(+ : s)\n", "fixed blocks"),
+    "path of a machine": ("scripts/plot.py", 'OUT = "/home/' 'me/out"\n', "path of one machine"),
+    "fast math": ("CMakeLists.txt", "add_compile_options(-f" "fast-math)\n", "same bits"),
+    "postponed": ("lib/core/later.cpp", "// TO" "DO\n", "later.cpp:1"),
+}
+
+
+def check(root: Path, files: dict[str, str]) -> tuple[int, str]:
+    for name, text in files.items():
+        file = root / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    result = subprocess.run([sys.executable, "-B", CHECK, root], capture_output=True, text=True)
+    return result.returncode, result.stdout + result.stderr
+
+
+def test_a_good_tree_passes(tmp_path: Path) -> None:
+    code, output = check(tmp_path, GOOD)
+    assert code == 0, output
+
+
+@pytest.mark.parametrize("file, text, message", BAD.values(), ids=BAD.keys())
+def test_a_bad_tree_fails(tmp_path: Path, file: str, text: str, message: str) -> None:
+    code, output = check(tmp_path, GOOD | {file: text})
+    assert code == 1
+    assert len(output.strip().splitlines()) == 1, output
+    assert file in output or "cycle" in output
+    assert message in output
+
+
+def test_a_cycle_over_three_files(tmp_path: Path) -> None:
+    ring = {f"lib/core/{a}.hpp": f'#pragma once\n#include "core/{b}.hpp"\n' for a, b in ["ab", "bc", "ca"]}
+    code, output = check(tmp_path, GOOD | ring)
+    assert code == 1
+    assert "core/a.hpp -> core/b.hpp -> core/c.hpp -> core/a.hpp" in output
+
+
+def test_a_maximum_over_threads_is_free(tmp_path: Path) -> None:
+    code, output = check(tmp_path, GOOD | {"lib/core/max.cpp": "#pragma omp parallel for reduction(max : m)\n"})
+    assert code == 0, output
+
+
+def test_build_and_result_folders_are_not_read(tmp_path: Path) -> None:
+    code, output = check(tmp_path, GOOD | {"build/x.hpp": "/home/" "me", "results/a/x.py": "/home/" "me"})
+    assert code == 0, output
+
+
+def test_an_empty_tree_is_no_success(tmp_path: Path) -> None:
+    assert check(tmp_path, {})[0] == 1
