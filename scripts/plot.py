@@ -4,8 +4,8 @@
     ./pliant plot out/third_body_mini
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
 
-grains.png (kinds at four times), velocity.png, von_mises.png, steps.png, forces.png, energy.png: what the run has data for;
-the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
+grains.png (kinds at four times), velocity.png, von_mises.png, steps.png, forces.png, energy.png: what the run has data
+for; the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
 """
 
 import argparse
@@ -34,10 +34,10 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="pliant plot", description="Draws the pictures of a run into its result folder.",
         epilog="example: ./pliant plot out/third_body_mini",
-    )  # fmt: skip
+    )
     parser.add_argument("folder", type=Path, help="result folder of `pliant run`")
     parser.add_argument("--times", type=float, nargs="+", metavar="SECONDS",
-                        help="times of the maps; the nearest frames are drawn (default: four, evenly spread)")  # fmt: skip
+                        help="times of the maps; the nearest frames are drawn (default: four, evenly spread)")
     return parser.parse_args(arguments)
 
 
@@ -56,11 +56,11 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
     frames = run.frames is not None and "bodies" in run.frames.grids
     return {
         "grains.png": (lambda: maps.grains(run, chosen) if frames else None, "frames"),
-        "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with the field velocity"),
-        "von_mises.png": (lambda: maps.von_mises(run, chosen[-1]) if frames else None, "frames with the field von_mises"),
+        "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),
+        "von_mises.png": (lambda: maps.von_mises(run, chosen[-1]) if frames else None, "frames with von_mises"),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
-        "energy.png": (lambda: curves.energy(run), "a probe of energy in probes.csv"),
+        "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),
     }
 
 
@@ -88,15 +88,13 @@ def draw_all(run: Run, times: list[float] | None) -> None:
 def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
     try:
-        run = read_run(options.folder)
+        draw_all(read_run(options.folder), options.times)
     except BadFolder as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
-    try:
-        draw_all(run, options.times)
     except OSError as error:
         print(f"error: {options.folder}: a picture cannot be written: {error.strerror or error}; "
-              "check the permissions and the free disk space", file=sys.stderr)  # fmt: skip
+              "check the permissions and the free disk space", file=sys.stderr)
         return OUTPUT_FAILED
     return 0
 

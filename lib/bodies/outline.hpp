@@ -27,7 +27,7 @@ struct Outlines {
   std::vector<int> shape;     ///< [bodies], index of the outline shape
   std::vector<int> offset;    ///< [bodies + 1], first node of a body
   std::vector<double> x, y;   ///< [nodes and copies], m
-  std::vector<double> force_x, force_y;  ///< [nodes and copies], contact force, N/m; copies unused
+  std::vector<double> force_x, force_y;  ///< [nodes and copies], contact force, N/m; 0 in the copies
   std::vector<double> x_refresh, y_refresh;  ///< positions at the last contact refresh
 };
 

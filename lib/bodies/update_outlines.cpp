@@ -95,13 +95,17 @@ void add_outline_forces(const Model& model, const Batch& batch, const Outlines& 
 void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines, const double* position,
                              double* resultant) {
   const int offset = outlines.offset[rigid.body];
-  resultant[0] = resultant[1] = resultant[2] = 0;
-  for (int k = 0; k < model.outlines[rigid.outline].count; ++k) {
-    const double fx = outlines.force_x[offset + k], fy = outlines.force_y[offset + k];
-    resultant[0] += fx;
-    resultant[1] += fy;
-    resultant[2] += (outlines.x[offset + k] - position[0]) * fy - (outlines.y[offset + k] - position[1]) * fx;
+  Lanes fx{}, fy{}, moment{};
+  // The last lanes may reach into the cyclic copies, which carry no force.
+  for (int i = offset; i < offset + model.outlines[rigid.outline].count; i += lane_count) {
+    const Lanes nodal_x = load(&outlines.force_x[i]), nodal_y = load(&outlines.force_y[i]);
+    fx += nodal_x;
+    fy += nodal_y;
+    moment += (load(&outlines.x[i]) - position[0]) * nodal_y - (load(&outlines.y[i]) - position[1]) * nodal_x;
   }
+  resultant[0] = sum(fx);
+  resultant[1] = sum(fy);
+  resultant[2] = sum(moment);
 }
 
 }  // namespace pliant

@@ -16,13 +16,14 @@ constexpr double extra_skins = 4;
 
 Box motion_box(const OutlineShape& shape, const Outlines& outlines, int body) {
   const int offset = outlines.offset[body];
-  Box box{1e300, -1e300, 1e300, -1e300};
-  for (int i = offset; i < offset + shape.count; ++i) {
-    const double dx = outlines.x[i] - outlines.x_refresh[i], dy = outlines.y[i] - outlines.y_refresh[i];
-    box.x_min = std::min(box.x_min, dx), box.x_max = std::max(box.x_max, dx);
-    box.y_min = std::min(box.y_min, dy), box.y_max = std::max(box.y_max, dy);
+  Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
+  // The last lanes may reach into the cyclic copies, which move as their originals.
+  for (int i = offset; i < offset + shape.count; i += lane_count) {
+    const Lanes dx = load(&outlines.x[i]) - load(&outlines.x_refresh[i]), dy = load(&outlines.y[i]) - load(&outlines.y_refresh[i]);
+    x_min = min(x_min, dx), x_max = max(x_max, dx);
+    y_min = min(y_min, dy), y_max = max(y_max, dy);
   }
-  return box;
+  return {-largest(-x_min), largest(x_max), -largest(-y_min), largest(y_max)};
 }
 
 /// Bound on the square of the relative motion of any two nodes of two bodies.

@@ -14,6 +14,9 @@ namespace {
 /// METHOD 4: 6 to 8 % of h penetration at p = E/2.
 constexpr double auto_stiffness_factor = 8;
 constexpr double auto_range_factor = 0.12;
+/// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they sink in by a segment
+/// length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before they govern the time step.
+constexpr double rigid_pair_factor = 3;
 
 struct BodyClass {
   BodyKind kind;
@@ -63,7 +66,7 @@ ContactLaw law_between(const Model& model, const BodyClass& a, const BodyClass& 
   const std::string& name_b = scene.materials[b.material].name;
   const ContactRule& rule = rule_between(scene, name_a, name_b);
   const double own = auto_stiffness(model, a, b);
-  const double kn = rule.stiffness.value_or(own > 0 ? own : largest_auto);
+  const double kn = rule.stiffness.value_or(own > 0 ? own : rigid_pair_factor * largest_auto);
   if (kn <= 0)
     throw InputError(fmt::format("{}: [[contacts]] between '{}' and '{}': stiffness \"auto\" needs a compliant body in the scene; "
                                  "give a value in Pa/m",

@@ -31,8 +31,8 @@ inline double stiffness_of(const ContactLaw& law) {
                     law);
 }
 
-/// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid bodies get the
-/// scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
+/// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid bodies get three
+/// times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
 ContactLaws make_contact_laws(const Model& model);
 
 }  // namespace pliant

@@ -12,7 +12,7 @@ namespace pliant {
 struct PatchTotals {
   double stored = 0;       ///< normal and elastic tangential energy, J/m
   double dissipated = 0;   ///< slip work since the last accepted step, J/m
-  double deepest = 0;      ///< largest penetration over its segment's length; a contact is lost at 0.5
+  double deepest = 0;      ///< largest penetration over its segment's length; a contact is lost at inward_depth
   int contacts = 0;        ///< nodes in touch
 };
 

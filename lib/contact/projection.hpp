@@ -29,7 +29,11 @@ struct Projection {
   Lanes length, reference_length, arc;  ///< of the segment; arc: reference arc coordinate of its first node, m
 };
 
-/// Searches all candidate segments of a window. A node counts when it lies between half a segment length inward and `outward` outward;
+/// Depth of the contact box below a segment, over its length. A node inside a body is always a contact, so the depth only has to keep
+/// nodes from being pushed out on the far side of a thin body; METHOD's 1/2 was used up by force chains of rigid grains.
+inline constexpr double inward_depth = 1.0;
+
+/// Searches all candidate segments of a window. A node counts when it lies between inward_depth lengths inward and `outward` outward;
 /// of several segments (sharp or thin masters) the nearest line wins, the first of equals.
 inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double outward) {
   Projection best{};
@@ -43,7 +47,7 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
     const Lanes after = next_rx * window.bisector_x[s + 1] + next_ry * window.bisector_y[s + 1];
     const Lanes height = rx * window.tangent_y[s] - ry * window.tangent_x[s];
     const Lanes distance = abs(height);
-    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= outward) & (height >= -0.5 * window.length[s]) &
+    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= outward) & (height >= -inward_depth * window.length[s]) &
                             (distance < best_distance);
     if (any(inside)) {
       best_distance = select(inside, distance, best_distance);

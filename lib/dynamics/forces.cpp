@@ -14,8 +14,8 @@
 namespace pliant {
 namespace {
 
-/// Penetration over segment length: contacts are dropped at 0.5 (METHOD 4); warned about when half of that is used.
-constexpr double deep_penetration = 0.25, lost_penetration = 0.49;
+/// Penetration over segment length: contacts are dropped at inward_depth; warned about when half of that is used.
+constexpr double deep_penetration = 0.5 * inward_depth, lost_penetration = 0.98 * inward_depth;
 
 /// Padding lanes repeat a body, so that they need no masking here.
 double least_of(Lanes jacobian) { return -largest(-jacobian); }
@@ -47,7 +47,7 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
     add_rigid_loads(model_, rigid, time, &force.rigid[3 * r]);
   });
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
-  check(result, time);
+  result.sound = result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
   return result;
 }
 
@@ -61,13 +61,13 @@ void Forces::check(const Evaluation& evaluation, double time) {
                                    model_.bodies[model_.groups[batch.group].bodies[batch.first + batch.count - 1]].name, time));
   }
   if (evaluation.contact.deepest > lost_penetration)
-    throw PhysicsError(fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at 0.5; "
+    throw PhysicsError(fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at {:.1f}; "
                                    "raise the contact stiffness",
-                                   evaluation.contact.deepest, time));
+                                   evaluation.contact.deepest, time, inward_depth));
   if (evaluation.contact.deepest > deep_penetration && !warned_deep_) {
     warned_deep_ = true;
-    spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at 0.5); consider a higher contact stiffness",
-                 evaluation.contact.deepest, time);
+    spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a higher contact stiffness",
+                 evaluation.contact.deepest, time, inward_depth);
   }
 }
 

@@ -12,6 +12,7 @@ struct Evaluation {
   PatchTotals contact;
   double least_jacobian = 1e300;
   bool refreshed = false;   ///< the contact candidates were rebuilt
+  bool sound = true;        ///< false for J <= 0 and lost contacts: the forces mean nothing, a trial step must be rejected
 };
 
 /// All forces on all degrees of freedom for given positions.
@@ -20,8 +21,11 @@ class Forces {
   explicit Forces(const Model& model);
 
   /// Total forces at `position` and `time` into `force`. `committed` is the contact history of the last accepted step (laid out anew by a
-  /// refresh), `trial` receives the one that goes with these positions. Throws PhysicsError for J <= 0 and lost contacts.
+  /// refresh), `trial` receives the one that goes with these positions.
   Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force);
+
+  /// For positions that are meant to stay, right after their evaluation: throws PhysicsError when it is not sound, warns of deep contacts.
+  void check(const Evaluation& evaluation, double time);
 
   const Model& model() const { return model_; }
   const Outlines& outlines() const { return outlines_; }
@@ -31,8 +35,6 @@ class Forces {
   std::vector<double> stiffness_bound(const std::vector<double>& compliance) { return contact_.stiffness_bound(outlines_, compliance); }
 
  private:
-  void check(const Evaluation& evaluation, double time);
-
   const Model& model_;
   Outlines outlines_;
   ContactSystem contact_;

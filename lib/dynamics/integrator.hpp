@@ -19,7 +19,7 @@ struct StepReport {
   const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"
 };
 
-/// Throws PhysicsError when dt has fallen under 1e-9 of `reference`: with the error that forced it down.
-void check_time_step(double dt, double reference, double error, double time);
+/// Throws PhysicsError when dt has fallen under 1e-9 of `reference`: with what the last trial, rejected, found at `time`.
+void check_time_step(double dt, double reference, const StepReport& rejected, double time, Forces& forces);
 
 }  // namespace pliant

@@ -11,7 +11,7 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   state_.velocity = initial_velocities(model, state_.position);
   state_.force = zero_dofs(model);
   ContactHistory trial;
-  forces_.evaluate(state_.position, 0, state_.history, trial, state_.force);
+  forces_.check(forces_.evaluate(state_.position, 0, state_.history, trial, state_.force), 0);
   std::swap(state_.history, trial);
   ++state_.evaluations;
   auditor_ = std::make_unique<Auditor>(forces_, state_);

@@ -47,7 +47,7 @@ StepReport StepDoubling::step(State& state, double until) {
     report.evaluation = forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history, trial_.force);
     ++state.evaluations;
     second_half_step(state, dt);
-    report.error = error(state, dt);
+    report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
     report.dt = dt;
     const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_factor;
     const double proposal = dt * std::clamp(factor, least_factor, largest_factor);
@@ -59,7 +59,7 @@ StepReport StepDoubling::step(State& state, double until) {
     state.next_dt = proposal;
     ++report.rejections;
     ++state.rejections;
-    check_time_step(state.next_dt, reference, report.error, state.time);
+    check_time_step(state.next_dt, reference, report, state.time, forces_);
   }
 }
 
@@ -149,6 +149,7 @@ void StepDoubling::accept(State& state, double dt, double end_time, Evaluation& 
   std::swap(state.history, trial_.history);
   state.dissipated += evaluation.contact.dissipated;
   evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force);
+  forces_.check(evaluation, end_time);
   ++state.evaluations;
   state.dissipated += evaluation.contact.dissipated;
   state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity, state.force, trial_.force,

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "bodies/internal_forces.hpp"
@@ -26,6 +27,22 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const std::vector<double>& we
   return total;
 }
 
+/// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It does not depend on the angle.
+double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, const double* stiffness) {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  for (int k = 0; k < outline.count; ++k) {
+    const Vec2& r = outline.points[k];
+    Eigen::Matrix<double, 2, 3> motion;
+    motion << 1, 0, -r.y(), 0, 1, r.x();
+    matrix += stiffness[k] * motion.transpose() * motion;
+  }
+  Eigen::Vector3d scale;
+  for (int c = 0; c < 3; ++c) scale[c] = std::sqrt(rigid.dof[c].inverse_mass);
+  matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix, Eigen::EigenvaluesOnly);
+  return std::max(0.0, solver.eigenvalues()[2]);
+}
+
 }  // namespace
 
 TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model) {
@@ -37,22 +54,18 @@ TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : mode
   contact_.assign(model.bodies.size(), 0.0);
   for (const Body& body : model.bodies)
     compliance_.push_back(contact_frequency(body, model.outlines[body.outline].tributary_length.data()));
-  double stiffest = 0;
-  if (model.bodies.size() > 1)
-    for (const ContactLaw& law : laws.laws) stiffest = std::max(stiffest, stiffness_of(law));
-  for (double c : compliance_) contact_floor_.push_back(stiffest * c);
+  contact_floor_.assign(model.bodies.size(), 0.0);
+  if (model.bodies.size() < 2) return;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const int* laws_of_class = &laws.pair_law[laws.body_class[b] * laws.classes];
+    for (int other = 0; other < laws.classes; ++other)
+      contact_floor_[b] = std::max(contact_floor_[b], compliance_[b] * stiffness_of(laws.laws[laws_of_class[other]]));
+  }
 }
 
 double TimeStepBound::contact_frequency(const Body& body, const double* stiffness) const {
   const OutlineShape& outline = model_.outlines[body.outline];
-  if (body.kind == BodyKind::rigid) {
-    const RigidBody& rigid = model_.rigid_bodies[body.rigid];
-    const double inverse_mass = std::max(rigid.dof[0].inverse_mass, rigid.dof[1].inverse_mass);
-    double total = 0;
-    for (int k = 0; k < outline.count; ++k)
-      total += stiffness[k] * (inverse_mass + outline.points[k].squaredNorm() * rigid.dof[2].inverse_mass);
-    return total;
-  }
+  if (body.kind == BodyKind::rigid) return rigid_frequency(model_.rigid_bodies[body.rigid], outline, stiffness);
   const CompliantShape& shape = model_.shape_of(model_.batches[body.batch]);
   const ShapeRows& rows = shape.space.outline_rows;
   std::vector<double> row_sum(static_cast<std::size_t>(shape.nodes()), 0.0);

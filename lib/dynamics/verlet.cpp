@@ -47,10 +47,11 @@ StepReport Verlet::step(State& state, double until) {
     const double end_time = cut ? until : state.time + dt;
     report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force);
     ++state.evaluations;
-    report.error = error(state, dt);
+    report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
     const double factor = controller_factor(report.error, tolerance);
     report.dt = dt;
     if (report.error <= 2 * tolerance) {
+      forces_.check(report.evaluation, end_time);
       // A step cut short to meet an output says little about the next one.
       state.next_dt = std::min(std::max(dt * factor, dt < 0.5 * state.next_dt ? state.next_dt * least_factor : 0.0), largest);
       accept(state, dt);
@@ -63,7 +64,7 @@ StepReport Verlet::step(State& state, double until) {
     ++report.rejections;
     ++state.rejections;
     state.next_dt = dt * std::min(factor, 0.9);
-    check_time_step(state.next_dt, largest, report.error, state.time);
+    check_time_step(state.next_dt, largest, report, state.time, forces_);
     if (report.evaluation.refreshed) bound_.update_contact(forces_);
   }
 }

@@ -19,9 +19,10 @@ constexpr unsigned expected_frames = 2000;
 
 void require_size(const std::filesystem::path& file, const std::string& what, std::size_t found, std::size_t expected) {
   if (found == expected) return;
-  throw OutputError(fmt::format("{}: '{}' has {} values, its grid needs {}; give one value for each point or cell and "
-                                "component",
-                                file.string(), what, found, expected));
+  throw OutputError(
+      fmt::format("{}: '{}' has {} values, its grid needs {}; give one value for each point or cell and "
+                  "component",
+                  file.string(), what, found, expected));
 }
 
 std::size_t cell_count(const GridTopology& grid) {
@@ -104,7 +105,7 @@ std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames) {
   return values * sizeof(float) * 21 / 20 + overhead_bytes;
 }
 
-} // namespace
+}  // namespace
 
 struct FrameFile::Implementation {
   std::filesystem::path heavy, light;
@@ -113,7 +114,9 @@ struct FrameFile::Implementation {
   int count = 0;
 
   Implementation(const std::filesystem::path& folder, std::vector<GridTopology> topologies)
-      : heavy(folder / "frames.h5"), light(folder / "frames.xdmf"), grids(checked(heavy, std::move(topologies))),
+      : heavy(folder / "frames.h5"),
+        light(folder / "frames.xdmf"),
+        grids(checked(heavy, std::move(topologies))),
         document(heavy, grids) {
     Hdf5File file(heavy, Hdf5File::Mode::create);
     for (const GridTopology& grid : grids) write_topology(file, grid);
@@ -143,7 +146,7 @@ struct FrameFile::Implementation {
       file.publish(groups[g], frame_group(grids[g].name, count));
       file.flush();
     }
-    groups.clear(); // before the file closes: an open group would keep it open
+    groups.clear();  // before the file closes: an open group would keep it open
     file.append_value("/times", time);
     file.close();
   }
@@ -166,4 +169,4 @@ void FrameFile::append(double time, const std::vector<GridFrame>& frames) { impl
 
 int FrameFile::count() const { return implementation_->count; }
 
-} // namespace pliant
+}  // namespace pliant

@@ -13,16 +13,16 @@ namespace pliant {
 struct Field {
   std::string name;
   enum class Centre { point, cell } centre = Centre::point;
-  int components = 1;          ///< 1 scalar, 2 vector (written with a zero third component for ParaView)
-  std::vector<float> values;   ///< [points or cells x components]
+  int components = 1;         ///< 1 scalar, 2 vector (written with a zero third component for ParaView)
+  std::vector<float> values;  ///< [points or cells x components]
 };
 
 /// Topology of a grid, written once. `cell_size` 3: triangles, 2: line segments.
 struct GridTopology {
-  std::string name;            ///< "bodies", "outlines"
+  std::string name;  ///< "bodies", "outlines"
   int points = 0;
   int cell_size = 3;
-  std::vector<int> cells;      ///< [cells x cell_size]
+  std::vector<int> cells;              ///< [cells x cell_size]
   std::vector<Field> constant_fields;  ///< written once: kind, body
 };
 
@@ -32,9 +32,9 @@ struct GridFrame {
   std::vector<Field> fields;
 };
 
-/// frames.h5 with frames.xdmf beside it. Layout: /<grid>/cells, /<grid>/<constant field>, and
-/// /<grid>/<frame, six digits>/{position,<field>...}, with attribute `time` (s) on the frame's group; /times lists them.
-/// After every append both files are complete and readable. Throws OutputError.
+/// frames.h5 with frames.xdmf beside it. Layout: /<grid>/cells, /<grid>/<constant field>, and /<grid>/<frame, six
+/// digits>/{position,<field>...}, with attribute `time` (s) on the frame's group; /times lists them. After every append
+/// both files are complete and readable. Throws OutputError.
 class FrameFile {
  public:
   FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids);

@@ -51,16 +51,16 @@ Hdf5Handle file_access() {
   return access;
 }
 
-/// Without time stamps: the same run gives the same bytes.
-Hdf5Handle array_creation() {
-  Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+/// How datasets, groups or files (`of`) are made: without time stamps, so that the same run gives the same bytes.
+Hdf5Handle creation_of(hid_t of) {
+  Hdf5Handle creation(H5Pcreate(of), H5Pclose);
   H5Pset_obj_track_times(creation.id(), false);
   return creation;
 }
 
 /// Chunked and compressed where there is something to compress.
 Hdf5Handle compressed_creation(const std::array<hsize_t, 2>& shape, int rank) {
-  Hdf5Handle creation = array_creation();
+  Hdf5Handle creation = creation_of(H5P_DATASET_CREATE);
   if (shape[0] == 0 || shape[1] == 0) return creation;
   const std::array<hsize_t, 2> chunk = {std::min(shape[0], chunk_rows), shape[1]};
   H5Pset_chunk(creation.id(), rank, chunk.data());
@@ -73,7 +73,7 @@ Hdf5Handle compressed_creation(const std::array<hsize_t, 2>& shape, int rank) {
 void prepare_library() {
   static const herr_t prepared = H5dont_atexit();
   static_cast<void>(prepared);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are thrown, not printed
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
 }
 
 /// 0 or an errno.
@@ -85,7 +85,7 @@ int sync_file(const std::filesystem::path& file) {
   return error;
 }
 
-} // namespace
+}  // namespace
 
 Hdf5Handle::~Hdf5Handle() {
   if (id_ >= 0) release_(id_);
@@ -125,8 +125,8 @@ void Hdf5Group::write_array(const std::string& name, hid_t file_type, hid_t memo
 
 Hdf5File::Hdf5File(const std::filesystem::path& file, Mode mode) : path_(file) {
   prepare_library();
-  const Hdf5Handle access = file_access();
-  file_ = checked(mode == Mode::create ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id())
+  const Hdf5Handle access = file_access(), creation = creation_of(H5P_FILE_CREATE);
+  file_ = checked(mode == Mode::create ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.id(), access.id())
                                        : H5Fopen(file.c_str(), H5F_ACC_RDWR, access.id()),
                   path_, "/");
 }
@@ -136,7 +136,7 @@ Hdf5File::~Hdf5File() {
 }
 
 Hdf5Group Hdf5File::new_group(unsigned expected_links) {
-  const Hdf5Handle creation(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  const Hdf5Handle creation = creation_of(H5P_GROUP_CREATE);
   H5Pset_link_phase_change(creation.id(), UINT16_MAX, 0);
   H5Pset_est_link_info(creation.id(), std::min(expected_links, largest_link_room), link_name_length);
   return {path_, Hdf5Handle(checked(H5Gcreate_anon(file_, creation.id(), H5P_DEFAULT), path_, "group"), H5Gclose)};
@@ -149,7 +149,7 @@ void Hdf5File::publish(const Hdf5Group& group, const std::string& name) {
 void Hdf5File::write_empty_list(const std::string& name) {
   const hsize_t size = 0, unlimited = H5S_UNLIMITED;
   const Hdf5Handle space(H5Screate_simple(1, &size, &unlimited), H5Sclose);
-  const Hdf5Handle creation = array_creation();
+  const Hdf5Handle creation = creation_of(H5P_DATASET_CREATE);
   H5Pset_chunk(creation.id(), 1, &list_chunk);
   const hid_t created =
       H5Dcreate2(file_, name.c_str(), H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
@@ -191,4 +191,4 @@ void reserve_disk_space(const std::filesystem::path& file, std::uintmax_t bytes)
                   file.string(), (bytes >> 20) + 1, std::strerror(error)));
 }
 
-} // namespace pliant
+}  // namespace pliant

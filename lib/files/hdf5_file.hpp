@@ -11,28 +11,28 @@ namespace pliant {
 
 /// Owner of one HDF5 handle.
 class Hdf5Handle {
-public:
+ public:
   Hdf5Handle(hid_t id, herr_t (*release)(hid_t)) : id_(id), release_(release) {}
   ~Hdf5Handle();
   Hdf5Handle(Hdf5Handle&& other) noexcept;
   Hdf5Handle& operator=(Hdf5Handle&&) = delete;
   hid_t id() const { return id_; }
 
-private:
+ private:
   hid_t id_;
   herr_t (*release_)(hid_t);
 };
 
 /// A group being filled, unseen in its file until it is published.
 class Hdf5Group {
-public:
+ public:
   Hdf5Group(std::filesystem::path file, Hdf5Handle group);
   /// A row-major array [rows x columns], compressed; one column gives a one-dimensional dataset.
   void write(const std::string& name, const std::vector<float>& values, int columns);
   void write(const std::string& name, const std::vector<int>& values, int columns);
   void write_attribute(const std::string& name, double value);
 
-private:
+ private:
   friend class Hdf5File;
   void write_array(const std::string& name, hid_t file_type, hid_t memory_type, const void* values, std::size_t size,
                    int columns);
@@ -41,11 +41,12 @@ private:
   Hdf5Handle group_;
 };
 
-/// One open HDF5 file that stays readable whenever its writer is killed: groups are filled unseen, flushed, and only then
-/// published and flushed, each by one small write (as far as the room for links and lists reaches). Every failure is an OutputError that names the file, the
-/// object and what HDF5 says. The file is not locked, so that it may be looked at while a run goes on.
+/// One open HDF5 file that stays readable whenever its writer is killed: groups are filled unseen, flushed, and only
+/// then published and flushed, each by one small write (as far as the room for links and lists reaches). Every failure
+/// is an OutputError that names the file, the object and what HDF5 says. The file is not locked, so that it may be
+/// looked at while a run goes on.
 class Hdf5File {
-public:
+ public:
   enum class Mode { create, append };
 
   Hdf5File(const std::filesystem::path& file, Mode mode);
@@ -64,14 +65,14 @@ public:
   /// Flushes, closes and syncs to the disk. The destructor alone tells of no failure.
   void close();
 
-private:
+ private:
   std::filesystem::path path_;
   hid_t file_ = H5I_INVALID_HID;
 };
 
-/// Makes sure that an existing, closed file can grow by `bytes`: HDF5 that runs out of disk half-way may spoil the index of
-/// what the file held before. The room is taken from the disk and given back when the file is next closed.
+/// Makes sure that an existing, closed file can grow by `bytes`: HDF5 that runs out of disk half-way may spoil the
+/// index of what the file held before. The room is taken from the disk and given back when the file is next closed.
 /// Throws OutputError on a full disk, a quota or a limit of the file's size.
 void reserve_disk_space(const std::filesystem::path& file, std::uintmax_t bytes);
 
-} // namespace pliant
+}  // namespace pliant

@@ -34,9 +34,10 @@ std::vector<fs::path> results_in(const fs::path& folder) {
   std::vector<fs::path> results;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     if (!is_result(entry)) {
-      throw OutputError(fmt::format("{}: will not be overwritten: it holds '{}', which no run of this program writes; "
-                                    "move it away or choose another output folder",
-                                    folder.string(), entry.path().filename().string()));
+      throw OutputError(
+          fmt::format("{}: will not be overwritten: it holds '{}', which no run of this program writes; "
+                      "move it away or choose another output folder",
+                      folder.string(), entry.path().filename().string()));
     }
     results.push_back(entry.path());
   }
@@ -57,9 +58,10 @@ void prepare(const fs::path& folder, bool overwrite) {
   }
   if (!fs::is_empty(folder)) {
     if (!overwrite) {
-      throw OutputError(fmt::format("{}: exists and is not empty; choose another output folder or ask for it to be "
-                                    "overwritten",
-                                    folder.string()));
+      throw OutputError(
+          fmt::format("{}: exists and is not empty; choose another output folder (--out) or overwrite it "
+                      "(--force)",
+                      folder.string()));
     }
     const std::vector<fs::path> results = results_in(folder);
     require_writable(folder);
@@ -68,7 +70,7 @@ void prepare(const fs::path& folder, bool overwrite) {
   require_writable(folder);
 }
 
-} // namespace
+}  // namespace
 
 void prepare_output_folder(const std::filesystem::path& folder, bool overwrite) {
   try {
@@ -80,4 +82,4 @@ void prepare_output_folder(const std::filesystem::path& folder, bool overwrite) 
   }
 }
 
-} // namespace pliant
+}  // namespace pliant

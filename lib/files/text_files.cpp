@@ -58,7 +58,7 @@ std::string quoted(const std::string& cell) {
   return result + "\"";
 }
 
-} // namespace
+}  // namespace
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& content) {
   std::filesystem::path temporary = file;
@@ -83,7 +83,7 @@ CsvFile::CsvFile(const std::filesystem::path& file, const std::vector<std::strin
   try {
     flush();
   } catch (...) {
-    std::fclose(file_); // no destructor runs for an object that was never complete
+    std::fclose(file_);  // no destructor runs for an object that was never complete
     throw;
   }
 }
@@ -124,4 +124,4 @@ void CsvFile::flush() {
   pending_.clear();
 }
 
-} // namespace pliant
+}  // namespace pliant

@@ -25,13 +25,13 @@ class CsvFile {
   std::filesystem::path path_;
   std::FILE* file_ = nullptr;
   std::size_t columns_ = 0;
-  std::string pending_;       ///< whole rows not yet handed to the system, so that a killed run leaves no torn row
-  std::size_t written_ = 0;   ///< bytes of whole rows in the file
+  std::string pending_;      ///< whole rows not yet handed to the system, so that a killed run leaves no torn row
+  std::size_t written_ = 0;  ///< bytes of whole rows in the file
 };
 
-/// Prepares an output folder: creates it, or with `overwrite` empties one that a run of this program wrote (it is known by its
-/// summary.json or scene.toml, and holds nothing but kinds of files that a run writes: anything else is never removed).
-/// Throws OutputError when it exists and is not to be overwritten, or cannot be written.
+/// Prepares an output folder: creates it, or with `overwrite` empties one that a run of this program wrote (it is known
+/// by its summary.json or scene.toml, and holds nothing but kinds of files that a run writes: anything else is never
+/// removed). Throws OutputError when it exists and is not to be overwritten, or cannot be written.
 void prepare_output_folder(const std::filesystem::path& folder, bool overwrite);
 
 }  // namespace pliant

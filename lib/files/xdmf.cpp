@@ -12,7 +12,7 @@ std::string topology_type(const GridTopology& grid) {
                              : fmt::format(R"(TopologyType="Polyline" NodesPerElement="{}")", grid.cell_size);
 }
 
-} // namespace
+}  // namespace
 
 int stored_components(const Field& field) { return field.components == 2 ? 3 : field.components; }
 
@@ -70,4 +70,4 @@ std::string XdmfDocument::item(const std::string& path, const char* type, int ro
       shape, heavy_, path);
 }
 
-} // namespace pliant
+}  // namespace pliant

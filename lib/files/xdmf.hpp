@@ -11,21 +11,21 @@ namespace pliant {
 /// The light data beside a frame file: one temporal collection a grid, as ParaView's XDMF readers take it. All heavy
 /// data are whole datasets `heavy:/path`, so that readers of version 2 and 3 both find them.
 class XdmfDocument {
-public:
+ public:
   /// `heavy` is the name of the HDF5 file, relative to the XDMF file.
   XdmfDocument(const std::filesystem::path& heavy, const std::vector<GridTopology>& grids);
   /// Adds frame `index` of all grids; `frames` are told apart by names and shapes alone.
   void add(int index, double time, const std::vector<GridTopology>& grids, const std::vector<GridFrame>& frames);
   std::string text() const;
 
-private:
+ private:
   std::string attribute(const Field& field, const std::string& folder, const GridTopology& grid) const;
   std::string item(const std::string& path, const char* type, int rows, int columns) const;
 
   std::string heavy_;
   std::vector<std::string> names_;
-  std::vector<std::string> constants_; ///< what every frame of a grid repeats: topology and constant fields
-  std::vector<std::string> frames_;    ///< the frames of a grid so far
+  std::vector<std::string> constants_;  ///< what every frame of a grid repeats: topology and constant fields
+  std::vector<std::string> frames_;     ///< the frames of a grid so far
 };
 
 /// Components of a field as stored: ParaView knows vectors of three components only.
@@ -34,4 +34,4 @@ int stored_components(const Field& field);
 /// Group of one frame: "/bodies/000012".
 std::string frame_group(const std::string& grid, int index);
 
-} // namespace pliant
+}  // namespace pliant

@@ -32,8 +32,9 @@ double area(const ShapeSpec& shape) {
 void read_nodes(TableReader& table, ShapeSpec& shape) {
   if (table.has("nodes") && table.has("spacing")) table.fail("spacing", "both it and 'nodes' are given; remove one");
   if (!table.has("nodes") && !table.has("spacing")) table.fail_missing("nodes", "'nodes' (a number) or 'spacing' (m)");
-  table.optional("nodes", shape.nodes, Integer{3, SceneLimits::nodes_per_shape});
-  table.optional("outline_nodes", shape.outline_nodes, Integer{3, SceneLimits::nodes_per_shape});
+  const auto fewest = shape.kind == ShapeKind::disc ? 6 : static_cast<std::int64_t>(shape.points.size());
+  table.optional("nodes", shape.nodes, Integer{7, SceneLimits::nodes_per_shape});
+  table.optional("outline_nodes", shape.outline_nodes, Integer{fewest, SceneLimits::nodes_per_shape});
   if (!table.optional("spacing", shape.spacing, Quantity{"m", positive})) return;
   const double largest = extent(shape) / 2;
   if (*shape.spacing > largest)
@@ -56,6 +57,22 @@ void read_lattice(TableReader& table, Packing& packing) {
   table.optional("origin", packing.origin, Vector{"m"});
 }
 
+void check_fit(const TableReader& table, const Packing& packing, double period) {
+  constexpr double rounding = 1e-9;  // periods and pitches are decimal numbers of the user
+  const double width = packing.columns * packing.pitch;
+  if (width > period * (1 + rounding)) {
+    table.fail("columns", fmt::format("{} columns at a pitch of {} m take {} m; allowed: at most the period, {} m",
+                                      packing.columns, packing.pitch, width, period));
+  }
+  const bool closed = width >= period * (1 - rounding);
+  if (packing.kind == PackingKind::hexagonal && closed && packing.columns % 2 == 1) {
+    table.fail("columns",
+               fmt::format("{} hexagonal columns fill the period, so two unshifted ones would meet; allowed: "
+                           "an even number",
+                           packing.columns));
+  }
+}
+
 Packing read_packing(TableReader table, const Scene& scene) {
   Packing packing;
   table.required(
@@ -66,11 +83,7 @@ Packing read_packing(TableReader table, const Scene& scene) {
     table.required("positions", packing.positions, List<Vector>{{"m"}, 1, SceneLimits::bodies});
   } else {
     read_lattice(table, packing);
-    const double width = packing.columns * packing.pitch;
-    if (scene.period && width > *scene.period * (1 + 1e-9)) {
-      table.fail("columns", fmt::format("{} columns at a pitch of {} m take {} m; allowed: at most the period, {} m",
-                                        packing.columns, packing.pitch, width, *scene.period));
-    }
+    if (scene.period) check_fit(table, packing, *scene.period);
   }
   table.finish();
   return packing;

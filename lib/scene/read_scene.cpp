@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -41,8 +42,7 @@ toml::table parse(const std::string& text, const std::string& file) {
 /// Names of grains, walls and the two kinds of body are one set: a probe may be of any of them.
 void check_new_name(const TableReader& table, const std::string& name, std::set<std::string>& taken) {
   if (taken.insert(name).second) return;
-  const std::string message = fmt::format("the name '{}' in {} is taken; choose another", name, table.title());
-  table.fail(message);
+  table.fail(fmt::format("the name '{}' in {} is taken; choose another", name, table.title()));
 }
 
 void read_materials_and_shapes(TableReader& root, Scene& scene) {
@@ -76,19 +76,14 @@ void read_outputs(TableReader& root, Scene& scene) {
   if (root.has("frames")) scene.frames = read_frames(root.required_table("frames"), scene);
 }
 
-/// Pairs of materials that can meet in the scene, each in alphabetical order. Walls do not meet walls.
-std::set<std::pair<std::string, std::string>> meeting_pairs(const Scene& scene) {
-  std::set<std::pair<std::string, std::string>> pairs;
-  const auto meet = [&](const std::string& a, const std::string& b) { pairs.insert(std::minmax(a, b)); };
-  for (std::size_t i = 0; i < scene.grains.size(); ++i) {
-    for (const MixEntry& one : scene.grains[i].mix) {
-      for (const Wall& wall : scene.walls) meet(one.material, wall.material);
-      for (std::size_t j = body_count(scene.grains[i]) > 1 ? i : i + 1; j < scene.grains.size(); ++j) {
-        for (const MixEntry& other : scene.grains[j].mix) meet(one.material, other.material);
-      }
-    }
+/// Materials that bodies and walls of the scene carry, in alphabetical order.
+std::set<std::string> present_materials(const Scene& scene) {
+  std::set<std::string> present;
+  for (const Grains& grains : scene.grains) {
+    for (const MixEntry& entry : grains.mix) present.insert(entry.material);
   }
-  return pairs;
+  for (const Wall& wall : scene.walls) present.insert(wall.material);
+  return present;
 }
 
 /// Number of the rule that applies to a pair of materials; -1: none.
@@ -102,24 +97,29 @@ int rule_of(const Scene& scene, const std::string& a, const std::string& b) {
   return found;
 }
 
+/// A pair needs a rule, and a stiffness: the automatic one follows from the compliant bodies of the scene.
+void check_pair(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
+                const std::string& a, const std::string& b) {
+  const int rule = rule_of(scene, a, b);
+  if (rule < 0) {
+    (tables.empty() ? root : tables.back())
+        .fail(fmt::format("no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
+                          "[\"{0}\", \"{1}\"] or between = \"all\"",
+                          a, b));
+  }
+  const bool compliant = std::any_of(scene.grains.begin(), scene.grains.end(),
+                                     [](const Grains& grains) { return has_body(grains, BodyKind::compliant); });
+  if (compliant || scene.contacts[rule].stiffness) return;
+  tables[rule].fail(
+      fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
+                  "bodies; add stiffness in {} (Pa/m)",
+                  a, b, tables[rule].title()));
+}
+
 void check_rules(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables) {
-  bool compliant = false;
-  for (const Grains& grains : scene.grains) compliant = compliant || has_body(grains, BodyKind::compliant);
-  for (const auto& [a, b] : meeting_pairs(scene)) {
-    const int rule = rule_of(scene, a, b);
-    if (rule < 0) {
-      const std::string message = fmt::format(
-          "no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
-          "[\"{0}\", \"{1}\"] or between = \"all\"",
-          a, b);
-      if (tables.empty()) root.fail(message);
-      tables.back().fail(message);
-    }
-    if (compliant || scene.contacts[rule].stiffness) continue;
-    tables[rule].fail(
-        fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
-                    "bodies; add stiffness in {} (Pa/m)",
-                    a, b, tables[rule].title()));
+  const std::set<std::string> present = present_materials(scene);
+  for (auto a = present.begin(); a != present.end(); ++a) {
+    for (auto b = a; b != present.end(); ++b) check_pair(root, scene, tables, *a, *b);
   }
 }
 

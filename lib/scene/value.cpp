@@ -76,8 +76,10 @@ double Quantity::operator()(const Value& value) const {
     } catch (const UnitError& error) {
       value.fail(fmt::format("{}: found {}, {}; allowed: {}", value.label, value.found(), error.what(), allowed()));
     }
-  } else if (value.node.is_number()) {
-    number = *value.node.value<double>();
+  } else if (const auto* real = value.node.as_floating_point()) {
+    number = real->get();
+  } else if (const auto* integer = value.node.as_integer()) {
+    number = static_cast<double>(integer->get());
   } else {
     value.reject(allowed());
   }

@@ -70,6 +70,10 @@ def _draw_step_column(axes: Axes, table: Table, column: Column, time_factor: flo
     if column.name == "error" and np.any(values > 0):
         axes.set_yscale("log")
         time, values = time[values > 0], values[values > 0]
+        axes.set_ylim(np.quantile(values, 0.002) / 2, 2 * values.max())  # the first steps' errors are near zero
+    if column.name in ("rejections", "dt"):
+        largest = max(1.0, float(values.max(initial=0.0)) * factor)
+        axes.set_ylim(-0.03 * largest, 1.05 * largest)
     _draw_history(axes, time * time_factor, values * factor, colour)
     axes.set_ylabel(units.label(name, unit))
 
@@ -97,7 +101,7 @@ def _friction(run: Run, table: Table, source: str) -> tuple[np.ndarray, np.ndarr
     force_x, force_y = table.get("force_x", source), table.get("force_y", source)
     assert force_x is not None and force_y is not None
     loaded = np.isfinite(force_x.values) & (np.abs(force_y.values) > 0)
-    return table.time[loaded], np.abs(force_x.values[loaded] / force_y.values[loaded])
+    return table.time[loaded], force_x.values[loaded] / np.abs(force_y.values[loaded])
 
 
 def _peak_and_plateau(time: np.ndarray, values: np.ndarray) -> tuple[float, float, float]:
@@ -147,6 +151,8 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
         time, values = table.sampled(column)
         if len(time) == 0:
             continue
+        if column is normal and values.mean() < 0:
+            values = -values  # compression is positive on either wall
         _draw_history(axes, time * time_factor, values * factor, colour, name)
         captions.append(_caption(name, column.unit, time, values))
     axes.set_ylabel(units.label("force", unit))
@@ -166,34 +172,37 @@ def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor:
 
 
 def energy(run: Run) -> Figure | None:
-    """Booked energies, and the error of their balance below."""
+    """Booked energies, and below them the errors of the balances of energy and momentum."""
     table = run.probes
-    columns = [] if table is None else [c for c in table.columns if c.unit in ("J/m", "J")]
-    if table is None or not columns:
+    kinetic = None if table is None else table.get("kinetic")
+    if table is None or kinetic is None:
         return None
-    balance = [c for c in columns if "balance" in c.name]
-    booked = [c for c in columns if "balance" not in c.name]
-    figure, axes, time_factor = _panels(2 if balance else 1, f"{run.title}: energy", table)
-    _draw_energies(axes[0], table, booked, time_factor, "energy")
-    if balance:
-        _draw_energies(axes[1], table, balance, time_factor, "balance error")
-        largest = max((np.nanmax(np.abs(c.values), initial=0.0) for c in booked), default=0.0)
-        axes[1].set_title(_balance_caption(table, balance[0], float(largest)), fontsize=9)
+    columns = [c for c in table.columns if c.source == kinetic.source]
+    errors = [c for c in columns if c.name.endswith("_error") and np.any(np.abs(c.values) > 0)]
+    figure, axes, time_factor = _panels(1 + len(errors), f"{run.title}: energy", table)
+    _draw_energies(axes[0], table, [c for c in columns if c.unit == kinetic.unit], time_factor)
+    for panel, column, colour in zip(axes[1:], errors, COLOURS):
+        _draw_error(panel, table, column, time_factor, colour)
     return figure
 
 
-def _draw_energies(axes: Axes, table: Table, columns: list[Column], time_factor: float, name: str) -> None:
-    largest = max((np.nanmax(np.abs(c.values), initial=0.0) for c in columns), default=0.0)
-    factor, unit = units.scale(float(largest), columns[0].unit if columns else "-")
-    for i, column in enumerate(columns):
+def _draw_energies(axes: Axes, table: Table, columns: list[Column], time_factor: float) -> None:
+    largest = max(np.nanmax(np.abs(c.values), initial=0.0) for c in columns)
+    factor, unit = units.scale(float(largest), columns[0].unit)
+    for column, colour in zip(columns, COLOURS):
         time, values = table.sampled(column)
-        _draw_history(axes, time * time_factor, values * factor, COLOURS[i % len(COLOURS)], column.name.replace("_", " "))
-    axes.set_ylabel(units.label(name, unit))
-    if len(columns) > 1:
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
+        _draw_history(axes, time * time_factor, values * factor, colour, column.name.replace("_", " "))
+    axes.set_ylabel(units.label("energy", unit))
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
 
 
-def _balance_caption(table: Table, column: Column, largest: float) -> str:
-    worst = float(np.nanmax(np.abs(column.values), initial=0.0))
-    share = f", {worst / largest:.1e} of the largest energy" if largest > 0 else ""
-    return f"largest balance error {units.readable(worst, column.unit)}{share}"
+def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, colour: str) -> None:
+    """Magnitude on a logarithmic axis; exact zeros have no place there."""
+    time, values = table.sampled(column)
+    there = values != 0
+    name = column.name.removesuffix("_error").replace("_", " ")
+    _draw_history(axes, time[there] * time_factor, np.abs(values[there]), colour)
+    axes.set_yscale("log")
+    axes.set_ylabel(units.label(f"{name} error", column.unit))
+    worst = float(np.abs(values).max())
+    axes.set_title(f"largest {name} error: {worst:.1e}" + ("" if column.unit == "-" else f" {column.unit}"), fontsize=9)

@@ -6,16 +6,17 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.collections import PolyCollection, TriMesh
+from matplotlib.colors import Normalize, to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
+from matplotlib.tri import Triangulation
 
 from plots import units
 from plots.run_data import COMPLIANT, RIGID, WALL, Frames, Run
 from plots.wrapping import body_shifts, edge_copies, wrapped_segments
 
-KIND_COLOURS = np.array(["#f2c079", "#4a4a4a", "#a6a6a6"])  # compliant, rigid, wall
+KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
 NEUTRAL = "#c9c9c9"
 EDGE = "#2b2b2b"
 
@@ -82,10 +83,13 @@ def _copied_grains(
 def _box(grains: np.ndarray, walls: np.ndarray, period: float | None) -> tuple[float, float, float, float]:
     corners = np.concatenate([grains.reshape(-1, 2), walls.reshape(-1, 2)])
     (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
-    margin = 0.04 * max(high - low, 0.25 * (right - left))
     if period is not None:
-        return 0.0, period, low - margin, high + margin
-    return left - margin, right + margin, low - margin, high + margin
+        left, right = 0.0, period
+    margin = 0.04 * max(high - low, 0.25 * (right - left))
+    # Neither a thread nor a needle: at most 6 to 1.
+    above = max(margin, 0.5 * ((right - left) / 6 - (high - low)))
+    beside = 0.0 if period is not None else max(margin, 0.5 * ((high - low) / 6 - (right - left)))
+    return left - beside, right + beside, low - above, high + above
 
 
 def common_box(sceneries: list[Scenery]) -> tuple[float, float, float, float]:
@@ -96,19 +100,33 @@ def common_box(sceneries: list[Scenery]) -> tuple[float, float, float, float]:
 def draw(axes: Axes, scene: Scenery, colours: np.ndarray | None, box: tuple[float, ...], line_width: float) -> None:
     """Grains in `colours` (one a triangle of the scenery; None: by kind), their outlines, and filled walls."""
     factor, unit = units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
-    faces = KIND_COLOURS[scene.kind] if colours is None else colours
+    faces = to_rgba_array(KIND_COLOURS)[scene.kind] if colours is None else colours
     inside = _inside(scene.triangles, box)
-    # Without antialiasing: seams between triangles would show otherwise; the outlines smooth the rims.
-    axes.add_collection(
-        PolyCollection(scene.triangles[inside] * factor, facecolors=faces[inside], edgecolors="none", antialiased=False)
-    )
-    edges = scene.edges[_inside(scene.edges, box)]
-    axes.add_collection(LineCollection(edges * factor, colors=EDGE, linewidths=line_width))
+    _draw_triangles(axes, scene.triangles[inside] * factor, faces[inside])
+    _draw_lines(axes, scene.edges[_inside(scene.edges, box)] * factor, line_width)
     _draw_walls(axes, scene, box, factor)
     axes.set_xlim(box[0] * factor, box[1] * factor)
     axes.set_ylim(box[2] * factor, box[3] * factor)
     axes.set_aspect("equal")
     axes.set_ylabel(units.label("y", unit))
+
+
+def _draw_triangles(axes: Axes, triangles: np.ndarray, colours: np.ndarray) -> None:
+    """One mesh whose triangles share no corner: faster than a collection of polygons, and without seams."""
+    corners = triangles.reshape(-1, 2)
+    if len(corners) == 0:
+        return
+    mesh = TriMesh(Triangulation(*corners.T, np.arange(len(corners)).reshape(-1, 3)))
+    mesh.set_facecolor(np.repeat(colours, 3, axis=0))
+    # Neither layout nor limits shall ask for its extent, which would make a path of each triangle.
+    mesh.set_in_layout(False)
+    axes.add_collection(mesh, autolim=False)
+
+
+def _draw_lines(axes: Axes, segments: np.ndarray, width: float) -> None:
+    """One path with gaps, for the same reason."""
+    gaps = np.full((len(segments), 1, 2), np.nan)
+    axes.plot(*np.concatenate([segments, gaps], axis=1).reshape(-1, 2).T, color=EDGE, linewidth=width, zorder=2)
 
 
 def _inside(polygons: np.ndarray, box: tuple[float, ...]) -> np.ndarray:
@@ -127,20 +145,21 @@ def _draw_walls(axes: Axes, scene: Scenery, box: tuple[float, ...], factor: floa
     columns[:, 2:, 1] = np.where(below, box[2], box[3])[:, None]
     colour = KIND_COLOURS[WALL]
     axes.add_collection(PolyCollection(columns * factor, facecolors=colour, edgecolors="none", antialiased=False))
-    axes.add_collection(LineCollection(scene.walls * factor, colors=EDGE, linewidths=0.8))
+    _draw_lines(axes, scene.walls * factor, 0.8)
 
 
 def _layout(box: tuple[float, ...], count: int) -> tuple[int, int, float, float]:
     """Rows, columns, and the size of one picture in inches: wide scenes are stacked, others stand side by side."""
     ratio = (box[1] - box[0]) / (box[3] - box[2])
-    columns = 1 if ratio > 2.2 or count == 1 else 2
-    width = 11.0 / columns
-    return -(-count // columns), columns, width, min(width / ratio, 9.0)
+    columns = min(count, 1 if ratio > 2.2 else 2 if ratio > 0.7 else 4)
+    height = min(11.0 / columns / ratio, 9.0)
+    return -(-count // columns), columns, height * ratio, height
 
 
-def _sheet(box: tuple[float, ...], count: int, title: str) -> tuple[Figure, list[Axes]]:
+def _sheet(box: tuple[float, ...], count: int, title: str, beside: float = 0.0) -> tuple[Figure, list[Axes]]:
+    """`beside`: inches left for a colour bar."""
     rows, columns, width, height = _layout(box, count)
-    size = (columns * width + 0.4, rows * (height + 0.35) + 0.9)
+    size = (max(columns * (width + 0.65) + beside, 5.0), rows * (height + 0.45) + 0.75)
     figure, axes = plt.subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
     figure.suptitle(title)
     for spare in axes.flat[count:]:
@@ -148,6 +167,12 @@ def _sheet(box: tuple[float, ...], count: int, title: str) -> tuple[Figure, list
     for low in axes[-1]:
         low.set_xlabel(units.label("x", units.scale(max(box[1] - box[0], box[3] - box[2]), "m")[1]))
     return figure, list(axes.flat[:count])
+
+
+def _inches(axes: Axes) -> float:
+    """Rough height of a panel."""
+    rows = axes.get_subplotspec().get_gridspec().nrows
+    return axes.figure.get_figheight() / rows - 0.6
 
 
 def _outline_width(scene: Scenery) -> float:
@@ -167,7 +192,8 @@ def grains(run: Run, indices: list[int]) -> Figure:
     shown = [k for k in (COMPLIANT, RIGID, WALL) if k in sceneries[0].kind or (k == WALL and len(sceneries[0].walls))]
     names = {COMPLIANT: "compliant", RIGID: "rigid", WALL: "wall"}
     handles = [Patch(facecolor=KIND_COLOURS[k], edgecolor=EDGE, label=names[k]) for k in shown]
-    axes[0].legend(handles=handles, loc="lower right", bbox_to_anchor=(1, 1), ncols=len(handles), frameon=False, fontsize=9)
+    last = axes[-1]
+    last.legend(handles=handles, loc="upper right", bbox_to_anchor=(1, -0.4 / _inches(last)), ncols=3, frameon=False)
     return figure
 
 
@@ -195,7 +221,7 @@ def velocity(run: Run, indices: list[int]) -> Figure | None:
         return None
     sceneries = [scenery(run, index) for index in indices]
     box = common_box(sceneries)
-    figure, axes = _sheet(box, len(indices), f"{run.title}: velocity")
+    figure, axes = _sheet(box, len(indices), f"{run.title}: velocity", beside=1.2)
     mappable, factor, name = _colour_scale(np.concatenate(norms), "m/s", "velocity norm", "cividis")
     for panel, scene, values, index in zip(axes, sceneries, norms, indices):
         draw(panel, scene, mappable.to_rgba(values[scene.cells] * factor), box, 0.5 * _outline_width(scene))
@@ -231,7 +257,7 @@ def von_mises(run: Run, index: int) -> Figure | None:
     compliant = scene.kind == COMPLIANT
     mappable, factor, name = _colour_scale(stress[scene.cells[compliant]], "Pa", "von Mises stress", "inferno")
     colours = mappable.to_rgba(stress[scene.cells] * factor)
-    colours[~compliant] = plt.matplotlib.colors.to_rgba(NEUTRAL)
+    colours[~compliant] = to_rgba_array(NEUTRAL)
     time = units.readable(run.frames.times[index], "s")
     figure, axes = _whole_and_window(scene, zoom, f"{run.title}: von Mises stress at t = {time}")
     for panel, box in zip(axes, (scene.box, zoom)):
@@ -242,11 +268,16 @@ def von_mises(run: Run, index: int) -> Figure | None:
 
 def _whole_and_window(scene: Scenery, zoom: tuple[float, ...], title: str) -> tuple[Figure, list[Axes]]:
     """One above the other when the scene is wide, side by side otherwise; the window is marked in the whole."""
-    wide = scene.width > 1.4 * scene.height
-    heights = [11 * scene.height / scene.width, 11 * (zoom[3] - zoom[2]) / (zoom[1] - zoom[0])]
-    size = (12.5, sum(heights) + 1.6) if wide else (13.0, 6.5)
-    ratios = {"height_ratios": heights} if wide else {}
-    figure, axes = plt.subplots(*((2, 1) if wide else (1, 2)), figsize=size, layout="constrained", **ratios)
+    ratios = [scene.width / scene.height, (zoom[1] - zoom[0]) / (zoom[3] - zoom[2])]
+    if ratios[0] > 1.4:
+        heights = [11 / ratio for ratio in ratios]
+        figure, axes = plt.subplots(
+            2, 1, figsize=(12.7, sum(heights) + 1.6), height_ratios=heights, layout="constrained"
+        )
+    else:
+        figure, axes = plt.subplots(
+            1, 2, figsize=(7 * sum(ratios) + 2.8, 8.0), width_ratios=ratios, layout="constrained"
+        )
     figure.suptitle(title)
     for panel, box in zip(axes, (scene.box, zoom)):
         panel.set_xlabel(units.label("x", units.scale(max(box[1] - box[0], box[3] - box[2]), "m")[1]))

@@ -54,6 +54,24 @@ class Grid:
     kind: np.ndarray  # [cells]
     body: np.ndarray  # [cells]
 
+    def closed_across(self) -> "Grid":
+        """With one more segment for each wall, from its last point to its first: a wall is an open line that goes on in
+        the next period."""
+        uses = np.bincount(self.cells.ravel())
+        extra = []
+        for wall in np.unique(self.body[self.kind == WALL]):
+            points = np.unique(self.cells[self.body == wall])
+            ends = points[uses[points] == 1]
+            if len(ends) == 2:
+                extra.append((ends, wall))
+        cells = np.array([ends for ends, _ in extra], dtype=int).reshape(-1, 2)
+        bodies = np.array([wall for _, wall in extra], dtype=int)
+        return Grid(
+            np.concatenate([self.cells, cells]),
+            np.concatenate([self.kind, np.full(len(extra), WALL)]),
+            np.concatenate([self.body, bodies]),
+        )
+
     @cached_property
     def point_body(self) -> np.ndarray:
         """[points] body of each point."""
@@ -90,7 +108,7 @@ def _column(text: str, values: np.ndarray) -> Column:
 class Frames:
     """frames.h5, read frame by frame. Frames that a killed run did not finish are not listed, so not seen."""
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path, period: float | None) -> None:
         self.path = file
         try:
             self._file = h5py.File(file, "r")
@@ -98,6 +116,8 @@ class Frames:
             self.grids = {name: self._grid(name) for name in ("bodies", "outlines") if name in self._file}
         except (OSError, KeyError) as error:
             raise BadFolder(f"{file}: not a file of frames: {error}") from error
+        if period is not None and "outlines" in self.grids:
+            self.grids["outlines"] = self.grids["outlines"].closed_across()
 
     def _grid(self, name: str) -> Grid:
         group = self._file[name]
@@ -105,12 +125,18 @@ class Frames:
 
     def positions(self, grid: str, index: int) -> np.ndarray:
         """[points x 2], m."""
-        return self._file[f"{grid}/{index:06}/position"][()].astype(float)
+        values = self.field(grid, index, "position")
+        if values is None:
+            raise BadFolder(f"{self.path}: frame {index} of '{grid}' has no positions")
+        return values.astype(float)
 
     def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
         """[points or cells (x 3)]; None when the run did not store it."""
         path = f"{grid}/{index:06}/{name}"
-        return self._file[path][()] if path in self._file else None
+        try:
+            return self._file[path][()] if path in self._file else None
+        except OSError as error:
+            raise BadFolder(f"{self.path}: {path} cannot be read: {error}") from error
 
     def nearest(self, time: float) -> int:
         return int(np.abs(self.times - time).argmin())
@@ -144,11 +170,12 @@ def read_run(folder: Path) -> Run:
 
 def _read(folder: Path) -> Run:
     scene = _read_scene(folder / "scene.toml")
-    frames = Frames(folder / "frames.h5") if (folder / "frames.h5").exists() else None
+    period = _period(scene, folder)
+    frames = Frames(folder / "frames.h5", period) if (folder / "frames.h5").exists() else None
     return Run(
         folder,
         scene.get("title", folder.resolve().name),
-        _period(scene, folder),
+        period,
         {probe["name"]: probe.get("of", "") for probe in scene.get("probes", []) if "name" in probe},
         read_table(folder / "probes.csv"),
         read_table(folder / "steps.csv"),

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -100,7 +101,7 @@ TEST(PatchTest, MlsReproducesUniformStrain) {
       const Discretisation d = discretise(unit_mesh(shape), {.recipe = Recipe::mls, .support = support});
       const double error = rms_strain_error(d, patch_strain());
       EXPECT_LT(error, 1e-10) << shape.name << ", support " << support;
-      RecordProperty(shape.name + std::to_string(support), std::to_string(error));
+      RecordProperty(shape.name + std::to_string(support), fmt::format("{:.2e}", error));
     }
 }
 
@@ -111,6 +112,7 @@ TEST(PatchTest, MlsGaussFailsAsKnown) {
   const double error = rms_strain_error(d, patch_strain());
   EXPECT_GT(error, 2e-2 / 3);
   EXPECT_LT(error, 2e-2 * 3);
+  RecordProperty("rms_strain_error", fmt::format("{:.2e}", error));
 }
 
 }  // namespace

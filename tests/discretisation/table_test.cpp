@@ -108,7 +108,7 @@ TEST(Table, RowsReproducePlaces) {
   EXPECT_EQ(d.node_rows.start.size(), 169U);
 }
 
-// FROZEN: least shape function -0.028, METHOD 2 measured down to -0.03; a rule of signs does not exist.
+// INDEPENDENT: the prototype of METHOD 2 met -0.03; ours must be negative and of that size.
 TEST(Table, LeastShapeValueIsReported) {
   const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
   EXPECT_LT(d.min_shape_value, 0);

@@ -1,5 +1,5 @@
-"""Reads frames.xdmf as ParaView would, with nothing of the writer's code: every DataItem must resolve to an HDF5 dataset
-of the stated shape and type, every cell to points of its grid, and every frame of /times must be there.
+"""Reads frames.xdmf as ParaView would, with nothing of the writer's code: every DataItem must resolve to an HDF5
+dataset of the stated shape and type, every cell to points of its grid, and every frame of /times must be there.
 
     /usr/bin/python3 tests/files/check_xdmf.py RESULT_FOLDER      exit 0: sound, 1: the first fault is printed
 """

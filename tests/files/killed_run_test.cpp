@@ -21,7 +21,7 @@ void count_write() {
   if (writes_left > 0) --writes_left;
 }
 
-} // namespace
+}  // namespace
 
 // HDF5 calls these instead of the C library's. They do the same, but count first.
 extern "C" ssize_t pwrite(int descriptor, const void* data, size_t size, off_t offset) {
@@ -50,11 +50,11 @@ GridFrame frame(int index) {
 }
 
 class KilledRun : public testing::TemporaryFolder {
-protected:
+ protected:
   /// A run that dies before write `last` after its first frame; the first frame's index has no older one to protect.
   /// True when it came to its end.
   bool run_until(int last) const {
-    const pid_t writer = ::fork();
+    const pid_t writer = testing::forked();
     if (writer == 0) {
       FrameFile file(folder_, {{"bodies", points, 3, {0, 1, 2}, {}}, {"outlines", points, 2, {0, 1}, {}}});
       file.append(0, {frame(0), frame(0)});
@@ -115,5 +115,5 @@ TEST_F(KilledRun, StaysReadableWhereverItStops) {
   EXPECT_GE(killed, 10 * (frames - 1)) << "the writes of HDF5 were not intercepted";
 }
 
-} // namespace
-} // namespace pliant
+}  // namespace
+}  // namespace pliant

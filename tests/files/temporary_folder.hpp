@@ -6,13 +6,14 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 namespace pliant::testing {
 
 /// A fresh folder for each test, removed afterwards.
 class TemporaryFolder : public ::testing::Test {
-protected:
+ protected:
   void SetUp() override {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
@@ -30,8 +31,16 @@ protected:
   std::filesystem::path folder_;
 };
 
+/// fork() that never returns -1: as a process id for kill that would mean all processes.
+inline pid_t forked() {
+  const pid_t child = ::fork();
+  if (child < 0) throw std::runtime_error("no process can be started");
+  return child;
+}
+
 /// The message of the exception of type `Expected` that `action` throws; a failed assertion when there is none.
-template <class Expected, class Action> std::string message_of(Action&& action) {
+template <class Expected, class Action>
+std::string message_of(Action&& action) {
   try {
     action();
   } catch (const Expected& error) {
@@ -41,4 +50,4 @@ template <class Expected, class Action> std::string message_of(Action&& action) 
   return {};
 }
 
-} // namespace pliant::testing
+}  // namespace pliant::testing

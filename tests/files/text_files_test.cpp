@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 class TextFiles : public testing::TemporaryFolder {
-protected:
+ protected:
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
@@ -31,7 +31,7 @@ TEST_F(TextFiles, AtomicWriteReplacesAndLeavesNothingBeside) {
 TEST_F(TextFiles, AtomicWriteThatFailsKeepsTheOldFile) {
   fs::create_directory(folder_ / "taken");
   write_file_atomically(folder_ / "taken" / "inside", "kept");
-  const auto write = [this] { write_file_atomically(folder_ / "taken", "new"); }; // a folder cannot be replaced
+  const auto write = [this] { write_file_atomically(folder_ / "taken", "new"); };  // a folder cannot be replaced
   EXPECT_NE(testing::message_of<OutputError>(write).find((folder_ / "taken").string()), std::string::npos);
   EXPECT_EQ(read(folder_ / "taken" / "inside"), "kept");
   EXPECT_EQ(entries(), 1U);
@@ -95,7 +95,7 @@ TEST_F(TextFiles, OutputFolderIsCreatedAndNotTakenTwice) {
   const fs::path out = folder_ / "deep" / "out";
   prepare_output_folder(out, false);
   EXPECT_TRUE(fs::is_empty(out));
-  prepare_output_folder(out, false); // empty: may be used
+  prepare_output_folder(out, false);  // empty: may be used
   write_file_atomically(out / "summary.json", "{}");
   EXPECT_NE(testing::message_of<OutputError>([&] { prepare_output_folder(out, false); }).find(out.string()),
             std::string::npos);
@@ -132,5 +132,5 @@ TEST_F(TextFiles, AFileIsNoOutputFolder) {
   EXPECT_THROW(prepare_output_folder(folder_ / "file" / "below", true), OutputError);
 }
 
-} // namespace
-} // namespace pliant
+}  // namespace
+}  // namespace pliant

@@ -151,6 +151,12 @@ def test_threads_are_bound_when_all_cores_are_used(launcher: Launcher) -> None:
     assert "places=sockets wait=passive" in chosen
 
 
+def test_a_build_is_announced_until_it_succeeded(launcher: Launcher) -> None:
+    assert "building in build/release" in launcher("check", "a.toml", NINJA_EXIT="1").stderr
+    assert "building in build/release" in launcher("check", "a.toml").stderr
+    assert launcher("check", "a.toml").stderr == ""
+
+
 def test_builds_in_one_folder_wait_for_each_other(launcher: Launcher) -> None:
     both = [launcher.start("check", "a.toml", NINJA_SECONDS="0.5") for _ in range(2)]
     errors = [process.communicate(timeout=60)[1] for process in both]

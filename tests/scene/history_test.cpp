@@ -48,7 +48,7 @@ TEST(History, IntegralIsAdditiveAndOdd) {
 }
 
 TEST(History, ShortStepsKeepTheirPrecision) {
-  // A step of 1e-6 late in a long history: relative error of its length, eps * 1e3 / 1e-6, and not of the whole integral.
+  // A step of 1e-6 late in a long history: rounding relative to its own integral, not to that of the whole history.
   const History late{{0, 1000}, {0, 1000}};
   const double t = 999.5, step = 1e-6;
   EXPECT_NEAR(late.integral(t, t + step), late.at(t + step / 2) * ((t + step) - t), 4 * rounding * t * step);

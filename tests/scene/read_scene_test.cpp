@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-using testing::good_scene;
-using testing::SceneFile;
+using scene_tests::good_scene;
+using scene_tests::SceneFile;
 
 // EXACT throughout: what the file says, in SI. EXPECT_DOUBLE_EQ (4 roundings) where a unit is converted.
 

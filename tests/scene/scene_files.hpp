@@ -8,7 +8,7 @@
 
 #include "scene/scene.hpp"
 
-namespace pliant::testing {
+namespace pliant::scene_tests {
 
 /// A scene file in the temporary folder, removed at the end.
 class SceneFile {
@@ -105,4 +105,4 @@ period = "0.1 us"
 fields = ["velocity", "von_mises"]
 )";
 
-}  // namespace pliant::testing
+}  // namespace pliant::scene_tests

@@ -1,0 +1,125 @@
+// A rejected step leaves no trace: the state goes on as if only the accepted step had been tried (DESIGN 5, METHOD 6).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "core/errors.hpp"
+#include "support/bench.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_bits(const Dofs& a, const Dofs& b) { return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid); }
+
+/// Arc coordinates and slips of the contacts that are known, in an order of their own: a refresh may move records.
+std::vector<std::pair<double, double>> records(const ContactHistory& history) {
+  std::vector<std::pair<double, double>> known;
+  for (std::size_t i = 0; i < history.arc.size(); ++i)
+    if (!std::isnan(history.arc[i])) known.emplace_back(history.arc[i], history.slip[i]);
+  std::sort(known.begin(), known.end());
+  return known;
+}
+
+/// A step that was rejected at least once, and the same step taken at once from a copy of everything before it.
+struct Twins {
+  const State& retried;
+  const State& direct;
+  bool refreshed;  ///< some trial rebuilt the contact candidates
+};
+
+/// Runs a scene and shows each step with rejections to `look`. Returns how many there were.
+template <class Integrator>
+int compare_rejected_steps(const Scene& scene, const std::function<void(const Twins&)>& look) {
+  Bench bench(scene);
+  Integrator integrator(bench.forces, bench.state);
+  int seen = 0;
+  while (bench.state.time < scene.time.end) {
+    State state = bench.state;
+    Forces forces = bench.forces;
+    const long refreshes = forces.contact().refreshes();
+    const StepReport report = integrator.step(bench.state, scene.time.end);
+    if (report.rejections == 0) continue;
+    ++seen;
+    state.next_dt = report.dt;
+    Integrator fresh(forces, state);
+    fresh.step(state, scene.time.end);
+    look({bench.state, state, bench.forces.contact().refreshes() != refreshes});
+  }
+  return seen;
+}
+
+/// A compliant disc thrown at a rigid one that lies on a floor with friction; both slip and roll.
+Scene impact(Integrator integrator) {
+  Scene scene = on_a_floor(4, 8, 0.25, {0, -0.01});
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("thrown", "disc", BodyKind::compliant, {{3, 3.2}}, moving({0.15, -0.3})),
+                  grains("lying", "disc", BodyKind::rigid, {{4, 0.999}})};
+  scene.contacts = {rough(200, 0.4)};
+  scene.time.integrator = integrator;
+  scene.time.tolerance = 1e-4;
+  return scene;
+}
+
+/// A rigid block that slides fast enough to use up the contact skin within a step, so that rejected trials rebuild the candidates.
+Scene fast_slide(Integrator integrator) {
+  Scene scene = on_a_floor(20, 8, 0.1, {0.2, -1});
+  scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
+  scene.grains = {grains("block", "block", BodyKind::rigid, {{2, 0.245}}, moving({3, 0}))};
+  scene.contacts = {rough(100, 0.5)};
+  scene.time.integrator = integrator;
+  scene.time.tolerance = 1e-4;
+  scene.time.target = 1e-2;
+  return scene;
+}
+
+void expect_equal(const Twins& twins) {
+  EXPECT_EQ(twins.retried.time, twins.direct.time) << "EXACT";
+  EXPECT_TRUE(same_bits(twins.retried.position, twins.direct.position)) << "EXACT, t = " << twins.direct.time;
+  EXPECT_TRUE(same_bits(twins.retried.velocity, twins.direct.velocity)) << "EXACT, t = " << twins.direct.time;
+  EXPECT_TRUE(same_bits(twins.retried.force, twins.direct.force)) << "EXACT, t = " << twins.direct.time;
+  EXPECT_EQ(records(twins.retried.history), records(twins.direct.history)) << "EXACT, t = " << twins.direct.time;
+}
+
+TEST(Rejection, leaves_no_trace_in_verlet) {
+  EXPECT_GT(compare_rejected_steps<Verlet>(impact(Integrator::verlet), expect_equal), 3);
+  int refreshed = 0;
+  compare_rejected_steps<Verlet>(fast_slide(Integrator::verlet), [&](const Twins& twins) {
+    expect_equal(twins);
+    refreshed += twins.refreshed;
+  });
+  EXPECT_GT(refreshed, 3);
+}
+
+TEST(Rejection, leaves_no_trace_in_step_doubling) {
+  EXPECT_GT(compare_rejected_steps<StepDoubling>(impact(Integrator::step_doubling), expect_equal), 3);
+  int refreshed = 0;
+  compare_rejected_steps<StepDoubling>(fast_slide(Integrator::step_doubling), [&](const Twins& twins) {
+    expect_equal(twins);
+    refreshed += twins.refreshed;
+  });
+  EXPECT_GT(refreshed, 3);
+}
+
+/// Neither does looking at the books: audits between the steps change no bit of the run.
+TEST(Rejection, audits_leave_no_trace) {
+  const Model model = build_model(impact(Integrator::verlet));
+  Simulation watched(model), alone(model);
+  while (watched.state().time < 4) {
+    watched.audit();
+    watched.step(4);
+    alone.step(4);
+    ASSERT_EQ(state_hash(watched.state()), state_hash(alone.state())) << "EXACT, t = " << alone.state().time;
+  }
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

@@ -1,0 +1,179 @@
+// The paper's scheme: order one, its estimator, and how its controller holds the error (METHOD 6).
+#include "dynamics/step_doubling.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "support/bench.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+Scene swinging_disc() {
+  Scene scene = free_disc(60, 1e9, stretching(0.3));
+  scene.time.integrator = Integrator::step_doubling;
+  scene.time.target = 1e300;  // no control: the tests give the steps
+  return scene;
+}
+
+/// Position and velocity of one outline node after 3 time units in equal steps.
+Eigen::Vector4d swing(double dt) {
+  Bench bench(swinging_disc());
+  StepDoubling integrator(bench.forces, bench.state);
+  for (int step = 0; step < std::lround(3 / dt); ++step) {
+    bench.state.next_dt = dt;
+    integrator.step(bench.state, 1e9);
+  }
+  const Body& disc = bench.model.bodies[0];
+  return (Eigen::Vector4d() << node_value(bench.model, disc, bench.state.position, 0), node_value(bench.model, disc, bench.state.velocity, 0))
+      .finished();
+}
+
+TEST(StepDoubling, order_one) {
+  const Eigen::Vector4d states[] = {swing(0.02), swing(0.01), swing(0.005), swing(0.0025)};
+  for (int i = 0; i < 2; ++i) {
+    const double order = observed_order((states[i] - states[i + 1]).norm(), (states[i + 1] - states[i + 2]).norm());
+    EXPECT_NEAR(order, 1, 0.15) << "RATE";
+  }
+}
+
+/// One state in both schemes' words: semi-implicit Euler, a = F/M; v += dt a; u += dt v.
+struct Euler {
+  Dofs position, velocity;
+};
+
+void euler_step(const Model& model, Euler& state, const Dofs& force, double dt) {
+  for (const Batch& batch : model.batches)
+    for (int i = 0; i < 2 * model.shape_of(batch).nodes(); ++i) {
+      const std::size_t at = batch.offset + static_cast<std::size_t>(i);
+      const Lanes mass = model.shape_of(batch).space.unit_mass[i / 2] * batch.density;
+      state.velocity.compliant[at] += dt * force.compliant[at] / mass;
+      state.position.compliant[at] += dt * state.velocity.compliant[at];
+    }
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const RigidDof& dof = model.rigid_bodies[r].dof[c];
+      if (dof.imposed()) continue;
+      state.velocity.rigid[3 * r + c] += dt * force.rigid[3 * r + c] / dof.mass;
+      state.position.rigid[3 * r + c] += dt * state.velocity.rigid[3 * r + c];
+    }
+}
+
+/// Outline or field nodes of a body, where the error is measured.
+Points nodes_of(const Model& model, const Body& body, const Dofs& position) {
+  Points nodes;
+  if (body.kind == BodyKind::rigid) {
+    const Eigen::Vector3d x = rigid(position, body.rigid);
+    for (const Vec2& p : model.outlines[body.outline].points)
+      nodes.push_back(x.head<2>() + Eigen::Rotation2Dd(x[2]) * p);
+    return nodes;
+  }
+  const ShapeRows& rows = model.shape_of(model.batches[body.batch]).space.node_rows;
+  for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
+    Vec2 x(0, 0);
+    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) x += rows.value[e] * node_value(model, body, position, rows.node[e]);
+    nodes.push_back(x);
+  }
+  return nodes;
+}
+
+double distance_at(const Model& model, const Body& body, std::size_t node) {
+  if (body.kind == BodyKind::rigid) return model.outlines[body.outline].spacing;
+  return model.shape_of(model.batches[body.batch]).space.nodal_distance[node];
+}
+
+/// max |u2 - u1| / d over all nodes of all bodies, componentwise.
+double largest_difference(const Model& model, const Dofs& one, const Dofs& two) {
+  double largest = 0;
+  for (const Body& body : model.bodies) {
+    const Points a = nodes_of(model, body, one), b = nodes_of(model, body, two);
+    for (std::size_t k = 0; k < a.size(); ++k)
+      largest = std::max(largest, (b[k] - a[k]).cwiseAbs().maxCoeff() / distance_at(model, body, k));
+  }
+  return largest;
+}
+
+/// A spinning rigid disc that a compliant one hits off its centre: both kinds matter for the error, one after the other.
+Scene collision() {
+  Scene scene = empty_scene(2);
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("soft", "disc", BodyKind::compliant, {{0, 0}}, moving({0.3, 0})),
+                  grains("hard", "disc", BodyKind::rigid, {{2.05, 0.7}}, moving({0, 0}, 2))};
+  scene.contacts = {rough(100, 0.3)};
+  scene.time.integrator = Integrator::step_doubling;
+  return scene;
+}
+
+TEST(StepDoubling, estimator_compares_one_step_with_two_halves) {
+  Bench bench(collision());
+  StepDoubling integrator(bench.forces, bench.state);
+  int compared = 0;
+  while (bench.state.time < 2) {
+    const State before = bench.state;
+    Forces forces = bench.forces;
+    const StepReport report = integrator.step(bench.state, 2);
+    ContactHistory history = before.history, trial;
+    Dofs force = before.force;
+    Euler one{before.position, before.velocity}, two = one;
+    euler_step(bench.model, one, before.force, report.dt);
+    euler_step(bench.model, two, before.force, report.dt / 2);
+    forces.evaluate(two.position, before.time + report.dt / 2, history, trial, force);
+    euler_step(bench.model, two, force, report.dt / 2);
+    const double expected = largest_difference(bench.model, one.position, two.position);
+    // EXACT but for cancellation: differences of 1e-4 d between positions of order 1, to 1e-16 each.
+    EXPECT_NEAR(report.error, expected, 1e-14 + 1e-9 * expected) << "EXACT, t = " << before.time;
+    compared += report.error > 0;
+  }
+  EXPECT_GT(compared, 50);
+}
+
+TEST(StepDoubling, keeps_the_two_half_steps) {
+  Bench bench(collision());
+  StepDoubling integrator(bench.forces, bench.state);
+  while (bench.state.time < 0.5) integrator.step(bench.state, 2);
+  const State before = bench.state;
+  ContactHistory history = before.history, trial;
+  Dofs force = before.force;
+  Forces forces = bench.forces;
+  const StepReport report = integrator.step(bench.state, 2);
+  Euler two{before.position, before.velocity};
+  euler_step(bench.model, two, before.force, report.dt / 2);
+  forces.evaluate(two.position, before.time + report.dt / 2, history, trial, force);
+  euler_step(bench.model, two, force, report.dt / 2);
+  EXPECT_LT(largest_difference(bench.model, two.position, bench.state.position), 1e-14) << "EXACT: rounding";
+  EXPECT_LT(largest_difference(bench.model, two.velocity, bench.state.velocity), 1e-14) << "EXACT: rounding";
+}
+
+TEST(StepDoubling, controller_holds_the_error_at_its_target) {
+  Scene scene = small_third_body(2);
+  scene.time.integrator = Integrator::step_doubling;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  std::vector<double> errors;
+  while (simulation.state().time < 2) {
+    const StepReport report = simulation.step(2);
+    EXPECT_LE(report.error, scene.time.alpha * scene.time.target) << "EXACT: more is rejected";
+    if (simulation.state().time > 0.4) errors.push_back(report.error);
+  }
+  ASSERT_GT(errors.size(), 100u);
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  const double median = errors[errors.size() / 2] / scene.time.target;
+  EXPECT_GT(median, 0.5) << "INDEPENDENT: the paper's figure 8 holds the target";
+  EXPECT_LT(median, 1.5);
+}
+
+TEST(StepDoubling, steps_end_exactly_on_output_times) {
+  Scene scene = collision();
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  for (int output = 1; output <= 20; ++output) {
+    advance(simulation, 0.1 * output);
+    EXPECT_EQ(simulation.state().time, 0.1 * output) << "EXACT";
+  }
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

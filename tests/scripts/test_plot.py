@@ -1,0 +1,142 @@
+"""Checks of scripts/plot.py. All are EXACT; captions state the numbers that synthetic_run.py makes up."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts"), str(Path(__file__).parent)]
+
+from plots import curves, units, wrapping
+from plots.run_data import WALL, BadFolder, Grid, read_run, read_table
+from synthetic_run import PITCH, write_run
+
+PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png"}
+
+
+def plot(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = ["/usr/bin/python3", str(ROOT / "scripts/plot.py"), *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("run")
+    write_run(folder, columns=6, rows=4, rings=3, frames=5)
+    return folder
+
+
+def test_all_pictures(run_folder: Path) -> None:
+    before = {file.name for file in run_folder.iterdir()} - PICTURES
+    result = plot(run_folder, "--times", 1e-6, 18.5e-6)
+    assert result.returncode == 0, result.stderr
+    assert {file.name for file in run_folder.iterdir()} == before | PICTURES
+    assert all((run_folder / name).read_bytes().startswith(b"\x89PNG") for name in PICTURES)
+
+
+def test_missing_data_is_named(tmp_path: Path) -> None:
+    (tmp_path / "steps.csv").write_text("time [s],dt [s]\n1e-9,1e-12\n2e-9,1e-12\n")
+    result = plot(tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert {file.name for file in tmp_path.iterdir()} == {"steps.csv", "steps.png"}
+    assert all(f"{name}: left out" in result.stdout for name in PICTURES - {"steps.png"})
+
+
+@pytest.mark.parametrize("files", [None, {}, {"frames.h5": "no HDF5"}, {"probes.csv": "time [s],a\n1,zero\n"},
+                                   {"steps.csv": "time [s],a\n1,2,3\n"}, {"steps.csv": "", "scene.toml": "= 1"}])
+def test_bad_folder_is_bad_input(tmp_path: Path, files: dict[str, str] | None) -> None:
+    folder = tmp_path / "out"
+    if files is not None:
+        folder.mkdir()
+    for name, text in (files or {}).items():
+        (folder / name).write_text(text)
+    result = plot(folder)
+    assert result.returncode == 2
+    assert str(folder) in result.stderr and "Traceback" not in result.stderr
+
+
+def test_broken_frame_is_bad_input(run_folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "frames.h5").write_bytes((run_folder / "frames.h5").read_bytes())
+    with h5py.File(tmp_path / "frames.h5", "a") as file:
+        del file["bodies/000003/position"]
+    result = plot(tmp_path)
+    assert result.returncode == 2
+    assert "frame 3" in result.stderr
+
+
+def test_unwritable_picture_is_an_output_error(tmp_path: Path) -> None:
+    (tmp_path / "steps.csv").write_text("time [s],dt [s]\n1e-9,1e-12\n2e-9,1e-12\n")
+    (tmp_path / "steps.png").mkdir()
+    result = plot(tmp_path)
+    assert result.returncode == 4
+    assert str(tmp_path) in result.stderr and "Traceback" not in result.stderr
+    assert not list(tmp_path.glob("*.tmp"))
+
+
+def test_table_with_empty_cells(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("time [s],wall.force_x [N/m],e.kinetic [J/m],count\n0,,1,2\n1,5,,\n")
+    table = read_table(tmp_path / "a.csv")
+    assert table is not None
+    assert [(c.source, c.name, c.unit) for c in table.columns] == [
+        ("wall", "force_x", "N/m"), ("e", "kinetic", "J/m"), ("", "count", "-")]
+    force = table.get("force_x", "wall")
+    assert force is not None
+    assert [list(part) for part in table.sampled(force)] == [[1.0], [5.0]]
+
+
+def test_caption_states_peak_and_plateau(run_folder: Path) -> None:
+    run = read_run(run_folder)
+    figure = curves.forces(run)
+    assert figure is not None
+    titles = [axes.get_title() for axes in figure.axes]
+    assert "wall 'lower'" in titles[0] and "plateau 5.22 kN/m" in titles[0]  # 1 GPa over 6 columns of 0.87 um
+    assert "peak 0.5 at 1.4 us, plateau 0.25 " in titles[1]
+
+
+def test_bodies_are_wrapped_whole() -> None:
+    points = np.array([[9.5, 0], [10.7, 0], [-0.2, 1], [-0.6, 1], [25, 2], [25.5, 2]], dtype=float)
+    shifts = wrapping.body_shifts(points, np.array([0, 0, 1, 1, 2, 2]), np.array([True, True, False]), 10.0)
+    assert list(shifts) == [-10, -10, 10, 10, 0, 0]
+
+
+def test_bodies_at_an_edge_are_copied() -> None:
+    polygons = np.array([[[-0.5, 0], [0.5, 0], [0, 1]], [[4, 0], [5, 0], [4, 1]], [[0.5, 0], [1, 0], [1, 1]]])
+    copies, index = wrapping.edge_copies(polygons, np.array([0, 1, 0]), 10.0)
+    assert list(index) == [0, 1, 2, 0, 2]  # the whole body, also its triangle inside
+    assert np.array_equal(copies[3:], polygons[[0, 2]] + np.array([10.0, 0.0]))
+
+
+def test_a_wall_is_closed_across_the_period() -> None:
+    grid = Grid(np.array([[0, 1], [1, 2], [3, 4], [4, 3]]), np.array([WALL, WALL, 0, 0]), np.array([7, 7, 1, 1]))
+    closed = grid.closed_across()
+    assert closed.cells.tolist()[4:] == [[0, 2]] and closed.body[4] == 7 and closed.kind[4] == WALL
+    segment = np.array([[[0.0, 0.0], [9.0, 0.0]]])
+    assert wrapping.wrapped_segments(segment, 10.0)[:, :, 0].tolist() == [[10.0, 9.0]]
+    standing_out = wrapping.wrapped_segments(segment + np.array([0.5, 0.0]), 10.0)
+    assert standing_out[:, :, 0].tolist() == [[10.5, 9.5], [0.5, -0.5]]
+
+
+@pytest.mark.parametrize("value, unit, expected", [(2.5e8, "Pa", (1e-6, "MPa")), (8.7e-5, "m", (1e6, "um")),
+                                                   (1e-6, "s", (1e6, "us")), (0.25, "-", (1.0, "-")),
+                                                   (0.0, "N/m", (1.0, "N/m")), (999.0, "m/s", (1.0, "m/s"))])
+def test_scales(value: float, unit: str, expected: tuple[float, str]) -> None:
+    factor, label = units.scale(value, unit)
+    assert label == expected[1] and factor == pytest.approx(expected[0], rel=1e-15)
+
+
+@pytest.mark.parametrize("text, metres", [("87 um", 8.7e-5), ("0.5mm", 5e-4), ("2 m", 2.0), ("1e3 nm", 1e-6),
+                                          ("3 µm", 3e-6)])
+def test_lengths(text: str, metres: float) -> None:
+    assert units.length(text) == pytest.approx(metres, rel=1e-15)
+    with pytest.raises(ValueError):
+        units.length("5 s")
+
+
+def test_reading_keeps_the_period(run_folder: Path) -> None:
+    assert read_run(run_folder).period == pytest.approx(6 * PITCH, rel=1e-9)  # as many digits as the scene is given
+    with pytest.raises(BadFolder):
+        read_run(run_folder / "scene.toml")

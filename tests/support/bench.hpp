@@ -1,0 +1,32 @@
+#pragma once
+
+#include "bodies/initial_state.hpp"
+#include "dynamics/forces.hpp"
+#include "dynamics/state.hpp"
+
+namespace pliant::dynamics_tests {
+
+/// Model, forces and a state at the start, for tests that drive an integrator by hand. Not to be moved: the parts refer to each other.
+struct Bench {
+  Model model;
+  Forces forces;
+  State state;
+
+  explicit Bench(const Scene& scene) : model(build_model(scene)), forces(model) {
+    state.position = initial_positions(model);
+    state.velocity = initial_velocities(model, state.position);
+    state.force = zero_dofs(model);
+    evaluate_here();
+  }
+  Bench(const Bench&) = delete;
+  Bench& operator=(const Bench&) = delete;
+
+  /// Forces at the state's own positions, for states set by hand.
+  void evaluate_here() {
+    ContactHistory trial;
+    forces.evaluate(state.position, state.time, state.history, trial, state.force);
+    std::swap(state.history, trial);
+  }
+};
+
+}  // namespace pliant::dynamics_tests
