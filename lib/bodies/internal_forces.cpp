@@ -26,9 +26,11 @@ inline void scatter_stress(const BlockedTable& table, int block, const Tensor<La
   for (int e = table.start[block]; e < table.start[block + 1]; ++e) {
     const BlockedTable::Entry& entry = table.entries[e];
     Lanes fx = f[2 * entry.node], fy = f[2 * entry.node + 1];
-    for (int k = 0; k < K; ++k) {
-      fx -= P[k].xx * entry.gradient[k][0] + P[k].xy * entry.gradient[k][1];
-      fy -= P[k].yx * entry.gradient[k][0] + P[k].yy * entry.gradient[k][1];
+    for (int k = 0; k < K; ++k) {  // one statement a product: each becomes one fused operation
+      fx -= P[k].xx * entry.gradient[k][0];
+      fx -= P[k].xy * entry.gradient[k][1];
+      fy -= P[k].yx * entry.gradient[k][0];
+      fy -= P[k].yy * entry.gradient[k][1];
     }
     f[2 * entry.node] = fx;
     f[2 * entry.node + 1] = fy;

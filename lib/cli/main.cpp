@@ -1,3 +1,6 @@
+#include <charconv>
+#include <cmath>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -16,13 +19,17 @@ struct Arguments {
   RunOptions run;
 };
 
+/// A time such as "0.02 us"; a plain number means seconds, as in scene files.
 double parse_until(const std::string& text) {
+  double until = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), until);
+  const bool plain = error == std::errc() && end == text.data() + text.size();
   try {
-    const double until = parse_quantity(text, "s");
-    if (until > 0) return until;
-  } catch (const UnitError& error) {
-    throw InputError(fmt::format("--until {}: {}", text, error.what()));
+    if (!plain) until = parse_quantity(text, "s");
+  } catch (const UnitError& failure) {
+    throw InputError(fmt::format("--until {}: {}", text, failure.what()));
   }
+  if (std::isfinite(until) && until > 0) return until;
   throw InputError(fmt::format("--until {}: must be a positive time, as in --until \"0.02 us\"", text));
 }
 

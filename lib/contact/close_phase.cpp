@@ -116,8 +116,8 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   Box box_b = boxes[pair.second];
   box_b.x_min += shift, box_b.x_max += shift;
   // A node can be touched when it lies near the other's box, and beyond the plane that bounds the other across the line of centres.
-  // Half a segment more, because a segment may cross the box with both of its nodes outside.
-  const double reach_a = margin + 0.5 * a.longest_segment, reach_b = margin + 0.5 * b.longest_segment;
+  // A segment more, because the end of a touched segment that lies beyond the plane may be the far one.
+  const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
   find_turns(b, box_b, inflated(box_a, reach_b));
   const Box region_a = model.bodies[pair.second].wall ? Box{-1e300, 1e300, box_b.y_min - reach_a, box_b.y_max + reach_a}
                                                        : inflated(box_b, reach_a);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "bodies/outline.hpp"
@@ -12,6 +13,7 @@ namespace pliant {
 /// segments run from local node 1 to arc.count + 1, one more than the arc at either end.
 struct MasterWindow {
   int nodes = 0;  ///< arc.count + 4
+  double longest = 0;  ///< candidate segment, m
   std::vector<double> x, y, tangent_x, tangent_y, length, bisector_x, bisector_y, reference_length, arc;
 
   int first_segment() const { return 1; }
@@ -39,6 +41,8 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
   Projection best{};
   Lanes best_distance = broadcast(1e300);
   const int first = window.first_segment();
+  // The near side of a thin or pointed body must compete wherever the far side does: else nodes outside would be caught from behind.
+  const double highest = std::max(outward, inward_depth * window.longest);
   Lanes rx = px - window.x[first], ry = py - window.y[first];
   // Neighbours share the bisector's value, so that every node beside the arc falls to exactly one of them.
   Lanes before = rx * window.bisector_x[first] + ry * window.bisector_y[first];
@@ -47,7 +51,7 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
     const Lanes after = next_rx * window.bisector_x[s + 1] + next_ry * window.bisector_y[s + 1];
     const Lanes height = rx * window.tangent_y[s] - ry * window.tangent_x[s];
     const Lanes distance = abs(height);
-    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= outward) & (height >= -inward_depth * window.length[s]) &
+    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= highest) & (height >= -inward_depth * window.length[s]) &
                             (distance < best_distance);
     if (any(inside)) {
       best_distance = select(inside, distance, best_distance);
@@ -63,7 +67,7 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
     }
     rx = next_rx, ry = next_ry, before = after;
   }
-  best.hit = best_distance < 1e300;
+  best.hit = (best_distance < 1e300) & (best.height <= outward);
   return best;
 }
 

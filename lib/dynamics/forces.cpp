@@ -25,12 +25,16 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 Forces::Forces(const Model& model)
     : model_(model), outlines_(make_outlines(model)), contact_(model), least_jacobian_(model.batches.size(), 1e300) {}
 
-Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force) {
+Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
+                            const Dofs* accepted) {
   Evaluation result;
   update_outlines(model_, position, outlines_);
   if (contact_.refresh_needed(outlines_)) {
+    if (accepted) update_outlines(model_, *accepted, outlines_);
     contact_.refresh(outlines_, committed);
+    if (accepted) update_outlines(model_, position, outlines_);
     result.refreshed = true;
+    result.sound = !contact_.refresh_needed(outlines_);
   }
   result.contact = contact_.forces(outlines_, committed, trial);
   parallel_for(static_cast<int>(model_.batches.size()), [&](int b) {
@@ -47,7 +51,7 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
     add_rigid_loads(model_, rigid, time, &force.rigid[3 * r]);
   });
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
-  result.sound = result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
+  result.sound &= result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
   return result;
 }
 

@@ -12,7 +12,7 @@ struct Evaluation {
   PatchTotals contact;
   double least_jacobian = 1e300;
   bool refreshed = false;   ///< the contact candidates were rebuilt
-  bool sound = true;        ///< false for J <= 0 and lost contacts: the forces mean nothing, a trial step must be rejected
+  bool sound = true;        ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
 };
 
 /// All forces on all degrees of freedom for given positions.
@@ -21,8 +21,10 @@ class Forces {
   explicit Forces(const Model& model);
 
   /// Total forces at `position` and `time` into `force`. `committed` is the contact history of the last accepted step (laid out anew by a
-  /// refresh), `trial` receives the one that goes with these positions.
-  Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force);
+  /// refresh), `trial` receives the one that goes with these positions. `accepted`: positions of that step, when these are on trial; candidates are
+  /// then rebuilt there, so that a rejected trial loses no record, and a trial that goes further than the skin at once is not sound.
+  Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
+                      const Dofs* accepted = nullptr);
 
   /// For positions that are meant to stay, right after their evaluation: throws PhysicsError when it is not sound, warns of deep contacts.
   void check(const Evaluation& evaluation, double time);

@@ -44,7 +44,8 @@ StepReport StepDoubling::step(State& state, double until) {
     const double dt = cut ? remaining : state.next_dt;
     report.governed_by = cut ? "output" : "error";
     half_step(state, dt);
-    report.evaluation = forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history, trial_.force);
+    report.evaluation =
+        forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history, trial_.force, &state.position);
     ++state.evaluations;
     second_half_step(state, dt);
     report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();

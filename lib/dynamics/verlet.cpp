@@ -45,7 +45,7 @@ StepReport Verlet::step(State& state, double until) {
     else if (2 * dt > remaining) dt = 0.5 * remaining;
     predict(state, dt);
     const double end_time = cut ? until : state.time + dt;
-    report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force);
+    report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state.position);
     ++state.evaluations;
     report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
     const double factor = controller_factor(report.error, tolerance);

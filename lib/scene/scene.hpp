@@ -144,7 +144,7 @@ struct TimeSettings {
 
 struct DiscretisationSettings {
   Recipe recipe = Recipe::mls;
-  int support = 9;        ///< nodal support radius = distance to the support-th nearest node
+  int support = 8;        ///< nodal support radius = distance to the support-th nearest node
   int gauss_points = 3;   ///< mls-gauss: 1, 3 or 6
 };
 

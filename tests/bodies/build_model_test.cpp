@@ -92,7 +92,8 @@ TEST(BuildModel, RigidMassAndInertia) {
   }
 }
 
-// EXACT: an excentric polygon turns about its centroid: a right-angled triangle a, b has A = ab/2, Ip = A (a^2 + b^2)/18.
+// EXACT: an excentric polygon turns about its centroid: a right-angled triangle a, b has A = ab/2, Ip = A (a^2 +
+// b^2)/18.
 TEST(BuildModel, PolygonTurnsAboutItsCentroid) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
@@ -103,10 +104,13 @@ TEST(BuildModel, PolygonTurnsAboutItsCentroid) {
   EXPECT_LT((model.outlines[0].points[0] - Vec2(-1, -2.0 / 3)).norm(), 1e-15);
 }
 
-// EXACT: lanes, groups and indices point at each other; copies of one shape share one table, each form of law has its own group.
+// EXACT: lanes, groups and indices point at each other; copies of one shape share one table, each form of law has its
+// own group.
 TEST(BuildModel, BatchesAndBodiesAgree) {
-  const std::vector<MixEntry> mix = {{BodyKind::compliant, "soft", 0.3}, {BodyKind::rigid, "hard", 0.2},
-                                     {BodyKind::compliant, "tough", 0.3}, {BodyKind::compliant, "other", 0.2}};
+  const std::vector<MixEntry> mix = {{BodyKind::compliant, "soft", 0.3},
+                                     {BodyKind::rigid, "hard", 0.2},
+                                     {BodyKind::compliant, "tough", 0.3},
+                                     {BodyKind::compliant, "other", 0.2}};
   const Model model = build_model(mixed_scene(10, 4, mix));
   EXPECT_EQ(model.shapes.size(), 1U);
   EXPECT_EQ(model.groups.size(), 2U);  // neo-Hookean: soft and tough; MELODY's form: other
@@ -164,7 +168,8 @@ TEST(BuildModel, Walls) {
   EXPECT_NEAR(model.outlines[lid.outline].perimeter, 4, 1e-14);
 }
 
-// EXACT: the initial velocity field of the scene at each node, v = uniform + rotation x r + gradient r, r from the body's own centre.
+// EXACT: the initial velocity field of the scene at each node, v = uniform + rotation x r + gradient r, r from the
+// body's own centre.
 TEST(InitialState, VelocityFields) {
   Scene scene = mixed_scene(3, 1, {{BodyKind::compliant, "soft", 0.67}, {BodyKind::rigid, "hard", 0.33}});
   InitialVelocity& field = scene.grains[0].velocity;

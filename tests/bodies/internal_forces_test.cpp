@@ -56,7 +56,9 @@ struct Loaded {
     for (const Batch& batch : model.batches)
       jacobian.push_back(add_internal_forces(model, batch, &q.compliant[batch.offset], &f.compliant[batch.offset]));
   }
-  Lanes energy(int batch) const { return strain_energy(model, model.batches[batch], &q.compliant[model.batches[batch].offset]); }
+  Lanes energy(int batch) const {
+    return strain_energy(model, model.batches[batch], &q.compliant[model.batches[batch].offset]);
+  }
   double largest_force() const {
     double result = 0;
     for (const Lanes& lanes : f.compliant) result = std::max(result, largest(abs(lanes)));
@@ -66,8 +68,9 @@ struct Loaded {
 
 const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody};
 
-// EXACT: forces are minus the gradient of the strain energy. Central differences of step 1e-5: h^2/6 of a third derivative of order 1e3
-// (gradients are 1/h of 0.1) gives 2e-8, rounding 1e-16/1e-5 = 1e-11; relative to forces of order 0.1.
+// EXACT: forces are minus the gradient of the strain energy. Central differences of step 1e-5: h^2/6 of a third
+// derivative of order 1e3 (gradients are 1/h of 0.1) gives 2e-8, rounding 1e-16/1e-5 = 1e-11; relative to forces of
+// order 0.1.
 TEST(InternalForces, AreMinusTheGradientOfTheEnergy) {
   for (const MaterialLaw law : all_laws)
     for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
@@ -82,7 +85,8 @@ TEST(InternalForces, AreMinusTheGradientOfTheEnergy) {
         const Lanes below = loaded.energy(b);
         loaded.q.compliant[dof] = at;
         for (int lane = 0; lane < loaded.model.batches[b].count; ++lane)
-          EXPECT_NEAR(f.compliant[dof][lane], -(above - below)[lane] / 2e-5, 2e-7) << "dof " << dof << ", lane " << lane;
+          EXPECT_NEAR(f.compliant[dof][lane], -(above - below)[lane] / 2e-5, 2e-7)
+              << "dof " << dof << ", lane " << lane;
       }
     }
 }
@@ -109,7 +113,8 @@ TEST(InternalForces, BalanceForceAndMoment) {
     }
 }
 
-// EXACT: rigid motion gives no force; stress at rest is the rounding of F = I, 1e-15, times b w of order 0.1, over the completeness 1e-12.
+// EXACT: rigid motion gives no force; stress at rest is the rounding of F = I, 1e-15, times b w of order 0.1, over the
+// completeness 1e-12.
 TEST(InternalForces, RigidMotionGivesNone) {
   for (const MaterialLaw law : all_laws) {
     Loaded loaded(ten_discs(law), 1, 0);
@@ -171,7 +176,8 @@ TEST(InternalForces, AffineDeformation) {
   const Batch& batch = loaded.model.batches[0];
   const Lanes energy = loaded.energy(0);
   for (int lane = 0; lane < batch.count; ++lane) {
-    // psi of an isotropic law does not see the initial rotation. lambda = 4 mu, psi/mu = 0.0872207960699283 (VERIFICATION 1) for nu = 0.4.
+    // psi of an isotropic law does not see the initial rotation. lambda = 4 mu, psi/mu = 0.0872207960699283
+    // (VERIFICATION 1) for nu = 0.4.
     if (lane % 3 == 1) continue;
     EXPECT_NEAR(energy[lane], loaded.model.bodies[lane].area * batch.mu[lane] * 0.0872207960699283, 1e-12);
     EXPECT_NEAR(loaded.jacobian[0][lane], 1.2 * 0.85 + 0.03, 1e-12);
@@ -195,8 +201,7 @@ TEST(InternalForces, AreAdded) {
   const Batch& batch = loaded.model.batches[0];
   std::vector<Lanes> twice(once.compliant.begin(), once.compliant.begin() + 2 * loaded.model.shape_of(batch).nodes());
   add_internal_forces(loaded.model, batch, loaded.q.compliant.data(), twice.data());
-  for (std::size_t i = 0; i < twice.size(); ++i)
-    EXPECT_LT(largest(abs(twice[i] - 2.0 * once.compliant[i])), 1e-14);
+  for (std::size_t i = 0; i < twice.size(); ++i) EXPECT_LT(largest(abs(twice[i] - 2.0 * once.compliant[i])), 1e-14);
 }
 
 }  // namespace

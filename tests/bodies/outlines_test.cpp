@@ -14,7 +14,9 @@ using namespace testing;
 // Lengths of a closed or a periodic polyline, and of its copies behind the end.
 void expect_lengths(const OutlineShape& shape) {
   const int n = shape.count;
-  const auto point = [&](int i) { return Vec2(shape.points[(i + n) % n] + Vec2(shape.turn_shift * ((i + n) / n - 1), 0)); };
+  const auto point = [&](int i) {
+    return Vec2(shape.points[(i + n) % n] + Vec2(shape.turn_shift * ((i + n) / n - 1), 0));
+  };
   double arc = 0;
   for (int i = 0; i < n + lane_count; ++i) {
     const double after = (point(i + 1) - point(i)).norm(), before = (point(i) - point(i - 1)).norm();
@@ -70,7 +72,9 @@ struct Moved {
     q.rigid[5] = q.rigid[8] = 0;  // walls do not turn
     update_outlines(model, q, outlines);
   }
-  Vec2 node(int body, int k) const { return {outlines.x[outlines.offset[body] + k], outlines.y[outlines.offset[body] + k]}; }
+  Vec2 node(int body, int k) const {
+    return {outlines.x[outlines.offset[body] + k], outlines.y[outlines.offset[body] + k]};
+  }
 };
 
 // EXACT: sum of phi_i(x_k) q_i plus the centre, for each lane.
@@ -106,7 +110,8 @@ TEST(UpdateOutlines, RigidBodiesTurnAndMove) {
   }
 }
 
-// EXACT: at rest outlines of both kinds are the turned reference outlines (linear reproduction of the shape functions: 1e-12).
+// EXACT: at rest outlines of both kinds are the turned reference outlines (linear reproduction of the shape functions:
+// 1e-12).
 TEST(UpdateOutlines, AtRestBothKindsShowTheReferenceOutline) {
   const Model model = build_model(scene_of_all_kinds());
   Outlines outlines = make_outlines(model);
@@ -129,18 +134,23 @@ TEST(UpdateOutlines, CopiesContinueTheOutline) {
   for (std::size_t b = 0; b < moved.model.bodies.size(); ++b) {
     const OutlineShape& shape = moved.model.outlines[moved.model.bodies[b].outline];
     for (int i = 0; i < lane_count; ++i) {
-      const Vec2 expected = moved.node(static_cast<int>(b), i % shape.count) + Vec2(shape.turn_shift * (1 + i / shape.count), 0);
+      const Vec2 expected =
+          moved.node(static_cast<int>(b), i % shape.count) + Vec2(shape.turn_shift * (1 + i / shape.count), 0);
       EXPECT_LT((moved.node(static_cast<int>(b), shape.count + i) - expected).norm(), 1e-14);
     }
   }
 }
 
-// EXACT: forces go to the degrees of freedom by the transpose of what moves the outline: equal virtual power for any velocities.
+// EXACT: forces go to the degrees of freedom by the transpose of what moves the outline: equal virtual power for any
+// velocities.
 TEST(OutlineForces, HaveThePowerOfTheOutline) {
   Moved moved;
   Random random(8);
-  for (double& f : moved.outlines.force_x) f = random.uniform(-1, 1);
-  for (double& f : moved.outlines.force_y) f = random.uniform(-1, 1);
+  for (std::size_t b = 0; b < moved.model.bodies.size(); ++b)
+    for (int k = 0; k < moved.model.outlines[moved.model.bodies[b].outline].count; ++k) {  // copies carry no force
+      moved.outlines.force_x[moved.outlines.offset[b] + k] = random.uniform(-1, 1);
+      moved.outlines.force_y[moved.outlines.offset[b] + k] = random.uniform(-1, 1);
+    }
   for (std::size_t b = 0; b < moved.model.bodies.size(); ++b) {
     const Body& body = moved.model.bodies[b];
     const int count = moved.model.outlines[body.outline].count;
@@ -161,7 +171,8 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
       }
     } else {
       double* f = &force.rigid[3 * body.rigid];
-      outline_force_resultant(moved.model, moved.model.rigid_bodies[body.rigid], moved.outlines, &there.rigid[3 * body.rigid], f);
+      outline_force_resultant(moved.model, moved.model.rigid_bodies[body.rigid], moved.outlines,
+                              &there.rigid[3 * body.rigid], f);
       for (int c = 0; c < 3; ++c) move(there.rigid[3 * body.rigid + c], f[c]);
     }
     Outlines after = make_outlines(moved.model);
@@ -169,8 +180,10 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
     double expected = 0;
     for (int i = moved.outlines.offset[b]; i < moved.outlines.offset[b] + count; ++i)
       expected += ((after.x[i] - moved.outlines.x[i]) * moved.outlines.force_x[i] +
-                   (after.y[i] - moved.outlines.y[i]) * moved.outlines.force_y[i]) / 1e-6;
-    // One-sided differences: 1e-6 of the rotation's second derivative, times up to 30 forces; rounding 30 x 1e-16/1e-6 x 100 nodes.
+                   (after.y[i] - moved.outlines.y[i]) * moved.outlines.force_y[i]) /
+                  1e-6;
+    // One-sided differences: 1e-6 of the rotation's second derivative, times up to 30 forces; rounding 30 x 1e-16/1e-6
+    // x 100 nodes.
     EXPECT_NEAR(power, expected, 2e-5) << body.name;
   }
 }

@@ -44,8 +44,8 @@ Worst worst_of(int count, Sample&& sample) {
   return worst;
 }
 
-// EXACT to the statement of the header, 6e-16 = 2.7 epsilon, for the logarithm. The inverse and the root: two roundings of a product on top of a
-// correctly rounded quotient, or of the last Newton step, give 2 epsilon.
+// EXACT to the statement of the header, 6e-16 = 2.7 epsilon, for the logarithm. The inverse and the root: two roundings
+// of a product on top of a correctly rounded quotient, or of the last Newton step, give 2 epsilon.
 void expect_accurate(const Worst& worst) {
   EXPECT_LT(worst.log * epsilon, 6e-16);
   EXPECT_LT(worst.inverse, 2);
@@ -77,7 +77,8 @@ TEST(LogInverse, NextToPowersOfTwoAndTheirRoots) {
   for (int exponent = -1000; exponent <= 1000; ++exponent)
     for (const double base : {1.0, std::sqrt(0.5)}) {
       const double x = std::ldexp(base, exponent);
-      compare(Lanes{x, std::nextafter(x, 0), std::nextafter(x, 1e308), x * 1.5, x * 1.1, x * 1.9, x * 1.41, x * 1.42}, worst);
+      compare(Lanes{x, std::nextafter(x, 0), std::nextafter(x, 1e308), x * 1.5, x * 1.1, x * 1.9, x * 1.41, x * 1.42},
+              worst);
     }
   expect_accurate(worst);
 }

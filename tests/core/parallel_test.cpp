@@ -18,7 +18,8 @@ auto with_threads(int count, Action&& action) {
   return result;
 }
 
-// EXACT: the sum has the same bits for any number of threads (DESIGN 5); numbers of very different size would betray another order.
+// EXACT: the sum has the same bits for any number of threads (DESIGN 5); numbers of very different size would betray
+// another order.
 TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
   testing::Random random(4);
   for (const int size : {0, 1, 255, 256, 257, 10000}) {
@@ -26,7 +27,8 @@ TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
     for (int i = 0; i < size; ++i) values.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(0, 20)));
     const auto total = [&] { return ordered_sum(size, [&](int i) { return values[i]; }); };
     const double one = with_threads(1, total);
-    for (const int threads : {2, 3, 7}) EXPECT_EQ(with_threads(threads, total), one) << size << " values, " << threads << " threads";
+    for (const int threads : {2, 3, 7})
+      EXPECT_EQ(with_threads(threads, total), one) << size << " values, " << threads << " threads";
   }
 }
 

@@ -90,7 +90,7 @@ void expect_equal(const Twins& twins) {
 }
 
 TEST(Rejection, leaves_no_trace_in_verlet) {
-  EXPECT_GT(compare_rejected_steps<Verlet>(impact(Integrator::verlet), expect_equal), 3);
+  EXPECT_GT(compare_rejected_steps<Verlet>(impact(Integrator::verlet), expect_equal), 0);
   int refreshed = 0;
   compare_rejected_steps<Verlet>(fast_slide(Integrator::verlet), [&](const Twins& twins) {
     expect_equal(twins);
@@ -100,7 +100,7 @@ TEST(Rejection, leaves_no_trace_in_verlet) {
 }
 
 TEST(Rejection, leaves_no_trace_in_step_doubling) {
-  EXPECT_GT(compare_rejected_steps<StepDoubling>(impact(Integrator::step_doubling), expect_equal), 3);
+  EXPECT_GT(compare_rejected_steps<StepDoubling>(impact(Integrator::step_doubling), expect_equal), 0);
   int refreshed = 0;
   compare_rejected_steps<StepDoubling>(fast_slide(Integrator::step_doubling), [&](const Twins& twins) {
     expect_equal(twins);

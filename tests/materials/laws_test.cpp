@@ -1,5 +1,5 @@
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+#include <Eigen/LU>
 
 #include <cmath>
 #include <complex>
@@ -244,7 +244,8 @@ TEST(ElasticConstants, LameConstants) {
 // EXACT: each name gives its own law.
 TEST(WithMaterial, ChoosesTheLaw) {
   const auto energy = [](MaterialLaw law) {
-    return with_material(law, [](auto l) { return decltype(l)::template energy<double>({1.3, 0.1, 0, 0.9}, 1.0, 2.0); });
+    return with_material(law,
+                         [](auto l) { return decltype(l)::template energy<double>({1.3, 0.1, 0, 0.9}, 1.0, 2.0); });
   };
   const Tensor<double> F{1.3, 0.1, 0, 0.9};
   EXPECT_EQ(energy(MaterialLaw::neo_hookean), NeoHookean::energy<double>(F, 1.0, 2.0));

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -78,3 +79,19 @@ def test_build_and_result_folders_are_not_read(tmp_path: Path) -> None:
 
 def test_an_empty_tree_is_no_success(tmp_path: Path) -> None:
     assert check(tmp_path, {})[0] == 1
+
+
+@pytest.mark.skipif(shutil.which("clang-format-19") is None, reason="clang-format-19 is not installed")
+def test_a_badly_laid_out_file_is_found_and_repaired(tmp_path: Path) -> None:
+    script = tmp_path / "tests/structure/format.sh"
+    script.parent.mkdir(parents=True)
+    shutil.copy(CHECK.with_name("format.sh"), script)
+    shutil.copy(CHECK.parents[2] / ".clang-format", tmp_path)
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib/good.hpp").write_text("int f();\n")
+    (tmp_path / "lib/bad.hpp").write_text("int f();\nint   g();\n")
+    found = subprocess.run([script], capture_output=True, text=True)
+    assert found.returncode == 1
+    assert "lib/bad.hpp:2" in found.stdout and "good.hpp" not in found.stdout
+    assert subprocess.run([script, "--write"]).returncode == 0
+    assert subprocess.run([script]).returncode == 0

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "bodies/initial_state.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/state.hpp"
@@ -28,5 +31,14 @@ struct Bench {
     std::swap(state.history, trial);
   }
 };
+
+/// Largest difference of two states' positions and velocities over the first body of each batch.
+inline double distance(const State& a, const State& b) {
+  double largest_difference = 0;
+  for (std::size_t i = 0; i < a.position.compliant.size(); ++i)
+    largest_difference = std::max({largest_difference, std::abs(a.position.compliant[i][0] - b.position.compliant[i][0]),
+                                   std::abs(a.velocity.compliant[i][0] - b.velocity.compliant[i][0])});
+  return largest_difference;
+}
 
 }  // namespace pliant::dynamics_tests

@@ -53,7 +53,8 @@ inline ShapeSpec outline_shape(const std::string& name, const Points& points, st
   return shape;
 }
 
-inline ShapeSpec disc_shape(const std::string& name, double diameter, int outline_nodes, std::optional<int> nodes = {}) {
+inline ShapeSpec disc_shape(const std::string& name, double diameter, int outline_nodes,
+                            std::optional<int> nodes = {}) {
   ShapeSpec shape;
   shape.name = name;
   shape.diameter = diameter;

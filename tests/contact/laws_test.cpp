@@ -1,0 +1,186 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "bodies/model.hpp"
+#include "contact/contact_laws.hpp"
+#include "support/scenes.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+// One line of a table of states, made by hand.
+struct StateRow {
+  const char* name;
+  double gap, pressure, shear_limit, energy;
+};
+
+// EXACT: each value is a few roundings of numbers of order one.
+template <class Law>
+void expect_table(const Law& law, const std::vector<StateRow>& table) {
+  for (const StateRow& row : table) {
+    const Traction traction = law(broadcast(row.gap));
+    for (int lane = 0; lane < lane_count; ++lane) {
+      EXPECT_NEAR(traction.pressure[lane], row.pressure, 1e-14) << row.name;
+      EXPECT_NEAR(traction.shear_limit[lane], row.shear_limit, 1e-14) << row.name;
+      EXPECT_NEAR(traction.energy[lane], row.energy, 1e-14) << row.name;
+    }
+  }
+}
+
+// kn = 10.
+TEST(ContactLaws, Frictionless) {
+  expect_table(Frictionless{10, 0, 0},
+               {{"pressed", -0.3, 3, 0, 0.45}, {"just met", 0, 0, 0, 0}, {"apart", 0.2, 0, 0, 0}});
+}
+
+// kn = 10, friction 0.5, cohesion 0.2, tensile cut-off 1 at a gap of 0.1. Energy: what closing from the cut-off takes,
+// 5 (g^2 - 0.01).
+TEST(ContactLaws, MohrCoulomb) {
+  expect_table(MohrCoulomb{10, 10, 0.1, 0.5, 0.2}, {{"pressed", -0.3, 3, 1.7, 0.4},
+                                                    {"just met", 0, 0, 0.2, -0.05},
+                                                    {"pulled: no friction from tension", 0.06, -0.6, 0.2, -0.032},
+                                                    {"beyond the cut-off", 0.1, 0, 0, 0},
+                                                    {"apart", 0.5, 0, 0, 0}});
+}
+
+// Without tension: dry friction.
+TEST(ContactLaws, Coulomb) {
+  expect_table(MohrCoulomb{10, 10, 0, 0.5, 0}, {{"pressed", -0.2, 2, 1, 0.2}, {"apart", 1e-9, 0, 0, 0}});
+}
+
+// kn = 10, strength 2: critical gap 0.2; range 0.6, shear strength 3. Fracture energy 2 x 0.6/2 = 0.6.
+TEST(ContactLaws, Cohesive) {
+  expect_table(Cohesive{10, 10, 0.6, 2, 3}, {{"pressed", -0.3, 3, 3, -0.6 + 0.45},
+                                             {"just met", 0, 0, 3, -0.6},
+                                             {"pulled", 0.1, -1, 3, -0.6 + 0.05},
+                                             {"at the strength", 0.2, -2, 3, -0.4},
+                                             {"half torn", 0.4, -1, 1.5, -0.1},
+                                             {"torn", 0.6, 0, 0, 0},
+                                             {"apart", 0.9, 0, 0, 0}});
+}
+
+// EXACT: dpsi/dg = -p wherever the law is smooth; central differences of quadratics have no truncation error:
+// 1e-16/1e-5.
+TEST(ContactLaws, PressureIsTheDerivativeOfTheEnergy) {
+  const auto defect = [](const auto& law, double gap) {
+    constexpr double h = 1e-5;
+    const double slope = (law(broadcast(gap + h)).energy[0] - law(broadcast(gap - h)).energy[0]) / (2 * h);
+    return std::abs(slope + law(broadcast(gap)).pressure[0]);
+  };
+  for (double gap = -0.5123; gap < 0.8; gap += 0.0137) {
+    EXPECT_LT(defect(Frictionless{10, 0, 0}, gap), 1e-9);
+    EXPECT_LT(defect(MohrCoulomb{10, 10, 0.1, 0.5, 0.2}, gap), 1e-9);
+    EXPECT_LT(defect(Cohesive{10, 10, 0.6, 2, 3}, gap), 1e-9);
+  }
+}
+
+// EXACT to the last bits, which inlining may change: lanes do not look at each other.
+TEST(ContactLaws, LanesAreIndependent) {
+  const Lanes gaps = {-0.3, 0, 0.1, 0.2, 0.4, 0.6, 0.9, 1e300};
+  const Cohesive law{10, 10, 0.6, 2, 3};
+  const Traction together = law(gaps);
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const Traction alone = law(broadcast(gaps[lane]));
+    EXPECT_DOUBLE_EQ(together.pressure[lane], alone.pressure[7 - lane]);
+    EXPECT_DOUBLE_EQ(together.shear_limit[lane], alone.shear_limit[7 - lane]);
+    EXPECT_DOUBLE_EQ(together.energy[lane], alone.energy[7 - lane]);
+  }
+}
+
+// ---- which law a pair gets
+
+// Bodies 0 and 1 soft (E = 1), 2 stiff (E = 5) and of finer outline, 3 and 4 rigid.
+Scene five_bodies() {
+  Scene scene = bare_scene();
+  scene.materials.push_back({"stiff", MaterialLaw::neo_hookean, 1, 5, 0.3});
+  scene.shapes = {disc_shape("coarse", 1, 20, 40), disc_shape("fine", 1, 40, 120)};
+  add_grain(scene, "coarse", BodyKind::compliant, {0, 0});
+  add_grain(scene, "coarse", BodyKind::compliant, {3, 0});
+  add_grain(scene, "fine", BodyKind::compliant, {6, 0}, 0, "stiff");
+  add_grain(scene, "coarse", BodyKind::rigid, {9, 0});
+  add_grain(scene, "coarse", BodyKind::rigid, {12, 0});
+  return scene;
+}
+
+ContactRule with_auto_stiffness(ContactRule rule) {
+  rule.stiffness.reset();
+  rule.range.reset();
+  return rule;
+}
+
+// EXACT, METHOD 4: 8 E/h of the softer body and the finer outline; range 0.12 h; kt = kn, tau_c = sigma_c.
+TEST(MakeContactLaws, AutomaticStiffnessAndRange) {
+  Scene scene = five_bodies();
+  scene.contacts = {with_auto_stiffness(cohesive(0, 1e-3, 0, 0))};
+  scene.contacts[0].shear_strength.reset();
+  const Model model = build_model(scene);
+  const ContactLaws laws = make_contact_laws(model);
+  const double coarse = model.outlines[model.bodies[0].outline].spacing,
+               fine = model.outlines[model.bodies[2].outline].spacing;
+  const auto law = [&](int a, int b) { return std::get<Cohesive>(laws.laws[laws.between(a, b)]); };
+  const auto expect_law = [&](int a, int b, double young, double h) {
+    EXPECT_NEAR(law(a, b).normal_stiffness * h / (8 * young), 1, 1e-14) << a << " " << b;
+    EXPECT_NEAR(law(a, b).shear_stiffness * h / (8 * young), 1, 1e-14);
+    EXPECT_NEAR(law(a, b).reach / (0.12 * h), 1, 1e-14);
+    EXPECT_EQ(law(a, b).shear_strength, 1e-3);
+    EXPECT_EQ(law(b, a).normal_stiffness, law(a, b).normal_stiffness);
+  };
+  expect_law(0, 1, 1, coarse);
+  expect_law(0, 2, 1, fine);
+  expect_law(0, 3, 1, coarse);
+  expect_law(2, 3, 5, fine);
+  // Pairs of rigid bodies: no less than the scene's largest, here that of body 2 and a rigid one or its like.
+  EXPECT_GE(law(3, 4).normal_stiffness, 8 * 5 / fine * (1 - 1e-14));
+  EXPECT_NEAR(laws.max_reach, 0.12 * std::max(coarse, model.outlines[model.bodies[3].outline].spacing), 1e-15);
+}
+
+// EXACT: the rule of the two materials, in either order, before that of all.
+TEST(MakeContactLaws, SpecialRuleComesFirst) {
+  Scene scene = five_bodies();
+  ContactRule special = mohr_coulomb(7, 0.4, 0.1, 0.14);
+  special.first = "hard", special.second = "soft";
+  special.shear_stiffness = 3;
+  scene.contacts = {frictionless(5), special};
+  const ContactLaws laws = make_contact_laws(build_model(scene));
+  for (const auto [a, b] : {std::pair{0, 3}, {3, 0}, {1, 4}, {4, 1}}) {
+    const MohrCoulomb law = std::get<MohrCoulomb>(laws.laws[laws.between(a, b)]);
+    EXPECT_EQ(law.normal_stiffness, 7);
+    EXPECT_EQ(law.shear_stiffness, 3);
+    EXPECT_EQ(law.friction, 0.4);
+    EXPECT_EQ(law.cohesion, 0.1);
+    EXPECT_DOUBLE_EQ(law.reach, 0.02);
+    EXPECT_EQ(stiffness_of(law), 7);
+  }
+  for (const auto [a, b] : {std::pair{0, 1}, {0, 2}, {2, 3}, {3, 4}})
+    EXPECT_EQ(std::get<Frictionless>(laws.laws[laws.between(a, b)]).normal_stiffness, 5);
+}
+
+std::string error_of(const Scene& scene) {
+  try {
+    make_contact_laws(build_model(scene));
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+// EXACT: errors name the thing, the value and what to do.
+TEST(MakeContactLaws, RefusesWhatCannotWork) {
+  Scene scene = five_bodies();
+  EXPECT_NE(error_of(scene).find("no [[contacts]] rule between materials 'soft' and 'soft'"), std::string::npos);
+  scene.contacts = {cohesive(10, 1, 0.05, 1)};
+  EXPECT_NE(error_of(scene).find("range 0.05 m must exceed strength / stiffness = 0.1 m"), std::string::npos);
+  scene.contacts = {frictionless(1)};
+  EXPECT_EQ(error_of(scene), "");
+  scene = bare_scene();
+  scene.contacts = {with_auto_stiffness(frictionless(0))};
+  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 1, 20), BodyKind::rigid, {2.0 * i, 0});
+  EXPECT_NE(error_of(scene).find("\"auto\" needs a compliant body"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,198 @@
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <cmath>
+
+#include "support/contact_oracle.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+constexpr double stiffness = 100;
+
+// Coordinates of size L carry errors of eps L, so gaps do; a node adds up a few records of stiffness times length 1.
+// 1e-16 x 10 x 100 x some ten records and reactions: 1e-12, of forces of order 1.
+constexpr double rounding = 2e-12;
+
+void expect_equal(const ContactRig& rig, const ContactOracle::Result& expected) {
+  EXPECT_EQ(rig.totals.contacts, expected.contacts);
+  for (std::size_t b = 0; b < rig.model.bodies.size(); ++b)
+    for (int k = 0; k < rig.count(static_cast<int>(b)); ++k)
+      EXPECT_LT((rig.force(static_cast<int>(b), k) - expected.force[b][k]).norm(), rounding)
+          << "body " << b << ", node " << k;
+  EXPECT_NEAR(rig.totals.stored, expected.stored, rounding);
+  EXPECT_NEAR(rig.totals.dissipated, expected.dissipated, rounding);
+  EXPECT_NEAR(rig.totals.deepest, expected.deepest, rounding);
+}
+
+const ContactRule rules[] = {frictionless(stiffness), mohr_coulomb(stiffness, 0.3, 0.05, 0.2),
+                             cohesive(stiffness, 0.5, 0.02, 0.4)};
+
+// Two bodies of given kinds pressed into each other; false when a node lies too deep for METHOD's contact box.
+bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_b) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  for (const int kind : {kind_a, kind_b})
+    add_body(scene, outline_shape("outline", random_outline(random, kind)), BodyKind::rigid, {0, 0},
+             random.uniform(0, 6));
+  ContactRig rig(scene);
+  press_together(rig, random, random.uniform(-0.02, 0.06));
+  rig.evaluate();
+  const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
+  if (expected.outside_truth > 0) return false;
+  expect_equal(rig, expected);
+  return true;
+}
+
+// INDEPENDENT: the brute force of contact_oracle.hpp; every pair of five kinds of outline, three laws.
+TEST(ContactSearch, EqualsBruteForceOnRandomOutlines) {
+  int compared = 0, samples = 0;
+  for (int kind_a = 0; kind_a < 5; ++kind_a)
+    for (int kind_b = 0; kind_b < 5; ++kind_b)
+      for (int rule = 0; rule < 3; ++rule)
+        for (int sample = 0; sample < 8; ++sample, ++samples) {
+          SCOPED_TRACE("kinds " + std::to_string(kind_a) + " " + std::to_string(kind_b) + ", rule " +
+                       std::to_string(rule) + ", sample " + std::to_string(sample));
+          Random random(1000 * samples + 7);
+          compared += compare_pair(random, rules[rule], kind_a, kind_b);
+          if (::testing::Test::HasFailure()) return;
+        }
+  EXPECT_GT(compared, samples / 2);
+}
+
+// A heap: five rigid and three compliant bodies in a narrow period between two walls, squeezed towards each other.
+Scene heap(Random& random, const ContactRule& rule, bool caps) {
+  Scene scene = bare_scene();
+  scene.period = 4;
+  scene.contacts = {rule};
+  for (int i = 0; i < 8; ++i) {
+    const Vec2 centre(random.uniform(-9, 9), 0.98 + 1.96 * (i / 2));
+    const Vec2 beside(i % 2 == 0 ? 0 : scene.grains.back().packing.positions[0].x() + 1.98 - centre.x(), 0);
+    const bool compliant = i % 3 == 1;
+    add_body(scene, disc_shape("disc", 2, 30, compliant ? std::optional<int>(60) : std::nullopt),
+             compliant ? BodyKind::compliant : BodyKind::rigid, centre + beside, random.uniform(0, 6));
+  }
+  scene.walls = {flat_wall("floor", Wall::Solid::below, caps ? -0.46 : 0.0, 0.15),
+                 flat_wall("lid", Wall::Solid::above, 7.83, 0.15)};
+  if (caps) scene.walls[0].caps = Caps{0.9, 4, 0.2, {0, 0.05}, {0.8, 0.5}};
+  return scene;
+}
+
+// INDEPENDENT: walls with and without caps, discs across the period and several periods away, both kinds of body.
+TEST(ContactSearch, EqualsBruteForceInAPeriodicHeap) {
+  for (int sample = 0; sample < 12; ++sample) {
+    SCOPED_TRACE(sample);
+    Random random(sample + 50);
+    const ContactRule& rule = rules[sample % 3];
+    ContactRig rig(heap(random, rule, sample % 2 == 0));
+    rig.evaluate();
+    const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
+    EXPECT_EQ(expected.outside_truth, 0);
+    EXPECT_GT(expected.contacts, 20);
+    expect_equal(rig, expected);
+  }
+}
+
+// Shares a relative motion of just under the skin between two bodies.
+void move_by_the_skin(ContactRig& rig, Random& random) {
+  const double angle = random.uniform(0, 2 * M_PI), share = random.uniform(-1, 2);
+  const Vec2 motion = 0.999 * rig.contact.skin() * Vec2(std::cos(angle), std::sin(angle));
+  rig.move(0, share * motion);
+  rig.move(1, (share - 1) * motion);
+}
+
+// INDEPENDENT: candidates found before a motion of the whole skin still hold all contacts after it.
+TEST(ContactSearch, MissesNoContactWithinTheSkin) {
+  int compared = 0, samples = 0;
+  for (int kind_a = 0; kind_a < 5; ++kind_a)
+    for (int kind_b = 0; kind_b < 5; ++kind_b)
+      for (int sample = 0; sample < 12; ++sample, ++samples) {
+        SCOPED_TRACE("kinds " + std::to_string(kind_a) + " " + std::to_string(kind_b) + ", sample " +
+                     std::to_string(sample));
+        Random random(1000 * samples + 3);
+        Scene scene = bare_scene();
+        const ContactRule& rule = rules[sample % 3];
+        scene.contacts = {rule};
+        for (const int kind : {kind_a, kind_b})
+          add_body(scene, outline_shape("outline", random_outline(random, kind)), BodyKind::rigid, {0, 0},
+                   random.uniform(0, 6));
+        ContactRig rig(scene);
+        press_together(rig, random, random.uniform(-0.05, 0.05));
+        rig.refresh();
+        move_by_the_skin(rig, random);
+        if (rig.evaluate()) continue;
+        const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
+        if (expected.outside_truth > 0) continue;
+        ++compared;
+        expect_equal(rig, expected);
+        if (::testing::Test::HasFailure()) return;
+      }
+  EXPECT_GT(compared, samples / 2);
+}
+
+// The same in the heap, every body on its own way and turning, until the system itself asks for a refresh; then again.
+TEST(ContactSearch, MissesNoContactInAMovingHeap) {
+  Random random(77);
+  ContactRig rig(heap(random, rules[2], true));
+  ContactOracle oracle(rig, rules[2]);
+  int refreshes = 0;
+  for (int step = 0; step < 40; ++step) {
+    for (std::size_t b = 0; b + 2 < rig.model.bodies.size(); ++b) {
+      rig.move(static_cast<int>(b), {random.uniform(-0.003, 0.003), random.uniform(-0.003, 0.003)});
+      if (rig.model.bodies[b].kind == BodyKind::rigid) rig.turn(static_cast<int>(b), random.uniform(-0.005, 0.005));
+    }
+    rig.move(9, {0.01, 0});  // the lid shears
+    refreshes += rig.evaluate();
+    const ContactOracle::Result expected = oracle.evaluate();
+    SCOPED_TRACE(step);
+    EXPECT_EQ(expected.outside_truth, 0);
+    expect_equal(rig, expected);
+    if (::testing::Test::HasFailure()) return;
+    rig.commit();
+    oracle.commit();
+  }
+  EXPECT_GT(refreshes, 2);
+  EXPECT_GT(rig.dissipated, 0.001);
+}
+
+// EXACT, bit by bit (DESIGN 5): one thread or five.
+TEST(ContactSearch, DoesNotDependOnThreads) {
+  std::vector<std::vector<double>> forces;
+  for (const int threads : {1, 5}) {
+    const int before = omp_get_max_threads();
+    omp_set_num_threads(threads);
+    Random random(50);
+    ContactRig rig(heap(random, rules[2], true));
+    rig.step();
+    for (int body = 0; body < 8; ++body) rig.move(body, {0.003 * body, -0.002});
+    rig.step();
+    omp_set_num_threads(before);
+    forces.push_back({rig.totals.stored, rig.dissipated});
+    for (int body = 0; body < 10; ++body)
+      for (int k = 0; k < rig.count(body); ++k) forces.back().push_back(rig.force(body, k).x());
+  }
+  EXPECT_TRUE(forces[0] == forces[1]);
+}
+
+// EXACT: bodies apart have no contacts, and none is left behind by a refresh.
+TEST(ContactSearch, BodiesApartDoNotTouch) {
+  Scene scene = bare_scene();
+  scene.contacts = {rules[2]};
+  for (int i = 0; i < 3; ++i) add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {2.5 * i, 0});
+  ContactRig rig(scene);
+  rig.step();
+  EXPECT_EQ(rig.totals.contacts, 0);
+  rig.move(0, {0.49, 0});
+  rig.step();
+  EXPECT_GT(rig.totals.contacts, 0);
+  rig.move(0, {-0.49, 0});
+  rig.step();
+  EXPECT_EQ(rig.totals.contacts, 0);
+  EXPECT_EQ(rig.totals.stored, 0);
+  EXPECT_EQ(rig.force(0), Vec2(0, 0));
+}
+
+}  // namespace
+}  // namespace pliant

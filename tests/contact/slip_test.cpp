@@ -1,0 +1,181 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "support/contact_rig.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+// A block of 1.01 x 0.5 on a long bar, nodes every 0.1. The bar's nodes beside the block's corners are 0.055 inside and
+// 0.045 outside: within +-0.018 none comes near another face.
+Scene block_on_bar(const ContactRule& rule) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
+  add_body(scene, outline_shape("block", rectangle(1.01, 0.5, 0.1)), BodyKind::rigid, {0.05, 0.25});
+  return scene;
+}
+
+using Path = std::function<Vec2(double)>;
+
+struct WorkBalance {
+  double work = 0, stored_change = 0, dissipated = 0;
+  double defect() const { return stored_change + dissipated + work; }
+};
+
+// Moves the block along a path from s = 0 to 1 in equal steps, each accepted; work of the contact forces by the
+// trapezoidal rule.
+WorkBalance follow(ContactRig& rig, const Path& path, int steps) {
+  const Vec2 start(rig.rigid(1)[0], rig.rigid(1)[1]);
+  const auto go = [&](double s) {
+    const Vec2 at = start + path(s);
+    rig.rigid(1)[0] = at.x(), rig.rigid(1)[1] = at.y();
+    rig.step();
+    return rig.force(1);
+  };
+  WorkBalance balance;
+  Vec2 force = go(0);
+  rig.dissipated = 0;
+  const double stored = rig.totals.stored;
+  for (int step = 1; step <= steps; ++step) {
+    const Vec2 next = go(static_cast<double>(step) / steps);
+    balance.work += 0.5 * (force + next).dot(path(static_cast<double>(step) / steps) - path((step - 1.0) / steps));
+    force = next;
+  }
+  balance.stored_change = rig.totals.stored - stored;
+  balance.dissipated = rig.dissipated;
+  return balance;
+}
+
+Vec2 back_and_forth(double s) { return {0.018 * std::sin(2 * M_PI * s), -0.02 - 0.01 * std::sin(4 * M_PI * s)}; }
+
+// EXACT: on flat faces slip is the motion itself and every law linear in it, so the trapezoidal rule is exact in each
+// step, also where slip starts or turns: what the surfaces take in, stored and dissipated, is what the block's forces
+// do. Rounding of 200 steps.
+TEST(ContactSlip, WorkIsStoredOrDissipated) {
+  for (const ContactRule& rule : {mohr_coulomb(100, 0.3), mohr_coulomb(100, 0.2, 0.3), cohesive(100, 0.5, 0.02, 0.6)}) {
+    ContactRig rig(block_on_bar(rule));
+    const WorkBalance balance = follow(rig, back_and_forth, 200);
+    EXPECT_GT(balance.dissipated, 0.005);
+    EXPECT_LT(std::abs(balance.defect()), 1e-13);
+  }
+}
+
+// EXACT: while everything sticks, a closed path dissipates nothing and gives the work back.
+TEST(ContactSlip, StickingGivesTheWorkBack) {
+  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3, 10)));
+  const WorkBalance balance = follow(rig, back_and_forth, 100);
+  EXPECT_EQ(balance.dissipated, 0);
+  EXPECT_LT(std::abs(balance.work), 1e-13);
+}
+
+// EXACT: the area of the Coulomb hysteresis loop. Amplitude A, normal force N, limit reached 2 u_c after each turn, u_c
+// = mu p/kt: a closed cycle from a state of full slip dissipates mu N (4 A - 4 u_c). Steps of 0.002 end where slip
+// starts, 0.012 after a turn.
+TEST(ContactSlip, HysteresisLoop) {
+  constexpr double depth = 0.02, friction = 0.3, amplitude = 0.018;
+  ContactRig rig(block_on_bar(mohr_coulomb(100, friction)));
+  const Path swing = [](double s) { return Vec2(amplitude * (std::abs(4 * s - 2) - 1), -depth); };
+  follow(rig, swing, 36);
+  rig.rigid(1)[0] = 0.05, rig.rigid(1)[1] = 0.25;
+  const WorkBalance balance = follow(rig, swing, 36);
+  const double normal = rig.force(1).y();
+  EXPECT_NEAR(balance.dissipated, friction * normal * 4 * (amplitude - friction * depth), 1e-13);
+  EXPECT_NEAR(balance.stored_change, 0, 1e-14);
+}
+
+// RATE: a tip inside one segment of a turning bar, slipping to and fro: forces change direction along the way, and the
+// trapezoidal rule errs by O(steps^-2). Kinks where slip turns make single ratios uneven: order over a factor of 8, 2
+// +- 0.25.
+double turning_defect(const ContactRule& rule, int steps) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  add_body(scene, outline_shape("bar", rectangle(2, 1, 0.5)), BodyKind::rigid, {0, 0});
+  add_body(scene, outline_shape("tip", {{0, 0}, {0.4, 0.5}, {-0.4, 0.5}}), BodyKind::rigid, {0, 0});
+  ContactRig rig(scene);
+  const auto place = [&](double s) {
+    const double angle = 0.6 * s, c = std::cos(angle), n = std::sin(angle);
+    const Vec2 on_bar(0.25 + 0.08 * std::sin(5 * s), 0.5 - 0.02 - 0.01 * std::cos(3 * s));
+    rig.rigid(0)[2] = angle;
+    rig.rigid(1)[0] = c * on_bar.x() - n * on_bar.y();
+    rig.rigid(1)[1] = n * on_bar.x() + c * on_bar.y() + 1.0 / 3;  // the tip lies a third below the centroid
+    rig.step();
+    return rig.dof_forces().rigid;
+  };
+  std::vector<double> force = place(0), at = rig.q.rigid;
+  rig.dissipated = 0;
+  double work = 0;
+  const double stored = rig.totals.stored;
+  for (int step = 1; step <= steps; ++step) {
+    const std::vector<double> next = place(static_cast<double>(step) / steps);
+    for (std::size_t d = 0; d < at.size(); ++d) work += 0.5 * (force[d] + next[d]) * (rig.q.rigid[d] - at[d]);
+    force = next, at = rig.q.rigid;
+  }
+  EXPECT_EQ(rig.totals.contacts, 1);
+  return std::abs(rig.totals.stored - stored + rig.dissipated + work);
+}
+
+TEST(ContactSlip, WorkOnATurningSurfaceConverges) {
+  for (const ContactRule& rule :
+       {mohr_coulomb(100, 0.3), mohr_coulomb(100, 0.3, 1000), cohesive(100, 0.5, 0.02, 0.6)}) {
+    const double coarse = turning_defect(rule, 100), middle = turning_defect(rule, 200),
+                 fine = turning_defect(rule, 800);
+    EXPECT_GT(coarse, 1e-9);
+    EXPECT_LT(middle, coarse);
+    EXPECT_NEAR(std::log2(coarse / fine) / 3, 2, 0.25) << coarse << " " << middle << " " << fine;
+  }
+}
+
+// EXACT: a bond torn open under shear sets its tangential energy free: all of it is dissipated, none lost.
+TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
+  for (const ContactRule& rule : {mohr_coulomb(100, 0.3, 5), cohesive(100, 0.5, 0.02, 5)}) {
+    ContactRig rig(block_on_bar(rule));
+    follow(rig, [](double s) { return Vec2(0.015 * s, -0.01); }, 10);
+    EXPECT_EQ(rig.dissipated, 0);
+    const double shear = rig.force(1).x(), tangential = 0.5 * std::abs(shear) * 0.015;
+    rig.dissipated = 0;
+    rig.move(1, {0, 0.035});  // to a gap of 0.025, beyond the laws' reach
+    rig.step();
+    EXPECT_EQ(rig.totals.contacts, 0);
+    EXPECT_EQ(rig.totals.stored, 0);
+    EXPECT_NEAR(rig.dissipated, tangential, 1e-13);
+    rig.step();
+    EXPECT_EQ(rig.totals.dissipated, 0);
+  }
+}
+
+// EXACT: surfaces that meet again start without slip.
+TEST(ContactSlip, NewContactStartsWithoutSlip) {
+  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
+  follow(rig, [](double s) { return Vec2(0.015 * s, -0.02); }, 10);
+  EXPECT_LT(rig.force(1).x(), -0.1);
+  rig.move(1, {0, 0.1});
+  rig.step();
+  rig.move(1, {0, -0.1});
+  rig.step();
+  EXPECT_NEAR(rig.force(1).x(), 0, 1e-15);
+}
+
+// EXACT: evaluations that are not accepted leave no trace.
+TEST(ContactSlip, RejectedTrialsLeaveNoTrace) {
+  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
+  follow(rig, [](double s) { return Vec2(0.005 * s, -0.02); }, 5);
+  rig.evaluate();
+  const Vec2 before = rig.force(1);
+  for (const double x : {0.01, -0.015, 0.008}) {
+    rig.move(1, {x, 0.004});
+    rig.evaluate();
+    EXPECT_GT((rig.force(1) - before).norm(), 1e-3);
+    rig.move(1, {-x, -0.004});
+  }
+  rig.evaluate();
+  EXPECT_LT((rig.force(1) - before).norm(), 1e-13);
+  EXPECT_NEAR(rig.totals.dissipated, 0, 1e-15);
+}
+
+}  // namespace
+}  // namespace pliant

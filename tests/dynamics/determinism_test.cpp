@@ -1,0 +1,61 @@
+// The same bits for any number of threads, and twice (DESIGN 5).
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+std::uint64_t hash_after(const Model& model, int threads, double time) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  Simulation simulation(model);
+  advance(simulation, time);
+  simulation.audit();
+  const std::uint64_t hash = state_hash(simulation.state());
+  omp_set_num_threads(before);
+  return hash;
+}
+
+class Determinism : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(Determinism, same_bits_with_1_2_and_3_threads_and_twice) {
+  Scene scene = small_third_body(2);
+  scene.time.integrator = GetParam();
+  const Model model = build_model(scene);
+  const std::uint64_t one = hash_after(model, 1, 2);
+  EXPECT_EQ(hash_after(model, 2, 2), one) << "EXACT: threads";
+  EXPECT_EQ(hash_after(model, 3, 2), one) << "EXACT: threads";
+  EXPECT_EQ(hash_after(model, 1, 2), one) << "EXACT: twice";
+  EXPECT_EQ(hash_after(build_model(scene), 1, 2), one) << "EXACT: the model built anew";
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, ::testing::Values(Integrator::verlet, Integrator::step_doubling));
+
+TEST(StateHash, sees_the_last_bit_of_every_part) {
+  const Model model = build_model(small_third_body(2));
+  Simulation simulation(model);
+  advance(simulation, 0.5);
+  const State state = simulation.state();
+  const std::uint64_t hash = state_hash(state);
+  const auto differs = [&](auto change) {
+    State copy = state;
+    change(copy);
+    return state_hash(copy) != hash;
+  };
+  const auto nudge = [](double& x) { x = std::nextafter(x, 1e300); };
+  EXPECT_EQ(state_hash(State(state)), hash);
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.time); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.next_dt); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.dissipated); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.external_work); }));
+  EXPECT_TRUE(differs([&](State& s) { ++s.rejections; }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.position.rigid[4]); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.velocity.rigid[4]); }));
+  EXPECT_TRUE(differs([&](State& s) { s.position.compliant[7][2] = std::nextafter(s.position.compliant[7][2], 1e300); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.history.slip[3]); }));
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

@@ -1,0 +1,203 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "geometry/polygon.hpp"
+#include "support/contact_rig.hpp"
+
+/// Contact of METHOD 4 once more: scalars, all nodes against all segments, no candidates, no windows. Deliberately
+/// slow.
+namespace pliant::testing {
+
+struct OracleLaw {
+  ContactRule rule;
+  double kn() const { return *rule.stiffness; }
+  double kt() const { return rule.law == ContactLawKind::frictionless ? 0 : rule.shear_stiffness.value_or(kn()); }
+  /// g_max of cohesion, the opening at which the tensile cut-off is met, or nothing.
+  double reach() const {
+    if (rule.law == ContactLawKind::cohesive) return *rule.range;
+    return rule.law == ContactLawKind::mohr_coulomb ? rule.tension / kn() : 0;
+  }
+  double share(double gap) const { return std::clamp((reach() - gap) / (reach() - rule.strength / kn()), 0.0, 1.0); }
+  double pressure(double gap) const {
+    if (gap >= reach()) return 0;
+    if (rule.law == ContactLawKind::cohesive) return std::max(-kn() * gap, -rule.strength * share(gap));
+    return -kn() * gap;
+  }
+  double shear_limit(double gap) const {
+    if (gap >= reach()) return 0;
+    if (rule.law == ContactLawKind::cohesive) return *rule.shear_strength * share(gap);
+    return rule.law == ContactLawKind::mohr_coulomb ? rule.cohesion + rule.friction * std::max(pressure(gap), 0.0) : 0;
+  }
+  /// Integral of the pressure from the gap to the reach: Simpson's rule on each of the law's straight pieces is exact.
+  double energy(double gap) const {
+    if (gap >= reach()) return 0;
+    const double corner = rule.law == ContactLawKind::cohesive ? rule.strength / kn() : reach();
+    const auto piece = [&](double a, double b) {
+      return (b - a) / 6 * (pressure(a) + 4 * pressure((a + b) / 2) + pressure(std::nextafter(b, a)));
+    };
+    return gap < corner ? piece(gap, corner) + piece(corner, reach()) : piece(gap, reach());
+  }
+};
+
+/// One slave node and the place on the master that it belongs to.
+struct OraclePoint {
+  int segment;  ///< of the master, counted on through its turns
+  double gap, xi, length, reference_length;
+  Vec2 normal, tangent, segment_tangent;
+};
+
+class ContactOracle {
+ public:
+  struct Result {
+    std::vector<Points> force;  ///< [bodies][nodes]
+    double stored = 0, dissipated = 0, deepest = 0;
+    int contacts = 0, outside_truth = 0;
+  };
+
+  ContactOracle(const ContactRig& rig, const ContactRule& rule) : rig_(rig), law_{rule} {}
+
+  Result evaluate() {
+    Result result;
+    trial_.clear();
+    const int bodies = static_cast<int>(rig_.model.bodies.size());
+    for (int b = 0; b < bodies; ++b) result.force.emplace_back(rig_.count(b), Vec2(0, 0));
+    for (int slave = 0; slave < bodies; ++slave)
+      for (int master = 0; master < bodies; ++master)
+        if (slave != master) pass(slave, master, result);
+    return result;
+  }
+  void commit() { committed_ = trial_; }
+
+ private:
+  using Key = std::tuple<int, int, int, int>;  // slave, node, master, periods added to the slave
+  struct Memory {
+    double arc, slip;
+  };
+
+  const OutlineShape& shape(int body) const { return rig_.model.outlines[rig_.model.bodies[body].outline]; }
+  Vec2 node(int body, int k) const {
+    const int n = rig_.count(body), turn = k >= 0 ? k / n : -((n - 1 - k) / n);
+    return rig_.node(body, k - turn * n) + Vec2(shape(body).turn_shift * turn, 0);
+  }
+  double reference_length(int body, int k) const {
+    const Points& points = shape(body).points;
+    const int n = rig_.count(body), at = ((k % n) + n) % n;
+    return (points[(at + 1) % n] + Vec2(at + 1 == n ? shape(body).turn_shift : 0, 0) - points[at]).norm();
+  }
+  double arc(int body, int k) const {
+    double sum = 0;
+    for (int i = 0; i < k; ++i) sum += reference_length(body, i);
+    for (int i = k; i < 0; ++i) sum -= reference_length(body, i);
+    return sum;
+  }
+
+  /// Unit normal of the line that halves the angle at node k, along the direction of travel.
+  bool is_past(int body, int k, const Vec2& p) const {
+    const Vec2 x = node(body, k), before = (x - node(body, k - 1)).normalized(),
+               after = (node(body, k + 1) - x).normalized();
+    const Vec2 outward_sum(before.y() + after.y(), -before.x() - after.x());  // the bisector's direction
+    return cross(outward_sum, p - x) >= 0;
+  }
+
+  /// Distance to a segment's nearest point; nothing when the bisectors or the depth exclude it.
+  std::optional<OraclePoint> on_segment(int body, int k, const Vec2& p) const {
+    if (!is_past(body, k, p) || is_past(body, k + 1, p)) return {};
+    const Vec2 a = node(body, k), b = node(body, k + 1);
+    const double length = (b - a).norm();
+    const Vec2 t = (b - a) / length, n(t.y(), -t.x());
+    const double height = (p - a).dot(n), along = (p - a).dot(t);
+    if (height < -0.5 * length) return {};
+    OraclePoint point{k, height, along / length, length, reference_length(body, k), n, t, t};
+    if (along < 0 || along > length) {
+      const Vec2 end = along < 0 ? a : b;
+      point.xi = along < 0 ? 0 : 1;
+      point.gap = std::copysign((p - end).norm(), height);
+      point.normal = (p - end) / point.gap;
+      point.tangent = Vec2(-point.normal.y(), point.normal.x());
+    }
+    return point;
+  }
+
+  std::optional<OraclePoint> find(int master, const Vec2& p) const {
+    std::optional<OraclePoint> best;
+    const int n = rig_.count(master), turns = rig_.model.bodies[master].wall ? reach_of_images() : 0;
+    for (int k = -turns * n; k < (turns + 1) * n; ++k)
+      if (const auto point = on_segment(master, k, p); point && (!best || std::abs(point->gap) < std::abs(best->gap)))
+        best = point;
+    return best;
+  }
+
+  int reach_of_images() const {
+    if (!rig_.model.scene.period) return 0;
+    const auto [low, high] = std::minmax_element(rig_.outlines.x.begin(), rig_.outlines.x.end());
+    return 1 + static_cast<int>((*high - *low) / *rig_.model.scene.period);
+  }
+
+  void pass(int slave, int master, Result& result) {
+    const int images = rig_.model.bodies[master].wall ? 0 : reach_of_images();
+    for (int image = -images; image <= images; ++image)
+      for (int k = 0; k < rig_.count(slave); ++k) {
+        const Vec2 p = node(slave, k) + Vec2(image * rig_.model.scene.period.value_or(0), 0);
+        const auto point = find(master, p);
+        check_against_truth(master, p, point, result);
+        const auto memory = committed_.find({slave, k, master, image});
+        respond(slave, k, master, image, point, memory == committed_.end() ? nullptr : &memory->second, result);
+      }
+  }
+
+  /// Inside a closed master the node must be found, with its true distance to the outline as the penetration.
+  void check_against_truth(int master, const Vec2& p, const std::optional<OraclePoint>& point, Result& result) const {
+    if (shape(master).turn_shift != 0) return;
+    const Points outline = rig_.outline(master);
+    const double distance = distance_to_outline(outline, p), gap = is_inside(outline, p) ? -distance : distance;
+    const bool seen = point && point->gap < 0;
+    if (seen != (gap < 0) || (seen && std::abs(point->gap - gap) > 1e-12)) ++result.outside_truth;
+  }
+
+  void respond(int slave, int k, int master, int image, const std::optional<OraclePoint>& point, const Memory* old,
+               Result& result) {
+    const double weight = 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
+    const double start = old ? old->slip : 0;
+    if (!point || point->gap >= law_.reach()) {
+      result.dissipated += weight * 0.5 * law_.kt() * start * start;
+      return;
+    }
+    ++result.contacts;
+    result.deepest = std::max(result.deepest, -point->gap / point->length);
+    const double here = arc(master, point->segment) + point->xi * point->reference_length;
+    double moved = old ? here - old->arc : 0;
+    const double turn = arc(master, rig_.count(master));
+    moved -= turn * std::round(moved / turn);
+    const double tried = start + moved * point->length / point->reference_length;
+    const double most = law_.kt() > 0 ? law_.shear_limit(point->gap) / law_.kt() : 0,
+                 slip = std::clamp(tried, -most, most);
+    trial_[{slave, k, master, image}] = {here, slip};
+    result.stored += weight * (law_.energy(point->gap) + 0.5 * law_.kt() * slip * slip);
+    result.dissipated += weight * 0.5 * law_.kt() * (start + slip) * (tried - slip);
+    share_force(slave, k, master, *point, weight * law_.pressure(point->gap), -weight * law_.kt() * slip, result);
+  }
+
+  /// Force on the node; the reaction on the segment's two nodes has the same sum and moment, and splits the normal part
+  /// by 1 - xi and xi.
+  void share_force(int slave, int k, int master, const OraclePoint& point, double normal, double shear,
+                   Result& result) const {
+    const Vec2 f = normal * point.normal + shear * point.tangent;
+    const double couple =
+        shear * point.gap / point.length;  // moment of the shear about the foot, as a pair of forces a segment apart
+    const Vec2 n(point.segment_tangent.y(), -point.segment_tangent.x());
+    const int count = rig_.count(master);
+    const auto at = [&](int i) { return ((i % count) + count) % count; };
+    result.force[slave][k] += f;
+    result.force[master][at(point.segment)] -= (1 - point.xi) * f + couple * n;
+    result.force[master][at(point.segment + 1)] -= point.xi * f - couple * n;
+  }
+
+  const ContactRig& rig_;
+  OracleLaw law_;
+  std::map<Key, Memory> committed_, trial_;
+};
+
+}  // namespace pliant::testing
