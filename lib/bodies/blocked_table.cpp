@@ -17,7 +17,8 @@ void mark(const IntegrationTable& table, int point, std::vector<char>& in_block,
 }
 
 /// Among the next free points, the one that shares most neighbours with the block; -1 when none is left.
-int best_partner(const IntegrationTable& table, const std::vector<char>& in_block, const std::vector<char>& taken, int from) {
+int best_partner(const IntegrationTable& table, const std::vector<char>& in_block, const std::vector<char>& taken,
+                 int from) {
   constexpr int horizon = 600;
   int best = -1, best_count = -1, seen = 0;
   for (int p = from; p < static_cast<int>(taken.size()) && seen < horizon; ++p) {

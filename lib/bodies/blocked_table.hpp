@@ -17,10 +17,10 @@ struct BlockedTable {
     std::int64_t node;
   };
 
-  std::vector<int> start;       ///< [blocks + 1], rows of `entries`
+  std::vector<int> start;  ///< [blocks + 1], rows of `entries`
   std::vector<Entry> entries;
-  std::vector<double> weight;   ///< [blocks x points_per_block], m2; 0 for a padded point
-  std::vector<int> point;       ///< [blocks x points_per_block], index in the integration table; -1 for a padded point
+  std::vector<double> weight;  ///< [blocks x points_per_block], m2; 0 for a padded point
+  std::vector<int> point;      ///< [blocks x points_per_block], index in the integration table; -1 for a padded point
 
   int blocks() const { return static_cast<int>(start.size()) - 1; }
 };

@@ -116,7 +116,8 @@ class Builder {
       body.material = index_of_material(model_.scene, entry.material);
       body.centre = centres[i];
       body.angle = grains.angle ? *grains.angle : uniform_angle(random);
-      entry.body == BodyKind::compliant ? add_compliant(std::move(body), grains.shape) : add_rigid(std::move(body), grains.shape);
+      entry.body == BodyKind::compliant ? add_compliant(std::move(body), grains.shape)
+                                        : add_rigid(std::move(body), grains.shape);
     }
   }
 
@@ -128,7 +129,8 @@ class Builder {
     body.mass = body.area * material.density;
     const auto group = std::find_if(model_.groups.begin(), model_.groups.end(),
                                     [&](const CompliantGroup& g) { return g.shape == shape && g.law == material.law; });
-    CompliantGroup& target = group != model_.groups.end() ? *group : model_.groups.emplace_back(CompliantGroup{shape, material.law, {}});
+    CompliantGroup& target =
+        group != model_.groups.end() ? *group : model_.groups.emplace_back(CompliantGroup{shape, material.law, {}});
     target.bodies.push_back(static_cast<int>(model_.bodies.size()));
     model_.bodies.push_back(std::move(body));
   }
@@ -138,7 +140,8 @@ class Builder {
     body.rigid = static_cast<int>(model_.rigid_bodies.size());
     const double density = model_.scene.materials[body.material].density;
     const OutlineShape& outline = model_.outlines[body.outline];
-    model_.rigid_bodies.push_back(make_rigid_body(static_cast<int>(model_.bodies.size()), body.outline, outline, density));
+    model_.rigid_bodies.push_back(
+        make_rigid_body(static_cast<int>(model_.bodies.size()), body.outline, outline, density));
     body.mass = model_.rigid_bodies.back().dof[0].mass;
     body.area = body.mass / density;
     model_.bodies.push_back(std::move(body));
@@ -180,7 +183,8 @@ class Builder {
   void make_batches() {
     for (std::size_t g = 0; g < model_.groups.size(); ++g) {
       const int count = static_cast<int>(model_.groups[g].bodies.size());
-      for (int first = 0; first < count; first += lane_count) add_batch(static_cast<int>(g), first, std::min(lane_count, count - first));
+      for (int first = 0; first < count; first += lane_count)
+        add_batch(static_cast<int>(g), first, std::min(lane_count, count - first));
     }
   }
 
@@ -214,13 +218,15 @@ Model build_model(const Scene& scene) { return Builder(scene).build(); }
 
 int Model::dof_count() const {
   int count = 3 * static_cast<int>(rigid_bodies.size());
-  for (const CompliantGroup& group : groups) count += 2 * shapes[group.shape].nodes() * static_cast<int>(group.bodies.size());
+  for (const CompliantGroup& group : groups)
+    count += 2 * shapes[group.shape].nodes() * static_cast<int>(group.bodies.size());
   return count;
 }
 
 int Model::node_count() const {
   int count = 0;
-  for (const CompliantGroup& group : groups) count += shapes[group.shape].nodes() * static_cast<int>(group.bodies.size());
+  for (const CompliantGroup& group : groups)
+    count += shapes[group.shape].nodes() * static_cast<int>(group.bodies.size());
   for (const RigidBody& rigid : rigid_bodies) count += outlines[rigid.outline].count;
   return count;
 }

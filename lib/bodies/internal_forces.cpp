@@ -9,7 +9,7 @@ constexpr int K = BlockedTable::points_per_block;
 
 /// F at the K points of a block.
 inline void gather_deformation(const BlockedTable& table, int block, const Lanes* q, Tensor<Lanes> (&F)[K]) {
-  for (auto& f : F) f = {};
+  for (auto& f : F) f = Tensor<Lanes>{};
   for (int e = table.start[block]; e < table.start[block + 1]; ++e) {
     const BlockedTable::Entry& entry = table.entries[e];
     const Lanes x = q[2 * entry.node], y = q[2 * entry.node + 1];
@@ -63,7 +63,8 @@ Lanes energy(Law, const BlockedTable& table, Lanes mu, Lanes lambda, const Lanes
     Tensor<Lanes> F[K];
     gather_deformation(table, block, q, F);
     for (int k = 0; k < K; ++k)
-      if (const double w = table.weight[K * block + k]; w > 0) total += w * Law::template energy<Lanes>(F[k], mu, lambda);
+      if (const double w = table.weight[K * block + k]; w > 0)
+        total += w * Law::template energy<Lanes>(F[k], mu, lambda);
   }
   return total;
 }
@@ -78,9 +79,8 @@ Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* p
 
 Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
   const BlockedTable& table = model.shape_of(batch).table;
-  return batch.weight * with_material(model.groups[batch.group].law, [&](auto law) {
-           return energy(law, table, batch.mu, batch.lambda, positions);
-         });
+  return batch.weight * with_material(model.groups[batch.group].law,
+                                      [&](auto law) { return energy(law, table, batch.mu, batch.lambda, positions); });
 }
 
 std::vector<Tensor<double>> deformation_gradients(const CompliantShape& shape, const Lanes* positions, int lane) {

@@ -16,7 +16,7 @@ struct CompliantShape {
   Discretisation space;
   BlockedTable table;
   std::vector<double> inverse_unit_mass;  ///< [nodes], 1/m2
-  int outline = 0;  ///< index of its outline shape
+  int outline = 0;                        ///< index of its outline shape
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
@@ -30,21 +30,21 @@ struct CompliantGroup {
 /// Eight bodies of a group. Padding lanes carry a copy of a resting body and weight 0.
 struct Batch {
   int group = 0;
-  int first = 0;              ///< index within the group of the body in lane 0
-  int count = 0;              ///< bodies, 1 to 8
-  std::size_t offset = 0;     ///< of node 0, x, in Dofs::compliant
+  int first = 0;                               ///< index within the group of the body in lane 0
+  int count = 0;                               ///< bodies, 1 to 8
+  std::size_t offset = 0;                      ///< of node 0, x, in Dofs::compliant
   Lanes mu, lambda, density, inverse_density;  ///< material constants a lane
-  Lanes weight;               ///< 1 for a body, 0 for padding
-  Lanes centre_x, centre_y;   ///< fixed centres: positions are stored relative to them
+  Lanes weight;                                ///< 1 for a body, 0 for padding
+  Lanes centre_x, centre_y;                    ///< fixed centres: positions are stored relative to them
 };
 
 /// One degree of freedom of a rigid body and what moves it.
 struct RigidDof {
   Drive::Mode mode = Drive::Mode::free;
-  History history;           ///< velocity, force or pressure
-  double force_scale = 1;    ///< force = history x force_scale: signed period for a pressure
-  double mass = 0;           ///< kg/m, or kg m for the angle
-  double inverse_mass = 0;   ///< 0 when the motion is imposed
+  History history;          ///< velocity, force or pressure
+  double force_scale = 1;   ///< force = history x force_scale: signed period for a pressure
+  double mass = 0;          ///< kg/m, or kg m for the angle
+  double inverse_mass = 0;  ///< 0 when the motion is imposed
   bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }
 };
 
@@ -52,23 +52,23 @@ struct RigidBody {
   int body = 0;     ///< global index
   int outline = 0;  ///< index of its outline shape
   double max_radius = 0;
-  RigidDof dof[3];  ///< x, y, angle
+  RigidDof dof[3];      ///< x, y, angle
   bool driven = false;  ///< some degree of freedom is imposed or loaded
 };
 
 struct Body {
-  std::string name;            ///< "grains 17", or the wall's name
+  std::string name;  ///< "grains 17", or the wall's name
   BodyKind kind = BodyKind::rigid;
   bool wall = false;
-  int grains = -1;             ///< index in Scene::grains; -1 for a wall
-  int material = 0;            ///< index in Scene::materials
-  int batch = -1, lane = -1;   ///< compliant
-  int rigid = -1;              ///< rigid: index in Model::rigid_bodies
-  int outline = 0;             ///< index of its outline shape
-  Vec2 centre{0, 0};           ///< initial centre, m
-  double angle = 0;            ///< initial angle, rad
-  double area = 0;             ///< m2
-  double mass = 0;             ///< kg/m
+  int grains = -1;            ///< index in Scene::grains; -1 for a wall
+  int material = 0;           ///< index in Scene::materials
+  int batch = -1, lane = -1;  ///< compliant
+  int rigid = -1;             ///< rigid: index in Model::rigid_bodies
+  int outline = 0;            ///< index of its outline shape
+  Vec2 centre{0, 0};          ///< initial centre, m
+  double angle = 0;           ///< initial angle, rad
+  double area = 0;            ///< m2
+  double mass = 0;            ///< kg/m
 };
 
 /// Bodies and tables: built once from the scene, immutable.
@@ -79,7 +79,7 @@ struct Model {
   std::vector<CompliantGroup> groups;
   std::vector<Batch> batches;
   std::vector<RigidBody> rigid_bodies;
-  std::vector<Body> bodies;    ///< grains in the scene's order, then walls
+  std::vector<Body> bodies;        ///< grains in the scene's order, then walls
   std::size_t compliant_size = 0;  ///< length of Dofs::compliant
 
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[groups[batch.group].shape]; }

@@ -13,7 +13,10 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift) {
   shape.segment_length.resize(extended);
   shape.tributary_length.resize(extended);
   shape.arc.resize(extended);
-  const auto point = [&](int i) { return Vec2(points[i % n] + Vec2(turn_shift * (i / n), 0)); };
+  const auto point = [&](int i) {
+    const int turns = i / n;
+    return Vec2(points[i % n] + Vec2(turn_shift * turns, 0));
+  };
   for (int i = 0; i < extended; ++i) shape.segment_length[i] = (point(i + 1) - point(i)).norm();
   for (int i = 0; i < extended; ++i)
     shape.tributary_length[i] = 0.5 * (shape.segment_length[i] + shape.segment_length[(i + n - 1) % n]);

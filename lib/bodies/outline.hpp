@@ -9,11 +9,11 @@ namespace pliant {
 /// Reference outline of a shape: what contact needs and never changes. Node arrays are extended cyclically by lane_count entries, so that
 /// eight consecutive nodes can be loaded from any start.
 struct OutlineShape {
-  int count = 0;             ///< nodes
-  double turn_shift = 0;     ///< x offset after one turn: 0 for closed outlines, +- period for walls
-  double perimeter = 0;      ///< reference length of one turn, m
-  double spacing = 0;        ///< mean segment length, m
-  Points points;             ///< [count], reference coordinates about the centroid (walls: about the line's start)
+  int count = 0;          ///< nodes
+  double turn_shift = 0;  ///< x offset after one turn: 0 for closed outlines, +- period for walls
+  double perimeter = 0;   ///< reference length of one turn, m
+  double spacing = 0;     ///< mean segment length, m
+  Points points;          ///< [count], reference coordinates about the centroid (walls: about the line's start)
   std::vector<double> tributary_length;  ///< [count + lane_count], half of the two adjacent segments, m
   std::vector<double> segment_length;    ///< [count + lane_count], from a node to the next, m
   std::vector<double> arc;               ///< [count + lane_count], reference length from node 0, m
@@ -24,10 +24,10 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift);
 /// Current outlines of all bodies, one after another; each body's nodes are followed by lane_count cyclic copies.
 /// Both kinds of body show this one face to contact (METHOD 1).
 struct Outlines {
-  std::vector<int> shape;     ///< [bodies], index of the outline shape
-  std::vector<int> offset;    ///< [bodies + 1], first node of a body
-  std::vector<double> x, y;   ///< [nodes and copies], m
-  std::vector<double> force_x, force_y;  ///< [nodes and copies], contact force, N/m; 0 in the copies
+  std::vector<int> shape;                    ///< [bodies], index of the outline shape
+  std::vector<int> offset;                   ///< [bodies + 1], first node of a body
+  std::vector<double> x, y;                  ///< [nodes and copies], m
+  std::vector<double> force_x, force_y;      ///< [nodes and copies], contact force, N/m; 0 in the copies
   std::vector<double> x_refresh, y_refresh;  ///< positions at the last contact refresh
 };
 

@@ -61,7 +61,8 @@ Outlines make_outlines(const Model& model) {
     next += model.outlines[body.outline].count + lane_count;
   }
   outlines.offset.push_back(next);
-  for (auto* array : {&outlines.x, &outlines.y, &outlines.force_x, &outlines.force_y, &outlines.x_refresh, &outlines.y_refresh})
+  for (auto* array :
+       {&outlines.x, &outlines.y, &outlines.force_x, &outlines.force_y, &outlines.x_refresh, &outlines.y_refresh})
     array->assign(static_cast<std::size_t>(next), 0.0);
   return outlines;
 }
@@ -92,8 +93,8 @@ void add_outline_forces(const Model& model, const Batch& batch, const Outlines& 
   }
 }
 
-void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines, const double* position,
-                             double* resultant) {
+void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines,
+                             const double* position, double* resultant) {
   const int offset = outlines.offset[rigid.body];
   Lanes fx{}, fy{}, moment{};
   // The last lanes may reach into the cyclic copies, which carry no force.

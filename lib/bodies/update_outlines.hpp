@@ -16,7 +16,7 @@ void update_outlines(const Model& model, const Dofs& positions, Outlines& outlin
 void add_outline_forces(const Model& model, const Batch& batch, const Outlines& outlines, Lanes* forces);
 
 /// Contact force and moment on a rigid body: [x, y, moment about its centre].
-void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines, const double* position,
-                             double* resultant);
+void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines,
+                             const double* position, double* resultant);
 
 }  // namespace pliant

@@ -63,11 +63,13 @@ double gravity_moment(const Model& model, const Dofs& position) {
     const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
     Lanes moment{};
     for (std::size_t i = 0; i < mass.size(); ++i)
-      moment += mass[i] * (g.x() * position.compliant[batch.offset + 2 * i] + g.y() * position.compliant[batch.offset + 2 * i + 1]);
+      moment += mass[i] * (g.x() * position.compliant[batch.offset + 2 * i] +
+                           g.y() * position.compliant[batch.offset + 2 * i + 1]);
     return sum(moment * batch.density * batch.weight);
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-    for (int c = 0; c < 2; ++c) total += model.rigid_bodies[r].dof[c].mass * g[c] * position.rigid[3 * r + static_cast<std::size_t>(c)];
+    for (int c = 0; c < 2; ++c)
+      total += model.rigid_bodies[r].dof[c].mass * g[c] * position.rigid[3 * r + static_cast<std::size_t>(c)];
   return total;
 }
 

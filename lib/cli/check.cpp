@@ -31,11 +31,15 @@ void print_bodies(const Model& model) {
   }
   fmt::print("bodies       {} ({} compliant, {} rigid, {} walls)\n", model.bodies.size(), compliant,
              static_cast<int>(model.bodies.size()) - compliant - walls, walls);
-  fmt::print("nodes        {}   DOFs {}   mass of grains {}\n", model.node_count(), model.dof_count(), si(1000 * mass, "g/m"));
+  fmt::print("nodes        {}   DOFs {}   mass of grains {}\n", model.node_count(), model.dof_count(),
+             si(1000 * mass, "g/m"));
   for (const CompliantShape& shape : model.shapes)
-    fmt::print("shape        {} nodes, {} integration points, {:.1f} neighbours a point, least shape function {:.3f}, completeness {:.1e}\n", shape.nodes(),
-               shape.space.table.weight.size(), static_cast<double>(shape.space.table.node.size()) / static_cast<double>(shape.space.table.weight.size()),
-               shape.space.min_shape_value, shape.space.completeness_residual);
+    fmt::print(
+        "shape        {} nodes, {} integration points, {:.1f} neighbours a point, least shape function {:.3f}, "
+        "completeness {:.1e}\n",
+        shape.nodes(), shape.space.table.weight.size(),
+        static_cast<double>(shape.space.table.node.size()) / static_cast<double>(shape.space.table.weight.size()),
+        shape.space.min_shape_value, shape.space.completeness_residual);
 }
 
 void print_contacts(const Simulation& simulation) {
@@ -45,8 +49,8 @@ void print_contacts(const Simulation& simulation) {
     softest = std::min(softest, stiffness_of(law));
     stiffest = std::max(stiffest, stiffness_of(law));
   }
-  fmt::print("contact      {} close pairs, stiffness {} to {}, reach {}, skin {}\n", contact.patches().size(), si(softest, "Pa/m"),
-             si(stiffest, "Pa/m"), si(contact.laws().max_reach, "m"), si(contact.skin(), "m"));
+  fmt::print("contact      {} close pairs, stiffness {} to {}, reach {}, skin {}\n", contact.patches().size(),
+             si(softest, "Pa/m"), si(stiffest, "Pa/m"), si(contact.laws().max_reach, "m"), si(contact.skin(), "m"));
 }
 
 /// Bytes of one frame before compression: positions and fields in float32.
@@ -58,7 +62,8 @@ double frame_bytes(const Model& model) {
     if (body.wall) continue;
     const bool compliant = body.kind == BodyKind::compliant;
     points += compliant ? model.shape_of(model.batches[body.batch]).nodes() : n;
-    cells += compliant ? static_cast<double>(model.shape_of(model.batches[body.batch]).space.mesh.triangles.size()) : n - 2;
+    cells +=
+        compliant ? static_cast<double>(model.shape_of(model.batches[body.batch]).space.mesh.triangles.size()) : n - 2;
   }
   double bytes = 8 * points + 8 * outline;
   for (const std::string& field : model.scene.frames.fields)
@@ -95,14 +100,15 @@ void print_check(const Scene& scene, int threads) {
   if (std::isfinite(dt)) {
     const double evaluations = scene.time.end / dt;
     fmt::print("time step    {} at most, governed by {}\n", si(dt, "s"), simulation.governing());
-    fmt::print("evaluations  {:.3g} at least for {}; at {:.0f} a second on {} threads about {:.3g} hours\n", evaluations, si(scene.time.end, "s"),
-               1 / cost, omp_get_max_threads(), evaluations * cost / 3600);
+    fmt::print("evaluations  {:.3g} at least for {}; at {:.0f} a second on {} threads about {:.3g} hours\n",
+               evaluations, si(scene.time.end, "s"), 1 / cost, omp_get_max_threads(), evaluations * cost / 3600);
   } else {
     fmt::print("time step    set by the error control alone; now {}\n", si(simulation.state().next_dt, "s"));
   }
   const double frames = scene.frames.period > 0 ? std::floor(scene.time.end / scene.frames.period) + 1 : 0;
-  fmt::print("memory       {} now   frames {:.0f} of {}, {} before compression\n", si(static_cast<double>(peak_memory_bytes()), "B"), frames,
-             si(frame_bytes(model), "B"), si(frames * frame_bytes(model), "B"));
+  fmt::print("memory       {} now   frames {:.0f} of {}, {} before compression\n",
+             si(static_cast<double>(peak_memory_bytes()), "B"), frames, si(frame_bytes(model), "B"),
+             si(frames * frame_bytes(model), "B"));
 }
 
 }  // namespace pliant

@@ -1,10 +1,10 @@
 #include <charconv>
 #include <cmath>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
 
 #include "cli/check.hpp"
 #include "core/errors.hpp"
@@ -50,11 +50,13 @@ int main_program(int argc, char** argv) {
   app.require_subcommand(1);
   Arguments arguments;
   CLI::App* run_command = app.add_subcommand("run", "Simulate a scene, e.g. run cases/two_discs.toml --threads 2");
-  CLI::App* check_command = app.add_subcommand("check", "Dry run: what a scene holds and costs, e.g. check cases/third_body.toml");
+  CLI::App* check_command =
+      app.add_subcommand("check", "Dry run: what a scene holds and costs, e.g. check cases/third_body.toml");
   for (CLI::App* command : {run_command, check_command}) {
     command->add_option("scene", arguments.scene, "Scene file (TOML)")->required();
     command->add_option("--until", arguments.until, "End time instead of the scene's, as in \"0.02 us\"");
-    command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")->check(CLI::Range(1, 1024));
+    command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")
+        ->check(CLI::Range(1, 1024));
   }
   run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>");
   run_command->add_flag("--force", arguments.run.force, "Overwrite the results in the output folder");

@@ -31,8 +31,8 @@ std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>
 }
 
 /// Pairs of entry i with the entries after it in x, around the period.
-void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period, double margin,
-                std::vector<BodyPair>& pairs) {
+void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period,
+                double margin, std::vector<BodyPair>& pairs) {
   const SweepEntry& a = entries[i];
   for (std::size_t step = 1;; ++step) {
     const std::size_t wrapped = i + step;

@@ -11,7 +11,7 @@ struct Side {
   const OutlineShape* shape;
   const double* x;
   const double* y;
-  double shift;   ///< added to x
+  double shift;               ///< added to x
   int first_turn, last_turn;  ///< turns of the outline that matter: 0 to 0 for a closed one
   double longest_segment;
 
@@ -107,8 +107,8 @@ Vec2 direction(const Model& model, const BodyPair& pair, const Box& a, const Box
 
 }  // namespace
 
-void find_arcs(const Model& model, const Outlines& outlines, const std::vector<Box>& boxes, const BodyPair& pair, double margin,
-               Arc (&arcs)[2]) {
+void find_arcs(const Model& model, const Outlines& outlines, const std::vector<Box>& boxes, const BodyPair& pair,
+               double margin, Arc (&arcs)[2]) {
   arcs[0] = arcs[1] = {};
   const double shift = pair.images * model.scene.period.value_or(0);
   Side a = make_side(model, outlines, pair.first, 0), b = make_side(model, outlines, pair.second, shift);
@@ -120,12 +120,13 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
   find_turns(b, box_b, inflated(box_a, reach_b));
   const Box region_a = model.bodies[pair.second].wall ? Box{-1e300, 1e300, box_b.y_min - reach_a, box_b.y_max + reach_a}
-                                                       : inflated(box_b, reach_a);
+                                                      : inflated(box_b, reach_a);
   const Box region_b = inflated(box_a, reach_b);
   const Vec2 d = direction(model, pair, box_a, box_b);
   const Box everywhere{-1e300, 1e300, -1e300, 1e300};
   const auto extent_a = extent(a, everywhere, d);
-  const auto extent_b = extent(b, model.bodies[pair.second].wall ? inflated(region_b, b.longest_segment) : everywhere, d);
+  const auto extent_b =
+      extent(b, model.bodies[pair.second].wall ? inflated(region_b, b.longest_segment) : everywhere, d);
   if (extent_b.first > extent_b.second) return;
   arcs[0] = select_arc(a, region_a, d, extent_b.first - margin);
   arcs[1] = select_arc(b, region_b, -d, -(extent_a.second + margin));

@@ -19,7 +19,8 @@ Box motion_box(const OutlineShape& shape, const Outlines& outlines, int body) {
   Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
   // The last lanes may reach into the cyclic copies, which move as their originals.
   for (int i = offset; i < offset + shape.count; i += lane_count) {
-    const Lanes dx = load(&outlines.x[i]) - load(&outlines.x_refresh[i]), dy = load(&outlines.y[i]) - load(&outlines.y_refresh[i]);
+    const Lanes dx = load(&outlines.x[i]) - load(&outlines.x_refresh[i]),
+                dy = load(&outlines.y[i]) - load(&outlines.y_refresh[i]);
     x_min = min(x_min, dx), x_max = max(x_max, dx);
     y_min = min(y_min, dy), y_max = max(y_max, dy);
   }
@@ -116,7 +117,8 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
                       std::vector<double>(static_cast<std::size_t>(records_), 0.0)};
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     const Patch& patch = patches_[p];
-    const auto from = std::lower_bound(old.begin(), old.end(), patch, [&](const Patch& a, const Patch& b) { return key(a) < key(b); });
+    const auto from = std::lower_bound(old.begin(), old.end(), patch,
+                                       [&](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;
     for (int side = 0; side < 2; ++side) {
       const OutlineShape& shape = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline];
@@ -153,7 +155,8 @@ PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& comm
   return total;
 }
 
-void ContactSystem::gather(const std::vector<double>& buffer, int body, const Outlines& outlines, double* target) const {
+void ContactSystem::gather(const std::vector<double>& buffer, int body, const Outlines& outlines,
+                           double* target) const {
   const int n = model_.outlines[outlines.shape[body]].count;
   double* own = target + outlines.offset[body];
   std::fill_n(own, n, 0.0);
@@ -173,7 +176,8 @@ std::vector<double> ContactSystem::stiffness_bound(Outlines& outlines, const std
     // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
     const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
     const ContactLaw& law = laws_.laws[patch.law];
-    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), reach_of(law) + skin_, factor, forces_, thread_scratch());
+    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), reach_of(law) + skin_, factor, forces_,
+                            thread_scratch());
   });
   std::vector<double> result(outlines.x.size(), 0.0);
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) { gather(forces_.x, b, outlines, result.data()); });

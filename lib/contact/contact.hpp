@@ -46,13 +46,13 @@ class ContactSystem {
   const Model& model_;
   ContactLaws laws_;
   double skin_ = 0, broad_margin_ = 0;
-  std::vector<BodyPair> pairs_;         ///< of the broad phase
+  std::vector<BodyPair> pairs_;  ///< of the broad phase
   std::vector<Patch> patches_;
   std::vector<std::vector<ArcForce>> body_arcs_;  ///< [bodies], in the order of the patches
   int records_ = 0;
   PatchForces forces_;
-  std::vector<PatchTotals> totals_;     ///< [patches]
-  std::vector<Box> motion_;             ///< [bodies], box of the outline nodes' displacements since the refresh
+  std::vector<PatchTotals> totals_;  ///< [patches]
+  std::vector<Box> motion_;          ///< [bodies], box of the outline nodes' displacements since the refresh
   bool fresh_ = false;
   long refreshes_ = 0;
 };

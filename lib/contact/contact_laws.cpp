@@ -40,23 +40,28 @@ const ContactRule& rule_between(const Scene& scene, const std::string& a, const 
     if (rule.first == "all") general = &rule;
   }
   if (!general)
-    throw InputError(fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
-                                 scene.file.string(), a, b));
+    throw InputError(
+        fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
+                    scene.file.string(), a, b));
   return *general;
 }
 
 ContactLaw make_law(const Scene& scene, const ContactRule& rule, double kn, double h) {
   const double kt = rule.shear_stiffness.value_or(kn);
   switch (rule.law) {
-    case ContactLawKind::frictionless: return Frictionless{kn, 0, 0};
-    case ContactLawKind::mohr_coulomb: return MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion};
-    case ContactLawKind::cohesive: break;
+    case ContactLawKind::frictionless:
+      return Frictionless{kn, 0, 0};
+    case ContactLawKind::mohr_coulomb:
+      return MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion};
+    case ContactLawKind::cohesive:
+      break;
   }
   const double range = rule.range.value_or(auto_range_factor * h);
   if (range <= rule.strength / kn)
-    throw InputError(fmt::format("{}: [[contacts]] between '{}' and '{}': range {:.3g} m must exceed strength / stiffness = {:.3g} m; "
-                                 "give a larger range or stiffness",
-                                 scene.file.string(), rule.first, rule.second, range, rule.strength / kn));
+    throw InputError(fmt::format(
+        "{}: [[contacts]] between '{}' and '{}': range {:.3g} m must exceed strength / stiffness = {:.3g} m; "
+        "give a larger range or stiffness",
+        scene.file.string(), rule.first, rule.second, range, rule.strength / kn));
   return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
 }
 
@@ -68,9 +73,10 @@ ContactLaw law_between(const Model& model, const BodyClass& a, const BodyClass& 
   const double own = auto_stiffness(model, a, b);
   const double kn = rule.stiffness.value_or(own > 0 ? own : rigid_pair_factor * largest_auto);
   if (kn <= 0)
-    throw InputError(fmt::format("{}: [[contacts]] between '{}' and '{}': stiffness \"auto\" needs a compliant body in the scene; "
-                                 "give a value in Pa/m",
-                                 scene.file.string(), name_a, name_b));
+    throw InputError(
+        fmt::format("{}: [[contacts]] between '{}' and '{}': stiffness \"auto\" needs a compliant body in the scene; "
+                    "give a value in Pa/m",
+                    scene.file.string(), name_a, name_b));
   return make_law(scene, rule, kn, std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing));
 }
 

@@ -14,8 +14,8 @@ struct Pass {
   Arc arc;
   double slave_shift;
   int record;
-  int slave_force;    ///< buffer entry of the arc's first node
-  int master_force;   ///< buffer entry of local window node 1
+  int slave_force;   ///< buffer entry of the arc's first node
+  int master_force;  ///< buffer entry of local window node 1
   double master_perimeter;
 };
 
@@ -39,8 +39,8 @@ struct Contact {
 };
 
 template <class Law>
-Contact respond(const Law& law, const Projection& p, const ContactPoint& point, LaneBits touching, Lanes old_arc, Lanes old_slip,
-                double perimeter) {
+Contact respond(const Law& law, const Projection& p, const ContactPoint& point, LaneBits touching, Lanes old_arc,
+                Lanes old_slip, double perimeter) {
   const Traction traction = law(point.gap);
   Contact c{traction.pressure, {}, traction.energy, p.arc + point.xi * p.reference_length, {}, {}};
   if constexpr (Law::has_shear) {
@@ -62,8 +62,8 @@ Contact respond(const Law& law, const Projection& p, const ContactPoint& point, 
 
 /// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's distance, and makes the
 /// force the exact conjugate of the slip.
-void add_reaction(const Projection& p, const ContactPoint& point, LaneBits touching, Lanes fx, Lanes fy, Lanes couple, int base,
-                  PatchForces& forces) {
+void add_reaction(const Projection& p, const ContactPoint& point, LaneBits touching, Lanes fx, Lanes fy, Lanes couple,
+                  int base, PatchForces& forces) {
   const Lanes bx = -point.xi * fx + couple * p.tangent_y, by = -point.xi * fy - couple * p.tangent_x;
   const Lanes ax = -fx - bx, ay = -fy - by;
   for (int lane = 0; lane < lane_count; ++lane) {
@@ -75,18 +75,20 @@ void add_reaction(const Projection& p, const ContactPoint& point, LaneBits touch
 }
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, const ContactHistory& committed, ContactHistory& trial,
-                  PatchForces& forces, PatchTotals& totals) {
+void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, const ContactHistory& committed,
+                  ContactHistory& trial, PatchForces& forces, PatchTotals& totals) {
   Lanes stored{}, dissipated{}, deepest{};
+  // Where a node projects is known before it touches, so that friction acts from the first step of a touch.
+  const double outward = Law::has_shear ? std::max(law.reach, 0.5 * window.longest) : law.reach;
   for (int i = 0; i < pass.arc.count; i += lane_count) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const LaneBits active = first_lanes(pass.arc.count - i);
-    const Projection p = project(window, nodes.x, nodes.y, law.reach);
+    const Projection p = project(window, nodes.x, nodes.y, outward);
     const ContactPoint point = locate(p);
     const LaneBits touching = active & p.hit & (point.gap < law.reach);
     const Lanes old_arc = load(&committed.arc[pass.record + i]), old_slip = load(&committed.slip[pass.record + i]);
     const Contact c = respond(law, p, point, touching, old_arc, old_slip, pass.master_perimeter);
-    store(&trial.arc[pass.record + i], select(touching, c.arc, broadcast(std::numeric_limits<double>::quiet_NaN())));
+    store(&trial.arc[pass.record + i], select(p.hit, c.arc, broadcast(std::numeric_limits<double>::quiet_NaN())));
     store(&trial.slip[pass.record + i], select(touching, c.slip, Lanes{}));
     const Lanes half_length = 0.5 * nodes.tributary_length;
     dissipated += select(active, half_length * c.slip_work, Lanes{});
@@ -130,11 +132,13 @@ Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch,
           model.outlines[outlines.shape[master]].perimeter};
 }
 
-void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side, MasterWindow& window) {
+void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side,
+                 MasterWindow& window) {
   const int master = master_side == 0 ? patch.first : patch.second;
   const double shift = master_side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0);
   const int offset = outlines.offset[master];
-  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset], patch.arc[master_side], shift);
+  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset], patch.arc[master_side],
+              shift);
 }
 
 void clear_forces(const Patch& patch, PatchForces& forces) {
@@ -147,19 +151,21 @@ void clear_forces(const Patch& patch, PatchForces& forces) {
 }  // namespace
 
 PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
-                          const ContactHistory& committed, ContactHistory& trial, PatchForces& forces, MasterWindow& scratch) {
+                          const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
+                          MasterWindow& scratch) {
   PatchTotals totals;
   clear_forces(patch, forces);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     const Pass pass = make_pass(model, outlines, patch, slave_side);
     fill_window(model, outlines, patch, 1 - slave_side, scratch);
-    std::visit([&](const auto& law) { compute_pass(law, pass, scratch, committed, trial, forces, totals); }, laws.laws[patch.law]);
+    std::visit([&](const auto& law) { compute_pass(law, pass, scratch, committed, trial, forces, totals); },
+               laws.laws[patch.law]);
   }
   return totals;
 }
 
-void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness, double outward,
-                             const double (&factor)[2], PatchForces& forces, MasterWindow& scratch) {
+void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
+                             double outward, const double (&factor)[2], PatchForces& forces, MasterWindow& scratch) {
   clear_forces(patch, forces);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     const Pass pass = make_pass(model, outlines, patch, slave_side);

@@ -2,7 +2,8 @@
 
 namespace pliant {
 
-void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& range, double shift) {
+void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& range,
+                        double shift) {
   nodes = range.count + 4;
   // Room for whole lanes beyond the last node, where the outline simply goes on.
   if (static_cast<int>(x.size()) < nodes + 2 * lane_count)

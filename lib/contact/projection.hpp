@@ -12,21 +12,22 @@ namespace pliant {
 /// The master's arc with what its segments need, rebuilt at every evaluation. Local node w is outline node arc.begin - 2 + w; candidate
 /// segments run from local node 1 to arc.count + 1, one more than the arc at either end.
 struct MasterWindow {
-  int nodes = 0;  ///< arc.count + 4
+  int nodes = 0;       ///< arc.count + 4
   double longest = 0;  ///< candidate segment, m
   std::vector<double> x, y, tangent_x, tangent_y, length, bisector_x, bisector_y, reference_length, arc;
 
   int first_segment() const { return 1; }
   int end_segment() const { return nodes - 2; }
-  void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& range, double shift);
+  void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& range,
+            double shift);
 };
 
 /// Stage 3 of METHOD 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds the node.
 struct Projection {
   LaneBits hit;
-  Lanes segment;             ///< local index of the segment's first node
-  Lanes rx, ry;              ///< node position from the segment's first node, m
-  Lanes height;              ///< distance from the segment's line, outward positive, m
+  Lanes segment;  ///< local index of the segment's first node
+  Lanes rx, ry;   ///< node position from the segment's first node, m
+  Lanes height;   ///< distance from the segment's line, outward positive, m
   Lanes tangent_x, tangent_y;
   Lanes length, reference_length, arc;  ///< of the segment; arc: reference arc coordinate of its first node, m
 };
@@ -51,8 +52,8 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
     const Lanes after = next_rx * window.bisector_x[s + 1] + next_ry * window.bisector_y[s + 1];
     const Lanes height = rx * window.tangent_y[s] - ry * window.tangent_x[s];
     const Lanes distance = abs(height);
-    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= highest) & (height >= -inward_depth * window.length[s]) &
-                            (distance < best_distance);
+    const LaneBits inside = (before >= 0.0) & (after < 0.0) & (height <= highest) &
+                            (height >= -inward_depth * window.length[s]) & (distance < best_distance);
     if (any(inside)) {
       best_distance = select(inside, distance, best_distance);
       best.segment = select(inside, broadcast(s), best.segment);
@@ -73,9 +74,9 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
 
 /// Where a projected node stands: gap and normal, orthogonal to the segment or, beyond an end, radial from that end node.
 struct ContactPoint {
-  Lanes gap;               ///< m, negative inside
+  Lanes gap;  ///< m, negative inside
   Lanes normal_x, normal_y;
-  Lanes xi;                ///< [0, 1] along the segment
+  Lanes xi;  ///< [0, 1] along the segment
 };
 
 inline ContactPoint locate(const Projection& p) {

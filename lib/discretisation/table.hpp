@@ -20,9 +20,9 @@ struct IntegrationTable {
 
 /// Sparse rows phi_i(x_k): values of the shape functions at given points.
 struct ShapeRows {
-  std::vector<int> start;      ///< [rows + 1]
-  std::vector<int> node;       ///< [entries]
-  std::vector<double> value;   ///< [entries]
+  std::vector<int> start;     ///< [rows + 1]
+  std::vector<int> node;      ///< [entries]
+  std::vector<double> value;  ///< [entries]
 };
 
 /// One shape, discretised: shared by all of its grains.

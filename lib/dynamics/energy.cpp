@@ -21,7 +21,8 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
     const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
     const Lanes* v = &velocity.compliant[batch.offset];
     Lanes energy{};
-    for (std::size_t i = 0; i < mass.size(); ++i) energy += 0.5 * mass[i] * (v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]);
+    for (std::size_t i = 0; i < mass.size(); ++i)
+      energy += 0.5 * mass[i] * (v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]);
     return sum(energy * batch.density * batch.weight);
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)

@@ -25,8 +25,8 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 Forces::Forces(const Model& model)
     : model_(model), outlines_(make_outlines(model)), contact_(model), least_jacobian_(model.batches.size(), 1e300) {}
 
-Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
-                            const Dofs* accepted) {
+Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial,
+                            Dofs& force, const Dofs* accepted) {
   Evaluation result;
   update_outlines(model_, position, outlines_);
   if (contact_.refresh_needed(outlines_)) {
@@ -59,19 +59,23 @@ void Forces::check(const Evaluation& evaluation, double time) {
   if (!(evaluation.least_jacobian > 0)) {
     const auto worst = std::min_element(least_jacobian_.begin(), least_jacobian_.end()) - least_jacobian_.begin();
     const Batch& batch = model_.batches[worst];
-    throw PhysicsError(fmt::format("J = {:.3g} <= 0 in one of the bodies '{}' to '{}' at t = {:.6g} s: a grain is turned inside out; "
-                                   "reduce the load, the tolerance or the time step's safety factor",
-                                   evaluation.least_jacobian, model_.bodies[model_.groups[batch.group].bodies[batch.first]].name,
-                                   model_.bodies[model_.groups[batch.group].bodies[batch.first + batch.count - 1]].name, time));
+    throw PhysicsError(
+        fmt::format("J = {:.3g} <= 0 in one of the bodies '{}' to '{}' at t = {:.6g} s: a grain is turned inside out; "
+                    "reduce the load, the tolerance or the time step's safety factor",
+                    evaluation.least_jacobian, model_.bodies[model_.groups[batch.group].bodies[batch.first]].name,
+                    model_.bodies[model_.groups[batch.group].bodies[batch.first + batch.count - 1]].name, time));
   }
   if (evaluation.contact.deepest > lost_penetration)
-    throw PhysicsError(fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at {:.1f}; "
-                                   "raise the contact stiffness",
-                                   evaluation.contact.deepest, time, inward_depth));
+    throw PhysicsError(
+        fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at {:.1f}; "
+                    "raise the contact stiffness",
+                    evaluation.contact.deepest, time, inward_depth));
   if (evaluation.contact.deepest > deep_penetration && !warned_deep_) {
     warned_deep_ = true;
-    spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a higher contact stiffness",
-                 evaluation.contact.deepest, time, inward_depth);
+    spdlog::warn(
+        "penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a "
+        "higher contact stiffness",
+        evaluation.contact.deepest, time, inward_depth);
   }
 }
 

@@ -11,8 +11,8 @@ namespace pliant {
 struct Evaluation {
   PatchTotals contact;
   double least_jacobian = 1e300;
-  bool refreshed = false;   ///< the contact candidates were rebuilt
-  bool sound = true;        ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
+  bool refreshed = false;  ///< the contact candidates were rebuilt
+  bool sound = true;  ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
 };
 
 /// All forces on all degrees of freedom for given positions.
@@ -34,7 +34,9 @@ class Forces {
   ContactSystem& contact() { return contact_; }
   const ContactSystem& contact() const { return contact_; }
   /// Upper bounds of contact stiffness by outline node, at the current patches: see ContactSystem::stiffness_bound.
-  std::vector<double> stiffness_bound(const std::vector<double>& compliance) { return contact_.stiffness_bound(outlines_, compliance); }
+  std::vector<double> stiffness_bound(const std::vector<double>& compliance) {
+    return contact_.stiffness_bound(outlines_, compliance);
+  }
 
  private:
   const Model& model_;

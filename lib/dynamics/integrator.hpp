@@ -15,7 +15,7 @@ struct Trial {
 struct StepReport {
   double dt = 0, error = 0;
   int rejections = 0;
-  Evaluation evaluation;     ///< the last one
+  Evaluation evaluation;         ///< the last one
   const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"
 };
 

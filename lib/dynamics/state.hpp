@@ -10,10 +10,10 @@ namespace pliant {
 
 /// Everything that changes during a run. It enumerates itself (visit), so that hash, comparison and checkpoint cannot forget a part.
 struct State {
-  double time = 0;             ///< s
-  double next_dt = 0;          ///< what the controller proposes, s
-  double external_work = 0;    ///< of loads and imposed motions, J/m
-  double dissipated = 0;       ///< by contact laws, J/m
+  double time = 0;           ///< s
+  double next_dt = 0;        ///< what the controller proposes, s
+  double external_work = 0;  ///< of loads and imposed motions, J/m
+  double dissipated = 0;     ///< by contact laws, J/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
   Dofs position, velocity, force;
   ContactHistory history;

@@ -44,8 +44,8 @@ StepReport StepDoubling::step(State& state, double until) {
     const double dt = cut ? remaining : state.next_dt;
     report.governed_by = cut ? "output" : "error";
     half_step(state, dt);
-    report.evaluation =
-        forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history, trial_.force, &state.position);
+    report.evaluation = forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history,
+                                         trial_.force, &state.position);
     ++state.evaluations;
     second_half_step(state, dt);
     report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
@@ -74,8 +74,9 @@ void StepDoubling::half_step(const State& state, double dt) {
         trial_.position.compliant[i] = state.position.compliant[i] + half * trial_.velocity.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed() ? imposed_velocity(dof, state.time + half)
-                                                 : state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+        trial_.velocity.rigid[i] = dof.imposed()
+                                       ? imposed_velocity(dof, state.time + half)
+                                       : state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
         trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, state.position.rigid[i], state.time, half)
                                                  : state.position.rigid[i] + half * trial_.velocity.rigid[i];
       });
@@ -93,8 +94,9 @@ void StepDoubling::second_half_step(const State& state, double dt) {
         difference_[i] = (half * half) * (a_half - 2.0 * a);
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] =
-            dof.imposed() ? imposed_velocity(dof, state.time + dt) : trial_.velocity.rigid[i] + half * dof.inverse_mass * trial_.force.rigid[i];
+        trial_.velocity.rigid[i] = dof.imposed()
+                                       ? imposed_velocity(dof, state.time + dt)
+                                       : trial_.velocity.rigid[i] + half * dof.inverse_mass * trial_.force.rigid[i];
         trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, state.position.rigid[i], state.time, dt)
                                                  : trial_.position.rigid[i] + half * trial_.velocity.rigid[i];
       });
@@ -125,14 +127,17 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
   double change[3], end[3];
   for (std::size_t c = 0; c < 3; ++c) {
     const RigidDof& dof = body.dof[c];
-    const double a = dof.inverse_mass * state.force.rigid[3 * r + c], a_half = dof.inverse_mass * trial_.force.rigid[3 * r + c];
+    const double a = dof.inverse_mass * state.force.rigid[3 * r + c],
+                 a_half = dof.inverse_mass * trial_.force.rigid[3 * r + c];
     change[c] = dof.imposed() ? 0.0 : 0.25 * dt * dt * (a_half - 2 * a);
     end[c] = trial_.position.rigid[3 * r + c];
   }
-  const double c2 = std::cos(end[2]), s2 = std::sin(end[2]), c1 = std::cos(end[2] - change[2]), s1 = std::sin(end[2] - change[2]);
+  const double c2 = std::cos(end[2]), s2 = std::sin(end[2]), c1 = std::cos(end[2] - change[2]),
+               s1 = std::sin(end[2] - change[2]);
   double worst = 0;
   for (const Vec2& p : model_.outlines[body.outline].points) {
-    const double dx = change[0] + (c2 - c1) * p.x() - (s2 - s1) * p.y(), dy = change[1] + (s2 - s1) * p.x() + (c2 - c1) * p.y();
+    const double dx = change[0] + (c2 - c1) * p.x() - (s2 - s1) * p.y(),
+                 dy = change[1] + (s2 - s1) * p.x() + (c2 - c1) * p.y();
     worst = std::max({worst, std::abs(dx), std::abs(dy)});
   }
   if (!std::isfinite(change[0] + change[1] + change[2])) return std::numeric_limits<double>::infinity();
@@ -140,7 +145,8 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 }
 
 double StepDoubling::error(const State& state, double dt) const {
-  const double compliant = parallel_max(static_cast<int>(model_.batches.size()), 0, [&](int b) { return batch_error(model_.batches[b]); });
+  const double compliant =
+      parallel_max(static_cast<int>(model_.batches.size()), 0, [&](int b) { return batch_error(model_.batches[b]); });
   return parallel_max(static_cast<int>(model_.rigid_bodies.size()), compliant,
                       [&](int r) { return rigid_error(static_cast<std::size_t>(r), state, dt); });
 }
@@ -153,8 +159,8 @@ void StepDoubling::accept(State& state, double dt, double end_time, Evaluation& 
   forces_.check(evaluation, end_time);
   ++state.evaluations;
   state.dissipated += evaluation.contact.dissipated;
-  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity, state.force, trial_.force,
-                                       state.time, dt);
+  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity,
+                                       state.force, trial_.force, state.time, dt);
   std::swap(state.position, trial_.position);
   std::swap(state.velocity, trial_.velocity);
   std::swap(state.force, trial_.force);

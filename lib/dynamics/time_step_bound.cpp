@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+#include <Eigen/Eigenvalues>
 
 #include "bodies/internal_forces.hpp"
 #include "core/parallel.hpp"
@@ -23,7 +23,8 @@ constexpr double probe_size = 1e-6;
 /// sum over nodes of a_i b_i w_i in each lane.
 Lanes weighted_dot(const Lanes* a, const Lanes* b, const std::vector<double>& weight) {
   Lanes total{};
-  for (std::size_t i = 0; i < weight.size(); ++i) total += weight[i] * (a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]);
+  for (std::size_t i = 0; i < weight.size(); ++i)
+    total += weight[i] * (a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]);
   return total;
 }
 
@@ -72,7 +73,8 @@ double TimeStepBound::contact_frequency(const Body& body, const double* stiffnes
   for (int k = 0; k < outline.count; ++k) {
     double absolute = 0;
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) absolute += std::abs(rows.value[e]);
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) row_sum[rows.node[e]] += stiffness[k] * std::abs(rows.value[e]) * absolute;
+    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
+      row_sum[rows.node[e]] += stiffness[k] * std::abs(rows.value[e]) * absolute;
   }
   double largest = 0;
   for (int i = 0; i < shape.nodes(); ++i) largest = std::max(largest, row_sum[i] * shape.inverse_unit_mass[i]);
@@ -115,7 +117,8 @@ void TimeStepBound::update_internal(const Dofs& position, int iterations) {
 void TimeStepBound::update_contact(Forces& forces) {
   const std::vector<double> stiffness = forces.stiffness_bound(compliance_);
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    contact_[b] = std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[forces.outlines().offset[b]]));
+    contact_[b] =
+        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[forces.outlines().offset[b]]));
   });
 }
 

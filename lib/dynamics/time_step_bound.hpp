@@ -28,11 +28,12 @@ class TimeStepBound {
   double total(std::size_t body) const;
 
   const Model& model_;
-  std::vector<Lanes> direction_;            ///< power iteration's vectors, as Dofs::compliant
-  std::vector<Lanes> internal_;             ///< [batches] w_b^2, 1/s2
-  std::vector<double> contact_;             ///< [bodies] w_c^2, 1/s2
-  std::vector<double> contact_floor_;       ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
-  std::vector<double> compliance_;          ///< [bodies] w^2 per unit contact stiffness
+  std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant
+  std::vector<Lanes> internal_;   ///< [batches] w_b^2, 1/s2
+  std::vector<double> contact_;   ///< [bodies] w_c^2, 1/s2
+  std::vector<double>
+      contact_floor_;               ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
+  std::vector<double> compliance_;  ///< [bodies] w^2 per unit contact stiffness
 };
 
 }  // namespace pliant

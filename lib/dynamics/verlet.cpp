@@ -12,10 +12,10 @@
 namespace pliant {
 namespace {
 
-constexpr int bound_period = 50;         ///< steps between power iterations
-constexpr double first_step = 1e-3;      ///< of the bound
+constexpr int bound_period = 50;     ///< steps between power iterations
+constexpr double first_step = 1e-3;  ///< of the bound
 constexpr double least_factor = 0.5, largest_factor = 1.15;
-constexpr double exponent = 1.0 / 3.0;   ///< the estimate is of third order in dt
+constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in dt
 
 double controller_factor(double error, double tolerance) {
   if (error == 0) return largest_factor;
@@ -41,11 +41,14 @@ StepReport Verlet::step(State& state, double until) {
     report.governed_by = state.next_dt < largest ? "error" : "stability";
     const double remaining = until - state.time;
     const bool cut = dt >= remaining;
-    if (cut) dt = remaining, report.governed_by = "output";
-    else if (2 * dt > remaining) dt = 0.5 * remaining;
+    if (cut)
+      dt = remaining, report.governed_by = "output";
+    else if (2 * dt > remaining)
+      dt = 0.5 * remaining;
     predict(state, dt);
     const double end_time = cut ? until : state.time + dt;
-    report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state.position);
+    report.evaluation =
+        forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state.position);
     ++state.evaluations;
     report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
     const double factor = controller_factor(report.error, tolerance);
@@ -53,7 +56,8 @@ StepReport Verlet::step(State& state, double until) {
     if (report.error <= 2 * tolerance) {
       forces_.check(report.evaluation, end_time);
       // A step cut short to meet an output says little about the next one.
-      state.next_dt = std::min(std::max(dt * factor, dt < 0.5 * state.next_dt ? state.next_dt * least_factor : 0.0), largest);
+      state.next_dt =
+          std::min(std::max(dt * factor, dt < 0.5 * state.next_dt ? state.next_dt * least_factor : 0.0), largest);
       accept(state, dt);
       state.time = end_time;
       state.dissipated += report.evaluation.contact.dissipated;
@@ -74,13 +78,14 @@ void Verlet::predict(const State& state, double dt) {
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
-        trial_.position.compliant[i] =
-            state.position.compliant[i] + dt * state.velocity.compliant[i] + half * inverse_mass * state.force.compliant[i];
+        trial_.position.compliant[i] = state.position.compliant[i] + dt * state.velocity.compliant[i] +
+                                       half * inverse_mass * state.force.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i];
-        trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, x, state.time, dt)
-                                                 : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+        trial_.position.rigid[i] =
+            dof.imposed() ? imposed_position(dof, x, state.time, dt)
+                          : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
       });
 }
 
@@ -107,7 +112,8 @@ double Verlet::error(const State& state, double dt) const {
       return std::abs(trial_.force.rigid[3 * r + c] - state.force.rigid[3 * r + c]) * body.dof[c].inverse_mass;
     };
     const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
-    rigid = std::max(rigid, std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing : std::numeric_limits<double>::infinity());
+    rigid = std::max(rigid, std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing
+                                                 : std::numeric_limits<double>::infinity());
   }
   return dt * dt / 6 * std::max(compliant, rigid);
 }
@@ -121,12 +127,13 @@ void Verlet::accept(State& state, double dt) {
             state.velocity.compliant[i] + half * inverse_mass * (state.force.compliant[i] + trial_.force.compliant[i]);
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed()
-                                       ? imposed_velocity(dof, state.time + dt)
-                                       : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+        trial_.velocity.rigid[i] =
+            dof.imposed()
+                ? imposed_velocity(dof, state.time + dt)
+                : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
       });
-  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity, state.force, trial_.force,
-                                       state.time, dt);
+  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity,
+                                       state.force, trial_.force, state.time, dt);
   std::swap(state.position, trial_.position);
   std::swap(state.velocity, trial_.velocity);
   std::swap(state.force, trial_.force);
@@ -137,6 +144,5 @@ void Verlet::update_bound(const State& state, bool refreshed) {
   if (refreshed) bound_.update_contact(forces_);
   if (state.steps % bound_period == 0) bound_.update_internal(state.position);
 }
-
 
 }  // namespace pliant

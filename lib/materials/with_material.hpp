@@ -11,9 +11,12 @@ namespace pliant {
 template <class Action>
 auto with_material(MaterialLaw law, Action&& action) {
   switch (law) {
-    case MaterialLaw::neo_hookean_quadratic: return action(NeoHookeanQuadratic{});
-    case MaterialLaw::melody: return action(Melody{});
-    default: return action(NeoHookean{});
+    case MaterialLaw::neo_hookean_quadratic:
+      return action(NeoHookeanQuadratic{});
+    case MaterialLaw::melody:
+      return action(Melody{});
+    default:
+      return action(NeoHookean{});
   }
 }
 

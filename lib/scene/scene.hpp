@@ -41,10 +41,10 @@ struct Material {
 struct ShapeSpec {
   std::string name;
   ShapeKind kind = ShapeKind::disc;
-  double diameter = 0;           ///< disc: diameter of the circle whose area the polygon has, m
-  Points points;                 ///< polygon: counter-clockwise, m
-  std::optional<int> nodes;      ///< field nodes of a compliant body of this shape ...
-  std::optional<double> spacing; ///< ... or their distance, m: exactly one of the two is given
+  double diameter = 0;               ///< disc: diameter of the circle whose area the polygon has, m
+  Points points;                     ///< polygon: counter-clockwise, m
+  std::optional<int> nodes;          ///< field nodes of a compliant body of this shape ...
+  std::optional<double> spacing;     ///< ... or their distance, m: exactly one of the two is given
   std::optional<int> outline_nodes;  ///< overrides the number of outline nodes
 };
 
@@ -65,13 +65,13 @@ struct MixEntry {
 
 /// v(r) = uniform + rotation x r + gradient r, r from the body's own centre.
 struct InitialVelocity {
-  Vec2 uniform{0, 0};                                   ///< m/s
-  double rotation = 0;                                  ///< rad/s, counter-clockwise
-  Eigen::Matrix2d gradient = Eigen::Matrix2d::Zero();   ///< 1/s; compliant bodies only
+  Vec2 uniform{0, 0};                                  ///< m/s
+  double rotation = 0;                                 ///< rad/s, counter-clockwise
+  Eigen::Matrix2d gradient = Eigen::Matrix2d::Zero();  ///< 1/s; compliant bodies only
 };
 
 struct Grains {
-  std::string name;   ///< default "grains", "grains2", ...
+  std::string name;  ///< default "grains", "grains2", ...
   std::string shape;
   Packing packing;
   std::vector<MixEntry> mix;  ///< one entry when the scene gives `body` and `material` directly
@@ -89,10 +89,10 @@ struct Drive {
 /// Half-round bumps of discs on a wall, one column after another across the period, joined by straight segments.
 struct Caps {
   double diameter = 0;
-  int count = 0;                     ///< over the period: pitch = period / count
-  double first = 0;                  ///< x of the first cap's centre, m
-  std::vector<double> heights;       ///< cyclic: height of the cap centres above `level` towards the grains, m
-  std::vector<double> half_angles;   ///< cyclic: arc kept on either side of the wall's normal, rad, in (0, pi/2)
+  int count = 0;                    ///< over the period: pitch = period / count
+  double first = 0;                 ///< x of the first cap's centre, m
+  std::vector<double> heights;      ///< cyclic: height of the cap centres above `level` towards the grains, m
+  std::vector<double> half_angles;  ///< cyclic: arc kept on either side of the wall's normal, rad, in (0, pi/2)
 };
 
 /// A wall spans the period in x; its outline is an open line that continues periodically.
@@ -100,15 +100,15 @@ struct Wall {
   std::string name;
   std::string material;
   enum class Solid { below, above } solid = Solid::below;  ///< on which side of the line the wall is solid
-  double level = 0;        ///< y of the flat line, or of the cap centres of height 0, m
-  double spacing = 0;      ///< outline spacing; 0: the finest outline of the grains
-  double thickness = 0;    ///< mass = density x period x thickness; m
+  double level = 0;                                        ///< y of the flat line, or of the cap centres of height 0, m
+  double spacing = 0;                                      ///< outline spacing; 0: the finest outline of the grains
+  double thickness = 0;                                    ///< mass = density x period x thickness; m
   std::optional<Caps> caps;
-  Drive x, y;              ///< rotation is blocked
+  Drive x, y;  ///< rotation is blocked
 };
 
 struct ContactRule {
-  std::string first, second;   ///< material names; both "all" for the rule that applies where no other does
+  std::string first, second;  ///< material names; both "all" for the rule that applies where no other does
   ContactLawKind law = ContactLawKind::frictionless;
   std::optional<double> stiffness;        ///< kn, Pa/m; nullopt: auto
   std::optional<double> shear_stiffness;  ///< kt, Pa/m; nullopt: equal to kn
@@ -128,7 +128,7 @@ struct Probe {
 };
 
 struct Frames {
-  double period = 0;  ///< s; 0: no frames
+  double period = 0;                ///< s; 0: no frames
   std::vector<std::string> fields;  ///< of: velocity, von_mises, jacobian, pressure, contact_pressure; kind always
 };
 
@@ -144,12 +144,12 @@ struct TimeSettings {
 
 struct DiscretisationSettings {
   Recipe recipe = Recipe::mls;
-  int support = 8;        ///< nodal support radius = distance to the support-th nearest node
-  int gauss_points = 3;   ///< mls-gauss: 1, 3 or 6
+  int support = 8;       ///< nodal support radius = distance to the support-th nearest node
+  int gauss_points = 3;  ///< mls-gauss: 1, 3 or 6
 };
 
 struct Scene {
-  std::string name;   ///< file name without folder and extension
+  std::string name;  ///< file name without folder and extension
   std::string title;
   std::filesystem::path file;
   std::optional<double> period;  ///< m

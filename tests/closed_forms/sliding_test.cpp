@@ -45,23 +45,16 @@ Stop stop_of(double friction, double speed, double safety) {
 }
 
 /// Friction is mu times the normal force, whose mean is the weight. While the block rocks and hops on its stiffness with frequency w, its
-/// vertical momentum is some m g/w, so u errs by mu g/w = 1e-3 of u0: of that order is the distance's error, and five hops the time's.
+/// vertical momentum is some m g/w, so u errs by mu g/w = 1e-3 of u0: of that order is the distance's error, and five hops the time's. The step
+/// adds nothing, because friction acts from the first step of each new contact.
 TEST(SlidingBlock, stops_after_u0_over_mu_g) {
   const double friction = 0.3, speed = 1;
-  const Stop stop = stop_of(friction, speed, 0.05);
-  EXPECT_NEAR(stop.time * friction * g / speed, 1, 5e-3) << "EXACT: u0/(mu g)";
-  EXPECT_NEAR(stop.distance * 2 * friction * g / (speed * speed), 1, 1e-3) << "EXACT: u0^2/(2 mu g)";
-}
-
-/// Large steps miss friction: a node that comes into touch has no slip before its second step. The error falls with the step, at order one at
-/// least; two is that of Verlet's rocking.
-TEST(SlidingBlock, distance_converges_with_the_step) {
-  const auto error = [](double safety) { return stop_of(0.3, 1, safety).distance * 2 * 0.3 * g - 1; };
-  const double errors[] = {error(0.8), error(0.2), error(0.05)};
-  EXPECT_LT(std::abs(errors[1]), std::abs(errors[0]));
-  const double order = observed_order(errors[0], errors[2], 16);
-  EXPECT_GT(order, 1) << "RATE";
-  EXPECT_LT(order, 3) << "RATE";
+  for (const double safety : {0.8, 0.2, 0.05}) {
+    const Stop stop = stop_of(friction, speed, safety);
+    EXPECT_NEAR(stop.time * friction * g / speed, 1, 5e-3) << "EXACT: u0/(mu g), safety " << safety;
+    EXPECT_NEAR(stop.distance * 2 * friction * g / (speed * speed), 1, 1e-3)
+        << "EXACT: u0^2/(2 mu g), safety " << safety;
+  }
 }
 
 /// All kinetic energy goes into friction but what swings on in hopping and in the elastic slip, (mu p)^2/(2 kt) a length.
@@ -162,7 +155,8 @@ Descent roll_down(double degrees, double friction, int sides) {
   Simulation simulation(model);
   const double penetration = radius - rigid(simulation.state().position, 0)[1];
   advance(simulation, 0.3);
-  return {rigid(simulation.state().position, 0)[0] - 0.3, -rigid(simulation.state().velocity, 0)[2] * radius, penetration};
+  return {rigid(simulation.state().position, 0)[0] - 0.3, -rigid(simulation.state().velocity, 0)[2] * radius,
+          penetration};
 }
 
 /// tan(theta) <= 3 mu: rolls with a = 2/3 g sin(theta). The lever errs by d/R as above. Nodes that pass through the half width A of contact
@@ -172,7 +166,8 @@ TEST(Incline, disc_rolls_with_two_thirds_of_the_slope) {
     const Descent descent = roll_down(degrees, friction, 1000);
     const double slope = degrees * std::numbers::pi / 180, a = 2.0 / 3 * g * std::sin(slope);
     const double half_width = std::sqrt(2 * radius * descent.penetration);
-    const double tolerance = descent.penetration / radius + std::tan(slope) / 3 * 2 / 3 * descent.penetration / half_width;
+    const double tolerance =
+        descent.penetration / radius + std::tan(slope) / 3 * 2 / 3 * descent.penetration / half_width;
     EXPECT_LT(tolerance, 6e-3);
     EXPECT_NEAR(descent.way / (0.5 * a * 0.09), 1, tolerance) << "EXACT, " << degrees << " degrees";
     EXPECT_NEAR(descent.spin / (a * 0.3), 1, tolerance) << "EXACT";
@@ -195,12 +190,12 @@ TEST(Incline, disc_slides_where_it_is_too_steep) {
 TEST(Incline, converges_with_the_number_of_sides) {
   const double limit = roll_down(10, 0.2, 1000).way;
   const double coarse = roll_down(10, 0.2, 60).way - limit, middle = roll_down(10, 0.2, 170).way - limit,
-               fine = roll_down(10, 0.2, 480).way - limit;
+               fine = roll_down(10, 0.2, 340).way - limit;
   EXPECT_LT(std::abs(middle), std::abs(coarse));
   EXPECT_LT(std::abs(fine), std::abs(middle));
-  const double order = observed_order(coarse, fine, 8);
+  const double order = observed_order(coarse, fine, 340.0 / 60);
   EXPECT_GT(order, 1.5) << "RATE";
-  EXPECT_LT(order, 4.5) << "RATE";
+  EXPECT_LT(order, 3.5) << "RATE";
 }
 
 }  // namespace

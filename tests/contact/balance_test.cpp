@@ -187,6 +187,7 @@ TEST(ContactEnergy, StickingForceIsItsGradientUnderPressure) {
              random.uniform(0, 6));
     ContactRig rig(scene);
     press_together(rig, random, 0.02);
+    deform(rig, random, 0.01);
     expect_sticking_gradient(rig, 0.004);
   }
 }
@@ -204,6 +205,7 @@ TEST(ContactEnergy, StickingForceIsItsGradientUnderTension) {
     add_body(scene, outline_shape("block", rectangle(1.03, 0.6, 0.12), 80), kind,
              {random.uniform(-0.5, 0.5), 0.55 + random.uniform(0.003, 0.03)});
     ContactRig rig(scene);
+    deform(rig, random, 0.002);
     expect_sticking_gradient(rig, 0.002);
   }
 }

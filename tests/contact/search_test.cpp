@@ -157,6 +157,67 @@ TEST(ContactSearch, MissesNoContactInAMovingHeap) {
   EXPECT_GT(rig.dissipated, 0.001);
 }
 
+// Two bodies fly at each other, turning, from beyond every margin until they overlap; each step is far below the skin.
+void approach(Random& random, const ContactRule& rule) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  for (int i = 0; i < 2; ++i)
+    add_body(scene, outline_shape("outline", random_outline(random, random.below(5))), BodyKind::rigid, {0, 0},
+             random.uniform(0, 6));
+  ContactRig rig(scene);
+  press_together(rig, random, 0.04);
+  const Vec2 d = 0.15 * rig.contact.skin() * Vec2(rig.rigid(1)[0], rig.rigid(1)[1]).normalized();
+  const double share = random.uniform(-1, 2), turn = 0.1 * rig.contact.skin() * random.uniform(-1, 1);
+  const int steps = static_cast<int>(0.6 / d.norm());
+  rig.move(1, steps * d);
+  rig.turn(0, -steps * turn);
+  ContactOracle oracle(rig, rule);
+  for (int step = 0; step < steps; ++step) {
+    rig.move(1, -share * d);
+    rig.move(0, (1 - share) * d);
+    rig.turn(0, turn);
+    rig.evaluate();
+    if (steps - step > 0.1 / d.norm()) continue;
+    const ContactOracle::Result expected = oracle.evaluate();
+    if (expected.outside_truth > 0) return;
+    EXPECT_EQ(rig.totals.contacts, expected.contacts) << "step " << step;
+  }
+}
+
+// INDEPENDENT: the first contact of bodies that were strangers before is found in its step.
+TEST(ContactSearch, SeesBodiesComing) {
+  for (int sample = 0; sample < 30; ++sample) {
+    SCOPED_TRACE(sample);
+    Random random(sample + 4000);
+    approach(random, rules[sample % 3]);
+  }
+}
+
+// EXACT: a refresh is asked for before two close bodies have moved by the skin against each other, whoever moves and turns.
+TEST(ContactSearch, AsksForARefreshInTime) {
+  const auto asks = [](double first, double second, double turn) {
+    Scene scene = bare_scene();
+    scene.contacts = {rules[0]};
+    for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {2.01 * i, 0});
+    ContactRig rig(scene);
+    rig.refresh();
+    const double skin = rig.contact.skin();
+    rig.move(0, {0, first * skin});
+    rig.move(1, {0, second * skin});
+    rig.turn(1, turn * skin);  // at radius 1
+    update_outlines(rig.model, rig.q, rig.outlines);
+    return rig.contact.refresh_needed(rig.outlines);
+  };
+  EXPECT_FALSE(asks(0, 0, 0));
+  EXPECT_FALSE(asks(0.9, 0, 0));
+  EXPECT_FALSE(asks(2, 2, 0));  // together
+  EXPECT_TRUE(asks(1.01, 0, 0));
+  EXPECT_TRUE(asks(0, -1.01, 0));
+  EXPECT_TRUE(asks(0.51, -0.51, 0));
+  EXPECT_TRUE(asks(0, 0, 1.01));
+  EXPECT_TRUE(asks(0.3, 0.3 - 0.51, 0.51));
+}
+
 // EXACT, bit by bit (DESIGN 5): one thread or five.
 TEST(ContactSearch, DoesNotDependOnThreads) {
   std::vector<std::vector<double>> forces;

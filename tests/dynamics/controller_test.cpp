@@ -27,7 +27,8 @@ TEST(Controller, factors_stay_within_their_clamps) {
     const double largest = simulation.largest_dt();
     const StepReport report = simulation.step(1e9);
     rejections += report.rejections;
-    EXPECT_LE(report.dt, 1.15 * before * std::pow(0.9, report.rejections) * (1 + 1e-12)) << "EXACT, t = " << simulation.state().time;
+    EXPECT_LE(report.dt, 1.15 * before * std::pow(0.9, report.rejections) * (1 + 1e-12))
+        << "EXACT, t = " << simulation.state().time;
     EXPECT_GE(report.dt, std::min(0.5 * before, largest) * std::pow(0.5, report.rejections) * (1 - 1e-12)) << "EXACT";
     before = report.dt;
   }
@@ -87,7 +88,8 @@ std::string failure_of(const Scene& scene) {
 }
 
 void expect_words(const std::string& text, const std::vector<std::string>& words) {
-  for (const std::string& word : words) EXPECT_NE(text.find(word), std::string::npos) << "no '" << word << "' in: " << text;
+  for (const std::string& word : words)
+    EXPECT_NE(text.find(word), std::string::npos) << "no '" << word << "' in: " << text;
 }
 
 TEST(Failure, time_step_under_its_floor_says_so) {
@@ -121,7 +123,9 @@ TEST(Failure, stops_at_the_last_good_state) {
   EXPECT_GT(before.time, 2) << "the gap of 0.5 closes at 2.5";
   EXPECT_LT(before.time, 8);
   EXPECT_EQ(simulation.state().time, before.time) << "EXACT";
-  EXPECT_EQ(mass_mean(model, model.bodies[0], simulation.state().position), mass_mean(model, model.bodies[0], before.position)) << "EXACT";
+  EXPECT_EQ(mass_mean(model, model.bodies[0], simulation.state().position),
+            mass_mean(model, model.bodies[0], before.position))
+      << "EXACT";
   EXPECT_TRUE(std::isfinite(simulation.audit().energy.mechanical()));
 }
 
@@ -131,7 +135,8 @@ TEST(Failure, inverted_grain_is_named_with_its_time) {
   Bench bench(scene);
   for (std::size_t i = 0; i < bench.state.position.compliant.size(); i += 2) bench.state.position.compliant[i] *= -0.3;
   ContactHistory trial;
-  const Evaluation evaluation = bench.forces.evaluate(bench.state.position, 2.5, bench.state.history, trial, bench.state.force);
+  const Evaluation evaluation =
+      bench.forces.evaluate(bench.state.position, 2.5, bench.state.history, trial, bench.state.force);
   EXPECT_FALSE(evaluation.sound);
   EXPECT_NEAR(evaluation.least_jacobian, -0.3, 1e-12) << "EXACT: linear completeness";
   try {

@@ -18,15 +18,18 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
 }
 
-bool same_bits(const Dofs& a, const Dofs& b) { return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid); }
+bool same_bits(const Dofs& a, const Dofs& b) {
+  return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid);
+}
 
-/// Arc coordinates and slips of the contacts that are known, in an order of their own: a refresh may move records.
+/// Arc coordinates and slips of the nodes that slip, in an order of their own: a refresh may move records, and know more or fewer nodes
+/// that are near but not in touch.
 std::vector<std::pair<double, double>> records(const ContactHistory& history) {
-  std::vector<std::pair<double, double>> known;
+  std::vector<std::pair<double, double>> slipping;
   for (std::size_t i = 0; i < history.arc.size(); ++i)
-    if (!std::isnan(history.arc[i])) known.emplace_back(history.arc[i], history.slip[i]);
-  std::sort(known.begin(), known.end());
-  return known;
+    if (history.slip[i] != 0) slipping.emplace_back(history.arc[i], history.slip[i]);
+  std::sort(slipping.begin(), slipping.end());
+  return slipping;
 }
 
 /// A step that was rejected at least once, and the same step taken at once from a copy of everything before it.

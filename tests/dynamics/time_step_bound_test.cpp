@@ -44,14 +44,18 @@ TEST_P(InternalBound, lies_within_its_margin_above_the_true_eigenvalue) {
   deform(bench, F);
   const double truth = largest_square_frequency(bench), bound = bound_of(bench);
   EXPECT_GE(bound, truth) << "INDEPENDENT: dense eigenvalues; a smaller bound is unstable at safety 1";
-  EXPECT_LE(bound, 1.05 * truth * (1 + 1e-4)) << "INDEPENDENT: a Rayleigh quotient is at most w^2; 1e-4: finite differences";
+  EXPECT_LE(bound, 1.05 * truth * (1 + 1e-4))
+      << "INDEPENDENT: a Rayleigh quotient is at most w^2; 1e-4: finite differences";
 }
 
-Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) { return (Eigen::Matrix2d() << xx, xy, yx, yy).finished(); }
+Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
+  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
+}
 
 INSTANTIATE_TEST_SUITE_P(Discs, InternalBound,
                          ::testing::Values(std::pair(40, matrix(1, 0, 0, 1)), std::pair(100, matrix(1, 0, 0, 1)),
-                                           std::pair(60, matrix(0.6, 0, 0, 1.2)), std::pair(60, matrix(1.2, 0.3, -0.1, 0.85))));
+                                           std::pair(60, matrix(0.6, 0, 0, 1.2)),
+                                           std::pair(60, matrix(1.2, 0.3, -0.1, 0.85))));
 
 /// Bodies already in touch: the bound covers the spectrum of internal and contact forces together.
 Scene two_compliant_discs(const ContactRule& contact) {
@@ -77,7 +81,8 @@ Scene mixed_column(const ContactRule& contact) {
   scene.period = 4;
   scene.grains = {grains("soft", "disc", BodyKind::compliant, {{2, 1.95}}),
                   grains("hard", "disc", BodyKind::rigid, {{2, 0}})};
-  scene.walls = {flat_wall("floor", Wall::Solid::below, -0.98, 0.25), flat_wall("lid", Wall::Solid::above, 2.93, 0.25, 0.5)};
+  scene.walls = {flat_wall("floor", Wall::Solid::below, -0.98, 0.25),
+                 flat_wall("lid", Wall::Solid::above, 2.93, 0.25, 0.5)};
   scene.walls[1].x.mode = scene.walls[1].y.mode = Drive::Mode::pressure;
   scene.walls[1].x.history = scene.walls[1].y.history = constant(0);
   scene.contacts = {contact};
@@ -85,8 +90,8 @@ Scene mixed_column(const ContactRule& contact) {
 }
 
 std::vector<Scene> touching_scenes(const ContactRule& contact) {
-  return {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact), disc_on_wall(BodyKind::rigid, contact),
-          mixed_column(contact)};
+  return {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact),
+          disc_on_wall(BodyKind::rigid, contact), mixed_column(contact)};
 }
 
 int contacts_of(Bench& bench) {
@@ -111,7 +116,8 @@ TEST_P(ContactBound, covers_contacts_of_every_kind_of_body) {
 /// halved by it, not less, where compliant bodies govern.
 TEST_P(ContactBound, is_of_use) {
   const ContactRule contact = smooth(GetParam());
-  for (const Scene& scene : {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact), mixed_column(contact)}) {
+  for (const Scene& scene :
+       {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact), mixed_column(contact)}) {
     Bench bench(scene);
     EXPECT_LE(bound_of(bench), 4 * largest_square_frequency(bench, 1e-7)) << "FROZEN: 3.5 when written";
   }

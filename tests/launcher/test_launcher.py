@@ -182,7 +182,7 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
     assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build", "lint", "format"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build", "bench", "lint", "format"])
 def test_every_command_has_help_with_an_example(launcher: Launcher, command: str) -> None:
     result = launcher(command, "--help")
     assert result.returncode == 0

@@ -36,8 +36,9 @@ struct Bench {
 inline double distance(const State& a, const State& b) {
   double largest_difference = 0;
   for (std::size_t i = 0; i < a.position.compliant.size(); ++i)
-    largest_difference = std::max({largest_difference, std::abs(a.position.compliant[i][0] - b.position.compliant[i][0]),
-                                   std::abs(a.velocity.compliant[i][0] - b.velocity.compliant[i][0])});
+    largest_difference =
+        std::max({largest_difference, std::abs(a.position.compliant[i][0] - b.position.compliant[i][0]),
+                  std::abs(a.velocity.compliant[i][0] - b.velocity.compliant[i][0])});
   return largest_difference;
 }
 

@@ -161,13 +161,15 @@ class ContactOracle {
                Result& result) {
     const double weight = 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
     const double start = old ? old->slip : 0;
+    const double here = point ? arc(master, point->segment) + point->xi * point->reference_length : 0;
     if (!point || point->gap >= law_.reach()) {
+      // The place is remembered before the touch, so that slip counts from the first step of it.
+      if (point) trial_[{slave, k, master, image}] = {here, 0};
       result.dissipated += weight * 0.5 * law_.kt() * start * start;
       return;
     }
     ++result.contacts;
     result.deepest = std::max(result.deepest, -point->gap / point->length);
-    const double here = arc(master, point->segment) + point->xi * point->reference_length;
     double moved = old ? here - old->arc : 0;
     const double turn = arc(master, rig_.count(master));
     moved -= turn * std::round(moved / turn);

@@ -142,7 +142,8 @@ inline Scene small_third_body(double end) {
   layer.seed = 3;
   layer.angle.reset();
   scene.grains = {layer};
-  scene.walls = {flat_wall("lower", Wall::Solid::below, -1.02, 0.25), flat_wall("upper", Wall::Solid::above, 7.05, 0.25)};
+  scene.walls = {flat_wall("lower", Wall::Solid::below, -1.02, 0.25),
+                 flat_wall("upper", Wall::Solid::above, 7.05, 0.25)};
   scene.walls[1].x = {Drive::Mode::velocity, {{0, 1}, {0, 0.1}}};
   scene.walls[1].y = {Drive::Mode::pressure, {{0, 2}, {0, 0.1}}};
   scene.contacts = {contact_rule(ContactLawKind::cohesive, 0)};
