@@ -193,7 +193,8 @@ TEST(ContactSearch, SeesBodiesComing) {
   }
 }
 
-// EXACT: a refresh is asked for before two close bodies have moved by the skin against each other, whoever moves and turns.
+// EXACT: a refresh is asked for before two close bodies have moved by the skin against each other, whoever moves and
+// turns.
 TEST(ContactSearch, AsksForARefreshInTime) {
   const auto asks = [](double first, double second, double turn) {
     Scene scene = bare_scene();

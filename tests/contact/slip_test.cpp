@@ -130,6 +130,22 @@ TEST(ContactSlip, WorkOnATurningSurfaceConverges) {
   }
 }
 
+// A disc slid over a bar. Slip is counted along the outline, but a node at the depth g inside a surface of curvature
+// 1/R moves (1 - |g|/R) times as far: on a convex master more is booked as dissipated than is done as work. The share
+// is at most depth/R, whatever the step; EXACT as a bound.
+TEST(ContactSlip, CurvatureOverestimatesDissipationByLessThanDepthOverRadius) {
+  for (const double depth : {0.005, 0.02}) {
+    Scene scene = bare_scene();
+    scene.contacts = {mohr_coulomb(100, 0.3)};
+    add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
+    add_body(scene, disc_shape("disc", 2, 48), BodyKind::rigid, {-0.5, 1 - depth}, 0.1);
+    ContactRig rig(scene);
+    const WorkBalance balance = follow(rig, [](double s) { return Vec2(s, 0); }, 2000);
+    EXPECT_GT(balance.dissipated, 0.02);
+    EXPECT_LT(std::abs(balance.defect()), depth * balance.dissipated);
+  }
+}
+
 // EXACT: a bond torn open under shear sets its tangential energy free: all of it is dissipated, none lost.
 TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
   for (const ContactRule& rule : {mohr_coulomb(100, 0.3, 5), cohesive(100, 0.5, 0.02, 5)}) {

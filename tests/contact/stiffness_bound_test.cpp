@@ -150,6 +150,17 @@ TEST(StiffnessBound, Cluster) {
   }
 }
 
+// Neighbours that move against each other: twice the stiffness that each alone would see.
+TEST(StiffnessBound, StackOfPlates) {
+  for (const ContactRule& rule : rules) {
+    Scene scene = bare_scene();
+    scene.contacts = {rule};
+    scene.shapes = {outline_shape("plate", rectangle(2, 0.2, 0.1))};
+    for (int i = 0; i < 6; ++i) add_grain(scene, "plate", BodyKind::rigid, {0.011 * i, 0.195 * i});
+    expect_bounded(scene, "plates");
+  }
+}
+
 // EXACT: it holds until the next refresh, wherever bodies go within the skin.
 TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
   Random random(5);

@@ -92,6 +92,24 @@ void expect_equal(const Twins& twins) {
   EXPECT_EQ(records(twins.retried.history), records(twins.direct.history)) << "EXACT, t = " << twins.direct.time;
 }
 
+/// A trial that tears a sticking contact apart rebuilds the candidates; where the step started, everything is as it was.
+TEST(Rejection, a_trial_far_away_loses_no_record) {
+  Bench bench(fast_slide(Integrator::verlet));
+  Verlet integrator(bench.forces, bench.state);
+  while (bench.state.time < 1) integrator.step(bench.state, 1);
+  State& state = bench.state;
+  const auto before = records(state.history);
+  ASSERT_FALSE(before.empty());
+  Dofs away = state.position, force = state.force;
+  away.rigid[1] += 5;
+  ContactHistory trial;
+  EXPECT_FALSE(bench.forces.evaluate(away, 1, state.history, trial, force, &state.position).sound)
+      << "EXACT: further than the skin";
+  EXPECT_EQ(records(state.history), before) << "EXACT";
+  EXPECT_TRUE(bench.forces.evaluate(state.position, 1, state.history, trial, force, &state.position).sound);
+  EXPECT_TRUE(same_bits(force.rigid, state.force.rigid)) << "EXACT";
+}
+
 TEST(Rejection, leaves_no_trace_in_verlet) {
   EXPECT_GT(compare_rejected_steps<Verlet>(impact(Integrator::verlet), expect_equal), 0);
   int refreshed = 0;

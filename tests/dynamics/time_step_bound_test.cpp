@@ -89,9 +89,19 @@ Scene mixed_column(const ContactRule& contact) {
   return scene;
 }
 
+/// Rigid blocks that stick to each other on all sides: neighbours that move against each other double what each feels alone.
+Scene masonry(const ContactRule& contact) {
+  Scene scene = empty_scene(1);
+  scene.shapes = {box_shape("block", 1, 1, 0.1)};
+  scene.grains = {grains("blocks", "block", BodyKind::rigid, {})};
+  scene.grains[0].packing = {PackingKind::grid, 4, 4, 0.99, 0.99, {0, 0}, {}};
+  scene.contacts = {contact};
+  return scene;
+}
+
 std::vector<Scene> touching_scenes(const ContactRule& contact) {
   return {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact),
-          disc_on_wall(BodyKind::rigid, contact), mixed_column(contact)};
+          disc_on_wall(BodyKind::rigid, contact), mixed_column(contact), masonry(contact)};
 }
 
 int contacts_of(Bench& bench) {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+
+#include "dynamics/simulation.hpp"
+
+namespace pliant {
+
+/// The line that says how a run is doing: time, dt and what governs it, evaluations per second, energy balance, time left.
+/// Redrawn every second on a terminal, a line every ten seconds otherwise.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet);
+  /// Cheap when no line is due. Returns the audit it took, if any, through `audit`.
+  bool show_if_due(Simulation& simulation, const StepReport& report, Audit& audit);
+  void finish() const;
+  double seconds() const;  ///< since construction
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool quiet_, terminal_;
+  Clock::time_point start_, last_;
+  long last_evaluations_ = 0;
+};
+
+}  // namespace pliant

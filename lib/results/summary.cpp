@@ -1,0 +1,56 @@
+#include "results/summary.hpp"
+
+#include <algorithm>
+
+#include <sys/resource.h>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "build_info.hpp"
+
+namespace pliant {
+
+long peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * 1024L;
+}
+
+std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& failure) {
+  const State& state = simulation.state();
+  const Model& model = simulation.model();
+  const Audit audit = simulation.audit();
+  const Energies& e = audit.energy;
+  nlohmann::ordered_json json;
+  json["scene"] = model.scene.name;
+  json["title"] = model.scene.title;
+  json["status"] = failure.empty() ? "finished" : "failed: " + failure;
+  json["time"] = state.time;
+  json["end"] = model.scene.time.end;
+  json["state_hash"] = fmt::format("{:016x}", state_hash(state));
+  json["evaluations"] = state.evaluations;
+  json["steps"] = state.steps;
+  json["rejections"] = state.rejections;
+  json["preparation_seconds"] = figures.preparation_seconds;
+  json["wall_seconds"] = figures.wall_seconds;
+  json["evaluations_per_second"] =
+      figures.wall_seconds > 0 ? static_cast<double>(figures.evaluations) / figures.wall_seconds : 0.0;
+  json["energy"] = {{"kinetic", e.kinetic},
+                    {"strain", e.strain},
+                    {"contact", e.contact},
+                    {"dissipated", e.dissipated},
+                    {"external_work", e.external_work},
+                    {"balance_error", simulation.balance_error(e)}};
+  json["momentum_error"] = std::max(figures.worst_momentum_error, audit.momentum_error);
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["bodies"] = model.bodies.size();
+  json["nodes"] = model.node_count();
+  json["dofs"] = model.dof_count();
+  json["commit"] = build_commit;
+  json["compiler"] = build_compiler;
+  json["threads"] = figures.threads;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace pliant
