@@ -23,7 +23,9 @@ void expect_lengths(const OutlineShape& shape) {
     EXPECT_NEAR(shape.segment_length[i], after, 1e-14);
     EXPECT_NEAR(shape.tributary_length[i], (before + after) / 2, 1e-14);
     EXPECT_NEAR(shape.arc[i], arc, 1e-13);
-    if (i == n) EXPECT_NEAR(shape.perimeter, arc, 1e-13);
+    if (i == n) {
+      EXPECT_NEAR(shape.perimeter, arc, 1e-13);
+    }
     arc += after;
   }
   EXPECT_NEAR(shape.spacing, shape.perimeter / n, 1e-15);

@@ -1,4 +1,5 @@
-// What moves bodies from outside: imposed histories, forces and pressures, gravity, and the work that they do (METHOD 5).
+// What moves bodies from outside: imposed histories, forces and pressures, gravity, and the work that they do (METHOD
+// 5).
 #include "boundary/loads.hpp"
 
 #include <gtest/gtest.h>
@@ -152,7 +153,8 @@ TEST(Work, of_an_imposed_acceleration_is_the_kinetic_energy_of_the_wall) {
   EXPECT_NEAR(energy.external_work, energy.kinetic, 1e-12) << "EXACT";
 }
 
-/// A plate moved at constant speed does minus the contact force on it times its way; here summed from the contact forces of each step.
+/// A plate moved at constant speed does minus the contact force on it times its way; here summed from the contact
+/// forces of each step.
 TEST(Work, of_an_imposed_motion_is_that_of_the_contact_forces_against_it) {
   Scene scene = lone_wall(3, Wall::Solid::above);
   scene.shapes = {disc_shape("disc", 2, 60)};

@@ -1,5 +1,5 @@
-// One compliant disc against finite element solutions of the continuum (dolfinx 0.5.2, quadratic triangles, extrapolated; errors below 2e-4).
-// Units mu = R = rho = 1, lambda = 4, neo-Hookean, plane strain (VERIFICATION 2).
+// One compliant disc against finite element solutions of the continuum (dolfinx 0.5.2, quadratic triangles,
+// extrapolated; errors below 2e-4). Units mu = R = rho = 1, lambda = 4, neo-Hookean, plane strain (VERIFICATION 2).
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -32,7 +32,8 @@ Scene disc_between_plates(int nodes) {
   return scene;
 }
 
-/// Mean force on both plates over one oval period about the moment at which they have approached by this share of the diameter.
+/// Mean force on both plates over one oval period about the moment at which they have approached by this share of the
+/// diameter.
 double mean_force(Simulation& simulation, double approach) {
   const double moment = (2 * gap + 2 * approach) / plate_speed + ramp / 2;
   advance(simulation, moment - oval_period / 2);
@@ -58,9 +59,9 @@ PlateErrors plate_errors(int nodes) {
   return {first, second};
 }
 
-/// Penalty: -0.45 % at kn = 1e3, so -0.15 % here. Averaging ringing: 0.3 %. The polygon's poles stand out by up to 1.4e-3 at 168 nodes and 2e-4
-/// at 700, or fall short: as much approach, worth 1.15/D of the force: 3.3 % and 0.4 % at D = 5 %, half of it at 10 %. `mls` itself: second
-/// order, like the poles.
+/// Penalty: -0.45 % at kn = 1e3, so -0.15 % here. Averaging ringing: 0.3 %. The polygon's poles stand out by up to
+/// 1.4e-3 at 168 nodes and 2e-4 at 700, or fall short: as much approach, worth 1.15/D of the force: 3.3 % and 0.4 %
+/// at D = 5 %, half of it at 10 %. `mls` itself: second order, like the poles.
 TEST(DiscBetweenPlates, force_at_5_and_10_percent) {
   const PlateErrors coarse = plate_errors(168), middle = plate_errors(340), fine = plate_errors(700);
   EXPECT_NEAR(coarse.at_5_percent, 0, 0.04) << "INDEPENDENT: dolfinx";
@@ -127,8 +128,8 @@ SwingErrors swing_errors(int nodes) {
   return errors;
 }
 
-/// Lumped mass and `mls` make the oval mode 1.6 % slow at 168 nodes and 0.36 % at 700 (VERIFICATION 2): the times err as much. Amplitudes
-/// collect the phases of the higher modes too, which err by 5 and 1.1 %: some of that.
+/// Lumped mass and `mls` make the oval mode 1.6 % slow at 168 nodes and 0.36 % at 700 (VERIFICATION 2): the times err
+/// as much. Amplitudes collect the phases of the higher modes too, which err by 5 and 1.1 %: some of that.
 TEST(FreeOscillation, maxima_against_the_continuum) {
   const SwingErrors coarse = swing_errors(168), middle = swing_errors(350), fine = swing_errors(700);
   EXPECT_LT(coarse.time, 0.016 * 1.25) << "INDEPENDENT: dolfinx, errors 3e-5";

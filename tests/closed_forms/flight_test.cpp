@@ -33,7 +33,8 @@ Momentum momentum_of(const Model& model, const State& state) {
   return total;
 }
 
-/// A spinning compliant disc is stretched by its spin, so only its centre moves in a closed form; its momenta never change.
+/// A spinning compliant disc is stretched by its spin, so only its centre moves in a closed form; its momenta never
+/// change.
 TEST(FreeFlight, momenta_stay_and_centres_move_straight) {
   Scene scene = empty_scene(20);
   scene.shapes = {disc_shape("disc", 2, 60)};
@@ -76,15 +77,16 @@ std::vector<double> apexes(double safety, int count) {
   return heights;
 }
 
-/// Without friction and damping e = 1: h_k = h_0. A bounce is symmetric in time, so of Verlet's energy error of (w dt)^2/4 in contact, 4 % at a
-/// fifth of the bound, little is left after it: a tenth of the 1 % that is promised.
+/// Without friction and damping e = 1: h_k = h_0. A bounce is symmetric in time, so of Verlet's energy error of (w
+/// dt)^2/4 in contact, 4 % at a fifth of the bound, little is left after it: a tenth of the 1 % that is promised.
 TEST(Bounce, elastic_disc_returns_to_its_height) {
   for (const double safety : {0.2, 0.1, 0.05})
     for (const double height : apexes(safety, 3))
       EXPECT_NEAR((height - 1.5) / 0.5, 0, 1e-3) << "EXACT, safety " << safety;
 }
 
-/// Two equal compliant discs, head-on: velocities stay opposite, momentum zero, and what is not motion of the centres is vibration.
+/// Two equal compliant discs, head-on: velocities stay opposite, momentum zero, and what is not motion of the centres
+/// is vibration.
 Scene head_on(const Vec2& offset, const ContactRule& contact) {
   Scene scene = empty_scene(20);
   scene.shapes = {disc_shape("disc", 2, 60)};

@@ -44,9 +44,10 @@ Stop stop_of(double friction, double speed, double safety) {
   return run_to_stop(simulation, 1);
 }
 
-/// Friction is mu times the normal force, whose mean is the weight. While the block rocks and hops on its stiffness with frequency w, its
-/// vertical momentum is some m g/w, so u errs by mu g/w = 1e-3 of u0: of that order is the distance's error, and five hops the time's. The step
-/// adds nothing, because friction acts from the first step of each new contact.
+/// Friction is mu times the normal force, whose mean is the weight. While the block rocks and hops on its stiffness
+/// with frequency w, its vertical momentum is some m g/w, so u errs by mu g/w = 1e-3 of u0: of that order is the
+/// distance's error, and five hops the time's. The step adds nothing, because friction acts from the first step of
+/// each new contact.
 TEST(SlidingBlock, stops_after_u0_over_mu_g) {
   const double friction = 0.3, speed = 1;
   for (const double safety : {0.8, 0.2, 0.05}) {
@@ -57,7 +58,8 @@ TEST(SlidingBlock, stops_after_u0_over_mu_g) {
   }
 }
 
-/// All kinetic energy goes into friction but what swings on in hopping and in the elastic slip, (mu p)^2/(2 kt) a length.
+/// All kinetic energy goes into friction but what swings on in hopping and in the elastic slip, (mu p)^2/(2 kt) a
+/// length.
 TEST(SlidingBlock, dissipates_its_kinetic_energy_and_the_books_notice_half_of_it_missing) {
   const Model model = build_model(sliding_block(0.3, 1, 0.1));
   Simulation simulation(model);
@@ -93,7 +95,8 @@ TEST(BalanceError, is_the_missing_energy_over_the_larger_of_work_and_start) {
 
 constexpr double radius = 0.05;
 
-/// A rigid disc of so many sides at the penetration that carries its weight: half a contact width a = sqrt(2 R d), weight = 4/3 kn a d.
+/// A rigid disc of so many sides at the penetration that carries its weight: half a contact width a = sqrt(2 R d),
+/// weight = 4/3 kn a d.
 Scene disc_on_floor(int sides, double stiffness, double friction, const Vec2& gravity, double speed) {
   Scene scene = on_a_floor(1, 1, 2 * std::numbers::pi * radius / sides, gravity);
   scene.materials[1].density = 2000;
@@ -130,8 +133,9 @@ Rolling slide_and_roll(double stiffness, double friction) {
   return result;
 }
 
-/// u = u0 - mu g t and w R = 2 mu g t meet at t = u0/(3 mu g), u = 2 u0/3. On a floor that gives way by d friction acts between R - d and R below
-/// the centre: u = u0/(1 + R^2/(2 r^2)) errs by 2 d/(3 R) at most, and the time by d/R.
+/// u = u0 - mu g t and w R = 2 mu g t meet at t = u0/(3 mu g), u = 2 u0/3. On a floor that gives way by d friction
+/// acts between R - d and R below the centre: u = u0/(1 + R^2/(2 r^2)) errs by 2 d/(3 R) at most, and the time by
+/// d/R.
 TEST(RollingDisc, sliding_turns_to_rolling) {
   const double friction = 0.2;
   const Rolling soft = slide_and_roll(1e8, friction), stiff = slide_and_roll(1e9, friction);
@@ -159,8 +163,8 @@ Descent roll_down(double degrees, double friction, int sides) {
           penetration};
 }
 
-/// tan(theta) <= 3 mu: rolls with a = 2/3 g sin(theta). The lever errs by d/R as above. Nodes that pass through the half width A of contact
-/// gather the elastic slip that friction needs: creep (tan(theta)/3) (2/3) d/A of the spin.
+/// tan(theta) <= 3 mu: rolls with a = 2/3 g sin(theta). The lever errs by d/R as above. Nodes that pass through the
+/// half width A of contact gather the elastic slip that friction needs: creep (tan(theta)/3) (2/3) d/A of the spin.
 TEST(Incline, disc_rolls_with_two_thirds_of_the_slope) {
   for (const auto& [degrees, friction] : {std::pair(10.0, 0.2), std::pair(40.0, 0.5)}) {
     const Descent descent = roll_down(degrees, friction, 1000);
@@ -174,8 +178,8 @@ TEST(Incline, disc_rolls_with_two_thirds_of_the_slope) {
   }
 }
 
-/// Steeper it slides: a = g (sin - mu cos), R dw/dt = 2 mu g cos. Friction acts in full after the elastic slip mu d, so after
-/// sqrt(2 mu d / (g sin)); up to then it may be missing.
+/// Steeper it slides: a = g (sin - mu cos), R dw/dt = 2 mu g cos. Friction acts in full after the elastic slip mu d,
+/// so after sqrt(2 mu d / (g sin)); up to then it may be missing.
 TEST(Incline, disc_slides_where_it_is_too_steep) {
   const double friction = 0.2, slope = 40 * std::numbers::pi / 180;
   const Descent descent = roll_down(40, friction, 1000);

@@ -22,8 +22,8 @@ bool same_bits(const Dofs& a, const Dofs& b) {
   return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid);
 }
 
-/// Arc coordinates and slips of the nodes that slip, in an order of their own: a refresh may move records, and know more or fewer nodes
-/// that are near but not in touch.
+/// Arc coordinates and slips of the nodes that slip, in an order of their own: a refresh may move records, and know
+/// more or fewer nodes that are near but not in touch.
 std::vector<std::pair<double, double>> records(const ContactHistory& history) {
   std::vector<std::pair<double, double>> slipping;
   for (std::size_t i = 0; i < history.arc.size(); ++i)
@@ -72,7 +72,8 @@ Scene impact(Integrator integrator) {
   return scene;
 }
 
-/// A rigid block that slides fast enough to use up the contact skin within a step, so that rejected trials rebuild the candidates.
+/// A rigid block that slides fast enough to use up the contact skin within a step, so that rejected trials rebuild
+/// the candidates.
 Scene fast_slide(Integrator integrator) {
   Scene scene = on_a_floor(20, 8, 0.1, {0.2, -1});
   scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
@@ -92,7 +93,8 @@ void expect_equal(const Twins& twins) {
   EXPECT_EQ(records(twins.retried.history), records(twins.direct.history)) << "EXACT, t = " << twins.direct.time;
 }
 
-/// A trial that tears a sticking contact apart rebuilds the candidates; where the step started, everything is as it was.
+/// A trial that tears a sticking contact apart rebuilds the candidates; where the step started, everything is as it
+/// was.
 TEST(Rejection, a_trial_far_away_loses_no_record) {
   Bench bench(fast_slide(Integrator::verlet));
   Verlet integrator(bench.forces, bench.state);

@@ -95,7 +95,8 @@ double largest_difference(const Model& model, const Dofs& one, const Dofs& two) 
   return largest;
 }
 
-/// A spinning rigid disc that a compliant one hits off its centre: both kinds matter for the error, one after the other.
+/// A spinning rigid disc that a compliant one hits off its centre: both kinds matter for the error, one after the
+/// other.
 Scene collision() {
   Scene scene = empty_scene(2);
   scene.shapes = {disc_shape("disc", 2, 60)};
@@ -106,7 +107,8 @@ Scene collision() {
   return scene;
 }
 
-/// Follows the integrator through a scene with own steps from each of its states. Returns how many errors were compared.
+/// Follows the integrator through a scene with own steps from each of its states. Returns how many errors were
+/// compared.
 int compare_estimates(const Scene& scene) {
   Bench bench(scene);
   StepDoubling integrator(bench.forces, bench.state);

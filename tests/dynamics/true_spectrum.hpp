@@ -33,7 +33,8 @@ inline std::vector<Coordinate> coordinates(Bench& bench, const Dofs& force) {
 }
 
 /// Largest w^2 of M^-1 K at the bench's state, K = - d force / d position by central differences of all forces, 1/s2.
-/// The step is small against penetrations and large against rounding; contacts stay where they are when they are not at their edge.
+/// The step is small against penetrations and large against rounding; contacts stay where they are when they are not
+/// at their edge.
 inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
   Dofs force = bench.state.force;
   ContactHistory trial;

@@ -31,7 +31,8 @@ TEST(Verlet, order_two_with_equal_steps) {
   }
 }
 
-/// The whole integrator, its step set by the bound: growing from the first step, and following w_b of the deformed disc.
+/// The whole integrator, its step set by the bound: growing from the first step, and following w_b of the deformed
+/// disc.
 State swing_at_safety(double safety) {
   Scene scene = free_disc(60, 3, stretching(0.3));
   without_error_control(scene, safety);
@@ -48,7 +49,8 @@ TEST(Verlet, order_two_when_safety_sets_the_step) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(observed_order(errors[i], errors[i + 1]), 2, 0.4) << "RATE";
 }
 
-/// Verlet swings about a neighbouring energy, off by (w dt)^2/4 at most, w = 2.34 of the oval mode; its mean may not drift by 1 %.
+/// Verlet swings about a neighbouring energy, off by (w dt)^2/4 at most, w = 2.34 of the oval mode; its mean may not
+/// drift by 1 %.
 TEST(Verlet, energy_stays_over_100000_steps) {
   const Model model = build_model(free_disc(30, 1e9, stretching(0.05)));
   Simulation simulation(model);
@@ -94,8 +96,8 @@ TEST(Verlet, stability_limit_is_two_over_omega) {
     const double middle = (stable + unstable) / 2;
     (is_stable(middle) ? stable : unstable) = middle;
   }
-  // dt = safety 2/sqrt(1.05 w^2), so the limit 2/w lies at sqrt(1.05) when the power iteration has found w; it may miss 0.5 % of w^2, and
-  // modes need some growth within 3000 steps.
+  // dt = safety 2/sqrt(1.05 w^2), so the limit 2/w lies at sqrt(1.05) when the power iteration has found w; it may
+  // miss 0.5 % of w^2, and modes need some growth within 3000 steps.
   EXPECT_NEAR(stable, std::sqrt(1.05), 0.005) << "EXACT: 2/w";
 }
 

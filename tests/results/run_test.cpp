@@ -1,4 +1,5 @@
-// A whole run into a folder: every file that is promised, with what is promised in it; runs that fail, and folders that are in use.
+// A whole run into a folder: every file that is promised, with what is promised in it; runs that fail, and folders
+// that are in use.
 #include "results/run.hpp"
 
 #include <gtest/gtest.h>

@@ -9,7 +9,8 @@
 
 namespace pliant::dynamics_tests {
 
-/// Model, forces and a state at the start, for tests that drive an integrator by hand. Not to be moved: the parts refer to each other.
+/// Model, forces and a state at the start, for tests that drive an integrator by hand. Not to be moved: the parts
+/// refer to each other.
 struct Bench {
   Model model;
   Forces forces;

@@ -8,7 +8,8 @@
 #include "dynamics/simulation.hpp"
 #include "scene/scene.hpp"
 
-/// Small scenes in motion, and what tests read from a simulation. Units of compliant bodies: mu = R = rho = 1, lambda = 4.
+/// Small scenes in motion, and what tests read from a simulation. Units of compliant bodies: mu = R = rho = 1, lambda
+/// = 4.
 namespace pliant::dynamics_tests {
 
 inline History constant(double value) { return {{0}, {value}}; }
@@ -131,7 +132,8 @@ inline void without_error_control(Scene& scene, double safety) {
   scene.time.safety = safety;
 }
 
-/// Compliant and rigid discs of radius 1, cohesive, in a periodic layer between a fixed wall and one that presses and shears.
+/// Compliant and rigid discs of radius 1, cohesive, in a periodic layer between a fixed wall and one that presses and
+/// shears.
 inline Scene small_third_body(double end) {
   Scene scene = empty_scene(end);
   scene.period = 6;
@@ -175,7 +177,8 @@ inline std::vector<double> node_masses(const Model& model, const Body& body) {
   return masses;
 }
 
-/// Mean over a compliant body's nodes, weighted by mass: of positions the centre (relative to body.centre), of velocities its velocity.
+/// Mean over a compliant body's nodes, weighted by mass: of positions the centre (relative to body.centre), of
+/// velocities its velocity.
 inline Vec2 mass_mean(const Model& model, const Body& body, const Dofs& dofs) {
   const std::vector<double> masses = node_masses(model, body);
   Vec2 total(0, 0);
