@@ -11,6 +11,9 @@ struct Trial {
   ContactHistory history;
 };
 
+/// Makes an accepted trial the state at `end_time`: books its work and dissipation, swaps, counts the step.
+void take_over(const Model& model, State& state, Trial& trial, double end_time, double dt, double dissipated);
+
 /// One accepted step.
 struct StepReport {
   double dt = 0, error = 0;

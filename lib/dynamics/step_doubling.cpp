@@ -28,15 +28,15 @@ double wave_time(const Model& model) {
 
 }  // namespace
 
-StepDoubling::StepDoubling(Forces& forces, const State&) : forces_(forces), model_(forces.model()) {
+StepDoubling::StepDoubling(Forces& forces, const State&)
+    : forces_(forces), model_(forces.model()), wave_time_(wave_time(model_)) {
   trial_.position = trial_.velocity = trial_.force = zero_dofs(model_);
   difference_.resize(model_.compliant_size);
 }
 
 StepReport StepDoubling::step(State& state, double until) {
   const TimeSettings& settings = model_.scene.time;
-  const double reference = wave_time(model_);
-  if (state.next_dt == 0) state.next_dt = first_step * reference;
+  if (state.next_dt == 0) state.next_dt = first_step * wave_time_;
   StepReport report;
   for (;;) {
     const double remaining = until - state.time;
@@ -60,7 +60,7 @@ StepReport StepDoubling::step(State& state, double until) {
     state.next_dt = proposal;
     ++report.rejections;
     ++state.rejections;
-    check_time_step(state.next_dt, reference, report, state.time, forces_);
+    check_time_step(state.next_dt, wave_time_, report, state.time, forces_);
   }
 }
 
@@ -158,15 +158,7 @@ void StepDoubling::accept(State& state, double dt, double end_time, Evaluation& 
   evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force);
   forces_.check(evaluation, end_time);
   ++state.evaluations;
-  state.dissipated += evaluation.contact.dissipated;
-  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity,
-                                       state.force, trial_.force, state.time, dt);
-  std::swap(state.position, trial_.position);
-  std::swap(state.velocity, trial_.velocity);
-  std::swap(state.force, trial_.force);
-  std::swap(state.history, trial_.history);
-  state.time = end_time;
-  ++state.steps;
+  take_over(model_, state, trial_, end_time, dt, evaluation.contact.dissipated);
 }
 
 }  // namespace pliant

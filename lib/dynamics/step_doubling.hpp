@@ -23,6 +23,7 @@ class StepDoubling {
 
   Forces& forces_;
   const Model& model_;
+  double wave_time_;               ///< from node to node, s
   Trial trial_;                    ///< at the half step, then at the end
   std::vector<Lanes> difference_;  ///< u2 - u1 of the compliant degrees of freedom, dt^2/4 a_half - dt^2/2 a_start
 };

@@ -58,10 +58,7 @@ StepReport Verlet::step(State& state, double until) {
       // A step cut short to meet an output says little about the next one.
       state.next_dt =
           std::min(std::max(dt * factor, dt < 0.5 * state.next_dt ? state.next_dt * least_factor : 0.0), largest);
-      accept(state, dt);
-      state.time = end_time;
-      state.dissipated += report.evaluation.contact.dissipated;
-      ++state.steps;
+      accept(state, dt, end_time, report.evaluation.contact.dissipated);
       update_bound(state, report.evaluation.refreshed);
       return report;
     }
@@ -118,7 +115,7 @@ double Verlet::error(const State& state, double dt) const {
   return dt * dt / 6 * std::max(compliant, rigid);
 }
 
-void Verlet::accept(State& state, double dt) {
+void Verlet::accept(State& state, double dt, double end_time, double dissipated) {
   const double half = 0.5 * dt;
   for_each_dof(
       model_,
@@ -132,12 +129,7 @@ void Verlet::accept(State& state, double dt) {
                 ? imposed_velocity(dof, state.time + dt)
                 : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
       });
-  state.external_work += external_work(model_, state.position, trial_.position, state.velocity, trial_.velocity,
-                                       state.force, trial_.force, state.time, dt);
-  std::swap(state.position, trial_.position);
-  std::swap(state.velocity, trial_.velocity);
-  std::swap(state.force, trial_.force);
-  std::swap(state.history, trial_.history);
+  take_over(model_, state, trial_, end_time, dt, dissipated);
 }
 
 void Verlet::update_bound(const State& state, bool refreshed) {

@@ -17,7 +17,7 @@ class Verlet {
  private:
   void predict(const State& state, double dt);
   double error(const State& state, double dt) const;
-  void accept(State& state, double dt);
+  void accept(State& state, double dt, double end_time, double dissipated);
   void update_bound(const State& state, bool refreshed);
 
   Forces& forces_;
