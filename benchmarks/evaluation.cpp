@@ -56,7 +56,7 @@ void contact_forces(benchmark::State& state) {
   ContactHistory committed, trial;
   contact.refresh(outlines, committed);
   int nodes = 0;
-  for (const Patch& patch : contact.patches()) nodes += patch.arc[0].count + patch.arc[1].count;
+  for (const Patch& patch : contact.patches()) nodes += patch.nodes[0].count + patch.nodes[1].count;
   state.counters["records"] = nodes;
   state.counters["patches"] = static_cast<double>(contact.patches().size());
   for (auto _ : state) state.counters["contacts"] = contact.forces(outlines, committed, trial).contacts;

@@ -1,5 +1,7 @@
 #include "bodies/outline.hpp"
 
+#include <numeric>
+
 #include "core/lanes.hpp"
 
 namespace pliant {
@@ -9,20 +11,12 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift) {
   const int n = shape.count = static_cast<int>(points.size());
   shape.turn_shift = turn_shift;
   shape.points = points;
-  const int extended = n + lane_count;
-  shape.segment_length.resize(extended);
-  shape.tributary_length.resize(extended);
-  shape.arc.resize(extended);
-  const auto point = [&](int i) {
-    const int turns = i / n;
-    return Vec2(points[i % n] + Vec2(turn_shift * turns, 0));
-  };
-  for (int i = 0; i < extended; ++i) shape.segment_length[i] = (point(i + 1) - point(i)).norm();
-  for (int i = 0; i < extended; ++i)
-    shape.tributary_length[i] = 0.5 * (shape.segment_length[i] + shape.segment_length[(i + n - 1) % n]);
-  for (int i = 1; i < extended; ++i) shape.arc[i] = shape.arc[i - 1] + shape.segment_length[i - 1];
-  for (int i = 0; i < n; ++i) shape.perimeter += shape.segment_length[i];
-  shape.spacing = shape.perimeter / n;
+  std::vector<double> length;
+  for (int i = 0; i < n; ++i)
+    length.push_back((points[(i + 1) % n] + Vec2(i + 1 == n ? turn_shift : 0, 0) - points[i]).norm());
+  for (int i = 0; i < n + lane_count; ++i)
+    shape.tributary_length.push_back(0.5 * (length[(i + n - 1) % n] + length[i % n]));
+  shape.spacing = std::accumulate(length.begin(), length.end(), 0.0) / n;
   return shape;
 }
 

@@ -11,12 +11,9 @@ namespace pliant {
 struct OutlineShape {
   int count = 0;          ///< nodes
   double turn_shift = 0;  ///< x offset after one turn: 0 for closed outlines, +- period for walls
-  double perimeter = 0;   ///< reference length of one turn, m
   double spacing = 0;     ///< mean segment length, m
   Points points;          ///< [count], reference coordinates about the centroid (walls: about the line's start)
   std::vector<double> tributary_length;  ///< [count + lane_count], half of the two adjacent segments, m
-  std::vector<double> segment_length;    ///< [count + lane_count], from a node to the next, m
-  std::vector<double> arc;               ///< [count + lane_count], reference length from node 0, m
 };
 
 OutlineShape make_outline_shape(const Points& points, double turn_shift);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/lanes.hpp"
+
 namespace pliant {
 namespace {
 
@@ -98,24 +100,17 @@ Side make_side(const Model& model, const Outlines& outlines, int body, double sh
   return side;
 }
 
-Vec2 direction(const Model& model, const BodyPair& pair, const Box& a, const Box& b) {
+Vec2 direction(const Model& model, const Patch& pair, const Box& a, const Box& b) {
   const double dy = b.y_min + b.y_max - a.y_min - a.y_max;
   if (model.bodies[pair.second].wall || model.bodies[pair.first].wall) return {0, dy > 0 ? 1.0 : -1.0};
   const Vec2 d(b.x_min + b.x_max - a.x_min - a.x_max, dy);
   return d.norm() > 0 ? d.normalized() : Vec2(1, 0);
 }
 
-}  // namespace
-
-void find_arcs(const Model& model, const Outlines& outlines, const std::vector<Box>& boxes, const BodyPair& pair,
-               double margin, Arc (&arcs)[2]) {
+/// Arcs that hold everything near, by boxes and the planes that bound the bodies across the line of centres.
+void find_rough_arcs(const Model& model, const Side& a, Side& b, Box box_a, Box box_b, const Patch& pair, double margin,
+                     Arc (&arcs)[2]) {
   arcs[0] = arcs[1] = {};
-  const double shift = pair.images * model.scene.period.value_or(0);
-  Side a = make_side(model, outlines, pair.first, 0), b = make_side(model, outlines, pair.second, shift);
-  const Box box_a = boxes[pair.first];
-  Box box_b = boxes[pair.second];
-  box_b.x_min += shift, box_b.x_max += shift;
-  // A node can be touched when it lies near the other's box, and beyond the plane that bounds the other across the line of centres.
   // A segment more, because the end of a touched segment that lies beyond the plane may be the far one.
   const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
   find_turns(b, box_b, inflated(box_a, reach_b));
@@ -130,7 +125,81 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   if (extent_b.first > extent_b.second) return;
   arcs[0] = select_arc(a, region_a, d, extent_b.first - margin);
   arcs[1] = select_arc(b, region_b, -d, -(extent_a.second + margin));
-  if (arcs[0].count == 0 || arcs[1].count == 0) arcs[0] = arcs[1] = {};
+}
+
+/// The shortest run of entries marked so far.
+struct Span {
+  int begin = 1 << 30, end = -1;
+  void add(int i) { begin = std::min(begin, i), end = std::max(end, i + 1); }
+  Arc arc(int origin) const { return end < 0 ? Arc{} : Arc{origin + begin, end - begin}; }
+};
+
+/// Distance of eight nodes to a segment, negative below its line.
+Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
+  const Lanes rx = px - segment.x, ry = py - segment.y;
+  const Lanes along = rx * segment.tangent_x + ry * segment.tangent_y,
+              height = rx * segment.tangent_y - ry * segment.tangent_x;
+  const Lanes over = along - min(max(along, Lanes{}), broadcast(segment.length));
+  const Lanes distance = sqrt(over * over + height * height);
+  return select(height < 0.0, -distance, distance);
+}
+
+/// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to a depth of the skin, one
+/// inside a skin deeper; to find which face is nearest then, all within two skins of the present reach must be known.
+void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window, int first_segment, double margin,
+            double skin, Arc& nodes, Arc& segments) {
+  Span near_nodes, near_segments;
+  const int n = slave.shape->count;
+  for (int i = 0; i < candidates.count; i += lane_count) {
+    const int index = candidates.begin + i, turn = turn_of(index, n), node = index - turn * n;
+    const Lanes px = load(slave.x + node) + (slave.shift + turn * slave.shape->turn_shift), py = load(slave.y + node);
+    Lanes nearest = broadcast(1e300);
+    for (int row = 0; row < window.count(); ++row) {
+      const Lanes distance = signed_distance(window[row], px, py);
+      nearest = select(abs(distance) <= abs(nearest), distance, nearest);
+    }
+    const Lanes limit = select(nearest < 0.0, broadcast(std::max(margin, window.depth() + skin)), broadcast(margin));
+    const LaneBits chosen = first_lanes(candidates.count - i) & (abs(nearest) <= limit);
+    if (!any(chosen)) continue;
+    for (int lane = 0; lane < lane_count; ++lane)
+      if (chosen[lane]) near_nodes.add(i + lane);
+    const Lanes reach = max(-nearest, broadcast(margin)) + 2 * skin;
+    for (int row = 0; row < window.count(); ++row)
+      if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(row);
+  }
+  nodes = near_nodes.arc(candidates.begin);
+  nodes.count = std::min(nodes.count, n);  // a wall seen along more than its period: one image of each node is enough
+  segments = near_segments.arc(first_segment);
+}
+
+/// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same on both sides.
+Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
+  const int more = two_walls ? lane_count : 0;
+  const Arc all{nodes.begin - 1 - more, nodes.count + 1 + 2 * more};
+  return side.shape->turn_shift == 0 && all.count > side.shape->count ? Arc{nodes.begin, side.shape->count} : all;
+}
+
+}  // namespace
+
+void find_arcs(const Model& model, const Outlines& outlines, const std::vector<Box>& boxes, Patch& patch, double margin,
+               double skin, MasterWindow& scratch) {
+  const double shift = patch.images * model.scene.period.value_or(0);
+  Side sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
+  Box box_b = boxes[patch.second];
+  box_b.x_min += shift, box_b.x_max += shift;
+  Arc rough[2];
+  const double depth = std::max(sides[0].longest_segment, sides[1].longest_segment) + 2 * skin;
+  find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch, std::max(margin, depth) + 2 * skin,
+                  rough);
+  if (rough[0].count == 0 || rough[1].count == 0) return;
+  const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
+  for (int slave = 0; slave < 2; ++slave) {
+    const Side& master = sides[1 - slave];
+    const Arc segments = segments_at(master, rough[1 - slave], two_walls);
+    scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
+    narrow(sides[slave], rough[slave], scratch, segments.begin, margin, skin, patch.nodes[slave],
+           patch.segments[1 - slave]);
+  }
 }
 
 }  // namespace pliant

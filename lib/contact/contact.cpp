@@ -86,11 +86,11 @@ void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box
     Patch& patch = found[p];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second);
-    find_arcs(model_, outlines, boxes, pair, reach_of(laws_.laws[patch.law]) + skin_, patch.arc);
+    find_arcs(model_, outlines, boxes, patch, reach_of(laws_.laws[patch.law]) + skin_, skin_, thread_scratch());
   });
   patches_.clear();
   for (const Patch& patch : found)
-    if (patch.arc[0].count > 0) patches_.push_back(patch);
+    if (patch.nodes[0].count + patch.nodes[1].count > 0) patches_.push_back(patch);
 }
 
 void ContactSystem::lay_out_patches() {
@@ -98,12 +98,12 @@ void ContactSystem::lay_out_patches() {
   int record = 0, force = 0;
   for (Patch& patch : patches_)
     for (int side = 0; side < 2; ++side) {
-      const Arc& arc = patch.arc[side];
+      const Arc arc = patch.forces(side);
       patch.record[side] = record;
       patch.force[side] = force;
-      body_arcs_[side == 0 ? patch.first : patch.second].push_back({arc.begin - 1, arc.count + 2, force});
-      record += padded(arc.count);
-      force += arc.count + 2;
+      if (arc.count > 0) body_arcs_[side == 0 ? patch.first : patch.second].push_back({arc.begin, arc.count, force});
+      record += padded(patch.nodes[side].count);
+      force += arc.count + lane_count;  // room for whole lanes
     }
   records_ = record;
   forces_.x.assign(static_cast<std::size_t>(force), 0.0);
@@ -121,12 +121,11 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
                                        [&](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;
     for (int side = 0; side < 2; ++side) {
-      const OutlineShape& shape = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline];
-      for (int i = 0; i < patch.arc[side].count; ++i) {
-        int at = patch.arc[side].begin + i - from->arc[side].begin;
-        if (shape.turn_shift == 0) at = (at % shape.count + shape.count) % shape.count;
-        if (at < 0 || at >= from->arc[side].count) continue;
-        next.arc[patch.record[side] + i] = history.arc[from->record[side] + at];
+      const int n = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline].count;
+      for (int i = 0; i < patch.nodes[side].count; ++i) {
+        const int node = patch.nodes[side].begin + i - from->nodes[side].begin, at = node - turn_of(node, n) * n;
+        if (at >= from->nodes[side].count) continue;
+        next.place[patch.record[side] + i] = history.place[from->record[side] + at];
         next.slip[patch.record[side] + i] = history.slip[from->record[side] + at];
       }
     }
@@ -134,16 +133,33 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
   history = std::move(next);
 }
 
+/// Calls add(node, entry) for every entry of a body's arcs in the force buffers, in a fixed order.
+template <class Add>
+void ContactSystem::for_each_force(int body, int nodes, Add&& add) const {
+  for (const ArcForce& arc : body_arcs_[body]) {
+    int node = arc.begin - turn_of(arc.begin, nodes) * nodes;
+    for (int i = 0; i < arc.count; ++i) {
+      add(node, arc.force + i);
+      if (++node == nodes) node = 0;
+    }
+  }
+}
+
 PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial) {
-  trial.arc.resize(committed.arc.size());
+  trial.place.resize(committed.place.size());
   trial.slip.resize(committed.slip.size());
   const int count = static_cast<int>(patches_.size());
   parallel_for(count, [&](int p) {
-    totals_[p] = compute_patch(model_, laws_, outlines, patches_[p], committed, trial, forces_, thread_scratch());
+    totals_[p] =
+        compute_patch(model_, laws_, outlines, patches_[p], skin_, committed, trial, forces_, thread_scratch());
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    gather(forces_.x, b, outlines, outlines.force_x.data());
-    gather(forces_.y, b, outlines, outlines.force_y.data());
+    const int n = model_.outlines[outlines.shape[b]].count;
+    double* x = &outlines.force_x[outlines.offset[b]];
+    double* y = &outlines.force_y[outlines.offset[b]];
+    std::fill_n(x, n, 0.0);
+    std::fill_n(y, n, 0.0);
+    for_each_force(b, n, [&](int node, int entry) { x[node] += forces_.x[entry], y[node] += forces_.y[entry]; });
   });
   PatchTotals total;
   for (const PatchTotals& t : totals_) {
@@ -155,20 +171,6 @@ PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& comm
   return total;
 }
 
-void ContactSystem::gather(const std::vector<double>& buffer, int body, const Outlines& outlines,
-                           double* target) const {
-  const int n = model_.outlines[outlines.shape[body]].count;
-  double* own = target + outlines.offset[body];
-  std::fill_n(own, n, 0.0);
-  for (const ArcForce& arc : body_arcs_[body]) {
-    int node = arc.begin - turn_of(arc.begin, n) * n;
-    for (int i = 0; i < arc.count; ++i) {
-      own[node] += buffer[arc.force + i];
-      if (++node == n) node = 0;
-    }
-  }
-}
-
 std::vector<double> ContactSystem::stiffness_bound(Outlines& outlines, const std::vector<double>& compliance) {
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     const Patch& patch = patches_[p];
@@ -176,11 +178,15 @@ std::vector<double> ContactSystem::stiffness_bound(Outlines& outlines, const std
     // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
     const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
     const ContactLaw& law = laws_.laws[patch.law];
-    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), reach_of(law) + skin_, factor, forces_,
+    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), skin_, reach_of(law) + skin_, factor, forces_,
                             thread_scratch());
   });
   std::vector<double> result(outlines.x.size(), 0.0);
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) { gather(forces_.x, b, outlines, result.data()); });
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    double* stiffness = &result[outlines.offset[b]];
+    for_each_force(b, model_.outlines[outlines.shape[b]].count,
+                   [&](int node, int entry) { stiffness[node] += forces_.x[entry]; });
+  });
   return result;
 }
 

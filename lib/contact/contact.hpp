@@ -41,7 +41,8 @@ class ContactSystem {
   void find_patches(const Outlines& outlines, const std::vector<Box>& boxes);
   void lay_out_patches();
   void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
-  void gather(const std::vector<double>& buffer, int body, const Outlines& outlines, double* target) const;
+  template <class Add>
+  void for_each_force(int body, int nodes, Add&& add) const;
 
   const Model& model_;
   ContactLaws laws_;

@@ -1,7 +1,10 @@
 #include "contact/patch_forces.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
+
+#include "contact/slip.hpp"
 
 namespace pliant {
 namespace {
@@ -11,12 +14,11 @@ struct Pass {
   const OutlineShape* slave;
   const double* slave_x;
   const double* slave_y;
-  Arc arc;
+  Arc nodes;
   double slave_shift;
   int record;
-  int slave_force;   ///< buffer entry of the arc's first node
-  int master_force;  ///< buffer entry of local window node 1
-  double master_perimeter;
+  int slave_force;   ///< buffer entry of the first node
+  int master_force;  ///< buffer entry of the window's first row
 };
 
 struct SlaveNodes {
@@ -25,7 +27,7 @@ struct SlaveNodes {
 
 /// Eight consecutive slave nodes from position i of the arc.
 SlaveNodes load_slaves(const Pass& pass, int i) {
-  const int index = pass.arc.begin + i;
+  const int index = pass.nodes.begin + i;
   const int turn = turn_of(index, pass.slave->count);
   const int node = index - turn * pass.slave->count;
   return {load(pass.slave_x + node) + (pass.slave_shift + turn * pass.slave->turn_shift), load(pass.slave_y + node),
@@ -35,26 +37,21 @@ SlaveNodes load_slaves(const Pass& pass, int i) {
 /// Traction of eight nodes, with the tangential part brought up to date.
 struct Contact {
   Lanes pressure, shear, energy;  ///< shear acts on the slave along the tangent
-  Lanes arc, slip, slip_work;     ///< slip_work: dissipated per length, J/m2
+  Lanes slip, slip_work;          ///< slip_work: dissipated per length, J/m2
 };
 
 template <class Law>
-Contact respond(const Law& law, const Projection& p, const ContactPoint& point, LaneBits touching, Lanes old_arc,
-                Lanes old_slip, double perimeter) {
-  const Traction traction = law(point.gap);
-  Contact c{traction.pressure, {}, traction.energy, p.arc + point.xi * p.reference_length, {}, {}};
+Contact respond(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes place,
+                Lanes old_place, Lanes old_slip) {
+  const Traction traction = law(p.gap);
+  Contact c{traction.pressure, {}, traction.energy, {}, {}};
   if constexpr (Law::has_shear) {
-    const LaneBits known = old_arc == old_arc;
-    const Lanes start = select(known, old_slip, Lanes{});
-    Lanes moved = select(known & touching, c.arc - old_arc, Lanes{});
-    moved -= perimeter * round_to_integer(moved * (1 / perimeter));
-    // Slip is measured in current length: reference arc times the segment's stretch.
-    const Lanes trial = start + moved * (p.length / select(touching, p.reference_length, broadcast(1)));
+    const Lanes trial = old_slip + moved_along(window, p, touching & (old_place == old_place), old_place, place);
     const Lanes largest = select(touching, traction.shear_limit * (1 / law.shear_stiffness), Lanes{});
     c.slip = min(max(trial, -largest), largest);
     c.shear = -law.shear_stiffness * c.slip;
     // Mean of the old and the new traction times the plastic slip: what the tangential forces do, less what is stored.
-    c.slip_work = (0.5 * law.shear_stiffness) * (start + c.slip) * (trial - c.slip);
+    c.slip_work = (0.5 * law.shear_stiffness) * (old_slip + c.slip) * (trial - c.slip);
     c.energy += 0.5 * law.shear_stiffness * c.slip * c.slip;
   }
   return c;
@@ -62,125 +59,139 @@ Contact respond(const Law& law, const Projection& p, const ContactPoint& point, 
 
 /// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's distance, and makes the
 /// force the exact conjugate of the slip.
-void add_reaction(const Projection& p, const ContactPoint& point, LaneBits touching, Lanes fx, Lanes fy, Lanes couple,
-                  int base, PatchForces& forces) {
-  const Lanes bx = -point.xi * fx + couple * p.tangent_y, by = -point.xi * fy - couple * p.tangent_x;
-  const Lanes ax = -fx - bx, ay = -fy - by;
-  for (int lane = 0; lane < lane_count; ++lane) {
-    if (!touching[lane]) continue;
-    const int at = base + static_cast<int>(p.segment[lane]) - 1;
-    forces.x[at] += ax[lane], forces.y[at] += ay[lane];
-    forces.x[at + 1] += bx[lane], forces.y[at + 1] += by[lane];
+void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, Lanes couple, int base,
+                  PatchForces& forces) {
+  const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
+  double reaction[4][lane_count], row[lane_count];
+  store(reaction[0], -fx - bx), store(reaction[1], -fy - by), store(reaction[2], bx), store(reaction[3], by);
+  store(row, p.row);
+  for (unsigned left = bits(touching); left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left), at = base + static_cast<int>(row[lane]);
+    forces.x[at] += reaction[0][lane], forces.y[at] += reaction[1][lane];
+    forces.x[at + 1] += reaction[2][lane], forces.y[at + 1] += reaction[3][lane];
   }
+}
+
+/// PatchTotals before the lanes are added up.
+struct LaneTotals {
+  Lanes stored{}, dissipated{}, deepest{};
+  int contacts = 0;
+};
+
+void add(double* to, Lanes value) { store(to, load(to) + value); }
+
+/// Nodes that left the master: their elastic slip is set free.
+template <class Law>
+Lanes release(const Law& law, const Pass& pass, int i, Lanes old_slip, ContactHistory& trial) {
+  store(&trial.place[pass.record + i], broadcast(std::numeric_limits<double>::quiet_NaN()));
+  store(&trial.slip[pass.record + i], Lanes{});
+  return (0.5 * law.shear_stiffness) * old_slip * old_slip;
 }
 
 template <class Law>
 void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, const ContactHistory& committed,
-                  ContactHistory& trial, PatchForces& forces, PatchTotals& totals) {
-  Lanes stored{}, dissipated{}, deepest{};
+                  ContactHistory& trial, PatchForces& forces, LaneTotals& totals) {
+  const double inverse_longest = 1 / window.longest();
   // Where a node projects is known before it touches, so that friction acts from the first step of a touch.
-  const double outward = Law::has_shear ? std::max(law.reach, 0.5 * window.longest) : law.reach;
-  for (int i = 0; i < pass.arc.count; i += lane_count) {
+  const double outward = Law::has_shear ? std::max(law.reach, 0.5 * window.longest()) : law.reach;
+  for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const SlaveNodes nodes = load_slaves(pass, i);
-    const LaneBits active = first_lanes(pass.arc.count - i);
+    const LaneBits active = first_lanes(pass.nodes.count - i);
+    const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
     const Projection p = project(window, nodes.x, nodes.y, outward);
-    const ContactPoint point = locate(p);
-    const LaneBits touching = active & p.hit & (point.gap < law.reach);
-    const Lanes old_arc = load(&committed.arc[pass.record + i]), old_slip = load(&committed.slip[pass.record + i]);
-    const Contact c = respond(law, p, point, touching, old_arc, old_slip, pass.master_perimeter);
-    store(&trial.arc[pass.record + i], select(p.hit, c.arc, broadcast(std::numeric_limits<double>::quiet_NaN())));
+    const Lanes old_place = load(&committed.place[pass.record + i]), old_slip = load(&committed.slip[pass.record + i]);
+    if (!any(p.hit)) {
+      totals.dissipated += half_length * release(law, pass, i, old_slip, trial);
+      continue;
+    }
+    const LaneBits touching = active & p.hit & (p.gap < law.reach);
+    const Lanes place = place_of(p);
+    const Contact c = respond(law, window, p, touching, place, old_place, old_slip);
+    store(&trial.place[pass.record + i], select(p.hit, place, broadcast(std::numeric_limits<double>::quiet_NaN())));
     store(&trial.slip[pass.record + i], select(touching, c.slip, Lanes{}));
-    const Lanes half_length = 0.5 * nodes.tributary_length;
-    dissipated += select(active, half_length * c.slip_work, Lanes{});
+    totals.dissipated += half_length * c.slip_work;
     if (!any(touching)) continue;
     const Lanes weight = select(touching, half_length, Lanes{});
-    stored += weight * c.energy;
-    const Lanes length = select(touching, p.length, broadcast(1));
-    deepest = max(deepest, select(touching, -point.gap / length, Lanes{}));
+    totals.stored += select(touching, half_length * c.energy, Lanes{});
+    totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
     // The tangent goes with the normal, also where that is radial.
-    const Lanes fx = weight * (c.pressure * point.normal_x - c.shear * point.normal_y);
-    const Lanes fy = weight * (c.pressure * point.normal_y + c.shear * point.normal_x);
-    const Lanes couple = weight * c.shear * point.gap / length;
-    add_reaction(p, point, touching, fx, fy, couple, pass.master_force, forces);
-    double* slave_x = &forces.x[pass.slave_force + i];
-    double* slave_y = &forces.y[pass.slave_force + i];
-    for (int lane = 0; lane < std::min(lane_count, pass.arc.count - i); ++lane) {
-      slave_x[lane] += fx[lane];
-      slave_y[lane] += fy[lane];
-      totals.contacts += touching[lane] != 0;
-    }
+    const Lanes fx = weight * (c.pressure * p.normal_x - c.shear * p.normal_y);
+    const Lanes fy = weight * (c.pressure * p.normal_y + c.shear * p.normal_x);
+    const Lanes couple = weight * c.shear * p.gap * p.inverse_length;
+    add_reaction(p, touching, fx, fy, couple, pass.master_force, forces);
+    add(&forces.x[pass.slave_force + i], fx);
+    add(&forces.y[pass.slave_force + i], fy);
+    totals.contacts += std::popcount(bits(touching));
   }
-  totals.stored += sum(stored);
-  totals.dissipated += sum(dissipated);
-  totals.deepest = std::max(totals.deepest, largest(deepest));
 }
 
 /// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
 Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch, int slave_side) {
   const int slave = slave_side == 0 ? patch.first : patch.second;
-  const int master = slave_side == 0 ? patch.second : patch.first;
   const double shift = patch.images * model.scene.period.value_or(0);
-  const int offset = outlines.offset[slave];
+  const int offset = outlines.offset[slave], master_side = 1 - slave_side;
   return {&model.outlines[outlines.shape[slave]],
           &outlines.x[offset],
           &outlines.y[offset],
-          patch.arc[slave_side],
+          patch.nodes[slave_side],
           slave_side == 0 ? 0.0 : shift,
           patch.record[slave_side],
-          patch.force[slave_side] + 1,
-          patch.force[1 - slave_side],
-          model.outlines[outlines.shape[master]].perimeter};
+          patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
+          patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin};
 }
 
-void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side,
+void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side, double skin,
                  MasterWindow& window) {
   const int master = master_side == 0 ? patch.first : patch.second;
   const double shift = master_side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0);
   const int offset = outlines.offset[master];
-  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset], patch.arc[master_side],
-              shift);
+  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset],
+              patch.segments[master_side], shift, skin);
 }
 
 void clear_forces(const Patch& patch, PatchForces& forces) {
   for (int side = 0; side < 2; ++side) {
-    std::fill_n(forces.x.begin() + patch.force[side], patch.arc[side].count + 2, 0.0);
-    std::fill_n(forces.y.begin() + patch.force[side], patch.arc[side].count + 2, 0.0);
+    std::fill_n(forces.x.begin() + patch.force[side], patch.forces(side).count, 0.0);
+    std::fill_n(forces.y.begin() + patch.force[side], patch.forces(side).count, 0.0);
   }
 }
 
 }  // namespace
 
 PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
-                          const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
+                          double skin, const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
                           MasterWindow& scratch) {
-  PatchTotals totals;
+  LaneTotals totals;
   clear_forces(patch, forces);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
     const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, scratch);
+    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
     std::visit([&](const auto& law) { compute_pass(law, pass, scratch, committed, trial, forces, totals); },
                laws.laws[patch.law]);
   }
-  return totals;
+  return {sum(totals.stored), sum(totals.dissipated), largest(totals.deepest), totals.contacts};
 }
 
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
-                             double outward, const double (&factor)[2], PatchForces& forces, MasterWindow& scratch) {
+                             double skin, double outward, const double (&factor)[2], PatchForces& forces,
+                             MasterWindow& scratch) {
   clear_forces(patch, forces);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
     const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, scratch);
-    for (int i = 0; i < pass.arc.count; i += lane_count) {
+    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
+    for (int i = 0; i < pass.nodes.count; i += lane_count) {
       const SlaveNodes nodes = load_slaves(pass, i);
       const Projection p = project(scratch, nodes.x, nodes.y, outward);
-      const ContactPoint point = locate(p);
-      for (int lane = 0; lane < std::min(lane_count, pass.arc.count - i); ++lane) {
+      if (!any(p.hit)) continue;
+      for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
         if (!p.hit[lane]) continue;
         const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
-        const int at = pass.master_force + static_cast<int>(p.segment[lane]) - 1;
+        const int at = pass.master_force + static_cast<int>(p.row[lane]);
         forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
-        forces.x[at] += factor[1 - slave_side] * (1 - point.xi[lane]) * k;
-        forces.x[at + 1] += factor[1 - slave_side] * point.xi[lane] * k;
+        forces.x[at] += factor[1 - slave_side] * (1 - p.xi[lane]) * k;
+        forces.x[at + 1] += factor[1 - slave_side] * p.xi[lane] * k;
       }
     }
   }

@@ -52,10 +52,40 @@ inline bool any(LaneBits mask) {
 #endif
 }
 
+/// One bit a lane, lane 0 the lowest.
+inline unsigned bits(LaneBits mask) {
+#if defined(__clang__)
+  using Bools = bool __attribute__((ext_vector_type(8)));
+  return __builtin_bit_cast(unsigned char, __builtin_convertvector(mask != 0, Bools));
+#else
+  unsigned result = 0;
+  for (unsigned lane = 0; lane < lane_count; ++lane) result |= (mask[lane] != 0) << lane;
+  return result;
+#endif
+}
+
 /// Mask of the first `count` lanes.
 inline LaneBits first_lanes(int count) {
   const LaneBits index = {0, 1, 2, 3, 4, 5, 6, 7};
   return index < static_cast<std::int64_t>(count);
+}
+
+/// columns[i][j] = rows[j][i].
+inline void transpose(const Lanes (&rows)[8], Lanes (&columns)[8]) {
+  Lanes pairs[8], quads[8];
+  for (int i = 0; i < 8; i += 2) {
+    pairs[i] = __builtin_shufflevector(rows[i], rows[i + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    pairs[i + 1] = __builtin_shufflevector(rows[i], rows[i + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+  }
+  for (int i = 0; i < 8; i += 4)
+    for (int j = 0; j < 2; ++j) {
+      quads[i + j] = __builtin_shufflevector(pairs[i + j], pairs[i + j + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      quads[i + j + 2] = __builtin_shufflevector(pairs[i + j], pairs[i + j + 2], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+  for (int j = 0; j < 4; ++j) {
+    columns[j] = __builtin_shufflevector(quads[j], quads[j + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    columns[j + 4] = __builtin_shufflevector(quads[j], quads[j + 4], 4, 5, 6, 7, 12, 13, 14, 15);
+  }
 }
 
 /// Sum in a fixed order.

@@ -14,8 +14,8 @@
 namespace pliant {
 namespace {
 
-/// Penetration over segment length: contacts are dropped at inward_depth; warned about when half of that is used.
-constexpr double deep_penetration = 0.5 * inward_depth, lost_penetration = 0.98 * inward_depth;
+/// Penetration over segment length: contacts are dropped a skin beyond 1; warned about when half of that is used.
+constexpr double deep_penetration = 0.5, lost_penetration = 1;
 
 /// Padding lanes repeat a body, so that they need no masking here.
 double least_of(Lanes jacobian) { return -largest(-jacobian); }
@@ -69,13 +69,13 @@ void Forces::check(const Evaluation& evaluation, double time) {
     throw PhysicsError(
         fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at {:.1f}; "
                     "raise the contact stiffness",
-                    evaluation.contact.deepest, time, inward_depth));
+                    evaluation.contact.deepest, time, lost_penetration));
   if (evaluation.contact.deepest > deep_penetration && !warned_deep_) {
     warned_deep_ = true;
     spdlog::warn(
         "penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a "
         "higher contact stiffness",
-        evaluation.contact.deepest, time, inward_depth);
+        evaluation.contact.deepest, time, lost_penetration);
   }
 }
 

@@ -3,6 +3,8 @@
 #include <limits>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/update_outlines.hpp"
+#include "contact/initial_overlap.hpp"
 
 namespace pliant {
 
@@ -10,6 +12,9 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   state_.position = initial_positions(model);
   state_.velocity = initial_velocities(model, state_.position);
   state_.force = zero_dofs(model);
+  Outlines outlines = make_outlines(model);
+  update_outlines(model, state_.position, outlines);
+  refuse_deep_overlap(model, outlines);
   ContactHistory trial;
   forces_.check(forces_.evaluate(state_.position, 0, state_.history, trial, state_.force), 0);
   std::swap(state_.history, trial);

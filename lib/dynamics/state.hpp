@@ -34,7 +34,7 @@ struct State {
     visitor("velocity.rigid", velocity.rigid);
     visitor("force.compliant", force.compliant);
     visitor("force.rigid", force.rigid);
-    visitor("history.arc", history.arc);
+    visitor("history.place", history.place);
     visitor("history.slip", history.slip);
   }
 };

@@ -165,7 +165,7 @@ TEST(BuildModel, Walls) {
   // Left open, the wall's spacing is the grains' finest.
   EXPECT_NEAR(model.outlines[lid.outline].spacing, model.outlines[model.bodies[0].outline].spacing, 0.1 * 0.13);
   EXPECT_LE(model.outlines[lid.outline].spacing, model.outlines[model.bodies[0].outline].spacing);
-  EXPECT_NEAR(model.outlines[lid.outline].perimeter, 4, 1e-14);
+  EXPECT_NEAR(model.outlines[lid.outline].spacing * model.outlines[lid.outline].count, 4, 1e-14);
 }
 
 // EXACT: the initial velocity field of the scene at each node, v = uniform + rotation x r + gradient r, r from the

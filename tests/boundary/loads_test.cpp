@@ -14,7 +14,7 @@ Scene lone_wall(double end, Wall::Solid solid, double thickness = 0.5) {
   Scene scene = empty_scene(end);
   scene.period = 3;
   scene.shapes = {disc_shape("disc", 1, 20)};
-  scene.grains = {grains("far", "disc", BodyKind::rigid, {{1, 50}})};
+  scene.grains = {grains("far", "disc", BodyKind::rigid, {{1, solid == Wall::Solid::below ? 50.0 : -50.0}})};
   scene.walls = {flat_wall("wall", solid, 0, 0.3, thickness)};
   return scene;
 }

@@ -28,13 +28,15 @@ struct Pair {
   const ContactRig& rig;
   BodyPair bodies;
   double margin;
-  Arc arc[2];
+  Patch patch;
 
   Pair(const ContactRig& r, const BodyPair& b, double m) : rig(r), bodies(b), margin(m) {
     std::vector<Box> boxes;
     for (int i = 0; i < static_cast<int>(rig.model.bodies.size()); ++i)
       boxes.push_back(bounding_box(rig.model.outlines[rig.model.bodies[i].outline], rig.outlines, i));
-    find_arcs(rig.model, rig.outlines, boxes, bodies, margin, arc);
+    patch.first = b.first, patch.second = b.second, patch.images = b.images;
+    MasterWindow scratch;
+    find_arcs(rig.model, rig.outlines, boxes, patch, margin, 0.5 * margin, scratch);
   }
   int body(int side) const { return side == 0 ? bodies.first : bodies.second; }
   const OutlineShape& shape(int side) const { return rig.model.outlines[rig.model.bodies[body(side)].outline]; }
@@ -45,8 +47,8 @@ struct Pair {
   }
 };
 
-// METHOD 4: no contact may be missed. A node within the margin of a segment must be in its arc, and the segment in
-// reach of the other arc, whose window holds one segment more at either end.
+// METHOD 4: no contact may be missed. A node within the margin of a segment must be among its side's nodes, and the
+// segment among the other's.
 int missed(const Pair& pair, int turns) {
   int result = 0;
   for (int side = 0; side < 2; ++side) {
@@ -57,9 +59,9 @@ int missed(const Pair& pair, int turns) {
         const double distance =
             distance_to_segment(pair.node(side, k), pair.node(1 - side, s), pair.node(1 - side, s + 1));
         if (distance > pair.margin * (1 - 1e-12)) continue;
-        const Arc &own = pair.arc[side], &other = pair.arc[1 - side];
+        const Arc &own = pair.patch.nodes[side], &other = pair.patch.segments[1 - side];
         result += !holds(pair.shape(side), own.begin, own.count, k) ||
-                  !holds(pair.shape(1 - side), other.begin - 1, std::min(other.count + 1, m), s);
+                  !holds(pair.shape(1 - side), other.begin, other.count, s);
       }
   }
   return result;
@@ -85,7 +87,7 @@ TEST(ClosePhase, MissesNothingOnRandomOutlines) {
     ContactRig rig(scene);
     press_together(rig, random, random.uniform(-0.1, 0.1));
     const Pair pair(rig, {0, 1, 0}, random.uniform(0.01, 0.15));
-    near += pair.arc[0].count > 0;
+    near += pair.patch.nodes[0].count > 0;
     EXPECT_EQ(missed(pair, 0), 0);
   }
   EXPECT_GT(near, 1500);
@@ -120,10 +122,11 @@ TEST(ClosePhase, ArcsAreShort) {
   for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 100), BodyKind::rigid, {1.99 * i, 0.3 * i});
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
-  for (const Arc& arc : pair.arc) {
-    EXPECT_GT(arc.count, 5);
-    EXPECT_LT(arc.count, 25);
-  }
+  for (int side = 0; side < 2; ++side)
+    for (const Arc& arc : {pair.patch.nodes[side], pair.patch.segments[side]}) {
+      EXPECT_GT(arc.count, 5);
+      EXPECT_LT(arc.count, 15);
+    }
 }
 
 // EXACT: bodies further apart than the margin get no arcs.
@@ -133,8 +136,10 @@ TEST(ClosePhase, NothingBetweenBodiesApart) {
   for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 100), BodyKind::rigid, {2.2 * i, 0});
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
-  EXPECT_EQ(pair.arc[0].count, 0);
-  EXPECT_EQ(pair.arc[1].count, 0);
+  for (int side = 0; side < 2; ++side) {
+    EXPECT_EQ(pair.patch.nodes[side].count, 0);
+    EXPECT_EQ(pair.patch.segments[side].count, 0);
+  }
 }
 
 }  // namespace

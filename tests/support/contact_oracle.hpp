@@ -45,15 +45,20 @@ struct OracleLaw {
 /// One slave node and the place on the master that it belongs to.
 struct OraclePoint {
   int segment;  ///< of the master, counted on through its turns
-  double gap, xi, length, reference_length;
-  Vec2 normal, tangent, segment_tangent;
+  double height, gap, xi, length;
+  Vec2 normal, segment_tangent;
+
+  Vec2 tangent() const { return {-normal.y(), normal.x()}; }
+  /// Turn from the segment's normal to the point's.
+  double angle() const { return std::asin(std::clamp(segment_tangent.dot(normal), -1.0, 1.0)); }
 };
 
 class ContactOracle {
  public:
   struct Result {
     std::vector<Points> force;  ///< [bodies][nodes]
-    double stored = 0, dissipated = 0, deepest = 0;
+    double stored = 0, dissipated = 0;
+    double deepest = 0;  ///< penetration, m
     int contacts = 0, outside_truth = 0;
   };
 
@@ -74,7 +79,8 @@ class ContactOracle {
  private:
   using Key = std::tuple<int, int, int, int>;  // slave, node, master, periods added to the slave
   struct Memory {
-    double arc, slip;
+    int segment;
+    double xi, angle, slip;
   };
 
   const OutlineShape& shape(int body) const { return rig_.model.outlines[rig_.model.bodies[body].outline]; }
@@ -87,13 +93,6 @@ class ContactOracle {
     const int n = rig_.count(body), at = ((k % n) + n) % n;
     return (points[(at + 1) % n] + Vec2(at + 1 == n ? shape(body).turn_shift : 0, 0) - points[at]).norm();
   }
-  double arc(int body, int k) const {
-    double sum = 0;
-    for (int i = 0; i < k; ++i) sum += reference_length(body, i);
-    for (int i = k; i < 0; ++i) sum -= reference_length(body, i);
-    return sum;
-  }
-
   /// Unit normal of the line that halves the angle at node k, along the direction of travel.
   bool is_past(int body, int k, const Vec2& p) const {
     const Vec2 x = node(body, k), before = (x - node(body, k - 1)).normalized(),
@@ -102,21 +101,19 @@ class ContactOracle {
     return cross(outward_sum, p - x) >= 0;
   }
 
-  /// Distance to a segment's nearest point; nothing when the bisectors or the depth exclude it.
+  /// Distance to a segment's nearest point; nothing when the bisectors exclude it. However deep: the engine's limit is none where it is kept.
   std::optional<OraclePoint> on_segment(int body, int k, const Vec2& p) const {
     if (!is_past(body, k, p) || is_past(body, k + 1, p)) return {};
     const Vec2 a = node(body, k), b = node(body, k + 1);
     const double length = (b - a).norm();
     const Vec2 t = (b - a) / length, n(t.y(), -t.x());
     const double height = (p - a).dot(n), along = (p - a).dot(t);
-    if (height < -0.5 * length) return {};
-    OraclePoint point{k, height, along / length, length, reference_length(body, k), n, t, t};
+    OraclePoint point{k, height, height, along / length, length, n, t};
     if (along < 0 || along > length) {
       const Vec2 end = along < 0 ? a : b;
       point.xi = along < 0 ? 0 : 1;
       point.gap = std::copysign((p - end).norm(), height);
       point.normal = (p - end) / point.gap;
-      point.tangent = Vec2(-point.normal.y(), point.normal.x());
     }
     return point;
   }
@@ -161,32 +158,53 @@ class ContactOracle {
                Result& result) {
     const double weight = 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
     const double start = old ? old->slip : 0;
-    const double here = point ? arc(master, point->segment) + point->xi * point->reference_length : 0;
     if (!point || point->gap >= law_.reach()) {
       // The place is remembered before the touch, so that slip counts from the first step of it.
-      if (point) trial_[{slave, k, master, image}] = {here, 0};
+      if (point) trial_[{slave, k, master, image}] = {point->segment, point->xi, point->angle(), 0};
       result.dissipated += weight * 0.5 * law_.kt() * start * start;
       return;
     }
     ++result.contacts;
-    result.deepest = std::max(result.deepest, -point->gap / point->length);
-    double moved = old ? here - old->arc : 0;
-    const double turn = arc(master, rig_.count(master));
-    moved -= turn * std::round(moved / turn);
-    const double tried = start + moved * point->length / point->reference_length;
+    result.deepest = std::max(result.deepest, -point->gap);
+    const double tried = start + (old ? way(master, *old, *point) : 0);
     const double most = law_.kt() > 0 ? law_.shear_limit(point->gap) / law_.kt() : 0,
                  slip = std::clamp(tried, -most, most);
-    trial_[{slave, k, master, image}] = {here, slip};
+    trial_[{slave, k, master, image}] = {point->segment, point->xi, point->angle(), slip};
     result.stored += weight * (law_.energy(point->gap) + 0.5 * law_.kt() * slip * slip);
     result.dissipated += weight * 0.5 * law_.kt() * (start + slip) * (tried - slip);
     share_force(slave, k, master, *point, weight * law_.pressure(point->gap), -weight * law_.kt() * slip, result);
+  }
+
+  /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the normal
+  /// at the corners passed. A node under a convex corner, or over a re-entrant one, jumps from face to face.
+  double way(int master, const Memory& from, const OraclePoint& to) const {
+    const int n = rig_.count(master);
+    int steps = (((to.segment - from.segment) % n) + n) % n;
+    if (2 * steps > n) steps -= n;
+    if (steps == 0) return to.length * (to.xi - from.xi) + to.gap * std::sin(to.angle() - from.angle);
+    double sum = to.gap * (to.angle() - from.angle);
+    const int first = to.segment - steps;
+    const auto length = [&](int k) { return (node(master, k + 1) - node(master, k)).norm(); };
+    sum += steps > 0 ? (1 - from.xi) * length(first) + to.xi * to.length
+                     : -(from.xi * length(first) + (1 - to.xi) * to.length);
+    for (int k = std::min(first, to.segment) + 1; k < std::max(first, to.segment); ++k)
+      sum += std::copysign(length(k), steps);
+    for (int k = std::min(first, to.segment) + 1; k <= std::max(first, to.segment); ++k)
+      sum += std::copysign(1.0, steps) * around(master, k, to);
+    return sum;
+  }
+  double around(int master, int corner, const OraclePoint& at) const {
+    const Vec2 before = node(master, corner) - node(master, corner - 1),
+               after = node(master, corner + 1) - node(master, corner);
+    const double turn = std::atan2(cross(before, after), before.dot(after));
+    return at.height * turn > 0 ? at.gap * turn : 2 * at.height * std::tan(turn / 2);
   }
 
   /// Force on the node; the reaction on the segment's two nodes has the same sum and moment, and splits the normal part
   /// by 1 - xi and xi.
   void share_force(int slave, int k, int master, const OraclePoint& point, double normal, double shear,
                    Result& result) const {
-    const Vec2 f = normal * point.normal + shear * point.tangent;
+    const Vec2 f = normal * point.normal + shear * point.tangent();
     const double couple =
         shear * point.gap / point.length;  // moment of the shear about the foot, as a pair of forces a segment apart
     const Vec2 n(point.segment_tangent.y(), -point.segment_tangent.x());

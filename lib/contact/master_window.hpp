@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "bodies/outline.hpp"
+#include "contact/patch.hpp"
+#include "core/lanes.hpp"
+
+namespace pliant {
+
+/// What contact needs to know of one segment, in one cache line.
+struct alignas(64) MasterSegment {
+  double x, y;  ///< its first node, m
+  double tangent_x, tangent_y;
+  double length, inverse_length;
+  double bisector_x, bisector_y;  ///< at the first node: sum of the two segments' tangents, normal to the bisector
+};
+
+/// The segments of one arc of a master, rebuilt at every evaluation.
+class MasterWindow {
+ public:
+  /// `inward`: depth to search below a segment beyond the longest one's length, m.
+  void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& segments,
+            double shift, double inward);
+
+  int count() const { return count_; }
+  /// One more row than segments: the end node of the last.
+  const MasterSegment& operator[](int row) const { return rows_[static_cast<std::size_t>(row + 1)]; }
+  double longest() const { return longest_; }  ///< segment, m
+  double depth() const { return depth_; }      ///< of the contact box below each segment, m
+  int outline_count() const { return outline_count_; }
+  /// Numbers of the segments in their outline, in [0, outline_count()).
+  Lanes numbers(Lanes rows) const {
+    const double n = outline_count_;
+    const Lanes number = first_number_ + rows;
+    return number - n * round_to_integer((number - 0.5 * (n - 1)) * (1 / n));
+  }
+
+ private:
+  int count_ = 0, outline_count_ = 0, first_number_ = 0;
+  double longest_ = 0, depth_ = 0;
+  std::vector<MasterSegment> rows_;  ///< from the segment before the first on
+};
+
+}  // namespace pliant

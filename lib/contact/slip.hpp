@@ -1,0 +1,35 @@
+#pragma once
+
+#include "contact/projection.hpp"
+
+namespace pliant {
+
+/// Place of a node on the master's outline as one number, for the history: twice the segment's number, plus xi beside the segment or, beyond an
+/// end, fan/4 more or less: at most 1/4 off [0, 1], so that every place belongs to one segment.
+inline Lanes place_of(const Projection& p) { return 2.0 * p.number + p.xi + 0.25 * p.fan; }
+
+/// Way along the outline from an old place on another segment to the projection in one lane, at its present gap and shape: faces count by their
+/// length, corners by the turn of the normal. Signed, m.
+double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
+
+/// Tangential motion of eight nodes past the master since the last accepted step, m: rates in the present shape (beside a segment l d(xi), beyond
+/// an end g d(angle)), so that the shear force is their exact conjugate. `place`: place_of(p), rounded like the old one, so that rest is rest.
+/// `counted`: lanes with a known old place that touch; others give 0.
+inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBits counted, Lanes old_place,
+                         Lanes place) {
+  const Lanes u = place - 2.0 * p.number, old_u = old_place - 2.0 * p.number;
+  const Lanes xi = min(max(u, Lanes{}), broadcast(1)), old_xi = min(max(old_u, Lanes{}), broadcast(1));
+  Lanes moved = p.length * (xi - old_xi);
+  const LaneBits same = abs(old_u - 0.5) < 0.9;
+  if (any(counted & same & ((u != xi) | (old_u != old_xi)))) {
+    const Lanes fan = 4.0 * (u - xi), old_fan = 4.0 * (old_u - old_xi);
+    const Lanes cosine = sqrt(max(1.0 - fan * fan, Lanes{})), old_cosine = sqrt(max(1.0 - old_fan * old_fan, Lanes{}));
+    moved += p.gap * (fan * old_cosine - cosine * old_fan);
+  }
+  if (const LaneBits crossed = counted & ~same; any(crossed))
+    for (int lane = 0; lane < lane_count; ++lane)
+      if (crossed[lane]) moved[lane] = way_between_segments(window, p, lane, old_place[lane]);
+  return select(counted, moved, Lanes{});
+}
+
+}  // namespace pliant
