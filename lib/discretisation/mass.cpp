@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-std::vector<double> lumped_mass(const FieldMesh& mesh, const MlsNodes& nodes) {
+std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
   const MeshQuadrature quadrature = mesh_quadrature(mesh, 6);
-  std::vector<double> mass(nodes.position.size(), 0);
+  std::vector<double> mass(mesh.nodes.size(), 0);
   for (std::size_t g = 0; g < quadrature.weight.size(); ++g) {
-    const ShapeFunctions shape = evaluate_mls(nodes, quadrature.position[g]);
+    const ShapeFunctions shape = basis(quadrature.position[g], quadrature.triangle[g]);
     for (std::size_t a = 0; a < shape.node.size(); ++a) mass[shape.node[a]] += quadrature.weight[g] * shape.value[a];
   }
   for (std::size_t i = 0; i < mass.size(); ++i)

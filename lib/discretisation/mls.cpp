@@ -97,16 +97,8 @@ ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x) {
   return result;
 }
 
-ShapeRows mls_rows(const MlsNodes& nodes, const Points& points) {
-  ShapeRows rows;
-  rows.start.push_back(0);
-  for (const Vec2& x : points) {
-    const ShapeFunctions shape = evaluate_mls(nodes, x);
-    rows.node.insert(rows.node.end(), shape.node.begin(), shape.node.end());
-    rows.value.insert(rows.value.end(), shape.value.begin(), shape.value.end());
-    rows.start.push_back(static_cast<int>(rows.node.size()));
-  }
-  return rows;
+Basis moving_least_squares(const MlsNodes& nodes) {
+  return [nodes](const Vec2& x, int) { return evaluate_mls(nodes, x); };
 }
 
 }  // namespace pliant

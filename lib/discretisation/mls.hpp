@@ -1,16 +1,9 @@
 #pragma once
 
 #include "core/vec2.hpp"
-#include "discretisation/table.hpp"
+#include "discretisation/basis.hpp"
 
 namespace pliant {
-
-/// Shape functions that do not vanish at a point, and their gradients there.
-struct ShapeFunctions {
-  std::vector<int> node;      ///< [neighbours], ascending
-  std::vector<double> value;  ///< [neighbours], sum to 1
-  Points gradient;            ///< [neighbours], 1/length
-};
 
 /// Nodes with the radii of their supports: what moving least squares needs of a mesh.
 struct MlsNodes {
@@ -27,7 +20,7 @@ MlsNodes make_mls_nodes(const Points& nodes, int support);
 /// neighbours off one line.
 ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x);
 
-/// Values at many points, one row each.
-ShapeRows mls_rows(const MlsNodes& nodes, const Points& points);
+/// evaluate_mls as the basis of a mesh.
+Basis moving_least_squares(const MlsNodes& nodes);
 
 }  // namespace pliant

@@ -3,8 +3,8 @@
 
 namespace pliant {
 
-RecipeResult build_mls(const FieldMesh& mesh, const MlsNodes& nodes, const ShapeRows& outline_rows) {
-  RecipeResult result = build_mls_gauss(mesh, nodes, 1);
+RecipeResult build_mls(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows) {
+  RecipeResult result = build_at_gauss_points(mesh, basis, 1);
   result.completeness_residual = make_gradients_consistent(result.table, mesh, outline_rows);
   return result;
 }

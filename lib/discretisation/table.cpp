@@ -9,22 +9,51 @@
 
 #include "core/errors.hpp"
 #include "discretisation/mass.hpp"
+#include "discretisation/mls.hpp"
 #include "discretisation/recipes.hpp"
+#include "discretisation/rpim.hpp"
 
 namespace pliant {
 namespace {
 
-constexpr int largest_support_mls = 14, largest_support_mls_gauss = 25, least_support = 7;
+constexpr int largest_support_mls = 14, largest_support_others = 25, least_support = 7;
 
-void require_support(const DiscretisationSettings& settings) {
-  const bool consistent = settings.recipe == Recipe::mls;
-  const int largest = consistent ? largest_support_mls : largest_support_mls_gauss;
+MlsNodes nodes_with_supports(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+  const int largest = settings.recipe == Recipe::mls ? largest_support_mls : largest_support_others;
   if (settings.support < least_support || settings.support > largest)
-    throw InputError(fmt::format("discretisation: support = {} nodes; allowed for `{}`: {} to {} (8 to 10 advised)",
-                                 settings.support, consistent ? "mls" : "mls-gauss", least_support, largest));
+    throw InputError(
+        fmt::format("discretisation: support = {} nodes; allowed for this recipe: {} to {} (8 to 10 advised)",
+                    settings.support, least_support, largest));
   if (settings.support > largest_support_mls)
     spdlog::warn("discretisation: support = {} nodes; above 12, row-sum mass creates modes that move no material",
                  settings.support);
+  return make_mls_nodes(mesh.nodes, settings.support);
+}
+
+Basis basis_of(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+  switch (settings.recipe) {
+    case Recipe::t3:
+    case Recipe::es_t3:
+      return linear_triangles(mesh);
+    case Recipe::rpim:
+      return radial_point_interpolation(nodes_with_supports(mesh, settings));
+    default:
+      return moving_least_squares(nodes_with_supports(mesh, settings));
+  }
+}
+
+RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows,
+                   const DiscretisationSettings& settings) {
+  switch (settings.recipe) {
+    case Recipe::mls:
+      return build_mls(mesh, basis, outline_rows);
+    case Recipe::es_t3:
+      return build_es_t3(mesh);
+    case Recipe::t3:
+      return build_at_gauss_points(mesh, basis, 1);
+    default:
+      return build_at_gauss_points(mesh, basis, settings.gauss_points);
+  }
 }
 
 std::vector<double> nearest_distances(const Points& nodes) {
@@ -55,19 +84,17 @@ void give_dimensions(Discretisation& result, double length) {
 }  // namespace
 
 Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  require_support(settings);
   const double area = polygon_properties(outline_of(mesh)).area;
   const double length = std::sqrt(area / static_cast<double>(mesh.nodes.size()));
   const FieldMesh scaled = nondimensional(mesh, length);
-  const MlsNodes nodes = make_mls_nodes(scaled.nodes, settings.support);
+  const Basis basis = basis_of(scaled, settings);
   Discretisation result;
   result.mesh = mesh;
-  result.outline_rows = mls_rows(nodes, outline_of(scaled));
-  result.node_rows = mls_rows(nodes, scaled.nodes);
-  result.unit_mass = lumped_mass(scaled, nodes);
+  result.node_rows = rows_at_nodes(scaled, basis);
+  result.outline_rows = rows_at_outline(scaled, result.node_rows);
+  result.unit_mass = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
-  RecipeResult recipe = settings.recipe == Recipe::mls ? build_mls(scaled, nodes, result.outline_rows)
-                                                       : build_mls_gauss(scaled, nodes, settings.gauss_points);
+  RecipeResult recipe = build(scaled, basis, result.outline_rows, settings);
   result.table = std::move(recipe.table);
   const auto& values = result.node_rows.value;
   result.min_shape_value = std::min(recipe.min_shape_value, *std::min_element(values.begin(), values.end()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/vec2.hpp"
@@ -15,7 +16,8 @@ struct IntegrationTable {
   std::vector<int> start;      ///< [points + 1], rows of `node` and `gradient`
   std::vector<int> node;       ///< [entries]
   Points gradient;             ///< [entries], 1/m
-  std::vector<int> triangle;   ///< [points], the background triangle a point lies in
+  /// [points], background triangles that a point stands for in pictures: twice the one it lies in, or those beside its edge.
+  std::vector<std::array<int, 2>> cells;
 };
 
 /// Sparse rows phi_i(x_k): values of the shape functions at given points.

@@ -50,13 +50,14 @@ std::vector<CellState> cell_states(const Model& model, const Body& body, const D
       const double sxx = (P.xx * F[g].xx + P.xy * F[g].xy) / J, syy = (P.yx * F[g].yx + P.yy * F[g].yy) / J;
       const double sxy = (P.xx * F[g].yx + P.xy * F[g].yy) / J, szz = Law::sigma_zz(F[g], mu, lambda);
       const double w = shape.space.table.weight[g];
-      CellState& cell = cells[shape.space.table.triangle[g]];
-      cell.weight += w;
-      cell.von_mises +=
-          w * std::sqrt(0.5 * ((sxx - syy) * (sxx - syy) + (syy - szz) * (syy - szz) + (szz - sxx) * (szz - sxx)) +
-                        3 * sxy * sxy);
-      cell.jacobian += w * J;
-      cell.pressure -= w * (sxx + syy + szz) / 3;
+      const double von_mises = std::sqrt(
+          0.5 * ((sxx - syy) * (sxx - syy) + (syy - szz) * (syy - szz) + (szz - sxx) * (szz - sxx)) + 3 * sxy * sxy);
+      for (const int cell : shape.space.table.cells[g]) {
+        cells[cell].weight += w;
+        cells[cell].von_mises += w * von_mises;
+        cells[cell].jacobian += w * J;
+        cells[cell].pressure -= w * (sxx + syy + szz) / 3;
+      }
     }
   });
   return cells;

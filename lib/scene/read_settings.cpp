@@ -56,9 +56,16 @@ TimeSettings read_time(TableReader table) {
 
 DiscretisationSettings read_discretisation(TableReader table) {
   DiscretisationSettings settings;
-  table.optional("recipe", settings.recipe, Choice<Recipe>{{{"mls", Recipe::mls}, {"mls-gauss", Recipe::mls_gauss}}});
-  table.optional("support", settings.support, Integer{4, settings.recipe == Recipe::mls ? 14 : 25});
-  if (settings.recipe == Recipe::mls_gauss && table.optional("gauss_points", settings.gauss_points, Integer{1, 6})) {
+  table.optional("recipe", settings.recipe,
+                 Choice<Recipe>{{{"mls", Recipe::mls},
+                                 {"mls-gauss", Recipe::mls_gauss},
+                                 {"t3", Recipe::t3},
+                                 {"es-t3", Recipe::es_t3},
+                                 {"rpim", Recipe::rpim}}});
+  const bool triangles = settings.recipe == Recipe::t3 || settings.recipe == Recipe::es_t3;
+  if (!triangles) table.optional("support", settings.support, Integer{7, settings.recipe == Recipe::mls ? 14 : 25});
+  if (!triangles && settings.recipe != Recipe::mls &&
+      table.optional("gauss_points", settings.gauss_points, Integer{1, 6})) {
     const int points = settings.gauss_points;
     if (points != 1 && points != 3 && points != 6) table.value("gauss_points").reject("1, 3 or 6");
   }

@@ -17,7 +17,7 @@ enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, rigid };
 enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon };
 enum class PackingKind { hexagonal, grid, positions };
-enum class Recipe { mls, mls_gauss };
+enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive };
 enum class Integrator { verlet, step_doubling };
 enum class ProbeQuantity { force, friction_factor, position, velocity, diameter, energy };
@@ -145,7 +145,7 @@ struct TimeSettings {
 struct DiscretisationSettings {
   Recipe recipe = Recipe::mls;
   int support = 8;       ///< nodal support radius = distance to the support-th nearest node
-  int gauss_points = 3;  ///< mls-gauss: 1, 3 or 6
+  int gauss_points = 3;  ///< mls-gauss, rpim: 1, 3 or 6
 };
 
 struct Scene {

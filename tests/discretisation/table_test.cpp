@@ -69,6 +69,47 @@ TEST(TableMls, SatisfiesBothConditions) {
     }
 }
 
+// EXACT: finite elements satisfy both conditions as they are.
+TEST(TableTriangles, SatisfyBothConditions) {
+  for (const ShapeSpec& shape : all_shapes())
+    for (const Recipe recipe : {Recipe::t3, Recipe::es_t3}) {
+      const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
+      expect_complete(d);
+      EXPECT_LT(balance_defect(d), 1e-12);
+      // Euler: a triangulated disc has nodes + triangles - 1 edges.
+      EXPECT_EQ(d.table.weight.size(),
+                recipe == Recipe::t3 ? d.mesh.triangles.size() : d.mesh.nodes.size() + d.mesh.triangles.size() - 1);
+      EXPECT_EQ(d.node_rows.node.size(), d.mesh.nodes.size());
+      EXPECT_GE(d.min_shape_value, 0);
+    }
+}
+
+// EXACT: an edge's point stands for the triangles beside it, so every triangle has a share in three.
+TEST(TableTriangles, EdgesStandForTheirTriangles) {
+  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(Recipe::es_t3));
+  std::vector<double> shares(d.mesh.triangles.size(), 0);
+  for (const auto& [a, b] : d.table.cells) {
+    shares[a] += 0.5;
+    shares[b] += 0.5;
+    if (a == b) continue;
+    int common = 0;
+    for (int i : d.mesh.triangles[a]) common += std::count(d.mesh.triangles[b].begin(), d.mesh.triangles[b].end(), i);
+    EXPECT_EQ(common, 2);
+  }
+  for (const double share : shares) EXPECT_GE(share, 1.5);
+}
+
+// EXACT: radial point interpolation is complete and interpolates.
+TEST(TableRpim, IsCompleteAndInterpolates) {
+  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(Recipe::rpim, 9, 3));
+  expect_complete(d);
+  EXPECT_EQ(d.node_rows.node.size(), d.mesh.nodes.size());
+  for (std::size_t k = 0; k < d.mesh.nodes.size(); ++k) {
+    EXPECT_EQ(d.node_rows.node[k], static_cast<int>(k));
+    EXPECT_NEAR(d.node_rows.value[k], 1, 1e-12);
+  }
+}
+
 // EXACT for completeness. Gauss points fail condition (2), which shows that the check above can fail.
 TEST(TableMlsGauss, IsCompleteButNotBalanced) {
   for (const int points : {1, 3, 6}) {
@@ -83,7 +124,7 @@ TEST(TableMlsGauss, IsCompleteButNotBalanced) {
 // integral of x - sum phi X = 0: linear reproduction makes it exact.
 TEST(Table, AreaAndMasses) {
   for (const ShapeSpec& shape : all_shapes())
-    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
+    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3, Recipe::rpim}) {
       const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
       const double area = polygon_properties(outline_of(d.mesh)).area;
       EXPECT_NEAR(std::accumulate(d.table.weight.begin(), d.table.weight.end(), 0.0) / area, 1, 1e-13);
@@ -141,8 +182,8 @@ TEST(Table, DoesNotDependOnUnits) {
 TEST(Table, RefusesSupportsBeyondTheLimits) {
   const FieldMesh mesh = make_field_mesh(disc(168));
   const auto message = [&](const DiscretisationSettings& s) { return error_of([&] { discretise(mesh, s); }); };
-  EXPECT_NE(message(settings(Recipe::mls, 15)).find("allowed for `mls`: 7 to 14"), std::string::npos);
-  EXPECT_NE(message(settings(Recipe::mls, 3)).find("allowed for `mls`"), std::string::npos);
+  EXPECT_NE(message(settings(Recipe::mls, 15)).find("allowed for this recipe: 7 to 14"), std::string::npos);
+  EXPECT_NE(message(settings(Recipe::mls, 3)).find("allowed for this recipe"), std::string::npos);
   EXPECT_NE(message(settings(Recipe::mls_gauss, 26)).find("7 to 25"), std::string::npos);
   EXPECT_EQ(message(settings(Recipe::mls_gauss, 15)), "");
   EXPECT_NE(message(settings(Recipe::mls_gauss, 9, 4)).find("1, 3 or 6"), std::string::npos);

@@ -5,15 +5,16 @@
 
 namespace pliant {
 
-RecipeResult build_mls_gauss(const FieldMesh& mesh, const MlsNodes& nodes, int gauss_points) {
+RecipeResult build_at_gauss_points(const FieldMesh& mesh, const Basis& basis, int gauss_points) {
   const MeshQuadrature quadrature = mesh_quadrature(mesh, gauss_points);
   RecipeResult result;
   IntegrationTable& table = result.table;
   table.weight = quadrature.weight;
-  table.triangle = quadrature.triangle;
   table.start.push_back(0);
-  for (const Vec2& x : quadrature.position) {
-    const ShapeFunctions shape = evaluate_mls(nodes, x);
+  for (std::size_t g = 0; g < quadrature.weight.size(); ++g) {
+    const int triangle = quadrature.triangle[g];
+    const ShapeFunctions shape = basis(quadrature.position[g], triangle);
+    table.cells.push_back({triangle, triangle});
     table.node.insert(table.node.end(), shape.node.begin(), shape.node.end());
     table.gradient.insert(table.gradient.end(), shape.gradient.begin(), shape.gradient.end());
     table.start.push_back(static_cast<int>(table.node.size()));

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+
+#include "core/vec2.hpp"
+#include "discretisation/table.hpp"
+
+namespace pliant {
+
+/// Shape functions that do not vanish at a point, and their gradients there.
+struct ShapeFunctions {
+  std::vector<int> node;      ///< [neighbours], ascending
+  std::vector<double> value;  ///< [neighbours], sum to 1
+  Points gradient;            ///< [neighbours], 1/length
+};
+
+/// The shape functions of a mesh, at a point of a given triangle: all that tables and masses need of a recipe.
+using Basis = std::function<ShapeFunctions(const Vec2& x, int triangle)>;
+
+/// Linear functions of the mesh's triangles.
+Basis linear_triangles(const FieldMesh& mesh);
+
+/// Values at all field nodes, one row each. Functions that interpolate have one entry a row.
+ShapeRows rows_at_nodes(const FieldMesh& mesh, const Basis& basis);
+
+/// The rows of the outline nodes, which come first.
+ShapeRows rows_at_outline(const FieldMesh& mesh, const ShapeRows& node_rows);
+
+}  // namespace pliant
