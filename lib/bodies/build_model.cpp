@@ -27,7 +27,6 @@ class ShapeStore {
     if (const auto found = compliant_.find(name); found != compliant_.end()) return found->second;
     CompliantShape shape;
     shape.space = discretise(make_field_mesh(model_.scene.shape(name)), model_.scene.discretisation);
-    shape.table = make_blocked_table(shape.space.table);
     for (double m : shape.space.unit_mass) shape.inverse_unit_mass.push_back(1 / m);
     const FieldMesh& mesh = shape.space.mesh;
     shape.outline = add_outline(Points(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count), 0);

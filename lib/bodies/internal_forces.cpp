@@ -1,86 +1,97 @@
 #include "bodies/internal_forces.hpp"
 
+#include <algorithm>
+
 #include "materials/with_material.hpp"
 
 namespace pliant {
 namespace {
 
-constexpr int K = BlockedTable::points_per_block;
+/// A table's arrays by their bare pointers: a store of Lanes may alias the vectors' own, which would be read anew each time.
+struct Rows {
+  const int *start, *node;
+  const Vec2* gradient;
+  const double* weight;
+  int points;
 
-/// F at the K points of a block.
-inline void gather_deformation(const BlockedTable& table, int block, const Lanes* q, Tensor<Lanes> (&F)[K]) {
-  for (auto& f : F) f = Tensor<Lanes>{};
-  for (int e = table.start[block]; e < table.start[block + 1]; ++e) {
-    const BlockedTable::Entry& entry = table.entries[e];
-    const Lanes x = q[2 * entry.node], y = q[2 * entry.node + 1];
-    for (int k = 0; k < K; ++k) {
-      F[k].xx += x * entry.gradient[k][0];
-      F[k].xy += x * entry.gradient[k][1];
-      F[k].yx += y * entry.gradient[k][0];
-      F[k].yy += y * entry.gradient[k][1];
-    }
+  explicit Rows(const IntegrationTable& table)
+      : start(table.start.data()),
+        node(table.node.data()),
+        gradient(table.gradient.data()),
+        weight(table.weight.data()),
+        points(static_cast<int>(table.weight.size())) {}
+};
+
+inline Tensor<Lanes> deformation_gradient(const Rows& rows, int point, const Lanes* q) {
+  Tensor<Lanes> F{};
+  for (int e = rows.start[point]; e < rows.start[point + 1]; ++e) {
+    const double bx = rows.gradient[e].x(), by = rows.gradient[e].y();
+    const Lanes x = q[2 * rows.node[e]], y = q[2 * rows.node[e] + 1];
+    F.xx += x * bx;
+    F.xy += x * by;
+    F.yx += y * bx;
+    F.yy += y * by;
+  }
+  return F;
+}
+
+inline void subtract_forces(const Rows& rows, int point, const Tensor<Lanes>& P, Lanes* f) {
+  for (int e = rows.start[point], end = rows.start[point + 1]; e < end; ++e) {
+    const double bx = rows.gradient[e].x(), by = rows.gradient[e].y();
+    Lanes* node = f + 2 * rows.node[e];
+    Lanes fx = node[0], fy = node[1];
+    fx -= P.xx * bx;  // one statement a product: each becomes one fused operation
+    fx -= P.xy * by;
+    fy -= P.yx * bx;
+    fy -= P.yy * by;
+    node[0] = fx;
+    node[1] = fy;
   }
 }
 
-inline void scatter_stress(const BlockedTable& table, int block, const Tensor<Lanes> (&P)[K], Lanes* f) {
-  for (int e = table.start[block]; e < table.start[block + 1]; ++e) {
-    const BlockedTable::Entry& entry = table.entries[e];
-    Lanes fx = f[2 * entry.node], fy = f[2 * entry.node + 1];
-    for (int k = 0; k < K; ++k) {  // one statement a product: each becomes one fused operation
-      fx -= P[k].xx * entry.gradient[k][0];
-      fx -= P[k].xy * entry.gradient[k][1];
-      fy -= P[k].yx * entry.gradient[k][0];
-      fy -= P[k].yy * entry.gradient[k][1];
-    }
-    f[2 * entry.node] = fx;
-    f[2 * entry.node + 1] = fy;
-  }
-}
-
+/// Three points are under way at once, each at another stage, so that the processor need not wait for the long chain of
+/// operations of one point's stress.
 template <class Law>
-Lanes add_forces(Law, const BlockedTable& table, Lanes mu, Lanes lambda, const Lanes* q, Lanes* f) {
+Lanes add_forces(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q, Lanes* f) {
   Lanes least_J = broadcast(1e300);
-  for (int block = 0; block < table.blocks(); ++block) {
-    Tensor<Lanes> F[K], P[K];
-    gather_deformation(table, block, q, F);
-    for (int k = 0; k < K; ++k) {
-      const double w = table.weight[K * block + k];
-      // A padded point has F = 0 and no weight: give it the identity, so that no infinity meets the zero.
-      if (w == 0) F[k].xx = F[k].yy = broadcast(1);
-      const Response<Lanes> response = Law::template stress<Lanes>(F[k], mu, lambda);
-      P[k] = {w * response.P.xx, w * response.P.xy, w * response.P.yx, w * response.P.yy};
-      least_J = min(response.J, least_J);
-    }
-    scatter_stress(table, block, P, f);
+  const int last = rows.points - 1;
+  const auto weighted_stress = [&](int point, const Tensor<Lanes>& F) {
+    const double w = rows.weight[point];
+    const Response<Lanes> response = Law::template stress<Lanes>(F, w * mu, w * lambda);  // P is linear in them
+    least_J = min(response.J, least_J);
+    return response.P;
+  };
+  Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, q));
+  Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), q);
+  for (int point = 0; point <= last; ++point) {
+    const Tensor<Lanes> next_P = weighted_stress(std::min(point + 1, last), F);
+    F = deformation_gradient(rows, std::min(point + 2, last), q);
+    subtract_forces(rows, point, P, f);
+    P = next_P;
   }
   return least_J;
 }
 
 template <class Law>
-Lanes energy(Law, const BlockedTable& table, Lanes mu, Lanes lambda, const Lanes* q) {
+Lanes energy(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q) {
   Lanes total{};
-  for (int block = 0; block < table.blocks(); ++block) {
-    Tensor<Lanes> F[K];
-    gather_deformation(table, block, q, F);
-    for (int k = 0; k < K; ++k)
-      if (const double w = table.weight[K * block + k]; w > 0)
-        total += w * Law::template energy<Lanes>(F[k], mu, lambda);
-  }
+  for (int point = 0; point < rows.points; ++point)
+    total += rows.weight[point] * Law::template energy<Lanes>(deformation_gradient(rows, point, q), mu, lambda);
   return total;
 }
 
 }  // namespace
 
 Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* positions, Lanes* forces) {
-  const BlockedTable& table = model.shape_of(batch).table;
+  const Rows rows(model.shape_of(batch).space.table);
   return with_material(model.groups[batch.group].law,
-                       [&](auto law) { return add_forces(law, table, batch.mu, batch.lambda, positions, forces); });
+                       [&](auto law) { return add_forces(law, rows, batch.mu, batch.lambda, positions, forces); });
 }
 
 Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
-  const BlockedTable& table = model.shape_of(batch).table;
+  const Rows rows(model.shape_of(batch).space.table);
   return batch.weight * with_material(model.groups[batch.group].law,
-                                      [&](auto law) { return energy(law, table, batch.mu, batch.lambda, positions); });
+                                      [&](auto law) { return energy(law, rows, batch.mu, batch.lambda, positions); });
 }
 
 std::vector<Tensor<double>> deformation_gradients(const CompliantShape& shape, const Lanes* positions, int lane) {

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "bodies/blocked_table.hpp"
 #include "bodies/outline.hpp"
 #include "core/lanes.hpp"
 #include "discretisation/table.hpp"
@@ -14,7 +13,6 @@ namespace pliant {
 /// A shape as compliant bodies use it: one table whatever the number of grains.
 struct CompliantShape {
   Discretisation space;
-  BlockedTable table;
   std::vector<double> inverse_unit_mass;  ///< [nodes], 1/m2
   int outline = 0;                        ///< index of its outline shape
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }

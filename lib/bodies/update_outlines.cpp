@@ -20,15 +20,22 @@ void update_batch(const Model& model, const Batch& batch, const Lanes* q, Outlin
   const ShapeRows& rows = shape.space.outline_rows;
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
-  for (int k = 0; k < count; ++k) {
-    Lanes x = batch.centre_x, y = batch.centre_y;
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
-      x += rows.value[e] * q[2 * rows.node[e]];
-      y += rows.value[e] * q[2 * rows.node[e] + 1];
+  for (int first = 0; first < count; first += lane_count) {
+    Lanes x[lane_count]{}, y[lane_count]{}, x_of_body[lane_count], y_of_body[lane_count];
+    for (int k = first; k < std::min(first + lane_count, count); ++k) {
+      Lanes sum_x = batch.centre_x, sum_y = batch.centre_y;
+      for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
+        sum_x += rows.value[e] * q[2 * rows.node[e]];
+        sum_y += rows.value[e] * q[2 * rows.node[e] + 1];
+      }
+      x[k - first] = sum_x;
+      y[k - first] = sum_y;
     }
-    for (int lane = 0; lane < batch.count; ++lane) {
-      outlines.x[outlines.offset[bodies[lane]] + k] = x[lane];
-      outlines.y[outlines.offset[bodies[lane]] + k] = y[lane];
+    transpose(x, x_of_body);
+    transpose(y, y_of_body);
+    for (int lane = 0; lane < batch.count; ++lane) {  // the last ones reach into the cyclic copies, which come after
+      store(&outlines.x[outlines.offset[bodies[lane]] + first], x_of_body[lane]);
+      store(&outlines.y[outlines.offset[bodies[lane]] + first], y_of_body[lane]);
     }
   }
   for (int lane = 0; lane < batch.count; ++lane) {
@@ -80,16 +87,19 @@ void add_outline_forces(const Model& model, const Batch& batch, const Outlines& 
   const ShapeRows& rows = shape.space.outline_rows;
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
-  for (int k = 0; k < count; ++k) {
-    Lanes fx{}, fy{};
+  for (int first = 0; first < count; first += lane_count) {
+    Lanes x_of_body[lane_count]{}, y_of_body[lane_count]{}, fx[lane_count], fy[lane_count];
     for (int lane = 0; lane < batch.count; ++lane) {
-      fx[lane] = outlines.force_x[outlines.offset[bodies[lane]] + k];
-      fy[lane] = outlines.force_y[outlines.offset[bodies[lane]] + k];
+      x_of_body[lane] = load(&outlines.force_x[outlines.offset[bodies[lane]] + first]);
+      y_of_body[lane] = load(&outlines.force_y[outlines.offset[bodies[lane]] + first]);
     }
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
-      forces[2 * rows.node[e]] += rows.value[e] * fx;
-      forces[2 * rows.node[e] + 1] += rows.value[e] * fy;
-    }
+    transpose(x_of_body, fx);
+    transpose(y_of_body, fy);
+    for (int k = first; k < std::min(first + lane_count, count); ++k)
+      for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
+        forces[2 * rows.node[e]] += rows.value[e] * fx[k - first];
+        forces[2 * rows.node[e] + 1] += rows.value[e] * fy[k - first];
+      }
   }
 }
 

@@ -3,87 +3,211 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include <fmt/format.h>
 
-#include "dynamics/simulation.hpp"
+#include "bodies/initial_state.hpp"
+#include "cli/estimates.hpp"
+#include "cli/rehearsal.hpp"
+#include "dynamics/time_step_bound.hpp"
 #include "results/summary.hpp"
 
 namespace pliant {
 namespace {
 
+/// 1.18e-11 and "s" as "11.8 ps".
 std::string si(double value, const char* unit) {
   static constexpr const char* prefixes[] = {"f", "p", "n", "u", "m", "", "k", "M", "G", "T"};
   if (value == 0 || !std::isfinite(value)) return fmt::format("{} {}", value, unit);
-  const int step = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)) / 3)), -5, 4);
-  return fmt::format("{:.4g} {}{}", value / std::pow(1000.0, step), prefixes[step + 5], unit);
+  const int step = std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value)) / 3 + 1e-9)), -5, 4);
+  return fmt::format("{:.3g} {}{}", value / std::pow(1000.0, step), prefixes[step + 5], unit);
 }
+
+/// Seconds of waiting as a person says them.
+std::string duration(double seconds) {
+  if (seconds < 100) return fmt::format("{:.2g} s", seconds);
+  if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
+  return seconds < 360'000 ? fmt::format("{:.1f} h", seconds / 3600) : fmt::format("{:.0f} days", seconds / 86400);
+}
+
+std::string count(double number) {
+  return number < 10'000 ? fmt::format("{:.0f}", number)
+         : number < 1e6  ? fmt::format("{:.3g} thousand", number / 1e3)
+                         : fmt::format("{:.3g} million", number / 1e6);
+}
+
+/// Continuation lines have no heading.
+void print_row(const char* heading, const std::string& text) { fmt::print("{:<12} {}\n", heading, text); }
+
+const char* kind_name(const Body& body) { return body.kind == BodyKind::compliant ? "compliant" : "rigid"; }
 
 void print_bodies(const Model& model) {
   int compliant = 0, walls = 0;
-  double mass = 0;
+  for (const Body& body : model.bodies) compliant += body.kind == BodyKind::compliant, walls += body.wall;
+  const int all = static_cast<int>(model.bodies.size());
+  print_row("bodies",
+            fmt::format("{}: compliant {}, rigid {}, walls {}", all, compliant, all - compliant - walls, walls));
+  int field = 0;
+  for (const Body& body : model.bodies)
+    if (body.kind == BodyKind::compliant) field += model.shape_of(model.batches[body.batch]).nodes();
+  print_row("nodes", fmt::format("{}: in compliant bodies {}, on outlines of rigid bodies and walls {}",
+                                 model.node_count(), field, model.node_count() - field));
+  print_row("DOFs", std::to_string(model.dof_count()));
+}
+
+struct Share {
+  int bodies = 0;
+  double mass = 0;  ///< kg/m
+  void add(const Body& body) { ++bodies, mass += body.mass; }
+};
+
+void print_share(const char* heading, const std::string& label, const Share& share) {
+  const std::string mass = share.mass > 0 ? fmt::format("{:.4g} kg/m", share.mass) : "none given";
+  print_row(heading, fmt::format("{:<32} {:>7}   {}", label, share.bodies, mass));
+}
+
+void print_masses(const Model& model) {
+  std::map<std::string, Share> shares;
+  Share grains, all;
   for (const Body& body : model.bodies) {
-    compliant += body.kind == BodyKind::compliant;
-    walls += body.wall;
-    if (!body.wall) mass += body.mass;
+    const std::string& material = model.scene.materials[body.material].name;
+    shares[body.wall ? fmt::format("wall {} of {}", body.name, material)
+                     : fmt::format("{} grains of {}", kind_name(body), material)]
+        .add(body);
+    all.add(body);
+    if (!body.wall) grains.add(body);
   }
-  fmt::print("bodies       {} ({} compliant, {} rigid, {} walls)\n", model.bodies.size(), compliant,
-             static_cast<int>(model.bodies.size()) - compliant - walls, walls);
-  fmt::print("nodes        {}   DOFs {}   mass of grains {}\n", model.node_count(), model.dof_count(),
-             si(1000 * mass, "g/m"));
-  for (const CompliantShape& shape : model.shapes)
-    fmt::print(
-        "shape        {} nodes, {} integration points, {:.1f} neighbours a point, least shape function {:.3f}, "
-        "completeness {:.1e}\n",
-        shape.nodes(), shape.space.table.weight.size(),
-        static_cast<double>(shape.space.table.node.size()) / static_cast<double>(shape.space.table.weight.size()),
-        shape.space.min_shape_value, shape.space.completeness_residual);
+  const char* heading = "mass";
+  for (const auto& [label, share] : shares) {
+    print_share(heading, label, share);
+    heading = "";
+  }
+  print_share("", "all grains", grains);
+  if (all.bodies > grains.bodies) print_share("", "all bodies", all);
 }
 
-void print_contacts(const Simulation& simulation) {
-  const ContactSystem& contact = simulation.forces().contact();
-  double softest = 1e300, stiffest = 0;
-  for (const ContactLaw& law : contact.laws().laws) {
-    softest = std::min(softest, stiffness_of(law));
-    stiffest = std::max(stiffest, stiffness_of(law));
+void print_shapes(const Model& model) {
+  for (const CompliantShape& shape : model.shapes) {
+    const Discretisation& space = shape.space;
+    const double points = static_cast<double>(space.table.weight.size());
+    print_row("shape", fmt::format("{} nodes, {} on the outline; {:.0f} integration points of {:.1f} neighbours each; "
+                                   "least shape function {:.3f}; completeness {:.1e}",
+                                   shape.nodes(), model.outlines[shape.outline].count, points,
+                                   static_cast<double>(space.table.node.size()) / points, space.min_shape_value,
+                                   space.completeness_residual));
   }
-  fmt::print("contact      {} close pairs, stiffness {} to {}, reach {}, skin {}\n", contact.patches().size(),
-             si(softest, "Pa/m"), si(stiffest, "Pa/m"), si(contact.laws().max_reach, "m"), si(contact.skin(), "m"));
 }
 
-/// Bytes of one frame before compression: positions and fields in float32.
-double frame_bytes(const Model& model) {
-  double points = 0, cells = 0, outline = 0;
-  for (const Body& body : model.bodies) {
-    const int n = model.outlines[body.outline].count;
-    outline += n;
-    if (body.wall) continue;
-    const bool compliant = body.kind == BodyKind::compliant;
-    points += compliant ? model.shape_of(model.batches[body.batch]).nodes() : n;
-    cells +=
-        compliant ? static_cast<double>(model.shape_of(model.batches[body.batch]).space.mesh.triangles.size()) : n - 2;
-  }
-  double bytes = 8 * points + 8 * outline;
-  for (const std::string& field : model.scene.frames.fields)
-    bytes += field == "velocity" ? 12 * points : field == "contact_pressure" ? 4 * outline : 4 * cells;
-  return bytes;
+std::string describe(const ContactPair& pair, double pressure) {
+  std::string text = fmt::format("{:<24} {:<13} {:>9.3g} Pa/m {:<6} h {:<8}", pair.first + " - " + pair.second,
+                                 pair.law, pair.stiffness, pair.automatic ? "auto" : "given", si(pair.spacing, "m"));
+  if (pair.shear_stiffness > 0 && pair.shear_stiffness != pair.stiffness)
+    text += fmt::format(" in shear {:.3g} Pa/m", pair.shear_stiffness);
+  const auto percent = [&](double length) { return fmt::format("{:.2g} % of h", 100 * length / pair.spacing); };
+  if (pressure > 0) text += fmt::format(" {} deep at {}", percent(pair.penetration(pressure)), si(pressure, "Pa"));
+  if (pair.strength > 0)
+    text += fmt::format("; pull greatest at {}, none from {}", percent(pair.strength / pair.stiffness),
+                        percent(pair.reach));
+  return text;
 }
 
-/// Runs a few steps for their cost: the state is thrown away.
-double seconds_per_evaluation(Simulation& simulation) {
-  const double end = simulation.model().scene.time.end;
-  for (int i = 0; i < 3 && simulation.state().time < end; ++i) simulation.step(end);
-  const auto start = std::chrono::steady_clock::now();
-  const std::int64_t before = simulation.state().evaluations;
-  double elapsed = 0;
-  while (simulation.state().time < end && elapsed < 0.5) {
-    simulation.step(end);
-    elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+void print_contacts(const Model& model, const ContactSystem& contact) {
+  const char* heading = "contact";
+  for (const ContactPair& pair : contact_pairs(model, contact.laws())) {
+    print_row(heading, describe(pair, largest_pressure(model.scene)));
+    heading = "";
   }
-  const std::int64_t done = simulation.state().evaluations - before;
-  return done > 0 ? elapsed / static_cast<double>(done) : 0;
+  print_row(heading, fmt::format("pairs of bodies close at the start: {}; skin {}", contact.patches().size(),
+                                 si(contact.skin(), "m")));
+}
+
+/// The bound at the start, whatever the integrator: step doubling does not use it, but cannot go far beyond.
+struct Stability {
+  double dt = 0, stiffer_dt = 0;  ///< s; infinite when nothing is stiff
+  std::string governing;
+};
+constexpr double stiffer = 10;
+
+Stability stability(const Model& model) {
+  Forces forces(model);
+  const Dofs position = initial_positions(model);
+  Dofs force = zero_dofs(model);
+  ContactHistory history, trial;
+  forces.evaluate(position, 0, history, trial, force);
+  TimeStepBound bound(model, forces.contact().laws());
+  bound.update_internal(position);
+  bound.update_contact(forces);
+  return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
+}
+
+/// Fastest motion that the scene prescribes, m/s.
+double prescribed_speed(const Scene& scene) {
+  double fastest = 0;
+  for (const Grains& grains : scene.grains) fastest = std::max(fastest, grains.velocity.uniform.norm());
+  for (const Wall& wall : scene.walls)
+    for (const Drive* drive : {&wall.x, &wall.y})
+      if (drive->mode == Drive::Mode::velocity)
+        for (double v : drive->history.value) fastest = std::max(fastest, std::abs(v));
+  return fastest;
+}
+
+void print_time_step(const Scene& scene, const Stability& stable, double skin) {
+  const bool verlet = scene.time.integrator == Integrator::verlet;
+  if (!std::isfinite(stable.dt)) return print_row("time step", "set by the error control alone: nothing is stiff");
+  print_row("time step", fmt::format("{} {}, governed by {}", si(stable.dt, "s"),
+                                     verlet ? "at most" : "would be the bound of verlet", stable.governing));
+  print_row("", fmt::format("{} with all contacts {:.0f} times as stiff: {:.2g} times as many steps",
+                            si(stable.stiffer_dt, "s"), stiffer, stable.dt / stable.stiffer_dt));
+  if (!verlet) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
+  const double speed = prescribed_speed(scene);
+  if (speed * stable.dt > skin)
+    print_row("", fmt::format("bodies at {} use up the contact skin in {}: a larger [contact] skin allows longer steps",
+                              si(speed, "m/s"), si(skin / speed, "s")));
+}
+
+/// Evaluations of the whole run: counted, or those of the rehearsal and what its pace or the bound makes of the rest.
+struct Forecast {
+  double evaluations = 0;
+  const char *before = "", *after = "";
+};
+
+Forecast forecast(const Scene& scene, const Rehearsal& first, double bound) {
+  const double done = static_cast<double>(first.evaluations), left = scene.time.end - first.time;
+  if (first.finished) return {done, "", ", counted: the first second went to the end"};
+  const bool verlet = scene.time.integrator == Integrator::verlet;
+  const double least = verlet ? least_steps(scene, left, std::min(bound, left)) : 0;
+  const double paced = first.pace > 0 ? left / first.pace : verlet ? 0 : 2 * left / first.next_dt;
+  if (paced > least) return {done + paced, "about ", ", at the pace of the first second"};
+  return {done + least, "at least ", ", at the largest stable step"};
+}
+
+void print_cost(const Model& model, const Rehearsal& first, const Forecast& run, std::int64_t frames) {
+  std::string text =
+      fmt::format("{}{} until {}{}", run.before, count(run.evaluations), si(model.scene.time.end, "s"), run.after);
+  if (first.rejections > 0)
+    text += fmt::format("; {:.2g} % of the first {} were rejected",
+                        100.0 * static_cast<double>(first.rejections) / static_cast<double>(first.evaluations),
+                        first.evaluations);
+  print_row("evaluations", text);
+  // Measured on a local disk: each frame is synchronised to it, and compressed at some 60 MB/s.
+  const double frame_seconds = 0.01 + frame_bytes(model) / 60e6;
+  const int threads = omp_get_max_threads();
+  print_row("time",
+            fmt::format("{}{}, {:.0f} evaluations a second on {} thread{}; and {} to write frames", run.before,
+                        duration(run.evaluations * first.seconds_per_evaluation), 1 / first.seconds_per_evaluation,
+                        threads, threads > 1 ? "s" : "", duration(frame_seconds * static_cast<double>(frames))));
+}
+
+void print_sizes(const Model& model, const OutputSize& size) {
+  // What a run holds besides: HDF5, text on its way out, two copies of a frame.
+  const double memory = static_cast<double>(peak_memory_bytes()) + 8e6 + 3 * frame_bytes(model);
+  print_row("memory", "about " + si(memory, "B"));
+  print_row("output", fmt::format("about {}: {} frames {}, their index {}, probes {}, steps {}", si(size.total(), "B"),
+                                  size.frames, si(size.frames_h5, "B"), si(size.frames_xdmf, "B"),
+                                  si(size.probes_csv, "B"), si(size.steps_csv, "B")));
 }
 
 }  // namespace
@@ -91,24 +215,19 @@ double seconds_per_evaluation(Simulation& simulation) {
 void print_check(const Scene& scene, int threads) {
   if (threads > 0) omp_set_num_threads(threads);
   const Model model = build_model(scene);
-  Simulation simulation(model);
-  fmt::print("scene        {}\n", scene.title.empty() ? scene.name : scene.title);
+  print_row("scene", scene.title.empty() ? scene.name : scene.title);
   print_bodies(model);
-  print_contacts(simulation);
-  const double dt = simulation.largest_dt();
-  const double cost = seconds_per_evaluation(simulation);
-  if (std::isfinite(dt)) {
-    const double evaluations = scene.time.end / dt;
-    fmt::print("time step    {} at most, governed by {}\n", si(dt, "s"), simulation.governing());
-    fmt::print("evaluations  {:.3g} at least for {}; at {:.0f} a second on {} threads about {:.3g} hours\n",
-               evaluations, si(scene.time.end, "s"), 1 / cost, omp_get_max_threads(), evaluations * cost / 3600);
-  } else {
-    fmt::print("time step    set by the error control alone; now {}\n", si(simulation.state().next_dt, "s"));
-  }
-  const double frames = scene.frames.period > 0 ? std::floor(scene.time.end / scene.frames.period) + 1 : 0;
-  fmt::print("memory       {} now   frames {:.0f} of {}, {} before compression\n",
-             si(static_cast<double>(peak_memory_bytes()), "B"), frames, si(frame_bytes(model), "B"),
-             si(frames * frame_bytes(model), "B"));
+  print_masses(model);
+  print_shapes(model);
+  const Stability stable = stability(model);
+  Simulation simulation(model);
+  print_contacts(model, simulation.forces().contact());
+  print_time_step(scene, stable, simulation.forces().contact().skin());
+  const Rehearsal first = rehearse(simulation);
+  const Forecast run = forecast(scene, first, stable.dt);
+  const OutputSize size = output_size(model, run.evaluations);
+  print_cost(model, first, run, size.frames);
+  print_sizes(model, size);
 }
 
 }  // namespace pliant

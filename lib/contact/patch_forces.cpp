@@ -89,11 +89,10 @@ Lanes release(const Law& law, const Pass& pass, int i, Lanes old_slip, ContactHi
 }
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, const ContactHistory& committed,
-                  ContactHistory& trial, PatchForces& forces, LaneTotals& totals) {
+void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, double skin,
+                  const ContactHistory& committed, ContactHistory& trial, PatchForces& forces, LaneTotals& totals) {
   const double inverse_longest = 1 / window.longest();
-  // Where a node projects is known before it touches, so that friction acts from the first step of a touch.
-  const double outward = Law::has_shear ? std::max(law.reach, 0.5 * window.longest()) : law.reach;
+  const double outward = law.reach + (Law::has_shear ? skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const LaneBits active = first_lanes(pass.nodes.count - i);
@@ -167,10 +166,28 @@ PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Out
     if (patch.nodes[slave_side].count == 0) continue;
     const Pass pass = make_pass(model, outlines, patch, slave_side);
     fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    std::visit([&](const auto& law) { compute_pass(law, pass, scratch, committed, trial, forces, totals); },
+    std::visit([&](const auto& law) { compute_pass(law, pass, scratch, skin, committed, trial, forces, totals); },
                laws.laws[patch.law]);
   }
   return {sum(totals.stored), sum(totals.dissipated), largest(totals.deepest), totals.contacts};
+}
+
+void locate_newcomers(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
+                      double skin, ContactHistory& history, MasterWindow& scratch) {
+  if (!std::visit([](const auto& law) { return law.has_shear; }, laws.laws[patch.law])) return;
+  const double outward = reach_of(laws.laws[patch.law]) + skin;
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
+    const Pass pass = make_pass(model, outlines, patch, slave_side);
+    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
+    for (int i = 0; i < pass.nodes.count; i += lane_count) {
+      const SlaveNodes nodes = load_slaves(pass, i);
+      const Projection p = project(scratch, nodes.x, nodes.y, outward);
+      if (!any(p.hit)) continue;
+      const Lanes old_place = load(&history.place[pass.record + i]);
+      store(&history.place[pass.record + i], select(p.hit & (old_place != old_place), place_of(p), old_place));
+    }
+  }
 }
 
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,

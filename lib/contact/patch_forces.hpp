@@ -28,6 +28,11 @@ PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Out
                           double skin, const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
                           MasterWindow& scratch);
 
+/// Places of the nodes that can come in touch within a step, at the present outlines, where a history has none yet. Known before the touch, so
+/// that slip counts from its first step.
+void locate_newcomers(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
+                      double skin, ContactHistory& history, MasterWindow& scratch);
+
 /// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch within `outward`, written in the place
 /// of the forces' x: half the tributary length times the stiffness, shared by the two segment nodes on the master.
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,

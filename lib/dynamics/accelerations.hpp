@@ -6,7 +6,14 @@
 
 namespace pliant {
 
-/// Calls update(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and update(i, dof) for each rigid one.
+/// Calls update(i, dof) for each rigid degree of freedom, i its index in Dofs::rigid.
+template <class Update>
+void for_each_rigid_dof(const Model& model, Update&& update) {
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c) update(3 * r + c, model.rigid_bodies[r].dof[c]);
+}
+
+/// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i, dof) for each rigid one.
 /// The bodies are shared out over the threads; updates touch only index i.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
@@ -20,8 +27,7 @@ void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&&
       compliant(i++, inverse_mass);
     }
   });
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-    for (std::size_t c = 0; c < 3; ++c) rigid(3 * r + c, model.rigid_bodies[r].dof[c]);
+  for_each_rigid_dof(model, rigid);
 }
 
 }  // namespace pliant

@@ -1,14 +1,13 @@
 #include "dynamics/forces.hpp"
 
 #include <algorithm>
+#include <utility>
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "bodies/internal_forces.hpp"
 #include "bodies/update_outlines.hpp"
 #include "boundary/loads.hpp"
-#include "core/errors.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -26,12 +25,13 @@ Forces::Forces(const Model& model)
     : model_(model), outlines_(make_outlines(model)), contact_(model), least_jacobian_(model.batches.size(), 1e300) {}
 
 Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial,
-                            Dofs& force, const Dofs* accepted) {
+                            Dofs& force, State* accepted, const BatchWork& afterwards) {
   Evaluation result;
   update_outlines(model_, position, outlines_);
   if (contact_.refresh_needed(outlines_)) {
-    if (accepted) update_outlines(model_, *accepted, outlines_);
-    contact_.refresh(outlines_, committed);
+    if (accepted) update_outlines(model_, accepted->position, outlines_);
+    const bool two_histories = accepted && &accepted->history != &committed;
+    contact_.refresh(outlines_, committed, two_histories ? &accepted->history : nullptr);
     if (accepted) update_outlines(model_, position, outlines_);
     result.refreshed = true;
     result.sound = !contact_.refresh_needed(outlines_);
@@ -44,6 +44,7 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
     add_outline_forces(model_, batch, outlines_, f);
     add_gravity(model_, batch, f);
     least_jacobian_[b] = least_of(add_internal_forces(model_, batch, &position.compliant[batch.offset], f));
+    if (afterwards) afterwards(b);
   });
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
@@ -55,28 +56,24 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
   return result;
 }
 
-void Forces::check(const Evaluation& evaluation, double time) {
-  if (!(evaluation.least_jacobian > 0)) {
-    const auto worst = std::min_element(least_jacobian_.begin(), least_jacobian_.end()) - least_jacobian_.begin();
-    const Batch& batch = model_.batches[worst];
-    throw PhysicsError(
-        fmt::format("J = {:.3g} <= 0 in one of the bodies '{}' to '{}' at t = {:.6g} s: a grain is turned inside out; "
-                    "reduce the load, the tolerance or the time step's safety factor",
-                    evaluation.least_jacobian, model_.bodies[model_.groups[batch.group].bodies[batch.first]].name,
-                    model_.bodies[model_.groups[batch.group].bodies[batch.first + batch.count - 1]].name, time));
-  }
-  if (evaluation.contact.deepest > lost_penetration)
-    throw PhysicsError(
-        fmt::format("penetration reaches {:.2f} of a segment length at t = {:.6g} s and contacts are lost at {:.1f}; "
-                    "raise the contact stiffness",
-                    evaluation.contact.deepest, time, lost_penetration));
-  if (evaluation.contact.deepest > deep_penetration && !warned_deep_) {
-    warned_deep_ = true;
-    spdlog::warn(
-        "penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a "
-        "higher contact stiffness",
-        evaluation.contact.deepest, time, lost_penetration);
-  }
+void Forces::warn_of_depth(const Evaluation& evaluation, double time) {
+  if (evaluation.contact.deepest <= deep_penetration || warned_deep_) return;
+  warned_deep_ = true;
+  spdlog::warn(
+      "penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a "
+      "higher contact stiffness",
+      evaluation.contact.deepest, time, lost_penetration);
+}
+
+std::vector<double> Forces::stiffness_bound(const std::vector<double>& compliance) {
+  const auto swap_places = [&] {
+    std::swap(outlines_.x, outlines_.x_refresh);
+    std::swap(outlines_.y, outlines_.y_refresh);
+  };
+  swap_places();
+  std::vector<double> result = contact_.stiffness_bound(outlines_, compliance);
+  swap_places();
+  return result;
 }
 
 }  // namespace pliant

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
+
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "contact/contact.hpp"
+#include "dynamics/state.hpp"
 
 namespace pliant {
 
@@ -15,28 +18,31 @@ struct Evaluation {
   bool sound = true;  ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
 };
 
+/// What an integrator does with the new forces of batch b, an index in Model::batches, while they are in the cache. Called by several threads at once.
+using BatchWork = std::function<void(int b)>;
+
 /// All forces on all degrees of freedom for given positions.
 class Forces {
  public:
   explicit Forces(const Model& model);
 
-  /// Total forces at `position` and `time` into `force`. `committed` is the contact history of the last accepted step (laid out anew by a
-  /// refresh), `trial` receives the one that goes with these positions. `accepted`: positions of that step, when these are on trial; candidates are
-  /// then rebuilt there, so that a rejected trial loses no record, and a trial that goes further than the skin at once is not sound.
+  /// Total forces at `position` and `time` into `force`. `committed` is the contact history to start from, `trial` receives the one that goes
+  /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions, so that a rejected trial
+  /// loses no record, and a trial that goes further than the skin at once is not sound. A refresh lays `committed` and the accepted state's
+  /// history out anew, with the same records. `afterwards`, if any, follows the forces of each batch.
   Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
-                      const Dofs* accepted = nullptr);
+                      State* accepted = nullptr, const BatchWork& afterwards = {});
 
-  /// For positions that are meant to stay, right after their evaluation: throws PhysicsError when it is not sound, warns of deep contacts.
-  void check(const Evaluation& evaluation, double time);
+  /// Warns once a run that contacts get deep, after an evaluation that is accepted.
+  void warn_of_depth(const Evaluation& evaluation, double time);
 
   const Model& model() const { return model_; }
   const Outlines& outlines() const { return outlines_; }
   ContactSystem& contact() { return contact_; }
   const ContactSystem& contact() const { return contact_; }
-  /// Upper bounds of contact stiffness by outline node, at the current patches: see ContactSystem::stiffness_bound.
-  std::vector<double> stiffness_bound(const std::vector<double>& compliance) {
-    return contact_.stiffness_bound(outlines_, compliance);
-  }
+  /// Upper bounds of contact stiffness by outline node, at the current patches: see ContactSystem::stiffness_bound. Seen from where the patches
+  /// were found, whatever positions a trial has tried since.
+  std::vector<double> stiffness_bound(const std::vector<double>& compliance);
 
  private:
   const Model& model_;

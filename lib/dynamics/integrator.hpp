@@ -11,18 +11,17 @@ struct Trial {
   ContactHistory history;
 };
 
-/// Makes an accepted trial the state at `end_time`: books its work and dissipation, swaps, counts the step.
-void take_over(const Model& model, State& state, Trial& trial, double end_time, double dt, double dissipated);
-
-/// One accepted step.
+/// One accepted step, or the trials so far.
 struct StepReport {
   double dt = 0, error = 0;
-  int rejections = 0;
+  int rejections = 0, evaluations = 0;
   Evaluation evaluation;         ///< the last one
   const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"
 };
 
-/// Throws PhysicsError when dt has fallen under 1e-9 of `reference`: with what the last trial, rejected, found at `time`.
-void check_time_step(double dt, double reference, const StepReport& rejected, double time, Forces& forces);
+/// Makes an accepted trial the state at `end_time`: books its work and dissipation, swaps, counts. Only acceptance changes a state, so that a step
+/// that throws leaves it as it was; a refresh of the contact candidates may have put the history's records in another order.
+void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
+               const StepReport& report);
 
 }  // namespace pliant

@@ -4,7 +4,8 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/update_outlines.hpp"
-#include "contact/initial_overlap.hpp"
+#include "contact/deepest_node.hpp"
+#include "dynamics/failure.hpp"
 
 namespace pliant {
 
@@ -16,7 +17,9 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   update_outlines(model, state_.position, outlines);
   refuse_deep_overlap(model, outlines);
   ContactHistory trial;
-  forces_.check(forces_.evaluate(state_.position, 0, state_.history, trial, state_.force), 0);
+  const Evaluation start = forces_.evaluate(state_.position, 0, state_.history, trial, state_.force);
+  check_start(start, state_, forces_);
+  forces_.warn_of_depth(start, 0);
   std::swap(state_.history, trial);
   ++state_.evaluations;
   auditor_ = std::make_unique<Auditor>(forces_, state_);

@@ -12,6 +12,7 @@ namespace pliant {
 struct State {
   double time = 0;           ///< s
   double next_dt = 0;        ///< what the controller proposes, s
+  double jerk = 0;           ///< verlet: error over dt^3, the largest of late, 1/s3
   double external_work = 0;  ///< of loads and imposed motions, J/m
   double dissipated = 0;     ///< by contact laws, J/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
@@ -23,6 +24,7 @@ struct State {
   void visit(Visitor&& visitor) const {
     visitor("time", time);
     visitor("next_dt", next_dt);
+    visitor("jerk", jerk);
     visitor("external_work", external_work);
     visitor("dissipated", dissipated);
     visitor("steps", steps);

@@ -7,6 +7,7 @@
 #include "bodies/initial_state.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
+#include "dynamics/failure.hpp"
 
 namespace pliant {
 namespace {
@@ -36,77 +37,75 @@ StepDoubling::StepDoubling(Forces& forces, const State&)
 
 StepReport StepDoubling::step(State& state, double until) {
   const TimeSettings& settings = model_.scene.time;
-  if (state.next_dt == 0) state.next_dt = first_step * wave_time_;
+  double next_dt = state.next_dt > 0 ? state.next_dt : first_step * wave_time_;
   StepReport report;
   for (;;) {
     const double remaining = until - state.time;
-    const bool cut = state.next_dt >= remaining;
-    const double dt = cut ? remaining : state.next_dt;
+    const bool cut = next_dt >= remaining;
+    const double end_time = cut ? until : state.time + next_dt;
+    report.dt = cut ? remaining : next_dt;
     report.governed_by = cut ? "output" : "error";
-    half_step(state, dt);
-    report.evaluation = forces_.evaluate(trial_.position, state.time + 0.5 * dt, state.history, trial_.history,
-                                         trial_.force, &state.position);
-    ++state.evaluations;
-    second_half_step(state, dt);
-    report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
-    report.dt = dt;
+    report.error = try_step(state, end_time, report);
     const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_factor;
-    const double proposal = dt * std::clamp(factor, least_factor, largest_factor);
+    const double proposal = report.dt * std::clamp(factor, least_factor, largest_factor);
     if (report.error <= settings.alpha * settings.target) {
-      state.next_dt = cut ? std::max(proposal, state.next_dt) : proposal;
-      accept(state, dt, cut ? until : state.time + dt, report.evaluation);
+      forces_.warn_of_depth(report.evaluation, end_time);
+      take_over(model_, state, trial_, end_time, cut ? std::max(proposal, next_dt) : proposal, report);
       return report;
     }
-    state.next_dt = proposal;
+    next_dt = proposal;
     ++report.rejections;
-    ++state.rejections;
-    check_time_step(state.next_dt, wave_time_, report, state.time, forces_);
+    check_time_step({report, trial_, trial_time_, next_dt, wave_time_, "error control"}, state, forces_);
   }
 }
 
-/// v_half = v + dt/2 a, u_half = u + dt/2 v_half, into trial.
-void StepDoubling::half_step(const State& state, double dt) {
-  const double half = 0.5 * dt;
+/// Two half steps and, when their error lets them stand, the forces at the end, which the next step starts from. Returns the error: infinite
+/// where an evaluation is not sound.
+double StepDoubling::try_step(State& state, double end_time, StepReport& report) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double half = 0.5 * report.dt, middle = state.time + half;
+  half_step(state.position, state.velocity, state.force, state.time, half);
+  if (!evaluate(state, middle, state.history, half_history_, report)) return infinity;
+  const double slip_work = report.evaluation.contact.dissipated;
+  half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
+  const double result = error(state, report.dt);
+  if (!(result <= model_.scene.time.alpha * model_.scene.time.target)) return result;
+  if (!evaluate(state, end_time, half_history_, trial_.history, report)) return infinity;
+  report.evaluation.contact.dissipated += slip_work;
+  return result;
+}
+
+bool StepDoubling::evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report) {
+  report.evaluation = forces_.evaluate(trial_.position, time, from, to, trial_.force, &state);
+  ++report.evaluations;
+  trial_time_ = time;
+  return report.evaluation.sound;
+}
+
+/// v + half a and u + half v of that, from `time` on, into trial; the arguments may be the trial's own.
+void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half) {
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
-        trial_.velocity.compliant[i] = state.velocity.compliant[i] + half * inverse_mass * state.force.compliant[i];
-        trial_.position.compliant[i] = state.position.compliant[i] + half * trial_.velocity.compliant[i];
+        trial_.velocity.compliant[i] = velocity.compliant[i] + half * inverse_mass * force.compliant[i];
+        trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed()
-                                       ? imposed_velocity(dof, state.time + half)
-                                       : state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
-        trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, state.position.rigid[i], state.time, half)
-                                                 : state.position.rigid[i] + half * trial_.velocity.rigid[i];
+        trial_.velocity.rigid[i] = dof.imposed() ? imposed_velocity(dof, time + half)
+                                                 : velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
+        trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, position.rigid[i], time, half)
+                                                 : position.rigid[i] + half * trial_.velocity.rigid[i];
       });
 }
 
-/// v2 = v_half + dt/2 a_half, u2 = u_half + dt/2 v2; u2 - u1 = dt^2/4 a_half - dt^2/2 a.
-void StepDoubling::second_half_step(const State& state, double dt) {
-  const double half = 0.5 * dt;
-  for_each_dof(
-      model_,
-      [&](std::size_t i, Lanes inverse_mass) {
-        const Lanes a = inverse_mass * state.force.compliant[i], a_half = inverse_mass * trial_.force.compliant[i];
-        trial_.velocity.compliant[i] += half * a_half;
-        trial_.position.compliant[i] += half * trial_.velocity.compliant[i];
-        difference_[i] = (half * half) * (a_half - 2.0 * a);
-      },
-      [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed()
-                                       ? imposed_velocity(dof, state.time + dt)
-                                       : trial_.velocity.rigid[i] + half * dof.inverse_mass * trial_.force.rigid[i];
-        trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, state.position.rigid[i], state.time, dt)
-                                                 : trial_.position.rigid[i] + half * trial_.velocity.rigid[i];
-      });
-}
-
-/// Displacements are u = sum phi U, at the field nodes.
-double StepDoubling::batch_error(const Batch& batch) const {
-  const Discretisation& space = model_.shape_of(batch).space;
-  const ShapeRows& rows = space.node_rows;
-  const Lanes* d = &difference_[batch.offset];
+/// u2 - u1 = dt^2/4 a_half - dt^2/2 a; displacements are u = sum phi U, at the field nodes.
+double StepDoubling::batch_error(const Batch& batch, const State& state, double dt) {
+  const CompliantShape& shape = model_.shape_of(batch);
+  const ShapeRows& rows = shape.space.node_rows;
+  Lanes* d = &difference_[batch.offset];
+  const Lanes *start = &state.force.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
+  for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(shape.nodes()); ++i)
+    d[i] = 0.25 * dt * dt * shape.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
   Lanes worst{}, any_nan{};
   for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
     Lanes x{}, y{};
@@ -114,7 +113,7 @@ double StepDoubling::batch_error(const Batch& batch) const {
       x += rows.value[e] * d[2 * rows.node[e]];
       y += rows.value[e] * d[2 * rows.node[e] + 1];
     }
-    const Lanes here = max(abs(x), abs(y)) * (1 / space.nodal_distance[k]);
+    const Lanes here = max(abs(x), abs(y)) * (1 / shape.space.nodal_distance[k]);
     worst = max(worst, here);
     any_nan += x + y;
   }
@@ -144,21 +143,11 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
   return worst / model_.outlines[body.outline].spacing;
 }
 
-double StepDoubling::error(const State& state, double dt) const {
-  const double compliant =
-      parallel_max(static_cast<int>(model_.batches.size()), 0, [&](int b) { return batch_error(model_.batches[b]); });
+double StepDoubling::error(const State& state, double dt) {
+  const double compliant = parallel_max(static_cast<int>(model_.batches.size()), 0,
+                                        [&](int b) { return batch_error(model_.batches[b], state, dt); });
   return parallel_max(static_cast<int>(model_.rigid_bodies.size()), compliant,
                       [&](int r) { return rigid_error(static_cast<std::size_t>(r), state, dt); });
-}
-
-/// Keeps u2 and evaluates the forces there, which the next step starts from.
-void StepDoubling::accept(State& state, double dt, double end_time, Evaluation& evaluation) {
-  std::swap(state.history, trial_.history);
-  state.dissipated += evaluation.contact.dissipated;
-  evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force);
-  forces_.check(evaluation, end_time);
-  ++state.evaluations;
-  take_over(model_, state, trial_, end_time, dt, evaluation.contact.dissipated);
 }
 
 }  // namespace pliant

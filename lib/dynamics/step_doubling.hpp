@@ -14,18 +14,20 @@ class StepDoubling {
   StepReport step(State& state, double until);
 
  private:
-  void half_step(const State& state, double dt);
-  void second_half_step(const State& state, double dt);
-  double error(const State& state, double dt) const;
-  double batch_error(const Batch& batch) const;
+  double try_step(State& state, double end_time, StepReport& report);
+  bool evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report);
+  void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
+  double error(const State& state, double dt);
+  double batch_error(const Batch& batch, const State& state, double dt);
   double rigid_error(std::size_t rigid, const State& state, double dt) const;
-  void accept(State& state, double dt, double end_time, Evaluation& evaluation);
 
   Forces& forces_;
   const Model& model_;
   double wave_time_;               ///< from node to node, s
   Trial trial_;                    ///< at the half step, then at the end
-  std::vector<Lanes> difference_;  ///< u2 - u1 of the compliant degrees of freedom, dt^2/4 a_half - dt^2/2 a_start
+  double trial_time_ = 0;          ///< of the trial's last evaluation, s
+  ContactHistory half_history_;    ///< at the half step
+  std::vector<Lanes> difference_;  ///< u2 - u1 of the compliant degrees of freedom
 };
 
 }  // namespace pliant

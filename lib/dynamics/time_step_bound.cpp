@@ -122,20 +122,21 @@ void TimeStepBound::update_contact(Forces& forces) {
   });
 }
 
-double TimeStepBound::total(std::size_t b) const {
+double TimeStepBound::total(std::size_t b, double contact_factor) const {
   const Body& body = model_.bodies[b];
-  return contact_[b] + (body.kind == BodyKind::compliant ? internal_margin * internal_[body.batch][body.lane] : 0.0);
+  return contact_factor * contact_[b] +
+         (body.kind == BodyKind::compliant ? internal_margin * internal_[body.batch][body.lane] : 0.0);
 }
 
-std::size_t TimeStepBound::limiting_body() const {
+std::size_t TimeStepBound::limiting_body(double contact_factor) const {
   std::size_t worst = 0;
   for (std::size_t b = 1; b < model_.bodies.size(); ++b)
-    if (total(b) > total(worst)) worst = b;
+    if (total(b, contact_factor) > total(worst, contact_factor)) worst = b;
   return worst;
 }
 
-double TimeStepBound::largest_dt() const {
-  const double w2 = total(limiting_body());
+double TimeStepBound::largest_dt(double contact_factor) const {
+  const double w2 = total(limiting_body(contact_factor), contact_factor);
   return w2 > 0 ? model_.scene.time.safety * 2 / std::sqrt(w2) : std::numeric_limits<double>::infinity();
 }
 

@@ -17,15 +17,16 @@ class TimeStepBound {
   /// The a-priori contact bound, after a refresh of the contact candidates.
   void update_contact(Forces& forces);
 
-  double largest_dt() const;  ///< s, with the safety factor; infinite when nothing is stiff
+  /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much stiffer.
+  double largest_dt(double contact_factor = 1) const;
   /// Name of the limiting body and share of contact in its w^2, for messages.
   std::string governing() const;
 
  private:
   void iterate_batch(const Batch& batch, const Lanes* position, int iterations);
   double contact_frequency(const Body& body, const double* stiffness) const;
-  std::size_t limiting_body() const;
-  double total(std::size_t body) const;
+  std::size_t limiting_body(double contact_factor = 1) const;
+  double total(std::size_t body, double contact_factor = 1) const;
 
   const Model& model_;
   std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant

@@ -6,8 +6,8 @@
 
 #include "bodies/initial_state.hpp"
 #include "boundary/loads.hpp"
-#include "core/errors.hpp"
 #include "dynamics/accelerations.hpp"
+#include "dynamics/failure.hpp"
 
 namespace pliant {
 namespace {
@@ -16,6 +16,9 @@ constexpr int bound_period = 50;     ///< steps between power iterations
 constexpr double first_step = 1e-3;  ///< of the bound
 constexpr double least_factor = 0.5, largest_factor = 1.15;
 constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in dt
+/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So a large error fades from
+/// memory over many of their periods only.
+constexpr double fading = 0.99;
 
 double controller_factor(double error, double tolerance) {
   if (error == 0) return largest_factor;
@@ -27,47 +30,47 @@ double controller_factor(double error, double tolerance) {
 Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces), model_(forces.model()), bound_(forces.model(), forces.contact().laws()) {
   trial_.position = trial_.velocity = trial_.force = zero_dofs(model_);
+  change_.resize(model_.batches.size());
   bound_.update_internal(state.position);
   bound_.update_contact(forces_);
 }
 
 StepReport Verlet::step(State& state, double until) {
   const double tolerance = model_.scene.time.tolerance;
-  const double largest = std::min(bound_.largest_dt(), model_.scene.time.end);
-  if (state.next_dt == 0) state.next_dt = first_step * largest;
+  double next_dt = state.next_dt > 0 ? state.next_dt : first_step * largest_dt();
   StepReport report;
   for (;;) {
-    double dt = std::min(state.next_dt, largest);
-    report.governed_by = state.next_dt < largest ? "error" : "stability";
-    const double remaining = until - state.time;
-    const bool cut = dt >= remaining;
-    if (cut)
-      dt = remaining, report.governed_by = "output";
-    else if (2 * dt > remaining)
-      dt = 0.5 * remaining;
-    predict(state, dt);
-    const double end_time = cut ? until : state.time + dt;
-    report.evaluation =
-        forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state.position);
-    ++state.evaluations;
-    report.error = report.evaluation.sound ? error(state, dt) : std::numeric_limits<double>::infinity();
-    const double factor = controller_factor(report.error, tolerance);
-    report.dt = dt;
+    const double largest = largest_dt();  // a rejected trial may have found new contacts
+    const double wish = std::min(next_dt, largest);
+    // Equal steps up to the next output: a short one before each would jolt the fastest vibrations time and again.
+    const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
+    const double dt = report.dt = remaining / steps;
+    const double end_time = steps > 1 ? state.time + dt : until;
+    report.governed_by = steps == 1 ? "output" : next_dt < largest ? "error" : "stability";
+    try_step(state, end_time, report);
     if (report.error <= 2 * tolerance) {
-      forces_.check(report.evaluation, end_time);
-      // A step cut short to meet an output says little about the next one.
-      state.next_dt =
-          std::min(std::max(dt * factor, dt < 0.5 * state.next_dt ? state.next_dt * least_factor : 0.0), largest);
-      accept(state, dt, end_time, report.evaluation.contact.dissipated);
-      update_bound(state, report.evaluation.refreshed);
+      forces_.warn_of_depth(report.evaluation, end_time);
+      state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
+      // Of the whole step: one cut short to meet an output does not slow the run down.
+      next_dt = std::min(wish * controller_factor(state.jerk * wish * wish * wish, tolerance), largest);
+      accept(state, end_time, next_dt, report);
       return report;
     }
+    next_dt = dt * controller_factor(report.error, tolerance);
     ++report.rejections;
-    ++state.rejections;
-    state.next_dt = dt * std::min(factor, 0.9);
-    check_time_step(state.next_dt, largest, report, state.time, forces_);
-    if (report.evaluation.refreshed) bound_.update_contact(forces_);
+    check_time_step({report, trial_, end_time, next_dt, largest, bound_.governing()}, state, forces_);
   }
+}
+
+double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.scene.time.end); }
+
+void Verlet::try_step(State& state, double end_time, StepReport& report) {
+  predict(state, report.dt);
+  report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state,
+                                       [&](int b) { finish_batch(state, report.dt, b); });
+  ++report.evaluations;
+  if (report.evaluation.refreshed) bound_.update_contact(forces_);
+  report.error = report.evaluation.sound ? error(state, report.dt) : std::numeric_limits<double>::infinity();
 }
 
 void Verlet::predict(const State& state, double dt) {
@@ -86,22 +89,30 @@ void Verlet::predict(const State& state, double dt) {
       });
 }
 
+/// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is accepted, because the forces come
+/// out of the cache then.
+void Verlet::finish_batch(const State& state, double dt, int b) {
+  const Batch& batch = model_.batches[b];
+  const CompliantShape& shape = model_.shape_of(batch);
+  const Lanes *old_force = &state.force.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
+  const Lanes* old_velocity = &state.velocity.compliant[batch.offset];
+  Lanes* velocity = &trial_.velocity.compliant[batch.offset];
+  Lanes worst{}, any_nan{};
+  for (int i = 0; i < 2 * shape.nodes(); ++i) {
+    const double inverse_unit_mass = shape.inverse_unit_mass[i / 2];
+    velocity[i] = old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
+    const Lanes change = inverse_unit_mass / shape.space.nodal_distance[i / 2] * abs(force[i] - old_force[i]);
+    worst = max(worst, change);
+    any_nan += change;
+  }
+  const double result = largest(worst * batch.inverse_density);
+  change_[b] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
+}
+
 /// max of dt^2 |a_new - a_old| / (6 d) over all components; rigid bodies by their outline nodes.
 double Verlet::error(const State& state, double dt) const {
-  const double compliant = parallel_max(static_cast<int>(model_.batches.size()), 0, [&](int b) {
-    const Batch& batch = model_.batches[b];
-    const CompliantShape& shape = model_.shape_of(batch);
-    Lanes worst{}, any_nan{};
-    for (int i = 0; i < 2 * shape.nodes(); ++i) {
-      const std::size_t at = batch.offset + static_cast<std::size_t>(i);
-      const double scale = shape.inverse_unit_mass[i / 2] / shape.space.nodal_distance[i / 2];
-      const Lanes change = scale * abs(trial_.force.compliant[at] - state.force.compliant[at]);
-      worst = max(worst, change);
-      any_nan += change;
-    }
-    const double result = largest(worst * batch.inverse_density);
-    return std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
-  });
+  double compliant = 0;
+  for (double change : change_) compliant = std::max(compliant, change);
   double rigid = 0;
   for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r) {
     const RigidBody& body = model_.rigid_bodies[r];
@@ -115,25 +126,15 @@ double Verlet::error(const State& state, double dt) const {
   return dt * dt / 6 * std::max(compliant, rigid);
 }
 
-void Verlet::accept(State& state, double dt, double end_time, double dissipated) {
-  const double half = 0.5 * dt;
-  for_each_dof(
-      model_,
-      [&](std::size_t i, Lanes inverse_mass) {
-        trial_.velocity.compliant[i] =
-            state.velocity.compliant[i] + half * inverse_mass * (state.force.compliant[i] + trial_.force.compliant[i]);
-      },
-      [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] =
-            dof.imposed()
-                ? imposed_velocity(dof, state.time + dt)
-                : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
-      });
-  take_over(model_, state, trial_, end_time, dt, dissipated);
-}
-
-void Verlet::update_bound(const State& state, bool refreshed) {
-  if (refreshed) bound_.update_contact(forces_);
+void Verlet::accept(State& state, double end_time, double next_dt, const StepReport& report) {
+  const double half = 0.5 * report.dt;
+  for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
+    trial_.velocity.rigid[i] =
+        dof.imposed()
+            ? imposed_velocity(dof, end_time)
+            : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+  });
+  take_over(model_, state, trial_, end_time, next_dt, report);
   if (state.steps % bound_period == 0) bound_.update_internal(state.position);
 }
 

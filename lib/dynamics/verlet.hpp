@@ -15,15 +15,18 @@ class Verlet {
   const TimeStepBound& bound() const { return bound_; }
 
  private:
+  void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
+  void finish_batch(const State& state, double dt, int b);
   double error(const State& state, double dt) const;
-  void accept(State& state, double dt, double end_time, double dissipated);
-  void update_bound(const State& state, bool refreshed);
+  void accept(State& state, double end_time, double next_dt, const StepReport& report);
+  double largest_dt() const;
 
   Forces& forces_;
   const Model& model_;
   TimeStepBound bound_;
   Trial trial_;
+  std::vector<double> change_;  ///< [batches], of the acceleration over the nodal distance, 1/s2
 };
 
 }  // namespace pliant

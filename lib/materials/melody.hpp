@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/log_inverse.hpp"
+#include "core/elementary_functions.hpp"
 #include "materials/tensor.hpp"
 
 namespace pliant {

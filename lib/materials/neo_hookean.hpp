@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/log_inverse.hpp"
+#include "core/elementary_functions.hpp"
 #include "materials/tensor.hpp"
 
 namespace pliant {
@@ -11,14 +11,13 @@ struct NeoHookean {
   template <class T>
   static Response<T> stress(const Tensor<T>& F, T mu, T lambda) {
     const T J = determinant(F);
-    const auto [log_J, inverse_J] = log_inverse(J);
-    return {combine<T>(mu, F, (lambda * log_J - mu) * inverse_J), J};
+    return {combine<T>(mu, F, (lambda * natural_log(J) - mu) / J), J};
   }
 
   /// Strain energy per reference volume, J/m3.
   template <class T>
   static T energy(const Tensor<T>& F, T mu, T lambda) {
-    const T log_J = log_inverse(determinant(F)).log;
+    const T log_J = natural_log(determinant(F));
     return 0.5 * mu * (first_invariant(F) - 3.0 - 2.0 * log_J) + 0.5 * lambda * log_J * log_J;
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/log_inverse.hpp"
+#include "core/elementary_functions.hpp"
 #include "materials/tensor.hpp"
 
 namespace pliant {
@@ -17,7 +17,7 @@ struct NeoHookeanQuadratic {
   template <class T>
   static T energy(const Tensor<T>& F, T mu, T lambda) {
     const T J = determinant(F);
-    return 0.5 * mu * (first_invariant(F) - 3.0 - 2.0 * log_inverse(J).log) + 0.5 * lambda * (J - 1.0) * (J - 1.0);
+    return 0.5 * mu * (first_invariant(F) - 3.0 - 2.0 * natural_log(J)) + 0.5 * lambda * (J - 1.0) * (J - 1.0);
   }
 
   static double sigma_zz(const Tensor<double>& F, double, double lambda) { return lambda * (determinant(F) - 1.0); }

@@ -116,8 +116,7 @@ void run_scene(const Scene& scene, const RunOptions& options) {
     advance(simulation, recorder);
   } catch (const PhysicsError& error) {
     recorder.finish(simulation, error.what());
-    throw PhysicsError(fmt::format("{}\nlast good state: t = {:.6g} s; results up to there are in {}", error.what(),
-                                   simulation.state().time, options.out.string()));
+    throw PhysicsError(fmt::format("{}; results up to there are in {}", error.what(), options.out.string()));
   }
   recorder.finish(simulation);
   if (!options.quiet) print_summary(simulation, recorder.figures, options);

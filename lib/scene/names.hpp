@@ -6,7 +6,10 @@
 
 namespace pliant {
 
-/// Levenshtein distance: insertions, deletions and substitutions of one character.
+/// Whether some table of a scene file has a key of this name: others are misspelt, whatever table they stand in.
+bool is_scene_key(std::string_view word);
+
+/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours, one character each.
 int edit_distance(std::string_view a, std::string_view b);
 
 /// The name closest to `word`, or an empty string when none differs in less than half of the letters.

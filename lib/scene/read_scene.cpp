@@ -86,34 +86,25 @@ std::set<std::string> present_materials(const Scene& scene) {
   return present;
 }
 
-/// Number of the rule that applies to a pair of materials; -1: none.
-int rule_of(const Scene& scene, const std::string& a, const std::string& b) {
-  int found = -1;
-  for (int i = 0; i < static_cast<int>(scene.contacts.size()); ++i) {
-    const auto& [first, second] = std::tie(scene.contacts[i].first, scene.contacts[i].second);
-    if ((first == a && second == b) || (first == b && second == a)) return i;
-    if (first == "all") found = i;
-  }
-  return found;
-}
-
 /// A pair needs a rule, and a stiffness: the automatic one follows from the compliant bodies of the scene.
 void check_pair(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
                 const std::string& a, const std::string& b) {
-  const int rule = rule_of(scene, a, b);
-  if (rule < 0) {
-    (tables.empty() ? root : tables.back())
-        .fail(fmt::format("no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
-                          "[\"{0}\", \"{1}\"] or between = \"all\"",
-                          a, b));
+  const ContactRule* rule = scene.rule(a, b);
+  if (!rule && tables.empty()) root.fail_missing("contacts", "at least one table [[contacts]]");
+  if (!rule) {
+    tables.back().fail(
+        fmt::format("no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
+                    "[\"{0}\", \"{1}\"] or between = \"all\"",
+                    a, b));
   }
   const bool compliant = std::any_of(scene.grains.begin(), scene.grains.end(),
                                      [](const Grains& grains) { return has_body(grains, BodyKind::compliant); });
-  if (compliant || scene.contacts[rule].stiffness) return;
-  tables[rule].fail(
+  if (compliant || rule->stiffness) return;
+  const TableReader& table = tables[static_cast<std::size_t>(rule - scene.contacts.data())];
+  table.fail(
       fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
                   "bodies; add stiffness in {} (Pa/m)",
-                  a, b, tables[rule].title()));
+                  a, b, table.title()));
 }
 
 void check_rules(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables) {
@@ -124,13 +115,14 @@ void check_rules(const TableReader& root, const Scene& scene, const std::vector<
 }
 
 void read_contacts(TableReader& root, Scene& scene) {
+  if (root.has("contact") && root.value("contact").node.is_array())
+    root.value("contact").reject("a table [contact] of settings; rules for pairs of materials are [[contacts]]");
+  TableReader settings = root.optional_table("contact");
+  settings.optional("skin", scene.skin, Quantity{"1", positive});
+  settings.finish();
   const std::vector<TableReader> tables = root.tables("contacts");
   for (const TableReader& table : tables) scene.contacts.push_back(read_contact(table, scene));
   check_rules(root, scene, tables);
-  if (!root.has("contact")) return;
-  TableReader settings = root.required_table("contact");
-  settings.optional("skin", scene.skin, Quantity{"1", positive});
-  settings.finish();
 }
 
 }  // namespace

@@ -48,4 +48,14 @@ const Material& Scene::material(const std::string& name) const { return find_nam
 
 const ShapeSpec& Scene::shape(const std::string& name) const { return find_named(shapes, name, "shape"); }
 
+const ContactRule* Scene::rule(const std::string& first_material, const std::string& second_material) const {
+  const ContactRule* general = nullptr;
+  for (const ContactRule& one : contacts) {
+    const bool same = one.first == first_material && one.second == second_material;
+    if (same || (one.first == second_material && one.second == first_material)) return &one;
+    if (one.first == "all") general = &one;
+  }
+  return general;
+}
+
 }  // namespace pliant

@@ -167,6 +167,8 @@ struct Scene {
 
   const Material& material(const std::string& name) const;  ///< throws InputError for an unknown name
   const ShapeSpec& shape(const std::string& name) const;
+  /// The contact rule of a pair of materials: its own, else the one for all; nullptr when there is none.
+  const ContactRule* rule(const std::string& first_material, const std::string& second_material) const;
 };
 
 /// Reads and validates a scene file. Throws InputError with file, line and column, what was found, what is

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace pliant {
 
@@ -15,6 +16,7 @@ bool earlier(const toml::source_position& a, const toml::source_position& b) {
 }  // namespace
 
 bool TableReader::has(const std::string& key) {
+  if (!is_scene_key(key)) throw std::logic_error(fmt::format("'{}' is missing in is_scene_key", key));
   known_.insert(key);
   return table_->contains(key);
 }
@@ -78,12 +80,26 @@ void TableReader::fail(const std::string& key, const std::string& message) const
   fail_at(*file_, table_->get(key)->source().begin, fmt::format("'{}' in {}: {}", key, title_, message));
 }
 
-void TableReader::fail_missing(const std::string& key, const std::string& allowed) const {
+const toml::key* TableReader::misspelling_of(const std::string& key) const {
+  const toml::key* likeliest = nullptr;
+  int least = 0;
   for (const toml::key* other : unknown_keys()) {
-    const int misspelt = std::max(1, static_cast<int>(key.size()) / 3);
-    if (edit_distance(other->str(), key) <= misspelt) fail_unknown(*other, {key});
+    const int distance = edit_distance(other->str(), key);
+    // Most keys of the table have not been asked for yet: a name that some table knows is suspect only if it is close.
+    if (is_scene_key(other->str()) && distance > std::max(1, static_cast<int>(key.size()) / 3)) continue;
+    if (likeliest && distance >= least) continue;
+    likeliest = other;
+    least = distance;
   }
-  fail(fmt::format("missing key '{}' in {}: add {}", key, title_, allowed));
+  return likeliest;
+}
+
+void TableReader::fail_missing(const std::string& key, const std::string& allowed) const {
+  const toml::key* culprit = misspelling_of(key);
+  if (!culprit) fail(fmt::format("missing key '{}' in {}: add {}", key, title_, allowed));
+  fail_at(*file_, culprit->source().begin,
+          fmt::format("unknown key '{}' in {}, perhaps meant as '{}', which is missing: give {}", culprit->str(),
+                      title_, key, allowed));
 }
 
 std::vector<const toml::key*> TableReader::unknown_keys() const {
@@ -96,14 +112,13 @@ std::vector<const toml::key*> TableReader::unknown_keys() const {
   return unknown;
 }
 
-void TableReader::fail_unknown(const toml::key& key, const std::vector<std::string>& names) const {
-  fail_at(*file_, key.source().begin,
-          fmt::format("unknown key '{}' in {}; {}", key.str(), title_, allowed_names(key.str(), names)));
-}
-
 void TableReader::finish() const {
   const auto unknown = unknown_keys();
-  if (!unknown.empty()) fail_unknown(*unknown.front(), {known_.begin(), known_.end()});
+  if (unknown.empty()) return;
+  const toml::key& first = *unknown.front();
+  fail_at(*file_, first.source().begin,
+          fmt::format("unknown key '{}' in {}; {}", first.str(), title_,
+                      allowed_names(first.str(), {known_.begin(), known_.end()})));
 }
 
 }  // namespace pliant

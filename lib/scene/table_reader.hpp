@@ -12,8 +12,8 @@
 namespace pliant {
 
 /// Reads one table of a scene file, strictly: it remembers the keys that were asked for, and `finish` rejects all
-/// others. A new key is one line: `table.optional("safety", time.safety, Quantity{"1", positive})`; the default is the
-/// value that the field has already.
+/// others. A new key is one line, `table.optional("safety", time.safety, Quantity{"1", positive})`, and its name in
+/// is_scene_key; the default is the value that the field has already.
 class TableReader {
  public:
   TableReader(const toml::table& table, std::string title, const std::string& file)
@@ -50,7 +50,7 @@ class TableReader {
   [[noreturn]] void fail(const std::string& message) const;
   /// Throws InputError at the value of a key that is there.
   [[noreturn]] void fail(const std::string& key, const std::string& message) const;
-  /// Throws InputError for a missing key; a key that looks like a misspelling of it is named instead.
+  /// Throws InputError for a missing key, at the unknown key that is likely to stand for it where there is one.
   [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const;
   /// Throws InputError for the first key that nothing asked for.
   void finish() const;
@@ -59,7 +59,8 @@ class TableReader {
   bool nested() const { return title_.starts_with('['); }
   std::string child_title(const std::string& key) const;
   std::vector<const toml::key*> unknown_keys() const;
-  [[noreturn]] void fail_unknown(const toml::key& key, const std::vector<std::string>& names) const;
+  /// The likeliest among the keys that nothing asked for; nullptr: none is suspect.
+  const toml::key* misspelling_of(const std::string& key) const;
 
   const toml::table* table_;
   std::string title_;  ///< such as [materials.soft]

@@ -1,9 +1,12 @@
-"""Histories: steps, forces, energies."""
+"""Histories: steps, forces, energies, other probes."""
+
+from collections.abc import Callable
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator
 
 from plots import units
 from plots.run_data import Column, Run, Table
@@ -11,8 +14,12 @@ from plots.run_data import Column, Run, Table
 # Okabe and Ito's colours, told apart by the colour-blind.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
 # More rows than this are drawn as a band from least to largest with the mean in it.
-_DENSE = 4000
-_BINS = 800
+_DENSE = 1500
+_BINS = 500
+# A curve this much smaller than the largest of its panel is a line at zero: it is named, not drawn.
+_NEGLIGIBLE = 1e-9
+# Estimates of nearly nothing (free flight, a start at rest) shall not squeeze the others.
+_DECADES = 8
 
 
 def _binned(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, ...]:
@@ -28,63 +35,96 @@ def _binned(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, ...]:
     return (0.5 * (edges[1:] + edges[:-1])[filled], least[filled], mean, largest[filled])
 
 
-def _draw_history(axes: Axes, time: np.ndarray, values: np.ndarray, colour: str, name: str | None = None) -> None:
+def _draw_history(
+    axes: Axes, time: np.ndarray, values: np.ndarray, colour: str, name: str | None = None, style: str = "-"
+) -> None:
+    """Values that are NaN leave a gap."""
     if len(time) <= _DENSE:
-        axes.plot(time, values, color=colour, linewidth=1.1, label=name)
+        axes.plot(time, values, style, color=colour, linewidth=1.1, label=name)
         return
-    centre, least, mean, largest = _binned(time, values)
+    there = np.isfinite(values)
+    centre, least, mean, largest = _binned(time[there], values[there])
     axes.fill_between(centre, least, largest, color=colour, alpha=0.25, linewidth=0)
-    axes.plot(centre, mean, color=colour, linewidth=1.1, label=name)
+    axes.plot(centre, mean, style, color=colour, linewidth=1.1, label=name)
 
 
 def _panels(count: int, title: str, table: Table) -> tuple[Figure, list[Axes], float]:
     """Panels above one another with a common axis of time, and the factor of time."""
     figure, axes = plt.subplots(
-        count, 1, figsize=(9, 1.2 + 2.3 * count), sharex=True, squeeze=False, layout="constrained"
+        count, 1, figsize=(9, 1.2 + 2.1 * count), sharex=True, squeeze=False, layout="constrained"
     )
     figure.suptitle(title)
     factor, unit = units.scale(float(table.time.max()), "s")
     axes[-1, 0].set_xlabel(units.label("time", unit))
+    start = table.time.min() if table.time.min() > 0.05 * table.time.max() else 0.0
+    axes[-1, 0].set_xlim(start * factor, table.time.max() * factor)
     for panel in axes.flat:
         panel.grid(alpha=0.3)
+    figure.align_ylabels(axes)
     return figure, list(axes.flat), factor
+
+
+def _logarithmic(axes: Axes, values: np.ndarray) -> None:
+    """Labels between the decades where there are few of them, and no more decades than can be read."""
+    axes.set_yscale("log")
+    axes.yaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(2, 0.5)))
+    largest = values.max()
+    axes.set_ylim(max(10.0**-_DECADES * largest, np.quantile(values, 0.005) / 2), 2 * largest)
+
+
+def _legend(axes: Axes, curves: int) -> None:
+    """In a line above the panel: it hides nothing there, and all panels keep one width."""
+    if curves > 0:
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=curves, fontsize=9, frameon=False,
+                    borderpad=0.1, columnspacing=1.2, handlelength=1.4)
 
 
 def steps(run: Run) -> Figure | None:
     """Error estimate, time step, rejections and contacts against time (the paper's figure 8)."""
     table = run.steps
     wanted = {"error": "error estimate", "dt": "time step", "rejections": "rejections so far", "contacts": "contacts"}
-    columns = [] if table is None else [c for name in wanted if (c := table.get(name)) is not None]
+    columns = [] if table is None else [c for name in wanted if (c := table.get(name)) is not None and _tells(c)]
     if table is None or not columns:
         return None
     figure, axes, factor = _panels(len(columns), f"{run.title}: steps", table)
     for panel, column, colour in zip(axes, columns, COLOURS):
         _draw_step_column(panel, table, column, factor, colour, wanted[column.name])
-    figure.supxlabel(_rejection_caption(table), fontsize=9)
+        if column.name == "error" and run.tolerance is not None:
+            panel.axhline(run.tolerance, color=COLOURS[7], linewidth=0.8, linestyle="--", label="tolerance")
+            panel.set_ylim(top=max(panel.get_ylim()[1], 2 * run.tolerance))
+            _legend(panel, 1)
+    notes = [_rejection_note(table), "line: mean, band: least to largest" if len(table.time) > _DENSE else ""]
+    figure.supxlabel("; ".join(note for note in notes if note), fontsize=9)
     return figure
+
+
+def _tells(column: Column) -> bool:
+    """Rejections that never came need no panel: the note below says so."""
+    return column.name != "rejections" or bool(np.any(column.values > 0))
 
 
 def _draw_step_column(axes: Axes, table: Table, column: Column, time_factor: float, colour: str, name: str) -> None:
     time, values = table.sampled(column)
     factor, unit = units.scale(float(np.median(values)) if len(values) else 0.0, column.unit)
     if column.name == "error" and np.any(values > 0):
-        axes.set_yscale("log")
         time, values = time[values > 0], values[values > 0]
-        axes.set_ylim(np.quantile(values, 0.002) / 2, 2 * values.max())  # the first steps' errors are near zero
-    if column.name in ("rejections", "dt"):
-        largest = max(1.0, float(values.max(initial=0.0)) * factor)
-        axes.set_ylim(-0.03 * largest, 1.05 * largest)
+        _logarithmic(axes, values)
+    elif column.name in ("rejections", "contacts"):
+        axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6))
     _draw_history(axes, time * time_factor, values * factor, colour)
+    if column.name in ("rejections", "dt"):
+        axes.set_ylim(bottom=0)
     axes.set_ylabel(units.label(name, unit))
 
 
-def _rejection_caption(table: Table) -> str:
+def _rejection_note(table: Table) -> str:
     rejections, evaluations = table.get("rejections"), table.get("evaluations")
     if rejections is None or evaluations is None:
         return ""
     rejected, evaluated = rejections.values[-1], evaluations.values[-1]
-    share = 100 * rejected / evaluated if evaluated > 0 else 0.0
-    return f"{rejected:.0f} rejections, {evaluated:.0f} force evaluations: {share:.2g} in 100"
+    if rejected == 0:
+        return f"no rejections in {evaluated:.0f} force evaluations"
+    return f"{rejected:.0f} rejections in {evaluated:.0f} force evaluations ({100 * rejected / evaluated:.2g} %)"
 
 
 def _force_sources(table: Table) -> list[str]:
@@ -104,18 +144,13 @@ def _friction(run: Run, table: Table, source: str) -> tuple[np.ndarray, np.ndarr
     return table.time[loaded], force_x.values[loaded] / np.abs(force_y.values[loaded])
 
 
-def _peak_and_plateau(time: np.ndarray, values: np.ndarray) -> tuple[float, float, float]:
-    """Time and value of the largest magnitude, and the mean over the last quarter of the time."""
-    peak = int(np.abs(values).argmax())
-    last = time >= time[0] + 0.75 * (time[-1] - time[0])
-    return float(time[peak]), float(values[peak]), float(values[last].mean())
-
-
 def _caption(name: str, unit: str, time: np.ndarray, values: np.ndarray) -> str:
-    when, peak, plateau = _peak_and_plateau(time, values)
+    """Largest magnitude, with its time, and the mean over the last quarter of the time."""
+    peak = int(np.nanargmax(np.abs(values)))
+    last = time >= time[0] + 0.75 * (time[-1] - time[0])
     return (
-        f"{name}: peak {units.readable(peak, unit)} at {units.readable(when, 's')}, "
-        f"plateau {units.readable(plateau, unit)} (mean of the last quarter)"
+        f"{name}: peak {units.readable(float(values[peak]), unit)} at {units.readable(float(time[peak]), 's')}, "
+        f"mean of the last quarter {units.readable(float(np.nanmean(values[last])), unit)}"
     )
 
 
@@ -134,11 +169,21 @@ def forces(run: Run) -> Figure | None:
     sources = [] if table is None else _force_sources(table)
     if table is None or not sources:
         return None
-    figure, axes, factor = _panels(2 * len(sources), f"{run.title}: forces", table)
-    for i, source in enumerate(sources):
-        _draw_forces(axes[2 * i], run, table, source, factor)
-        _draw_friction(axes[2 * i + 1], run, table, source, factor)
+    rubbed = [source for source in sources if _friction_matters(run, table, source)]
+    figure, axes, factor = _panels(len(sources) + len(rubbed), f"{run.title}: forces", table)
+    panels = iter(axes)
+    for source in sources:
+        _draw_forces(next(panels), run, table, source, factor)
+        if source in rubbed:
+            _draw_friction(next(panels), run, table, source, factor)
     return figure
+
+
+def _friction_matters(run: Run, table: Table, source: str) -> bool:
+    """Not on a wall without friction, where the polygons' corners leave a trace of it."""
+    time, values = _friction(run, table, source)
+    there = _loaded(table, source, time) if len(time) else np.zeros(0, dtype=bool)
+    return bool(np.any(np.abs(values[there]) > 0.005))
 
 
 def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: float) -> None:
@@ -149,26 +194,24 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
     captions = []
     for column, name, colour in ((normal, "normal", COLOURS[0]), (tangential, "tangential", COLOURS[1])):
         time, values = table.sampled(column)
-        if len(time) == 0:
+        if np.abs(values).max(initial=0.0) <= _NEGLIGIBLE * largest:
+            captions.append(f"{name}: 0")
             continue
         if column is normal and values.mean() < 0:
             values = -values  # compression is positive on either wall
         _draw_history(axes, time * time_factor, values * factor, colour, name)
         captions.append(_caption(name, column.unit, time, values))
     axes.set_ylabel(units.label("force", unit))
-    axes.set_title(f"wall '{run.probe_of.get(source) or source}'\n" + "\n".join(captions), fontsize=9)
-    axes.legend(loc="best", fontsize=9)
+    axes.set_title(f"wall '{run.probe_of.get(source) or source}'\n" + "\n".join(captions), fontsize=9, loc="left")
+    _legend(axes, len(axes.get_legend_handles_labels()[0]))
 
 
 def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor: float) -> None:
     time, values = _friction(run, table, source)
+    values = np.where(_loaded(table, source, time), values, np.nan)
+    _draw_history(axes, time * time_factor, values, COLOURS[2])
     axes.set_ylabel("friction factor")
-    there = _loaded(table, source, time) if len(time) else np.zeros(0, dtype=bool)
-    if not there.any():
-        axes.set_title("friction factor: the wall carries no normal force", fontsize=9)
-        return
-    _draw_history(axes, time[there] * time_factor, values[there], COLOURS[2])
-    axes.set_title(_caption("friction factor", "-", time[there], values[there]), fontsize=9)
+    axes.set_title(_caption("friction factor", "-", time, values), fontsize=9, loc="left")
 
 
 def energy(run: Run) -> Figure | None:
@@ -180,20 +223,31 @@ def energy(run: Run) -> Figure | None:
     columns = [c for c in table.columns if c.source == kinetic.source]
     errors = [c for c in columns if c.name.endswith("_error") and np.any(np.abs(c.values) > 0)]
     figure, axes, time_factor = _panels(1 + len(errors), f"{run.title}: energy", table)
-    _draw_energies(axes[0], table, [c for c in columns if c.unit == kinetic.unit], time_factor)
+    energies = [c for c in columns if c.unit == kinetic.unit]
+    _draw_together(axes[0], table, energies, time_factor, "energy", lambda c: c.name.replace("_", " "))
     for panel, column, colour in zip(axes[1:], errors, COLOURS):
         _draw_error(panel, table, column, time_factor, colour)
     return figure
 
 
-def _draw_energies(axes: Axes, table: Table, columns: list[Column], time_factor: float) -> None:
+def _draw_together(
+    axes: Axes, table: Table, columns: list[Column], time_factor: float, quantity: str, name_of: Callable[[Column], str]
+) -> None:
+    """Columns of one unit in one panel; those that vanish beside the others are named in its title."""
     largest = max(np.nanmax(np.abs(c.values), initial=0.0) for c in columns)
     factor, unit = units.scale(float(largest), columns[0].unit)
-    for column, colour in zip(columns, COLOURS):
+    vanishing = []
+    for column, colour in zip(columns, COLOURS * len(columns)):
         time, values = table.sampled(column)
-        _draw_history(axes, time * time_factor, values * factor, colour, column.name.replace("_", " "))
-    axes.set_ylabel(units.label("energy", unit))
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
+        if np.abs(values).max(initial=0.0) <= _NEGLIGIBLE * largest:
+            vanishing.append(name_of(column))
+            continue
+        style = "--" if column.name == "external_work" else "-"  # what came in lies on what is stored in slow scenes
+        _draw_history(axes, time * time_factor, values * factor, colour, name_of(column), style)
+    axes.set_ylabel(units.label(quantity, unit))
+    _legend(axes, len(columns) - len(vanishing))
+    if vanishing:
+        axes.set_title(f"zero: {', '.join(vanishing)}", fontsize=9, loc="left")
 
 
 def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, colour: str) -> None:
@@ -202,7 +256,40 @@ def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, co
     there = values != 0
     name = column.name.removesuffix("_error").replace("_", " ")
     _draw_history(axes, time[there] * time_factor, np.abs(values[there]), colour)
-    axes.set_yscale("log")
+    _logarithmic(axes, np.abs(values[there]))
     axes.set_ylabel(units.label(f"{name} error", column.unit))
-    worst = float(np.abs(values).max())
-    axes.set_title(f"largest {name} error: {worst:.1e}" + ("" if column.unit == "-" else f" {column.unit}"), fontsize=9)
+    unit = "" if column.unit == "-" else f" {column.unit}"
+    title = f"{name} error: largest {np.abs(values).max():.1e}{unit}, at the end {abs(values[-1]):.1e}{unit}"
+    axes.set_title(title, fontsize=9, loc="left")
+
+
+def probes(run: Run) -> Figure | None:
+    """What forces and energies leave over: positions, velocities, diameters, friction factors; a panel for each."""
+    table = run.probes
+    if table is None:
+        return None
+    kinetic = table.get("kinetic")
+    taken = set(_force_sources(table)) | ({kinetic.source} if kinetic is not None else set())
+    shown = {run.probe_of.get(source, source) for source in _force_sources(table)}  # their friction is in forces.png
+    groups: dict[str, list[Column]] = {}
+    for column in table.columns:
+        drawn = column.name == "friction_factor" and run.probe_of.get(column.source, column.source) in shown
+        if column.source not in taken and not drawn and np.isfinite(column.values).any():
+            groups.setdefault(_quantity(column), []).append(column)
+    groups = {name: columns for name, columns in groups.items() if any(np.any(c.values != 0) for c in columns)}
+    if not groups:
+        return None
+    figure, axes, factor = _panels(len(groups), f"{run.title}: probes", table)
+    for panel, (name, columns) in zip(axes, groups.items()):
+        _draw_together(panel, table, columns, factor, name, lambda c: _probe_label(run, c))
+    return figure
+
+
+def _quantity(column: Column) -> str:
+    return column.name.removesuffix("_x").removesuffix("_y").replace("_", " ")
+
+
+def _probe_label(run: Run, column: Column) -> str:
+    """Whose, and which component: "left x"."""
+    component = column.name[-1] if column.name.endswith(("_x", "_y")) else ""
+    return f"{run.probe_of.get(column.source) or column.source} {component}".strip()

@@ -5,7 +5,8 @@ import re
 
 _PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _FACTORS = {prefix: 10.0**exponent for exponent, prefix in _PREFIXES.items()}
-_UNSCALED = ("", "-", "rad")
+_PURE = ("", "-")
+_UNSCALED = (*_PURE, "rad", "rad/s")
 
 
 def scale(largest: float, unit: str) -> tuple[float, str]:
@@ -19,18 +20,20 @@ def scale(largest: float, unit: str) -> tuple[float, str]:
 
 def label(name: str, unit: str) -> str:
     """Axis label: name and unit in brackets, where there is one."""
-    return name if unit in _UNSCALED else f"{name} [{unit}]"
+    return name if unit in _PURE else f"{name} [{unit}]"
 
 
 def readable(value: float, unit: str) -> str:
     """A number with its unit for captions: readable(1.25e-6, "s") is "1.25 us"."""
     factor, scaled = scale(value, unit)
-    return f"{value * factor:.3g} {scaled}".strip(" -") if unit in _UNSCALED else f"{value * factor:.3g} {scaled}"
+    return f"{value * factor:.3g}" if unit in _PURE else f"{value * factor:.3g} {scaled}"
 
 
-def length(text: str) -> float:
-    """Metres of a length as scene files write it: length("87 um") is 8.7e-5. ValueError when it is none."""
-    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnumck]?)m\s*", text.replace("µ", "u").replace("μ", "u"))
+def length(value: str | float) -> float:
+    """Metres of a length as scene files write it: length("87 um") is 8.7e-5, length(4) is 4. ValueError if none."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnumck]?)m\s*", value.replace("µ", "u").replace("μ", "u"))
     if match is None:
-        raise ValueError(f"'{text}' is not a length such as '87 um'")
+        raise ValueError(f"'{value}' is not a length such as '87 um'")
     return float(match[1]) * (1e-2 if match[2] == "c" else _FACTORS[match[2]])

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bodies/initial_state.hpp"
+#include "materials/neo_hookean.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {
@@ -67,6 +68,35 @@ struct Loaded {
 };
 
 const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody};
+
+// EXACT: f_i = - sum_g w_g P(F_g) b_gi in plain scalars, point after point, also for tables of very few points. Rounding of
+// some 100 terms of order 0.1.
+TEST(InternalForces, AreTheSumOverThePoints) {
+  Loaded loaded(ten_discs());
+  const Batch& batch = loaded.model.batches[0];
+  IntegrationTable& table = loaded.model.shapes[0].space.table;
+  for (const std::size_t points : {table.weight.size(), std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
+    table.weight.resize(points);
+    loaded.evaluate();
+    const Lanes* q = loaded.q.compliant.data();
+    for (int lane = 0; lane < lane_count; ++lane) {
+      std::vector<Vec2> expected(static_cast<std::size_t>(loaded.model.shapes[0].nodes()), Vec2(0, 0));
+      const std::vector<Tensor<double>> F = deformation_gradients(loaded.model.shapes[0], q, lane);
+      double least = 1e300;
+      for (std::size_t g = 0; g < points; ++g) {
+        const auto [P, J] = NeoHookean::stress<double>(F[g], batch.mu[lane], batch.lambda[lane]);
+        least = std::min(least, J);
+        for (int e = table.start[g]; e < table.start[g + 1]; ++e) {
+          const Vec2 b = table.weight[g] * table.gradient[e];
+          expected[table.node[e]] -= Vec2(P.xx * b.x() + P.xy * b.y(), P.yx * b.x() + P.yy * b.y());
+        }
+      }
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        for (int c = 0; c < 2; ++c) EXPECT_NEAR(loaded.f.compliant[2 * i + c][lane], expected[i][c], 1e-14);
+      EXPECT_NEAR(loaded.jacobian[0][lane], least, 1e-14);
+    }
+  }
+}
 
 // EXACT: forces are minus the gradient of the strain energy. Central differences of step 1e-5: h^2/6 of a third
 // derivative of order 1e3 (gradients are 1/h of 0.1) gives 2e-8, rounding 1e-16/1e-5 = 1e-11; relative to forces of

@@ -26,7 +26,8 @@ class Mistake:
 
 MISTAKES = {
     "unknown key": Mistake("poisson = 0.4", "poisson = 0.4\ncolour = 3", ["colour"]),
-    "misspelt key": Mistake("young =", "yuong =", ["young"], says_line=False),
+    "misspelt key": Mistake("young =", "yuong =", ["yuong", "young"]),
+    "required key by another name": Mistake("density =", "rho =", ["rho", "density"]),
     "misspelt optional key": Mistake("velocity =", "velocitty =", ["velocitty", "velocity"]),
     "unknown table": Mistake("[frames]", "[frame]", ["frame"]),
     "wrong unit": Mistake('"2 GPa"', '"2 kg"', ["young", "kg"]),

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "contact/initial_overlap.hpp"
+#include "contact/deepest_node.hpp"
 #include "core/errors.hpp"
 #include "support/contact_oracle.hpp"
 #include "support/simulations.hpp"

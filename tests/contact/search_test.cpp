@@ -134,9 +134,12 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
         ContactRig rig(scene);
         press_together(rig, random, random.uniform(-0.05, 0.05));
         rig.refresh();
+        ContactOracle oracle(rig, rule);
+        oracle.evaluate();  // a refresh notes where nodes are, so that slip counts from there
+        oracle.commit();
         move_by_the_skin(rig, random);
         if (rig.evaluate()) continue;
-        const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
+        const ContactOracle::Result expected = oracle.evaluate();
         if (expected.outside_truth > 0) continue;
         ++compared;
         expect_equal(rig, expected);

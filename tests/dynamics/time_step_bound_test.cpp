@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/true_spectrum.hpp"
+#include "dynamics/verlet.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {
@@ -133,6 +134,34 @@ TEST_P(ContactBound, is_of_use) {
     Bench bench(scene);
     EXPECT_LE(bound_of(bench), 4 * largest_square_frequency(bench, 1e-7)) << "FROZEN: 3.5 when written";
   }
+}
+
+/// A trial that is rejected may have found new neighbours, which lower the bound: the retry keeps to it.
+TEST(TimeStepBound, holds_for_the_retry_after_a_refresh) {
+  const auto retry = [](double tolerance, const auto& look) {
+    Scene scene = enclosed_block(smooth(100));
+    scene.grains[0].packing.positions[0] = {0, 9};  // far from the others, until moved
+    scene.time.tolerance = tolerance;
+    scene.time.safety = 0.8;
+    Bench bench(scene);
+    Verlet verlet(bench.forces, bench.state);
+    bench.state.position.rigid[1] = 0;
+    bench.state.next_dt = 1;
+    const double before = verlet.bound().largest_dt();
+    const StepReport report = verlet.step(bench.state, 1e9);
+    look(report, before, verlet.bound().largest_dt());
+  };
+  double error = 0;
+  retry(1e300, [&](const StepReport& report, double before, double after) {
+    error = report.error;
+    EXPECT_NEAR(report.dt, before, 1e-6 * before) << "EXACT: accepted at once";
+    EXPECT_LT(after, 0.75 * before) << "EXACT: neighbours all around double w^2 at least";
+  });
+  // Just over twice the tolerance: the controller alone would retry with 0.78 of the step.
+  retry(error / 2.1, [&](const StepReport& report, double, double after) {
+    EXPECT_EQ(report.rejections, 1) << "EXACT";
+    EXPECT_LE(report.dt, after) << "EXACT";
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Stiffnesses, ContactBound, ::testing::Values(10.0, 100.0, 3000.0));

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
 import subprocess
 import time
@@ -62,7 +64,7 @@ def all_packages() -> list[str]:
 
 @pytest.fixture
 def launcher(tmp_path: Path) -> Launcher:
-    for name in ["pliant", "packages.txt"]:
+    for name in ["pliant", "packages.txt", "CMakePresets.json"]:
         shutil.copy(ROOT / name, tmp_path / name)
     for name, body in STUBS.items():
         write_script(tmp_path / "stubs" / name, body)
@@ -146,6 +148,7 @@ def test_no_plot_is_the_launchers_own(launcher: Launcher) -> None:
 
 def test_threads_wait_actively_and_are_not_bound(launcher: Launcher) -> None:
     assert "places=none wait=active" in launcher("run", "a.toml").stdout
+    assert "wait=active" in launcher("check", "a.toml").stdout, "check measures what a run does"
     chosen = launcher("run", "a.toml", OMP_PLACES="sockets", OMP_WAIT_POLICY="passive").stdout
     assert "places=sockets wait=passive" in chosen
 
@@ -187,6 +190,46 @@ def test_every_command_has_help_with_an_example(launcher: Launcher, command: str
     assert result.returncode == 0
     assert f"Example: ./pliant {command}" in result.stdout
     assert not launcher.log.exists(), "help must not build"
+
+
+def readme_commands() -> dict[str, str]:
+    """Rows of the README's table of commands: what stands in backticks, by command."""
+    text = (ROOT / "README.md").read_text()
+    rows = [line for line in text.splitlines() if line.startswith("| `./pliant")]
+    quoted = [" ".join(re.findall(r"`([^`]*)`", row)) for row in rows]
+    return {command: row for row in quoted for command in re.findall(r"\./pliant (\w+)", row)}
+
+
+def test_readme_names_every_command(launcher: Launcher) -> None:
+    listed = re.findall(r"\./pliant (\w+)", launcher("--help").stdout)
+    assert set(readme_commands()) == set(listed)
+
+
+@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build"])
+def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
+    first_line = launcher(command, "--help").stdout.splitlines()[0]
+    readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
+    assert readme <= set(re.findall(r"--[a-z-]+", first_line))
+    if command in {"run", "check", "plot"}:
+        assert readme == set(re.findall(r"--[a-z-]+", first_line))
+
+
+def test_presets_are_the_same_everywhere(launcher: Launcher) -> None:
+    presets = json.loads((ROOT / "CMakePresets.json").read_text())["configurePresets"]
+    names = {preset["name"] for preset in presets if not preset.get("hidden")}
+    assert all(re.search(rf"\b{name}\b", launcher("build", "--help").stdout) for name in names)
+    row = next(line for line in (ROOT / "README.md").read_text().splitlines() if line.startswith("| `./pliant build"))
+    assert names == set(re.findall(r"`([a-z-]+)`", row))
+
+
+@pytest.mark.parametrize("preset", ["relase", "base", "", "../x", "-x"])
+def test_unknown_preset_leaves_nothing(launcher: Launcher, preset: str) -> None:
+    before = {file.name for file in (launcher.root / "build").iterdir()}
+    result = launcher("build", f"--preset={preset}")
+    assert result.returncode == 2
+    assert f"no preset '{preset}'" in result.stderr and "asan-ubsan" in result.stderr
+    assert {file.name for file in (launcher.root / "build").iterdir()} == before
+    assert not launcher.log.exists()
 
 
 def test_unknown_command(launcher: Launcher) -> None:

@@ -279,7 +279,7 @@ TEST_F(RunScene, failure_leaves_readable_outputs_and_exit_code_3) {
     EXPECT_NE(message.find(word), std::string::npos) << "no '" << word << "' in: " << message;
   const nlohmann::json json = summary();
   EXPECT_LT(json["time"], json["end"]) << "EXACT: it did not finish";
-  EXPECT_EQ(json.value("status", "").find("failed: penetration"), 0u)
+  EXPECT_EQ(json.value("status", "").find("failed: contact between body"), 0u)
       << "EXACT: the summary names the failure: " << json.dump();
   const Table steps = read_table(out() / "steps.csv");
   EXPECT_EQ(steps.rows.back()[0], json["time"]) << "EXACT: the last good state";

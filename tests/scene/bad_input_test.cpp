@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Bad {
   std::string at;
   std::vector<std::string> phrases;
 };
+
+/// What ctest lists beside the test's name.
+void PrintTo(const Bad& bad, std::ostream* out) { *out << '\'' << bad.to << "' for '" << bad.from << '\''; }
 
 std::string error_of(const std::string& text) {
   const SceneFile file(text);
@@ -77,7 +81,7 @@ const std::vector<Bad> bad_values{
      "diameter = \"1 um\"\nnodes",
      "diametre = \"1 um\"\nnodes",
      "diametre",
-     {"unknown key 'diametre'", "nearest: diameter"}},
+     {"unknown key 'diametre' in [shapes.disc]", "perhaps meant as 'diameter', which is missing", "a quantity in m"}},
     {"MissingKey", "density = \"1200 kg/m3\"\n", "", "[materials.soft]", {"missing key 'density'", "kg/m3", "> 0"}},
     {"MissingTable", "[time]\nend = \"2 us\"\ntolerance = 1e-2\n", "", "title", {"missing key 'time'", "[time]"}},
     {"WrongTypeString",
@@ -87,6 +91,7 @@ const std::vector<Bad> bad_values{
      {"'young' in [materials.soft]", "found true", "Pa"}},
     {"WrongTypeTable", "period = \"0.1 us\"", "period = { a = 1 }", "{ a = 1 }", {"found a table", "in s"}},
     {"WrongTypeInteger", "nodes = 168", "nodes = 168.0", "168.0", {"found the number 168", "an integer from 7"}},
+    {"SettingsAsRules", "[contact]", "[[contact]]", "[[contact]]", {"'contact' in the scene", "a table [contact]"}},
     {"WrongTypeTitle", "title = \"Good\"", "title = 3", "3", {"found the integer 3", "a string"}},
     {"WrongTypeArray",
      "gravity = [\"0 m/s2\", -9.81]",
@@ -117,7 +122,7 @@ const std::vector<Bad> bad_values{
     {"PoissonNegative", "poisson = 0.4", "poisson = -0.1", "-0.1", {"-0.1", ">= 0 and < 0.5"}},
     {"EndZero", "end = \"2 us\"", "end = 0", "0\ntolerance", {"'end' in [time]", "> 0"}},
     {"EndNegative", "end = \"2 us\"", "end = \"-2 us\"", "\"-2 us\"", {"'end' in [time]", "> 0"}},
-    {"SupportTooLarge", "support = 9", "support = 15", "15", {"from 4 to 14"}},
+    {"SupportTooLarge", "support = 9", "support = 15", "15", {"from 7 to 14"}},
     {"GaussPointsOfMls", "support = 9", "gauss_points = 3", "gauss_points", {"unknown key 'gauss_points'"}},
     {"GaussPointsBetween", "recipe = \"mls\"", "recipe = \"mls-gauss\"\ngauss_points = 4", "4\nsupport", {"1, 3 or 6"}},
     {"UnknownEnum",
@@ -137,6 +142,26 @@ const std::vector<Bad> bad_values{
     {"UnknownField", "\"von_mises\"", "\"von_mise\"", "\"von_mise\"", {"unknown field", "nearest: von_mises"}},
     {"FieldTwice", "\"von_mises\"", "\"velocity\"", "[\"velocity\", \"velocity\"]", {"twice"}},
 };
+/// A key that must be there, under a wrong name: the wrong name is shown with its place, and what it is likely meant as.
+Bad misspelt(const std::string& name, const std::string& from, const std::string& to, const std::string& key,
+             const std::string& meant) {
+  return {name, from, to, key, {"unknown key '" + key + "'", "perhaps meant as '" + meant + "', which is missing"}};
+}
+
+const std::vector<Bad> misspelt_keys{
+    misspelt("LetterMissing", "density = \"1200", "densty = \"1200", "densty", "density"),
+    misspelt("LettersSwapped", "young =", "yuong =", "yuong", "young"),
+    misspelt("ShortKeySwapped", "end = \"2", "ned = \"2", "ned", "end"),
+    misspelt("AnotherWord", "density = \"1200", "rho = \"1200", "rho", "density"),
+    misspelt("Symbol", "poisson = 0.4", "nu = 0.4", "nu", "poisson"),
+    misspelt("LongerWord", "young = ", "youngs_modulus = ", "youngs_modulus", "young"),
+    misspelt("NearestOfSeveral", "young = ", "colour = 3\nyougn = ", "yougn", "young"),
+    misspelt("OtherCase", "diameter = \"1 um\"\nnodes", "Diameter = \"1 um\"\nnodes", "Diameter", "diameter"),
+    misspelt("Table", "[time]", "[tmie]", "tmie", "time"),
+    misspelt("InInlineTable", "columns = 10", "colums = 10", "colums", "columns"),
+    misspelt("InAnArrayOfTables", "of = \"floor\"", "off = \"floor\"", "off", "of"),
+};
+INSTANTIATE_TEST_SUITE_P(MisspeltKeys, BadInput, ::testing::ValuesIn(misspelt_keys), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadInput, ::testing::ValuesIn(bad_values), name_of);
 
 const std::vector<Bad> bad_bodies{
@@ -306,6 +331,8 @@ TEST(BadInputPlaces, AreThoseOfTheFile) {
   EXPECT_TRUE(error_of("title = \"x\"\n\n[time]\nend = \"2 m\"\n").starts_with("4:7: 'end' in [time]: found \"2 m\""));
   EXPECT_TRUE(error_of("[time]\nend = 1\nfoo = 2\n").starts_with("3:1: unknown key 'foo' in [time]"));
   EXPECT_TRUE(error_of("title = \"x\"\n").starts_with("1:1: missing key 'time' in the scene"));
+  EXPECT_TRUE(error_of("[time]\nend = 1\n[material.soft]\n")
+                  .starts_with("3:2: unknown key 'material' in the scene, perhaps meant as 'materials'"));
   EXPECT_TRUE(error_of("title = \n").starts_with("1:9: not valid TOML"));
 }
 

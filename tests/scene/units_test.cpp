@@ -75,6 +75,9 @@ TEST(Names, EditDistance) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
   EXPECT_EQ(edit_distance("flaw", "lawn"), 2);
   EXPECT_EQ(edit_distance("verlet", "verlet"), 0);
+  EXPECT_EQ(edit_distance("yuong", "young"), 1);
+  EXPECT_EQ(edit_distance("ned", "end"), 1);
+  EXPECT_EQ(edit_distance("ab", "ba"), 1);
 }
 
 TEST(Names, NearestOnlyWhenItResembles) {
@@ -83,6 +86,8 @@ TEST(Names, NearestOnlyWhenItResembles) {
   EXPECT_EQ(nearest_name("xyzzy", {"young", "density", "law"}), "");
   EXPECT_EQ(nearest_name("", {"a"}), "");
   EXPECT_EQ(allowed_names("a", {}), "none is defined");
+  EXPECT_TRUE(is_scene_key("density"));
+  for (const char* word : {"densty", "", " ", "x y", "alpha angle"}) EXPECT_FALSE(is_scene_key(word)) << word;
 }
 
 TEST(PolygonRules, FindDefects) {

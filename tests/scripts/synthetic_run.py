@@ -95,8 +95,9 @@ def write_probes(folder: Path, columns: int) -> None:
     errors = [1e-4 * (1 - np.cos(1e7 * time)), 1e-14 * random.uniform(0, 1, len(time))]
     names = ["time [s]", "force.force_x [N/m]", "force.force_y [N/m]", "friction.friction_factor [-]"]
     names += [f"energy.{n} [J/m]" for n in ("kinetic", "strain", "contact", "dissipated", "external_work")]
-    names += ["energy.balance_error [-]", "energy.momentum_error [-]"]
-    rows = np.column_stack([time, -friction * normal, normal, friction, *energies, *errors])
+    names += ["energy.balance_error [-]", "energy.momentum_error [-]", "place.position_x [m]", "place.position_y [m]"]
+    place = [10.0 * np.maximum(time - 1e-6, 0.0), 0.0 * time]
+    rows = np.column_stack([time, -friction * normal, normal, friction, *energies, *errors, *place])
     rows[1::2, 3] = np.nan
     lines = [",".join("" if np.isnan(v) else repr(float(v)) for v in row) for row in rows]
     (folder / "probes.csv").write_text("\n".join([",".join(names), *lines]) + "\n")
@@ -117,8 +118,9 @@ def write_run(folder: Path, columns: int = 10, rows: int = 6, rings: int = 3, fr
     write_probes(folder, columns)
     write_steps(folder)
     probes = '[[probes]]\nname = "force"\nof = "lower"\n[[probes]]\nname = "friction"\nof = "lower"\n'
+    probes += '[[probes]]\nname = "place"\nof = "upper"\n'
     domain = f'[domain]\nperiod = "{columns * PITCH * 1e6:.10g} um"\n'
-    (folder / "scene.toml").write_text(f'title = "Synthetic"\n{domain}{probes}')
+    (folder / "scene.toml").write_text(f'title = "Synthetic"\n{domain}[time]\ntolerance = 1e-3\n{probes}')
     (folder / "summary.json").write_text("{}\n")
 
 

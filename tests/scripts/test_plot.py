@@ -11,11 +11,12 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(Path(__file__).parent)]
 
-from plots import curves, units, wrapping
+from plots import curves, scenery, units, wrapping
 from plots.run_data import WALL, BadFolder, Grid, read_run, read_table
 from synthetic_run import PITCH, write_run
 
-PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png"}
+PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png",
+            "probes.png"}
 
 
 def plot(*arguments: object) -> subprocess.CompletedProcess[str]:
@@ -44,6 +45,13 @@ def test_missing_data_is_named(tmp_path: Path) -> None:
     assert result.returncode == 0, result.stderr
     assert {file.name for file in tmp_path.iterdir()} == {"steps.csv", "steps.png"}
     assert all(f"{name}: left out" in result.stdout for name in PICTURES - {"steps.png"})
+
+
+def test_period_in_another_unit_is_no_obstacle(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    write_steps(tmp_path, 0)
+    (tmp_path / "scene.toml").write_text('[domain]\nperiod = "1 inch"\n')
+    assert read_run(tmp_path).period is None
+    assert "'1 inch' is not a length" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("files", [None, {}, {"frames.h5": "no HDF5"}, {"probes.csv": "time [s],a\n1,zero\n"},
@@ -92,9 +100,57 @@ def test_caption_states_peak_and_plateau(run_folder: Path) -> None:
     run = read_run(run_folder)
     figure = curves.forces(run)
     assert figure is not None
-    titles = [axes.get_title() for axes in figure.axes]
-    assert "wall 'lower'" in titles[0] and "plateau 5.22 kN/m" in titles[0]  # 1 GPa over 6 columns of 0.87 um
-    assert "peak 0.5 at 1.4 us, plateau 0.25 " in titles[1]
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert "wall 'lower'" in titles[0]
+    assert "mean of the last quarter 5.22 kN/m" in titles[0]  # 1 GPa over 6 columns of 0.87 um
+    assert titles[1] == "friction factor: peak 0.5 at 1.4 us, mean of the last quarter 0.25"
+
+
+def write_steps(folder: Path, rejections: int) -> Path:
+    rows = "".join(f"{t}e-9,1e-9,1e-4,{rejections},{2 * t},5\n" for t in range(1, 5))
+    (folder / "steps.csv").write_text("time [s],dt [s],error [-],rejections,evaluations,contacts\n" + rows)
+    return folder
+
+
+def test_rejections_have_a_panel_when_there_are_some(tmp_path: Path) -> None:
+    without = curves.steps(read_run(write_steps(tmp_path, 0)))
+    assert without is not None
+    assert [axes.get_ylabel() for axes in without.axes] == ["error estimate", "time step [ns]", "contacts"]
+    assert without._supxlabel.get_text() == "no rejections in 8 force evaluations"
+    some = curves.steps(read_run(write_steps(tmp_path, 2)))
+    assert some is not None
+    assert [axes.get_ylabel() for axes in some.axes][2] == "rejections so far"
+    assert some._supxlabel.get_text() == "2 rejections in 8 force evaluations (25 %)"
+
+
+def test_the_tolerance_is_drawn(run_folder: Path) -> None:
+    figure = curves.steps(read_run(run_folder))
+    assert figure is not None
+    lines = {line.get_label(): line.get_ydata()[0] for line in figure.axes[0].lines}
+    assert lines["tolerance"] == 1e-3
+    assert figure.axes[0].get_ylim()[1] > 1e-3
+
+
+def test_other_probes_have_a_panel(run_folder: Path) -> None:
+    figure = curves.probes(read_run(run_folder))
+    assert figure is not None and len(figure.axes) == 1  # the friction factor of the wall is among the forces
+    assert figure.axes[0].get_ylabel() == "position [um]"
+    assert [line.get_label() for line in figure.axes[0].lines] == ["upper x"]
+    assert figure.axes[0].get_title(loc="left") == "zero: upper y"
+
+
+def test_refined_triangles_keep_area_and_field() -> None:
+    triangles = np.array([[[0, 0], [10, 0], [0, 1]], [[0, 0], [0.1, 0], [0, 0.1]]], dtype=float)
+    small, values = scenery.refined(triangles, 3 * triangles + 1, 0.5)
+    edges = np.linalg.norm(small - np.roll(small, 1, axis=1), axis=2)
+    assert edges.max() <= 0.5 and len(small) > 100
+    side, other = small[:, 1] - small[:, 0], small[:, 2] - small[:, 0]
+    areas = 0.5 * (side[:, 0] * other[:, 1] - side[:, 1] * other[:, 0])
+    assert areas.min() > 0, "halves keep the sense of rotation"
+    assert areas.sum() == pytest.approx(5.005, rel=1e-12)
+    assert np.allclose(values, 3 * small + 1, rtol=1e-13)
+    nothing, _ = scenery.refined(triangles[:0], triangles[:0], 1.0)
+    assert nothing.shape == (0, 3, 2)
 
 
 def test_bodies_are_wrapped_whole() -> None:
@@ -129,8 +185,8 @@ def test_scales(value: float, unit: str, expected: tuple[float, str]) -> None:
 
 
 @pytest.mark.parametrize("text, metres", [("87 um", 8.7e-5), ("0.5mm", 5e-4), ("2 m", 2.0), ("1e3 nm", 1e-6),
-                                          ("3 µm", 3e-6)])
-def test_lengths(text: str, metres: float) -> None:
+                                          ("3 µm", 3e-6), (4, 4.0), (0.5, 0.5)])
+def test_lengths(text: str | float, metres: float) -> None:
     assert units.length(text) == pytest.approx(metres, rel=1e-15)
     with pytest.raises(ValueError):
         units.length("5 s")

@@ -126,6 +126,16 @@ inline Scene on_a_floor(double end, double period, double spacing, const Vec2& g
   return scene;
 }
 
+/// A compliant disc that flies freely and then hits a fixed wall.
+inline Scene flight_and_impact(double tolerance) {
+  Scene scene = on_a_floor(8, 8, 0.25, {0, 0});
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("disc", "disc", BodyKind::compliant, {{4, 1.5}}, moving({0, -0.2}))};
+  scene.contacts = {smooth(300)};
+  scene.time.tolerance = tolerance;
+  return scene;
+}
+
 /// dt is set by `safety` alone: no error makes a step rejected.
 inline void without_error_control(Scene& scene, double safety) {
   scene.time.tolerance = 1e300;

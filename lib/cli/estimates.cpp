@@ -1,0 +1,185 @@
+#include "cli/estimates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "results/probes.hpp"
+
+namespace pliant {
+namespace {
+
+/// Share of a frame that is left after compression: in the scenes of cases/ 0.45 (rigid grains) to 0.76 (a deformed
+/// disc).
+constexpr double compressed_share = 0.7;
+/// Measured on the same: HDF5's index of a dataset, its groups of a frame, the topology's groups; XDMF's text; a cell
+/// or row of a CSV file.
+constexpr double dataset_bytes = 2600, frame_groups_bytes = 1600, file_bytes = 100'000;
+constexpr double xdmf_dataset_bytes = 240, xdmf_frame_bytes = 1300;
+constexpr double probe_cell_bytes = 17, step_row_bytes = 75;
+
+std::string law_name(const ContactLaw& law) {
+  return law.index() == 0 ? "frictionless" : law.index() == 1 ? "mohr-coulomb" : "cohesive";
+}
+
+/// Points and cells of the grids of a frame.
+struct GridSize {
+  double points = 0, cells = 0, outline_points = 0;
+};
+
+GridSize grid_size(const Model& model) {
+  GridSize size;
+  for (const Body& body : model.bodies) {
+    const double n = model.outlines[body.outline].count;
+    size.outline_points += n;
+    if (body.wall) continue;
+    const bool compliant = body.kind == BodyKind::compliant;
+    const FieldMesh* mesh = compliant ? &model.shape_of(model.batches[body.batch]).space.mesh : nullptr;
+    size.points += mesh ? static_cast<double>(mesh->nodes.size()) : n;
+    size.cells += mesh ? static_cast<double>(mesh->triangles.size()) : n - 2;
+  }
+  return size;
+}
+
+/// 1/m of a body's outline where it is round all over or in its caps; 0 where it may lie flat.
+double curvature_of(const Model& model, const Body& body) {
+  if (!body.wall) {
+    const ShapeSpec& shape = model.scene.shape(model.scene.grains[body.grains].shape);
+    return shape.kind == ShapeKind::disc ? 2 / shape.diameter : 0;
+  }
+  for (const Wall& wall : model.scene.walls)
+    if (wall.name == body.name && wall.caps) return 2 / wall.caps->diameter;
+  return 0;
+}
+
+std::string material_label(const Model& model, const Body& body) {
+  const Material& material = model.scene.materials[body.material];
+  if (body.wall) return "wall of " + material.name;
+  const bool could_be_compliant = body.kind == BodyKind::rigid && material.law != MaterialLaw::rigid;
+  return could_be_compliant ? material.name + " (rigid)" : material.name;
+}
+
+/// Outlines made alike differ by rounding.
+bool same(double a, double b) { return std::abs(a - b) <= 1e-3 * std::max(std::abs(a), std::abs(b)); }
+
+bool alike(const ContactPair& a, const ContactPair& b) {
+  const bool names = a.first == b.first && a.second == b.second;
+  return names && same(a.stiffness, b.stiffness) && same(a.spacing, b.spacing) && same(a.curvature, b.curvature);
+}
+
+bool is_automatic(const Scene& scene, const Body& a, const Body& b) {
+  const ContactRule* rule = scene.rule(scene.materials[a.material].name, scene.materials[b.material].name);
+  return rule && !rule->stiffness;
+}
+
+ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
+  const Body &a = model.bodies[first], &b = model.bodies[second];
+  const ContactLaw& law = laws.laws[laws.between(first, second)];
+  ContactPair pair;
+  pair.first = material_label(model, a), pair.second = material_label(model, b);
+  if (!b.wall && (a.wall || pair.second < pair.first)) std::swap(pair.first, pair.second);
+  pair.law = law_name(law);
+  pair.automatic = is_automatic(model.scene, a, b);
+  std::visit([&](const auto& l) { pair.stiffness = l.normal_stiffness; }, law);
+  std::visit([&](const auto& l) { pair.shear_stiffness = l.has_shear ? l.shear_stiffness : 0; }, law);
+  if (const Cohesive* cohesive = std::get_if<Cohesive>(&law)) pair.strength = cohesive->strength;
+  pair.reach = reach_of(law);
+  pair.spacing = std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing);
+  if (a.kind == BodyKind::compliant || b.kind == BodyKind::compliant) return pair;
+  const double of_a = curvature_of(model, a), of_b = curvature_of(model, b);
+  pair.curvature = of_a + of_b;
+  if (pair.curvature > 0) pair.width = 2 / std::max(of_a, of_b);
+  return pair;
+}
+
+double largest_until(const History& history, double end) {
+  double largest = std::max(std::abs(history.at(0)), std::abs(history.at(end)));
+  for (std::size_t i = 0; i < history.time.size() && history.time[i] <= end; ++i)
+    largest = std::max(largest, std::abs(history.value[i]));
+  return largest;
+}
+
+}  // namespace
+
+double largest_pressure(const Scene& scene) {
+  double largest = 0;
+  for (const Wall& wall : scene.walls) {
+    const double load = largest_until(wall.y.history, scene.time.end);
+    if (wall.y.mode == Drive::Mode::pressure) largest = std::max(largest, load);
+    if (wall.y.mode == Drive::Mode::force) largest = std::max(largest, load / *scene.period);
+  }
+  return largest;
+}
+
+double ContactPair::penetration(double pressure) const {
+  if (curvature == 0) return pressure / stiffness;
+  return std::pow(3 * pressure * width / (4 * stiffness * std::sqrt(2 / curvature)), 2.0 / 3.0);
+}
+
+std::vector<ContactPair> contact_pairs(const Model& model, const ContactLaws& laws) {
+  // Two bodies of each class; walls have outlines, and so classes, of their own.
+  std::vector<std::vector<int>> of_class(static_cast<std::size_t>(laws.classes));
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    std::vector<int>& members = of_class[laws.body_class[b]];
+    if (members.size() < 2) members.push_back(b);
+  }
+  std::vector<ContactPair> pairs;
+  const auto is_known = [&](const ContactPair& pair) {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const ContactPair& other) { return alike(other, pair); });
+  };
+  for (std::size_t i = 0; i < of_class.size(); ++i)
+    for (std::size_t j = i; j < of_class.size(); ++j) {
+      if (i == j && of_class[i].size() < 2) continue;
+      const int first = of_class[i].front(), second = of_class[j].back();
+      if (model.bodies[first].wall && model.bodies[second].wall) continue;
+      const ContactPair pair = make_pair_of(model, laws, first, second);
+      if (!is_known(pair)) pairs.push_back(pair);
+    }
+  return pairs;
+}
+
+std::int64_t output_count(double period, double end) {
+  constexpr double rounding = 1e-9;
+  return period > 0 ? static_cast<std::int64_t>(std::floor(end / period * (1 + rounding))) + 1 : 0;
+}
+
+double frame_bytes(const Model& model) {
+  const GridSize size = grid_size(model);
+  double values = 2 * size.points + 2 * size.outline_points;
+  for (const std::string& field : model.scene.frames.fields)
+    values += field == "velocity" ? 3 * size.points : field == "contact_pressure" ? size.outline_points : size.cells;
+  return sizeof(float) * values;
+}
+
+OutputSize output_size(const Model& model, double steps) {
+  const Scene& scene = model.scene;
+  OutputSize size;
+  size.frames = output_count(scene.frames.period, scene.time.end);
+  const double frames = static_cast<double>(size.frames),
+               datasets = 2 + static_cast<double>(scene.frames.fields.size());
+  if (size.frames > 0) {
+    size.frames_h5 =
+        file_bytes + frames * (compressed_share * frame_bytes(model) + datasets * dataset_bytes + frame_groups_bytes);
+    size.frames_xdmf = frames * (xdmf_frame_bytes + datasets * xdmf_dataset_bytes);
+  }
+  double cells = 1;
+  for (const Probe& probe : scene.probes) {
+    size.probe_rows = std::max(size.probe_rows, output_count(probe.period, scene.time.end));
+    cells += static_cast<double>(ProbeSampler(model, probe).columns().size());
+  }
+  size.probes_csv = static_cast<double>(size.probe_rows) * cells * probe_cell_bytes;
+  constexpr double all = 200'000, thinned = 10;  // of StepLog
+  size.step_rows = static_cast<std::int64_t>(std::min(steps, all) + std::max(0.0, steps - all) / thinned);
+  size.steps_csv = static_cast<double>(size.step_rows) * step_row_bytes;
+  return size;
+}
+
+double least_steps(const Scene& scene, double time, double largest_dt) {
+  double period = scene.frames.period > 0 ? scene.frames.period : time;
+  for (const Probe& probe : scene.probes) period = std::min(period, probe.period);
+  period = std::min(period, time);
+  return time > 0 ? time / period * std::ceil(period / largest_dt) : 0;
+}
+
+}  // namespace pliant

@@ -1,0 +1,77 @@
+#include "cli/rehearsal.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "results/probes.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr double longest_seconds = 1;
+/// The step grows from a thousandth of its bound by at most 15 % a step: after this many it has arrived.
+constexpr std::int64_t growth = 150;
+
+double next_multiple(double period, double time) {
+  constexpr double rounding = 1e-12;
+  return (std::floor(time / period * (1 + rounding)) + 1) * period;
+}
+
+double next_output(const Scene& scene, double time) {
+  double next = scene.time.end;
+  if (scene.frames.period > 0) next = std::min(next, next_multiple(scene.frames.period, time));
+  for (const Probe& probe : scene.probes) next = std::min(next, next_multiple(probe.period, time));
+  return next;
+}
+
+/// The probes of a scene, with nobody to write to.
+class Samples {
+ public:
+  explicit Samples(const Model& model) : model_(model) {
+    for (const Probe& probe : model.scene.probes) samplers_.emplace_back(model, probe);
+  }
+  void take_due(Simulation& simulation) const {
+    constexpr double rounding = 1e-9;
+    for (std::size_t p = 0; p < samplers_.size(); ++p) {
+      const double samples = simulation.state().time / model_.scene.probes[p].period;
+      if (std::abs(samples - std::round(samples)) < rounding) samplers_[p].sample(simulation);
+    }
+  }
+
+ private:
+  const Model& model_;
+  std::vector<ProbeSampler> samplers_;
+};
+
+}  // namespace
+
+Rehearsal rehearse(Simulation& simulation) {
+  using Clock = std::chrono::steady_clock;
+  const Scene& scene = simulation.model().scene;
+  const State& state = simulation.state();
+  const Samples samples(simulation.model());
+  const Clock::time_point start = Clock::now();
+  const std::int64_t before = state.evaluations;
+  double seconds = 0, grown_time = 0;
+  std::int64_t grown = 0;
+  while (state.time < scene.time.end && seconds < longest_seconds) {
+    const double until = next_output(scene, state.time);
+    simulation.step(until);
+    if (state.time == until) samples.take_due(simulation);
+    if (grown == 0 && state.evaluations >= growth) grown = state.evaluations, grown_time = state.time;
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  Rehearsal result;
+  result.time = state.time;
+  result.finished = state.time >= scene.time.end;
+  result.evaluations = state.evaluations;
+  result.rejections = state.rejections;
+  result.seconds_per_evaluation = seconds / static_cast<double>(std::max<std::int64_t>(state.evaluations - before, 1));
+  if (grown > 0 && state.evaluations >= grown + growth)
+    result.pace = (state.time - grown_time) / static_cast<double>(state.evaluations - grown);
+  result.next_dt = state.next_dt;
+  return result;
+}
+
+}  // namespace pliant

@@ -1,0 +1,127 @@
+#include "contact/deepest_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "contact/broad_phase.hpp"
+#include "core/errors.hpp"
+
+namespace pliant {
+namespace {
+
+Vec2 node_at(const Model& model, const Outlines& outlines, int body, int node) {
+  const OutlineShape& shape = model.outlines[outlines.shape[body]];
+  const int turn = turn_of(node, shape.count), at = outlines.offset[body] + node - turn * shape.count;
+  return {outlines.x[at] + turn * shape.turn_shift, outlines.y[at]};
+}
+
+/// Where a point stands above the nearest segment of an outline.
+struct Nearest {
+  double distance = 1e300, depth = 0, length = 1;
+};
+
+/// From a segment's first node, by the nearest image in a period.
+Vec2 lever(const Vec2& point, const Vec2& node, double period) {
+  Vec2 r = point - node;
+  if (period > 0) r.x() -= period * std::round(r.x() / period);
+  return r;
+}
+
+Nearest nearest_segment(const Model& model, const Outlines& outlines, int master, const Vec2& point) {
+  Nearest nearest;
+  const int count = model.outlines[outlines.shape[master]].count;
+  for (int s = 0; s < count; ++s) {
+    const Vec2 a = node_at(model, outlines, master, s), b = node_at(model, outlines, master, s + 1);
+    const double length = (b - a).norm();
+    const Vec2 r = lever(point, a, model.scene.period.value_or(0)), tangent = (b - a) / length;
+    const double along = std::clamp(r.dot(tangent), 0.0, length), distance = (r - along * tangent).norm();
+    const double depth = r.y() * tangent.x() - r.x() * tangent.y();
+    // At a corner two segments are equally near; the one seen more steeply tells in from out.
+    const bool same = std::abs(distance - nearest.distance) <= 1e-9 * length;
+    if (same ? std::abs(depth) > std::abs(nearest.depth) : distance < nearest.distance)
+      nearest = {distance, depth, length};
+  }
+  return nearest;
+}
+
+/// Whether a point is on the open side of everything in a box around an outline: off the box, or beyond a wall's surface.
+bool is_clear(const Box& box, const OutlineShape& shape, const Vec2& x, double period) {
+  if (shape.turn_shift != 0) return shape.turn_shift < 0 ? x.y() > box.y_max : x.y() < box.y_min;
+  const Vec2 from_middle = lever(x, Vec2(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)), period);
+  return std::abs(from_middle.x()) > 0.5 * (box.x_max - box.x_min) ||
+         std::abs(from_middle.y()) > 0.5 * (box.y_max - box.y_min);
+}
+
+void look_at(const Model& model, const Outlines& outlines, int slave, int master, DeepestNode& deepest) {
+  const OutlineShape& shape = model.outlines[outlines.shape[master]];
+  const Box box = bounding_box(shape, outlines, master);
+  const int nodes = model.outlines[outlines.shape[slave]].count;
+  for (int node = 0; node < nodes; ++node) {
+    const Vec2 position = node_at(model, outlines, slave, node);
+    if (is_clear(box, shape, position, model.scene.period.value_or(0))) continue;
+    const Nearest nearest = nearest_segment(model, outlines, master, position);
+    if (nearest.depth * deepest.segment_length > deepest.depth * nearest.length)
+      deepest = {slave, master, node, position, nearest.depth, nearest.length};
+  }
+}
+
+/// Mean of a body's outline nodes.
+Vec2 middle_of(const Model& model, const Outlines& outlines, int body) {
+  const int count = model.outlines[outlines.shape[body]].count;
+  Vec2 sum(0, 0);
+  for (int node = 0; node < count; ++node) sum += node_at(model, outlines, body, node);
+  return sum / count;
+}
+
+/// Of two bodies on the same spot no node is deep, but their middles are.
+bool share_a_middle(const Model& model, const Outlines& outlines, int a, int b) {
+  if (model.bodies[a].wall || model.bodies[b].wall) return false;
+  const Vec2 middle = middle_of(model, outlines, a);
+  const Nearest own = nearest_segment(model, outlines, a, middle), other = nearest_segment(model, outlines, b, middle);
+  return own.depth > own.length && other.depth > other.length;
+}
+
+/// Pairs whose boxes meet, and every body with every wall: what is behind a wall's surface lies in the wall.
+std::vector<std::pair<int, int>> pairs_that_may_overlap(const Model& model, const Outlines& outlines) {
+  std::vector<Box> boxes;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    boxes.push_back(bounding_box(model.outlines[outlines.shape[b]], outlines, static_cast<int>(b)));
+  std::vector<std::pair<int, int>> pairs;
+  for (const BodyPair& p : broad_phase(model, boxes, 0))
+    if (!model.bodies[p.first].wall && !model.bodies[p.second].wall) pairs.emplace_back(p.first, p.second);
+  for (std::size_t wall = 0; wall < model.bodies.size(); ++wall)
+    for (std::size_t body = 0; model.bodies[wall].wall && body < model.bodies.size(); ++body)
+      if (!model.bodies[body].wall || body < wall) pairs.emplace_back(body, wall);
+  return pairs;
+}
+
+}  // namespace
+
+DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std::vector<std::pair<int, int>>& pairs) {
+  DeepestNode deepest;
+  for (const auto& [a, b] : pairs) {
+    look_at(model, outlines, a, b, deepest);
+    look_at(model, outlines, b, a, deepest);
+  }
+  return deepest;
+}
+
+void refuse_deep_overlap(const Model& model, const Outlines& outlines) {
+  const auto refuse = [&](int a, int b, const std::string& how) {
+    throw InputError(fmt::format("'{}' and '{}' overlap at the start {}; move them apart or make them smaller",
+                                 model.bodies[a].name, model.bodies[b].name, how));
+  };
+  const std::vector<std::pair<int, int>> pairs = pairs_that_may_overlap(model, outlines);
+  for (const auto& [a, b] : pairs)
+    if (share_a_middle(model, outlines, a, b)) refuse(a, b, "nearly wholly");
+  const DeepestNode deepest = deepest_node(model, outlines, pairs);
+  if (deepest.depth > deepest.segment_length)
+    refuse(deepest.slave, deepest.master,
+           fmt::format("by {:.3g} m, {:.2f} segment lengths of the outline; at most 1 is allowed, deeper contacts "
+                       "cannot be seen",
+                       deepest.depth, deepest.depth / deepest.segment_length));
+}
+
+}  // namespace pliant

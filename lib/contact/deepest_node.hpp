@@ -1,0 +1,28 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "bodies/model.hpp"
+#include "bodies/outline.hpp"
+
+namespace pliant {
+
+/// An outline node inside another body.
+struct DeepestNode {
+  int slave = 0, master = 0;  ///< bodies
+  int node = 0;               ///< of the slave's outline
+  Vec2 position{0, 0};        ///< m
+  double depth = 0;           ///< below the master's nearest segment, m
+  double segment_length = 1;  ///< of that segment, m
+};
+
+/// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes with all segments of each pair
+/// of bodies: for messages.
+DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std::vector<std::pair<int, int>>& pairs);
+
+/// Throws InputError when a body starts deeper inside another than contact can see, a segment length of that other: it would be let through
+/// without a force.
+void refuse_deep_overlap(const Model& model, const Outlines& outlines);
+
+}  // namespace pliant

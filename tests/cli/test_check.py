@@ -1,0 +1,115 @@
+"""What `check` foretells, against what it prints of known scenes and against a run. EXACT but where said."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from scenes import TWO_DISCS
+
+BLOCK = """\
+[time]
+end = "5 ms"
+[domain]
+period = "1 m"
+[materials.stone]
+law = "rigid"
+density = 2000
+[shapes.block]
+kind = "polygon"
+points = [[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]]
+spacing = 0.01
+[[grains]]
+shape = "block"
+body = "rigid"
+material = "stone"
+packing = { kind = "positions", positions = [[0.3, 0.04999]] }
+[[walls]]
+name = "floor"
+material = "stone"
+solid = "below"
+level = 0
+[[walls]]
+name = "lid"
+material = "stone"
+solid = "above"
+level = 0.5
+thickness = 0.01
+y = { pressure = [["0 ms", 0], ["1 ms", 1000]] }
+[[contacts]]
+between = "all"
+law = "mohr-coulomb"
+friction = 0.3
+stiffness = 1e8
+"""
+
+
+def checked(desk, text: str, *arguments: str) -> dict[str, str]:
+    """Lines of the report by heading; lines without one belong to the heading above."""
+    desk.write(text)
+    result = desk.engine("check", desk.scene, "--threads", "1", *arguments)
+    assert result.returncode == 0, result.stderr
+    rows: dict[str, str] = {}
+    heading = ""
+    for line in result.stdout.splitlines():
+        heading = line[:12].strip() or heading
+        rows[heading] = rows.get(heading, "") + line[13:] + "\n"
+    return rows
+
+
+def bytes_of(text: str) -> float:
+    number, prefix = re.fullmatch(r"([\d.e+]+) (k|M|G|)B", text).groups()
+    return float(number) * {"": 1, "k": 1e3, "M": 1e6, "G": 1e9}[prefix]
+
+
+def test_bodies_and_masses(desk) -> None:
+    rows = checked(desk, BLOCK)
+    assert rows["bodies"].startswith("3: compliant 0, rigid 1, walls 2")
+    masses = {" ".join(line.split()[:-3]): line.split()[-2] for line in rows["mass"].splitlines()}
+    assert masses["rigid grains of stone"] == "20"  # 0.1 m x 0.1 m of 2000 kg/m3
+    assert masses["wall lid of stone"] == "20"  # 1 m x 0.01 m
+    assert masses["all bodies"] == "40"
+    assert re.search(r"wall floor of stone +1 +none given", rows["mass"])
+
+
+def test_contact_and_its_cost(desk) -> None:
+    rows = checked(desk, BLOCK)
+    assert "stone - wall of stone" in rows["contact"] and "mohr-coulomb" in rows["contact"]
+    assert "1e+08 Pa/m given" in rows["contact"]
+    assert "0.1 % of h deep at 1 kPa" in rows["contact"]  # 1000 Pa / 1e8 Pa/m = 10 um of 10 mm
+    assert "10 times as stiff: 3.2 times as many steps" in rows["time step"]  # sqrt(10): nothing but contact is stiff
+
+
+def test_automatic_stiffness_of_compliant_discs(desk) -> None:
+    rows = checked(desk, TWO_DISCS)
+    kn, h = re.search(r"([\d.e+]+) Pa/m auto +h ([\d.]+) nm", rows["contact"]).groups()
+    assert float(kn) == pytest.approx(8 * 2e9 / (float(h) * 1e-9), rel=0.01)  # 8 E/h; three digits are printed
+
+
+def test_step_doubling_has_no_bound_of_its_own(desk) -> None:
+    rows = checked(desk, TWO_DISCS.replace('end = "20 ns"', 'end = "20 ns"\nintegrator = "step-doubling"'))
+    assert "step doubling sets its own" in rows["time step"]
+
+
+def test_fast_bodies_are_told_about_the_skin(desk) -> None:
+    fast = BLOCK.replace("0.04999]] }", '0.04999]] }\nvelocity = { uniform = ["500 m/s", 0] }')
+    assert "a larger [contact] skin" in checked(desk, fast)["time step"]
+    assert "skin allows" not in checked(desk, BLOCK)["time step"]
+
+
+def test_forecast_agrees_with_a_run(desk) -> None:
+    rows = checked(desk, TWO_DISCS)
+    assert desk.run("--out", "out", "--threads", "1", "--quiet").returncode == 0
+    summary = desk.summary("out")
+    assert rows["evaluations"].startswith(f"{summary['evaluations']} until 20 ns, counted"), rows["evaluations"]
+    size = sum((desk.folder / "out" / name).stat().st_size
+               for name in ["frames.h5", "frames.xdmf", "probes.csv", "steps.csv"])
+    foretold = bytes_of(re.match(r"about ([\d.e+]+ \w*B)", rows["output"])[1])
+    assert foretold == pytest.approx(size, rel=0.4)  # compression is foretold by one share for all scenes
+    memory = bytes_of(re.match(r"about ([\d.e+]+ \w*B)", rows["memory"])[1])
+    assert memory == pytest.approx(summary["peak_memory_bytes"], rel=0.4)  # allocators and libraries differ by as much
+
+
+def test_until_shortens_the_forecast(desk) -> None:
+    rows = checked(desk, TWO_DISCS, "--until", "10 ns")
+    assert "until 10 ns" in rows["evaluations"] and " 2 frames" in rows["output"]
