@@ -18,12 +18,14 @@ T natural_log(T x) {
 /// s^2 (Remez, relative error of ln m 1.3e-18); its even and its odd powers make two short chains instead of a long one.
 template <>
 inline Lanes natural_log(Lanes x) {
-  constexpr std::int64_t root_half_bits = 0x3fe6a09e667f3bcd;
+  // Unsigned words wrap: trial steps may turn an element inside out, and what becomes of a negative x is not used.
+  using LaneWords = std::uint64_t __attribute__((vector_size(64)));
+  constexpr std::uint64_t root_half_bits = 0x3fe6a09e667f3bcd;
   constexpr double ln2 = 0.693147180559945309417;
-  LaneBits bits;
+  LaneWords bits;
   std::memcpy(&bits, &x, sizeof bits);
-  const LaneBits exponent = (bits - root_half_bits) >> 52;
-  const LaneBits mantissa_bits = bits - (exponent << 52);
+  const LaneBits exponent = reinterpret_cast<LaneBits>(bits - root_half_bits) >> 52;
+  const LaneWords mantissa_bits = bits - (reinterpret_cast<LaneWords>(exponent) << 52);
   Lanes m;
   std::memcpy(&m, &mantissa_bits, sizeof m);
   const Lanes s = (m - 1.0) / (m + 1.0), s2 = s * s, s4 = s2 * s2;
