@@ -64,7 +64,7 @@ bool ContactSystem::refresh_needed(const Outlines& outlines) {
   return largest_pair >= skin_ * skin_ || 4 * largest_own >= std::pow((1 + extra_skins) * skin_, 2);
 }
 
-void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, ContactHistory* second) {
+void ContactSystem::refresh(Outlines& outlines, ContactHistory& history) {
   const int bodies = static_cast<int>(model_.bodies.size());
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
@@ -73,10 +73,9 @@ void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, Contact
   find_patches(outlines, boxes);
   lay_out_patches();
   carry_history(old, history);
-  if (second) carry_history(old, *second);
-  ContactHistory& here = second ? *second : history;
-  parallel_for(static_cast<int>(patches_.size()),
-               [&](int p) { locate_newcomers(model_, laws_, outlines, patches_[p], skin_, here, thread_scratch()); });
+  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
+    locate_newcomers(model_, laws_, outlines, patches_[p], skin_, history, thread_scratch());
+  });
   outlines.x_refresh = outlines.x;
   outlines.y_refresh = outlines.y;
   fresh_ = true;

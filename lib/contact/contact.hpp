@@ -18,9 +18,8 @@ class ContactSystem {
 
   /// True when some close pair may have moved by the skin since the last refresh, or always before the first.
   bool refresh_needed(const Outlines& outlines);
-  /// Rebuilds the patches and carries the history over to them, and a second one of the same layout: that of the outlines' positions then, where
-  /// newcomers get their places; in the other, of a step under way, they stay unknown.
-  void refresh(Outlines& outlines, ContactHistory& history, ContactHistory* second = nullptr);
+  /// Rebuilds the patches and carries the history, that of the outlines' positions, over to them; newcomers get their places.
+  void refresh(Outlines& outlines, ContactHistory& history);
 
   /// Contact forces into outlines.force_x, force_y; the new history goes to `trial`.
   PatchTotals forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial);

@@ -51,8 +51,8 @@ std::string describe_inversion(const Model& model, const Dofs& position) {
   const LeastJacobian least = least_jacobian(model, position);
   const Discretisation& space = model.shape_of(model.batches[model.bodies[least.body].batch]).space;
   return fmt::format(
-      "{} is turned inside out: J = {:.3g} <= 0 at integration point {} of {}, about {} of its "
-      "reference shape; reduce the load, the tolerance or the time step's safety factor",
+      "{} is turned inside out: J = {:.3g} <= 0 at integration point {} of {}, about {} of its reference shape; reduce "
+      "the load, the tolerance or the time step's safety factor",
       name_of(model, least.body), least.value, least.point, space.table.weight.size(),
       place(reference_position(space, least.point)));
 }
@@ -112,12 +112,11 @@ void check_time_step(const FailedStep& step, const State& accepted, const Forces
         "the motion cannot be followed: the error estimate is still {:.3g}; look at the frames before, and at loads, "
         "initial overlaps and stiffness",
         step.report.error);
-  throw PhysicsError(
-      fmt::format("{}; at t = {:.6g} s, time step {:.3g} s (at most {:.3g} s: {}; trials rejected: {}); last good "
-                  "state: step {}, t "
-                  "= {:.6g} s",
-                  cause, step.time, step.report.dt, step.largest_dt, step.governed_by, step.report.rejections,
-                  accepted.steps, accepted.time));
+  throw PhysicsError(fmt::format(
+      "{}; at t = {:.6g} s, time step {:.3g} s (at most {:.3g} s: {}; trials rejected: {}); last good state: step {}, "
+      "t = {:.6g} s",
+      cause, step.time, step.report.dt, step.largest_dt, step.governed_by, step.report.rejections, accepted.steps,
+      accepted.time));
 }
 
 void check_start(const Evaluation& evaluation, const State& start, const Forces& forces) {

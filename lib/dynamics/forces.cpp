@@ -30,11 +30,14 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
   update_outlines(model_, position, outlines_);
   if (contact_.refresh_needed(outlines_)) {
     if (accepted) update_outlines(model_, accepted->position, outlines_);
-    const bool two_histories = accepted && &accepted->history != &committed;
-    contact_.refresh(outlines_, committed, two_histories ? &accepted->history : nullptr);
+    contact_.refresh(outlines_, accepted ? accepted->history : committed);
     if (accepted) update_outlines(model_, position, outlines_);
     result.refreshed = true;
     result.sound = !contact_.refresh_needed(outlines_);
+    if (accepted && &accepted->history != &committed) {
+      result.sound = false;
+      return result;
+    }
   }
   result.contact = contact_.forces(outlines_, committed, trial);
   parallel_for(static_cast<int>(model_.batches.size()), [&](int b) {

@@ -27,9 +27,9 @@ class Forces {
   explicit Forces(const Model& model);
 
   /// Total forces at `position` and `time` into `force`. `committed` is the contact history to start from, `trial` receives the one that goes
-  /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions, so that a rejected trial
-  /// loses no record, and a trial that goes further than the skin at once is not sound. A refresh lays `committed` and the accepted state's
-  /// history out anew, with the same records. `afterwards`, if any, follows the forces of each batch.
+  /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions and its history, laid out
+  /// anew, keeps its records, so that a rejected trial loses none. Not sound is then a trial that goes further than the skin at once, and one
+  /// that starts from another history than the accepted one: that is void, and no forces are computed. `afterwards`, if any, follows the forces of each batch.
   Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
                       State* accepted = nullptr, const BatchWork& afterwards = {});
 

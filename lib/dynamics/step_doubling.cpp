@@ -61,7 +61,7 @@ StepReport StepDoubling::step(State& state, double until) {
 
 /// Two half steps and, when their error lets them stand, the forces at the end, which the next step starts from. Returns the error: infinite
 /// where an evaluation is not sound.
-double StepDoubling::try_step(State& state, double end_time, StepReport& report) {
+double StepDoubling::try_step(State& state, double end_time, StepReport& report, bool once_more) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double half = 0.5 * report.dt, middle = state.time + half;
   half_step(state.position, state.velocity, state.force, state.time, half);
@@ -70,7 +70,9 @@ double StepDoubling::try_step(State& state, double end_time, StepReport& report)
   half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
   const double result = error(state, report.dt);
   if (!(result <= model_.scene.time.alpha * model_.scene.time.target)) return result;
-  if (!evaluate(state, end_time, half_history_, trial_.history, report)) return infinity;
+  if (!evaluate(state, end_time, half_history_, trial_.history, report))
+    // A refresh makes the half step's history void: once more with the new candidates.
+    return report.evaluation.refreshed && once_more ? try_step(state, end_time, report, false) : infinity;
   report.evaluation.contact.dissipated += slip_work;
   return result;
 }

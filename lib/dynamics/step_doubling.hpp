@@ -14,7 +14,7 @@ class StepDoubling {
   StepReport step(State& state, double until);
 
  private:
-  double try_step(State& state, double end_time, StepReport& report);
+  double try_step(State& state, double end_time, StepReport& report, bool once_more = true);
   bool evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);

@@ -22,22 +22,28 @@ double isotropic_node_count(double area, int outline_count, double spacing) {
   return 1 + outline_count / 2.0 + area / (std::sqrt(3.0) / 2 * spacing * spacing);
 }
 
-int disc_outline_count(const ShapeSpec& shape) {
-  if (shape.outline_nodes) return *shape.outline_nodes;
-  // 3.7 sqrt(N): the outline is 0.82 times finer than the interior, for contact resolution (168 nodes: 48).
-  if (shape.nodes) return static_cast<int>(std::lround(3.7 * std::sqrt(*shape.nodes)));
-  return static_cast<int>(std::lround(pi * shape.diameter / *shape.spacing));
+/// Outline nodes of a smooth shape; `roundness`: its perimeter over that of the circle of its area.
+int smooth_outline_count(const ShapeSpec& shape, double perimeter, double roundness) {
+  int n = 0;
+  if (shape.outline_nodes)
+    n = *shape.outline_nodes;
+  else if (shape.nodes)
+    // 3.7 sqrt(N): the outline is 0.82 times finer than the interior, for contact resolution (168 nodes: 48).
+    n = static_cast<int>(std::lround(3.7 * roundness * std::sqrt(*shape.nodes)));
+  else
+    n = static_cast<int>(std::lround(perimeter / *shape.spacing));
+  if (n < 6)
+    throw InputError(
+        fmt::format("shape '{}': a smooth shape of {} outline nodes; it needs at least 6: ask for more nodes or a "
+                    "finer spacing",
+                    shape.name, n));
+  return n;
 }
 
 Points disc_outline(const ShapeSpec& shape) {
   if (!(shape.diameter > 0))
     throw InputError(fmt::format("shape '{}': diameter {} m; it must be positive", shape.name, shape.diameter));
-  const int n = disc_outline_count(shape);
-  if (n < 6)
-    throw InputError(
-        fmt::format("shape '{}': a disc of {} outline nodes; it needs at least 6: ask for more nodes or a "
-                    "finer spacing",
-                    shape.name, n));
+  const int n = smooth_outline_count(shape, pi * shape.diameter, 1);
   const double turn = 2 * pi / n;
   const double radius = shape.diameter / 2 * std::sqrt(turn / std::sin(turn));
   Points outline;
@@ -125,6 +131,26 @@ Points polygon_outline(const ShapeSpec& shape) {
   return outline;
 }
 
+/// Nodes at equal distances along a smooth curve, moved out a little so that their polygon has the curve's area.
+Points curve_outline(const ShapeSpec& shape) {
+  const PolygonProperties curve = polygon_properties(shape.points);
+  const double length = perimeter(shape.points);
+  const int n = smooth_outline_count(shape, length, length / (2 * std::sqrt(pi * curve.area)));
+  Points outline;
+  double passed = 0;
+  for (std::size_t i = 0; i < shape.points.size(); ++i) {
+    const Vec2 a = shape.points[i], b = shape.points[(i + 1) % shape.points.size()];
+    const double edge = (b - a).norm();
+    for (double at; static_cast<int>(outline.size()) < n && (at = length * outline.size() / n) < passed + edge;)
+      outline.push_back(a + (at - passed) / edge * (b - a));
+    passed += edge;
+  }
+  const PolygonProperties polygon = polygon_properties(outline);
+  const double scale = std::sqrt(curve.area / polygon.area);
+  for (Vec2& p : outline) p = scale * (p - polygon.centroid);
+  return outline;
+}
+
 void require_resolution(const ShapeSpec& shape) {
   if (!shape.nodes && !shape.spacing && !shape.outline_nodes)
     throw InputError(fmt::format("shape '{}': give nodes, spacing or outline_nodes", shape.name));
@@ -153,7 +179,14 @@ int field_node_count(const ShapeSpec& shape, const Points& outline) {
 
 Points make_outline(const ShapeSpec& shape) {
   require_resolution(shape);
-  return shape.kind == ShapeKind::disc ? disc_outline(shape) : polygon_outline(shape);
+  switch (shape.kind) {
+    case ShapeKind::disc:
+      return disc_outline(shape);
+    case ShapeKind::polygon:
+      return polygon_outline(shape);
+    default:
+      return curve_outline(shape);
+  }
 }
 
 }  // namespace pliant

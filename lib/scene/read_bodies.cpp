@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "scene/curves.hpp"
 #include "scene/polygon_rules.hpp"
 #include "scene/read_tables.hpp"
 
@@ -19,6 +21,43 @@ void read_polygon(TableReader& table, ShapeSpec& shape) {
   if (signed_area(shape.points) < 0) std::reverse(shape.points.begin(), shape.points.end());
 }
 
+/// Reads one kind of shape by the name it has in scene files.
+void read_outline(TableReader& table, ShapeSpec& shape) {
+  enum class Name { disc, polygon, regular, ellipse, fourier } name;
+  table.required("kind", name,
+                 Choice<Name>{{{"disc", Name::disc},
+                               {"polygon", Name::polygon},
+                               {"regular", Name::regular},
+                               {"ellipse", Name::ellipse},
+                               {"fourier", Name::fourier}}});
+  shape.kind = name == Name::disc                               ? ShapeKind::disc
+               : name == Name::polygon || name == Name::regular ? ShapeKind::polygon
+                                                                : ShapeKind::curve;
+  if (name == Name::polygon) return read_polygon(table, shape);
+  if (name == Name::ellipse) {
+    double width = 0, height = 0;
+    table.required("width", width, Quantity{"m", positive});
+    table.required("height", height, Quantity{"m", positive});
+    shape.points = ellipse(width, height);
+    return;
+  }
+  table.required("diameter", shape.diameter, Quantity{"m", positive});
+  if (name == Name::regular) {
+    int sides = 0;
+    table.required("sides", sides, Integer{3, most_polygon_points});
+    shape.points = regular_polygon(sides, shape.diameter);
+  }
+  if (name == Name::fourier) {
+    std::vector<double> descriptors;
+    std::int64_t seed = 1;
+    table.required("descriptors", descriptors, List<Quantity>{{"1", Range{.low = 0, .high = 1}}});
+    table.optional("seed", seed, Integer{0, std::numeric_limits<std::int32_t>::max()});
+    shape.points = fourier_grain(shape.diameter, descriptors, seed);
+    if (shape.points.empty())
+      table.fail("descriptors", "the radius is not positive all round; allowed: descriptors whose sum is below 1");
+  }
+}
+
 double extent(const ShapeSpec& shape) {
   return shape.kind == ShapeKind::disc ? shape.diameter : largest_extent(shape.points);
 }
@@ -32,7 +71,7 @@ double area(const ShapeSpec& shape) {
 void read_nodes(TableReader& table, ShapeSpec& shape) {
   if (table.has("nodes") && table.has("spacing")) table.fail("spacing", "both it and 'nodes' are given; remove one");
   if (!table.has("nodes") && !table.has("spacing")) table.fail_missing("nodes", "'nodes' (a number) or 'spacing' (m)");
-  const auto fewest = shape.kind == ShapeKind::disc ? 6 : static_cast<std::int64_t>(shape.points.size());
+  const auto fewest = shape.kind == ShapeKind::polygon ? static_cast<std::int64_t>(shape.points.size()) : 6;
   table.optional("nodes", shape.nodes, Integer{7, SceneLimits::nodes_per_shape});
   table.optional("outline_nodes", shape.outline_nodes, Integer{fewest, SceneLimits::nodes_per_shape});
   if (!table.optional("spacing", shape.spacing, Quantity{"m", positive})) return;
@@ -190,9 +229,7 @@ Material read_material(TableReader table, const std::string& name) {
 ShapeSpec read_shape(TableReader table, const std::string& name) {
   ShapeSpec shape;
   shape.name = name;
-  table.required("kind", shape.kind, Choice<ShapeKind>{{{"disc", ShapeKind::disc}, {"polygon", ShapeKind::polygon}}});
-  if (shape.kind == ShapeKind::disc) table.required("diameter", shape.diameter, Quantity{"m", positive});
-  if (shape.kind == ShapeKind::polygon) read_polygon(table, shape);
+  read_outline(table, shape);
   read_nodes(table, shape);
   table.finish();
   return shape;

@@ -15,7 +15,7 @@ namespace pliant {
 
 enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, rigid };
 enum class BodyKind { compliant, rigid };
-enum class ShapeKind { disc, polygon };
+enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions };
 enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive };
@@ -42,7 +42,7 @@ struct ShapeSpec {
   std::string name;
   ShapeKind kind = ShapeKind::disc;
   double diameter = 0;               ///< disc: diameter of the circle whose area the polygon has, m
-  Points points;                     ///< polygon: counter-clockwise, m
+  Points points;                     ///< polygon: its corners; curve: many points on it; counter-clockwise, m
   std::optional<int> nodes;          ///< field nodes of a compliant body of this shape ...
   std::optional<double> spacing;     ///< ... or their distance, m: exactly one of the two is given
   std::optional<int> outline_nodes;  ///< overrides the number of outline nodes

@@ -29,6 +29,44 @@ TEST(Outline, DiscHasAreaOfCircle) {
   }
 }
 
+// EXACT: the polygon has the area of the curve, and its nodes divide it equally: chords of equal arcs, shorter by their
+// curvature: (h/r)^2/24, r the least radius, 1/4 for the ellipse.
+TEST(Outline, CurvesHaveTheirAreaAndEqualSegments) {
+  for (const Points& points : {ellipse(2, 1), fourier_grain(1.5, {0.2, 0.1, 0.05}, 7)}) {
+    const double area = polygon_properties(points).area;
+    const Points outline = make_outline(testing::curve("curve", points, 168));
+    EXPECT_NEAR(polygon_properties(outline).area / area, 1, 1e-13);
+    expect_centred_counter_clockwise(outline, 2);
+    double shortest = 1e300, longest = 0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const double length = (outline[(i + 1) % outline.size()] - outline[i]).norm();
+      shortest = std::min(shortest, length), longest = std::max(longest, length);
+    }
+    EXPECT_GT(shortest / longest, 0.98);
+  }
+}
+
+// RATE of 2: nodes of a finer outline come closer to the ellipse, by the square of their distance, within a fifth.
+TEST(Outline, CurvesConverge) {
+  const auto distance = [](int nodes) {
+    ShapeSpec shape = testing::curve("ellipse", ellipse(2, 1), 168);
+    shape.outline_nodes = nodes;
+    double worst = 0;
+    for (const Vec2& p : make_outline(shape)) worst = std::max(worst, std::abs(std::hypot(p.x() / 1, p.y() / 0.5) - 1));
+    return worst;
+  };
+  EXPECT_NEAR(std::log2(distance(24) / distance(48)), 2, 0.4);
+  EXPECT_NEAR(std::log2(distance(48) / distance(96)), 2, 0.4);
+}
+
+// EXACT: more outline nodes for a longer outline round the same area.
+TEST(Outline, CurvesGetNodesByTheirLength) {
+  EXPECT_EQ(make_outline(testing::curve("round", ellipse(1, 1), 168)).size(), 48U);
+  const double longer = perimeter(ellipse(2, 1)) / perimeter(ellipse(std::sqrt(2), std::sqrt(2)));
+  EXPECT_EQ(make_outline(testing::curve("long", ellipse(2, 1), 168)).size(),
+            static_cast<std::size_t>(std::lround(3.7 * longer * std::sqrt(168))));
+}
+
 // EXACT: counts by rule, by spacing (pi/0.1 = 31.4) and as given.
 TEST(Outline, DiscNodeCounts) {
   EXPECT_EQ(make_outline(disc(168)).size(), 48U);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/mesh.hpp"
+#include "scene/curves.hpp"
 
 /// Shapes that the tests of geometry and discretisation share.
 namespace pliant::testing {
@@ -28,7 +29,15 @@ inline ShapeSpec l_shape(int nodes) {
   return polygon("L", {{0, 0}, {2e-3, 0}, {2e-3, 1e-3}, {1e-3, 1e-3}, {1e-3, 2e-3}, {0, 2e-3}}, nodes);
 }
 
-inline std::vector<ShapeSpec> all_shapes() { return {disc(168), square(150), l_shape(250)}; }
+inline ShapeSpec curve(const char* name, const Points& points, int nodes) {
+  ShapeSpec shape = polygon(name, points, nodes);
+  shape.kind = ShapeKind::curve;
+  return shape;
+}
+
+inline std::vector<ShapeSpec> all_shapes() {
+  return {disc(168), square(150), l_shape(250), curve("fourier", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 168)};
+}
 
 inline Points outline_of(const FieldMesh& mesh) {
   return {mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count};
