@@ -155,6 +155,23 @@ void clear_forces(const Patch& patch, PatchForces& forces) {
   }
 }
 
+/// Calls visit(pass, slave side, i, nodes, projection) for each eight slave nodes, from position i on, of which some stand beside the master, at
+/// most `outward` off.
+template <class Visit>
+void for_each_projection(const Model& model, const Outlines& outlines, const Patch& patch, double skin, double outward,
+                         MasterWindow& scratch, Visit&& visit) {
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
+    const Pass pass = make_pass(model, outlines, patch, slave_side);
+    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
+    for (int i = 0; i < pass.nodes.count; i += lane_count) {
+      const SlaveNodes nodes = load_slaves(pass, i);
+      if (const Projection p = project(scratch, nodes.x, nodes.y, outward); any(p.hit))
+        visit(pass, slave_side, i, nodes, p);
+    }
+  }
+}
+
 }  // namespace
 
 PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
@@ -174,44 +191,32 @@ PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Out
 
 void locate_newcomers(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
                       double skin, ContactHistory& history, MasterWindow& scratch) {
-  if (!std::visit([](const auto& law) { return law.has_shear; }, laws.laws[patch.law])) return;
-  const double outward = reach_of(laws.laws[patch.law]) + skin;
-  for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    for (int i = 0; i < pass.nodes.count; i += lane_count) {
-      const SlaveNodes nodes = load_slaves(pass, i);
-      const Projection p = project(scratch, nodes.x, nodes.y, outward);
-      if (!any(p.hit)) continue;
-      const Lanes old_place = load(&history.place[pass.record + i]);
-      store(&history.place[pass.record + i], select(p.hit & (old_place != old_place), place_of(p), old_place));
-    }
-  }
+  const ContactLaw& law = laws.laws[patch.law];
+  if (!std::visit([](const auto& l) { return l.has_shear; }, law)) return;
+  for_each_projection(model, outlines, patch, skin, reach_of(law) + skin, scratch,
+                      [&](const Pass& pass, int, int i, const SlaveNodes&, const Projection& p) {
+                        double* place = &history.place[pass.record + i];
+                        const Lanes old = load(place);
+                        store(place, select(p.hit & (old != old), place_of(p), old));
+                      });
 }
 
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
                              double skin, double outward, const double (&factor)[2], PatchForces& forces,
                              MasterWindow& scratch) {
   clear_forces(patch, forces);
-  for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    for (int i = 0; i < pass.nodes.count; i += lane_count) {
-      const SlaveNodes nodes = load_slaves(pass, i);
-      const Projection p = project(scratch, nodes.x, nodes.y, outward);
-      if (!any(p.hit)) continue;
-      for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-        if (!p.hit[lane]) continue;
-        const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
-        const int at = pass.master_force + static_cast<int>(p.row[lane]);
-        forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
-        forces.x[at] += factor[1 - slave_side] * (1 - p.xi[lane]) * k;
-        forces.x[at + 1] += factor[1 - slave_side] * p.xi[lane] * k;
-      }
+  const auto add_stiffness = [&](const Pass& pass, int slave_side, int i, const SlaveNodes& nodes,
+                                 const Projection& p) {
+    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
+      if (!p.hit[lane]) continue;
+      const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
+      const int at = pass.master_force + static_cast<int>(p.row[lane]);
+      forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
+      forces.x[at] += factor[1 - slave_side] * (1 - p.xi[lane]) * k;
+      forces.x[at + 1] += factor[1 - slave_side] * p.xi[lane] * k;
     }
-  }
+  };
+  for_each_projection(model, outlines, patch, skin, outward, scratch, add_stiffness);
 }
 
 }  // namespace pliant

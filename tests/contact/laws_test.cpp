@@ -146,7 +146,7 @@ TEST(MakeContactLaws, SpecialRuleComesFirst) {
   special.shear_stiffness = 3;
   scene.contacts = {frictionless(5), special};
   const ContactLaws laws = make_contact_laws(build_model(scene));
-  for (const auto [a, b] : {std::pair{0, 3}, {3, 0}, {1, 4}, {4, 1}}) {
+  for (const auto& [a, b] : {std::pair{0, 3}, {3, 0}, {1, 4}, {4, 1}}) {
     const MohrCoulomb law = std::get<MohrCoulomb>(laws.laws[laws.between(a, b)]);
     EXPECT_EQ(law.normal_stiffness, 7);
     EXPECT_EQ(law.shear_stiffness, 3);
@@ -155,7 +155,7 @@ TEST(MakeContactLaws, SpecialRuleComesFirst) {
     EXPECT_DOUBLE_EQ(law.reach, 0.02);
     EXPECT_EQ(stiffness_of(law), 7);
   }
-  for (const auto [a, b] : {std::pair{0, 1}, {0, 2}, {2, 3}, {3, 4}})
+  for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {2, 3}, {3, 4}})
     EXPECT_EQ(std::get<Frictionless>(laws.laws[laws.between(a, b)]).normal_stiffness, 5);
 }
 
