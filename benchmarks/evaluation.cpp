@@ -68,7 +68,7 @@ void whole_evaluation(benchmark::State& state) {
   Forces forces(simulation.model());
   ContactHistory committed, trial;
   Dofs force = zero_dofs(simulation.model());
-  for (auto _ : state) forces.evaluate(simulation.state().position, 0, committed, trial, force);
+  for (auto _ : state) forces.evaluate(simulation.state().motion(), committed, trial, force);
 }
 BENCHMARK(whole_evaluation)->Unit(benchmark::kMillisecond);
 

@@ -16,4 +16,11 @@ struct Dofs {
       : compliant(compliant_size, Lanes{}), rigid(rigid_size, 0.0) {}
 };
 
+/// Where all bodies are and how they move.
+struct Motion {
+  const Dofs& position;
+  const Dofs& velocity;  ///< read only by models with forces that depend on it (Model::rates)
+  double time = 0;       ///< s
+};
+
 }  // namespace pliant

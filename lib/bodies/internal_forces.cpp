@@ -94,8 +94,10 @@ Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positio
                                       [&](auto law) { return energy(law, rows, batch.mu, batch.lambda, positions); });
 }
 
-std::vector<Tensor<double>> deformation_gradients(const CompliantShape& shape, const Lanes* positions, int lane) {
-  const IntegrationTable& table = shape.space.table;
+std::vector<Tensor<double>> deformation_gradients(const Model& model, const Body& body, const Dofs& position) {
+  const IntegrationTable& table = model.shape_of(body).space.table;
+  const Lanes* positions = &position.compliant[model.batches[body.batch].offset];
+  const int lane = body.lane;
   std::vector<Tensor<double>> result(table.weight.size(), Tensor<double>{0, 0, 0, 0});
   for (std::size_t g = 0; g < result.size(); ++g)
     for (int e = table.start[g]; e < table.start[g + 1]; ++e) {

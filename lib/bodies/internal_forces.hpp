@@ -14,6 +14,6 @@ Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* p
 Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions);
 
 /// Deformation gradients at all integration points, [points] of one body (a lane of a batch).
-std::vector<Tensor<double>> deformation_gradients(const CompliantShape& shape, const Lanes* positions, int lane);
+std::vector<Tensor<double>> deformation_gradients(const Model& model, const Body& body, const Dofs& position);
 
 }  // namespace pliant

@@ -65,6 +65,7 @@ struct Body {
   int outline = 0;            ///< index of its outline shape
   Vec2 centre{0, 0};          ///< initial centre, m
   double angle = 0;           ///< initial angle, rad
+  double scale = 1;           ///< size over that of its shape as the scene gives it
   double area = 0;            ///< m2
   double mass = 0;            ///< kg/m
 };
@@ -79,8 +80,10 @@ struct Model {
   std::vector<RigidBody> rigid_bodies;
   std::vector<Body> bodies;        ///< grains in the scene's order, then walls
   std::size_t compliant_size = 0;  ///< length of Dofs::compliant
+  bool rates = false;              ///< some force depends on velocities: only then are rates formed
 
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[groups[batch.group].shape]; }
+  const CompliantShape& shape_of(const Body& body) const { return shape_of(batches[body.batch]); }
   int dof_count() const;
   int node_count() const;  ///< field nodes of compliant bodies and outline nodes of rigid ones
 };

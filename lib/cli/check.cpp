@@ -52,7 +52,7 @@ void print_bodies(const Model& model) {
             fmt::format("{}: compliant {}, rigid {}, walls {}", all, compliant, all - compliant - walls, walls));
   int field = 0;
   for (const Body& body : model.bodies)
-    if (body.kind == BodyKind::compliant) field += model.shape_of(model.batches[body.batch]).nodes();
+    if (body.kind == BodyKind::compliant) field += model.shape_of(body).nodes();
   print_row("nodes", fmt::format("{}: in compliant bodies {}, on outlines of rigid bodies and walls {}",
                                  model.node_count(), field, model.node_count() - field));
   print_row("DOFs", std::to_string(model.dof_count()));
@@ -136,7 +136,7 @@ Stability stability(const Model& model) {
   const Dofs position = initial_positions(model);
   Dofs force = zero_dofs(model);
   ContactHistory history, trial;
-  forces.evaluate(position, 0, history, trial, force);
+  forces.evaluate({position, initial_velocities(model, position), 0}, history, trial, force);
   TimeStepBound bound(model, forces.contact().laws());
   bound.update_internal(position);
   bound.update_contact(forces);

@@ -35,7 +35,7 @@ GridSize grid_size(const Model& model) {
     size.outline_points += n;
     if (body.wall) continue;
     const bool compliant = body.kind == BodyKind::compliant;
-    const FieldMesh* mesh = compliant ? &model.shape_of(model.batches[body.batch]).space.mesh : nullptr;
+    const FieldMesh* mesh = compliant ? &model.shape_of(body).space.mesh : nullptr;
     size.points += mesh ? static_cast<double>(mesh->nodes.size()) : n;
     size.cells += mesh ? static_cast<double>(mesh->triangles.size()) : n - 2;
   }

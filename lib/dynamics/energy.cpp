@@ -43,7 +43,7 @@ Audit Auditor::audit(const State& state) {
   Audit result;
   // The same forces once more: the history stands still at an accepted state, so nothing slips.
   ContactHistory history = state.history;
-  const Evaluation evaluation = forces_.evaluate(state.position, state.time, history, scratch_, force_);
+  const Evaluation evaluation = forces_.evaluate(state.motion(), history, scratch_, force_);
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);

@@ -31,8 +31,7 @@ LeastJacobian least_jacobian(const Model& model, const Dofs& position) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (body.kind != BodyKind::compliant) continue;
-    const CompliantShape& shape = model.shape_of(model.batches[body.batch]);
-    const auto F = deformation_gradients(shape, positions_of(model, body, position), body.lane);
+    const auto F = deformation_gradients(model, body, position);
     for (std::size_t g = 0; g < F.size(); ++g)
       if (const double J = determinant(F[g]); J < least.value) least = {J, static_cast<int>(b), static_cast<int>(g)};
   }

@@ -24,8 +24,9 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 Forces::Forces(const Model& model)
     : model_(model), outlines_(make_outlines(model)), contact_(model), least_jacobian_(model.batches.size(), 1e300) {}
 
-Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial,
-                            Dofs& force, State* accepted, const BatchWork& afterwards) {
+Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
+                            State* accepted, const BatchWork& afterwards) {
+  const Dofs& position = motion.position;
   Evaluation result;
   update_outlines(model_, position, outlines_);
   if (contact_.refresh_needed(outlines_)) {
@@ -52,7 +53,7 @@ Evaluation Forces::evaluate(const Dofs& position, double time, ContactHistory& c
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
     outline_force_resultant(model_, rigid, outlines_, &position.rigid[3 * r], &force.rigid[3 * r]);
-    add_rigid_loads(model_, rigid, time, &force.rigid[3 * r]);
+    add_rigid_loads(model_, rigid, motion.time, &force.rigid[3 * r]);
   });
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.sound &= result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;

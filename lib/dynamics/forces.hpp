@@ -13,6 +13,7 @@ namespace pliant {
 /// What one force evaluation found.
 struct Evaluation {
   PatchTotals contact;
+  double damping_power = 0;  ///< what forces that depend on velocities dissipate, W/m
   double least_jacobian = 1e300;
   bool refreshed = false;  ///< the contact candidates were rebuilt
   bool sound = true;  ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
@@ -26,11 +27,11 @@ class Forces {
  public:
   explicit Forces(const Model& model);
 
-  /// Total forces at `position` and `time` into `force`. `committed` is the contact history to start from, `trial` receives the one that goes
+  /// Total forces of a motion into `force`. `committed` is the contact history to start from, `trial` receives the one that goes
   /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions and its history, laid out
   /// anew, keeps its records, so that a rejected trial loses none. Not sound is then a trial that goes further than the skin at once, and one
   /// that starts from another history than the accepted one: that is void, and no forces are computed. `afterwards`, if any, follows the forces of each batch.
-  Evaluation evaluate(const Dofs& position, double time, ContactHistory& committed, ContactHistory& trial, Dofs& force,
+  Evaluation evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
                       State* accepted = nullptr, const BatchWork& afterwards = {});
 
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.

@@ -10,7 +10,7 @@ void take_over(const Model& model, State& state, Trial& trial, double end_time, 
                const StepReport& report) {
   state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
                                        state.force, trial.force, state.time, report.dt);
-  state.dissipated += report.evaluation.contact.dissipated;
+  state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   std::swap(state.position, trial.position);
   std::swap(state.velocity, trial.velocity);
   std::swap(state.force, trial.force);

@@ -14,6 +14,7 @@ struct Trial {
 /// One accepted step, or the trials so far.
 struct StepReport {
   double dt = 0, error = 0;
+  double damping_work = 0;  ///< dissipated by forces that depend on velocities, J/m
   int rejections = 0, evaluations = 0;
   Evaluation evaluation;         ///< the last one
   const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"

@@ -17,7 +17,7 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   update_outlines(model, state_.position, outlines);
   refuse_deep_overlap(model, outlines);
   ContactHistory trial;
-  const Evaluation start = forces_.evaluate(state_.position, 0, state_.history, trial, state_.force);
+  const Evaluation start = forces_.evaluate(state_.motion(), state_.history, trial, state_.force);
   check_start(start, state_, forces_);
   forces_.warn_of_depth(start, 0);
   std::swap(state_.history, trial);

@@ -66,7 +66,7 @@ double StepDoubling::try_step(State& state, double end_time, StepReport& report,
   const double half = 0.5 * report.dt, middle = state.time + half;
   half_step(state.position, state.velocity, state.force, state.time, half);
   if (!evaluate(state, middle, state.history, half_history_, report)) return infinity;
-  const double slip_work = report.evaluation.contact.dissipated;
+  const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
   const double result = error(state, report.dt);
   if (!(result <= model_.scene.time.alpha * model_.scene.time.target)) return result;
@@ -74,11 +74,12 @@ double StepDoubling::try_step(State& state, double end_time, StepReport& report,
     // A refresh makes the half step's history void: once more with the new candidates.
     return report.evaluation.refreshed && once_more ? try_step(state, end_time, report, false) : infinity;
   report.evaluation.contact.dissipated += slip_work;
+  report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return result;
 }
 
 bool StepDoubling::evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report) {
-  report.evaluation = forces_.evaluate(trial_.position, time, from, to, trial_.force, &state);
+  report.evaluation = forces_.evaluate({trial_.position, trial_.velocity, time}, from, to, trial_.force, &state);
   ++report.evaluations;
   trial_time_ = time;
   return report.evaluation.sound;

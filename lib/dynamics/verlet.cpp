@@ -66,14 +66,17 @@ double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.
 
 void Verlet::try_step(State& state, double end_time, StepReport& report) {
   predict(state, report.dt);
-  report.evaluation = forces_.evaluate(trial_.position, end_time, state.history, trial_.history, trial_.force, &state,
-                                       [&](int b) { finish_batch(state, report.dt, b); });
+  report.evaluation = forces_.evaluate({trial_.position, trial_.velocity, end_time}, state.history, trial_.history,
+                                       trial_.force, &state, [&](int b) { finish_batch(state, report.dt, b); });
+  report.damping_work = report.dt * report.evaluation.damping_power;
   ++report.evaluations;
   if (report.evaluation.refreshed) bound_.update_contact(forces_);
   report.error = report.evaluation.sound ? error(state, report.dt) : std::numeric_limits<double>::infinity();
 }
 
+/// Positions at the end of the step. Forces that depend on velocities see those of the half step, by which the positions move.
 void Verlet::predict(const State& state, double dt) {
+  if (model_.rates) predict_half_step_velocity(state, dt);
   const double half = 0.5 * dt * dt;
   for_each_dof(
       model_,
@@ -86,6 +89,19 @@ void Verlet::predict(const State& state, double dt) {
         trial_.position.rigid[i] =
             dof.imposed() ? imposed_position(dof, x, state.time, dt)
                           : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+      });
+}
+
+void Verlet::predict_half_step_velocity(const State& state, double dt) {
+  for_each_dof(
+      model_,
+      [&](std::size_t i, Lanes inverse_mass) {
+        trial_.velocity.compliant[i] = state.velocity.compliant[i] + 0.5 * dt * inverse_mass * state.force.compliant[i];
+      },
+      [&](std::size_t i, const RigidDof& dof) {
+        trial_.velocity.rigid[i] = dof.imposed()
+                                       ? imposed_velocity(dof, state.time + 0.5 * dt)
+                                       : state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * state.force.rigid[i];
       });
 }
 

@@ -17,6 +17,7 @@ class Verlet {
  private:
   void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
+  void predict_half_step_velocity(const State& state, double dt);
   void finish_batch(const State& state, double dt, int b);
   double error(const State& state, double dt) const;
   void accept(State& state, double end_time, double next_dt, const StepReport& report);

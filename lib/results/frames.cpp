@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "bodies/internal_forces.hpp"
+#include "bodies/nodal.hpp"
 #include "materials/with_material.hpp"
 
 namespace pliant {
@@ -18,18 +19,9 @@ float kind_of(const Body& body) {
   return body.wall ? wall_kind : body.kind == BodyKind::compliant ? compliant_kind : rigid_kind;
 }
 
-/// Values at the field nodes, u(X_k) = sum phi_i(X_k) q_i, of one body: appended as x, y.
-void append_nodal(const Model& model, const Body& body, const Dofs& dofs, const Vec2& offset, std::vector<float>& out) {
-  const Batch& batch = model.batches[body.batch];
-  const ShapeRows& rows = model.shape_of(batch).space.node_rows;
-  const Lanes* q = &dofs.compliant[batch.offset];
-  for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
-    Vec2 value = offset;
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
-      value += rows.value[e] * Vec2(q[2 * rows.node[e]][body.lane], q[2 * rows.node[e] + 1][body.lane]);
-    out.push_back(static_cast<float>(value.x()));
-    out.push_back(static_cast<float>(value.y()));
-  }
+void append(const Points& values, const Vec2& offset, std::vector<float>& out) {
+  for (const Vec2& value : values)
+    for (double x : {offset.x() + value.x(), offset.y() + value.y()}) out.push_back(static_cast<float>(x));
 }
 
 /// Stresses of one cell, averaged over its integration points by weight.
@@ -39,9 +31,9 @@ struct CellState {
 
 std::vector<CellState> cell_states(const Model& model, const Body& body, const Dofs& position) {
   const Batch& batch = model.batches[body.batch];
-  const CompliantShape& shape = model.shape_of(batch);
+  const CompliantShape& shape = model.shape_of(body);
   const double mu = batch.mu[body.lane], lambda = batch.lambda[body.lane];
-  const std::vector<Tensor<double>> F = deformation_gradients(shape, &position.compliant[batch.offset], body.lane);
+  const std::vector<Tensor<double>> F = deformation_gradients(model, body, position);
   std::vector<CellState> cells(shape.space.mesh.triangles.size());
   with_material(model.groups[batch.group].law, [&](auto law) {
     using Law = decltype(law);
@@ -84,8 +76,8 @@ FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& fo
     if (body.wall) continue;
     if (body.kind == BodyKind::rigid && rigid_meshes_[body.outline].nodes.empty())
       rigid_meshes_[body.outline] = make_rigid_mesh(model.scene.shape(model.scene.grains[body.grains].shape));
-    const FieldMesh& mesh = body.kind == BodyKind::compliant ? model.shape_of(model.batches[body.batch]).space.mesh
-                                                             : rigid_meshes_[body.outline];
+    const FieldMesh& mesh =
+        body.kind == BodyKind::compliant ? model.shape_of(body).space.mesh : rigid_meshes_[body.outline];
     for (const Triangle& t : mesh.triangles) add(bodies, body, b, t);
     bodies.points += static_cast<int>(mesh.nodes.size());
   }
@@ -114,8 +106,8 @@ GridFrame FrameRecorder::bodies_frame(const Simulation& simulation) const {
   for (const Body& body : model_.bodies) {
     if (body.wall) continue;
     if (body.kind == BodyKind::compliant) {
-      append_nodal(model_, body, state.position, body.centre, frame.positions);
-      append_nodal(model_, body, state.velocity, Vec2(0, 0), velocity.values);
+      append(nodal_values(model_, body, state.position), body.centre, frame.positions);
+      append(nodal_values(model_, body, state.velocity), Vec2(0, 0), velocity.values);
       for (const CellState& cell : cell_states(model_, body, state.position)) {
         von_mises.values.push_back(static_cast<float>(cell.von_mises / cell.weight));
         jacobian.values.push_back(static_cast<float>(cell.jacobian / cell.weight));

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "bodies/nodal.hpp"
+
 namespace pliant {
 namespace {
 
@@ -38,20 +40,6 @@ std::vector<int> selected_bodies(const Model& model, const std::string& of) {
     if (named || of_kind) result.push_back(static_cast<int>(b));
   }
   return result;
-}
-
-/// Mass-weighted mean of a compliant body's degrees of freedom: its centre, or the velocity of it.
-Vec2 compliant_mean(const Model& model, const Body& body, const Dofs& dofs) {
-  const Batch& batch = model.batches[body.batch];
-  const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
-  Vec2 total(0, 0);
-  double sum = 0;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    total += mass[i] *
-             Vec2(dofs.compliant[batch.offset + 2 * i][body.lane], dofs.compliant[batch.offset + 2 * i + 1][body.lane]);
-    sum += mass[i];
-  }
-  return total / sum;
 }
 
 }  // namespace
@@ -103,7 +91,7 @@ std::vector<double> ProbeSampler::mean(const Simulation&, const Dofs& dofs, bool
   for (int b : bodies_) {
     const Body& body = model_.bodies[b];
     if (body.kind == BodyKind::compliant) {
-      const Vec2 centre = compliant_mean(model_, body, dofs) + (positions ? body.centre : Vec2(0, 0));
+      const Vec2 centre = mean_value(model_, body, dofs) + (positions ? body.centre : Vec2(0, 0));
       total[0] += centre.x(), total[1] += centre.y();
       all_rigid = false;
     } else {

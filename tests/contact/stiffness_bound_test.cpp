@@ -54,7 +54,7 @@ struct Loaded {
     evaluate();
     std::swap(committed, trial);
   }
-  void evaluate() { forces.evaluate(q, 0, committed, trial, force); }
+  void evaluate() { forces.evaluate({q, q, 0}, committed, trial, force); }
 };
 
 // Largest eigenvalue of M^-1/2 K M^-1/2, K = -df/dq of all forces by central differences: w^2 of the fastest motion.

@@ -80,8 +80,8 @@ TEST(Failure, stops_at_the_last_good_state) {
 /// Evaluates a bench's forces for what a test did to its positions and lets the failure be told.
 std::string failure_at(Bench& bench) {
   ContactHistory trial;
-  const Evaluation evaluation =
-      bench.forces.evaluate(bench.state.position, 0, bench.state.history, trial, bench.state.force);
+  const Evaluation evaluation = bench.forces.evaluate({bench.state.position, bench.state.velocity, 0},
+                                                      bench.state.history, trial, bench.state.force);
   return failure_of([&] { check_start(evaluation, bench.state, bench.forces); });
 }
 
@@ -100,9 +100,7 @@ TEST(Failure, inverted_grain_is_named_with_its_point) {
   const int victim = 6, node = 39;
   component(bench, bench.state.position, victim, node, 0) += 0.8;
   const Body& body = bench.model.bodies[victim];
-  const Batch& batch = bench.model.batches[body.batch];
-  const auto F =
-      deformation_gradients(bench.model.shape_of(batch), &bench.state.position.compliant[batch.offset], body.lane);
+  const auto F = deformation_gradients(bench.model, body, bench.state.position);
   std::size_t worst = 0;
   for (std::size_t g = 1; g < F.size(); ++g)
     if (determinant(F[g]) < determinant(F[worst])) worst = g;

@@ -115,10 +115,10 @@ TEST(Rejection, a_trial_far_away_loses_no_record) {
   Dofs away = state.position, force = state.force;
   away.rigid[1] += 5;
   ContactHistory trial;
-  EXPECT_FALSE(bench.forces.evaluate(away, 1, state.history, trial, force, &state).sound)
+  EXPECT_FALSE(bench.forces.evaluate({away, state.velocity, 1}, state.history, trial, force, &state).sound)
       << "EXACT: further than the skin";
   EXPECT_EQ(records(state.history), before) << "EXACT";
-  EXPECT_TRUE(bench.forces.evaluate(state.position, 1, state.history, trial, force, &state).sound);
+  EXPECT_TRUE(bench.forces.evaluate({state.position, state.velocity, 1}, state.history, trial, force, &state).sound);
   EXPECT_TRUE(same_bits(force.rigid, state.force.rigid)) << "EXACT";
 }
 
@@ -135,10 +135,10 @@ TEST(Rejection, a_refresh_lays_out_the_accepted_history) {
   ContactHistory half = state.history, trial;
   Dofs away = state.position, force = state.force;
   away.rigid[3] += 1;
-  const Evaluation evaluation = bench.forces.evaluate(away, 1, half, trial, force, &state);
+  const Evaluation evaluation = bench.forces.evaluate({away, state.velocity, 1}, half, trial, force, &state);
   EXPECT_TRUE(evaluation.refreshed);
   EXPECT_FALSE(evaluation.sound);
-  bench.forces.evaluate(state.position, 1, state.history, trial, force, &state);
+  bench.forces.evaluate({state.position, state.velocity, 1}, state.history, trial, force, &state);
   for (std::size_t c = 3; c < 6; ++c)
     EXPECT_NEAR(force.rigid[c], state.force.rigid[c], 1e-12) << "EXACT: rounding of forces of order 1";
   EXPECT_GT(std::abs(state.force.rigid[3]), 0.01) << "friction must act, or this test says nothing";

@@ -122,7 +122,7 @@ int compare_estimates(const Scene& scene) {
     Euler one{before.position, before.velocity}, two = one;
     euler_step(bench.model, one, before.force, report.dt);
     euler_step(bench.model, two, before.force, report.dt / 2);
-    forces.evaluate(two.position, before.time + report.dt / 2, history, trial, force);
+    forces.evaluate({two.position, two.velocity, before.time + report.dt / 2}, history, trial, force);
     euler_step(bench.model, two, force, report.dt / 2);
     const double expected = largest_difference(bench.model, one.position, two.position);
     // EXACT but for cancellation: differences of 1e-4 d between positions of order 1, to 1e-16 each.
@@ -150,7 +150,7 @@ TEST(StepDoubling, keeps_the_two_half_steps) {
   const StepReport report = integrator.step(bench.state, 2);
   Euler two{before.position, before.velocity};
   euler_step(bench.model, two, before.force, report.dt / 2);
-  forces.evaluate(two.position, before.time + report.dt / 2, history, trial, force);
+  forces.evaluate({two.position, two.velocity, before.time + report.dt / 2}, history, trial, force);
   euler_step(bench.model, two, force, report.dt / 2);
   EXPECT_LT(largest_difference(bench.model, two.position, bench.state.position), 1e-14) << "EXACT: rounding";
   EXPECT_LT(largest_difference(bench.model, two.velocity, bench.state.velocity), 1e-14) << "EXACT: rounding";

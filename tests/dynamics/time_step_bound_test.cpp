@@ -110,7 +110,8 @@ std::vector<Scene> touching_scenes(const ContactRule& contact) {
 int contacts_of(Bench& bench) {
   ContactHistory trial;
   Dofs force = bench.state.force;
-  return bench.forces.evaluate(bench.state.position, 0, bench.state.history, trial, force).contact.contacts;
+  return bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history, trial, force)
+      .contact.contacts;
 }
 
 class ContactBound : public ::testing::TestWithParam<double> {};

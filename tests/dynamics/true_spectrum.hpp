@@ -42,7 +42,7 @@ inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
   const auto n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd matrix(n, n);
   const auto forces_into = [&](Eigen::VectorXd& column) {
-    bench.forces.evaluate(bench.state.position, 0, bench.state.history, trial, force);
+    bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history, trial, force);
     for (Eigen::Index i = 0; i < n; ++i) column[i] = *all[i].force * all[i].inverse_mass;
   };
   Eigen::VectorXd plus(n), minus(n);

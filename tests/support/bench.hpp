@@ -28,7 +28,7 @@ struct Bench {
   /// Forces at the state's own positions, for states set by hand.
   void evaluate_here() {
     ContactHistory trial;
-    forces.evaluate(state.position, state.time, state.history, trial, state.force);
+    forces.evaluate(state.motion(), state.history, trial, state.force);
     std::swap(state.history, trial);
   }
 };
