@@ -88,6 +88,9 @@ void drive(RigidDof& dof, const Drive& drive, double mass, double pressure_scale
   dof.inverse_mass = dof.imposed() ? 0 : 1 / mass;
 }
 
+/// Whether some force of the scene depends on velocities.
+bool depends_on_rates(const Scene&) { return false; }
+
 class Builder {
  public:
   explicit Builder(const Scene& scene) : store_(model_) { model_.scene = scene; }
@@ -96,6 +99,7 @@ class Builder {
     for (std::size_t g = 0; g < model_.scene.grains.size(); ++g) add_grains(static_cast<int>(g));
     for (const Wall& wall : model_.scene.walls) add_wall(wall);
     make_batches();
+    model_.rates = depends_on_rates(model_.scene);
     return std::move(model_);
   }
 

@@ -15,16 +15,22 @@ class BodyDofs {
   int lane_;
 };
 
-}  // namespace
-
-Points nodal_values(const Model& model, const Body& body, const Dofs& dofs) {
-  const BodyDofs q(model, body, dofs);
-  const ShapeRows& rows = model.shape_of(body).space.node_rows;
+Points values(const ShapeRows& rows, const BodyDofs& q) {
   Points values(rows.start.size() - 1, Vec2(0, 0));
   for (std::size_t k = 0; k < values.size(); ++k)
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
       values[k] += rows.value[e] * q[static_cast<std::size_t>(rows.node[e])];
   return values;
+}
+
+}  // namespace
+
+Points nodal_values(const Model& model, const Body& body, const Dofs& dofs) {
+  return values(model.shape_of(body).space.node_rows, BodyDofs(model, body, dofs));
+}
+
+Points outline_values(const Model& model, const Body& body, const Dofs& dofs) {
+  return values(model.shape_of(body).space.outline_rows, BodyDofs(model, body, dofs));
 }
 
 Vec2 mean_value(const Model& model, const Body& body, const Dofs& dofs) {

@@ -21,11 +21,12 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift);
 /// Current outlines of all bodies, one after another; each body's nodes are followed by lane_count cyclic copies.
 /// Both kinds of body show this one face to contact (METHOD 1).
 struct Outlines {
-  std::vector<int> shape;                    ///< [bodies], index of the outline shape
-  std::vector<int> offset;                   ///< [bodies + 1], first node of a body
-  std::vector<double> x, y;                  ///< [nodes and copies], m
-  std::vector<double> force_x, force_y;      ///< [nodes and copies], contact force, N/m; 0 in the copies
-  std::vector<double> x_refresh, y_refresh;  ///< positions at the last contact refresh
+  std::vector<int> shape;                      ///< [bodies], index of the outline shape
+  std::vector<int> offset;                     ///< [bodies + 1], first node of a body
+  std::vector<double> x, y;                    ///< [nodes and copies], m
+  std::vector<double> force_x, force_y;        ///< [nodes and copies], contact force, N/m; 0 in the copies
+  std::vector<double> x_refresh, y_refresh;    ///< positions at the last contact refresh
+  std::vector<double> velocity_x, velocity_y;  ///< [nodes and copies], m/s; empty without Model::rates
 };
 
 /// Floor division: the turn that a node index beyond [0, count) lies in.

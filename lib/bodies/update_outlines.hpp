@@ -19,4 +19,7 @@ void add_outline_forces(const Model& model, const Batch& batch, const Outlines& 
 void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines,
                              const double* position, double* resultant);
 
+/// Fills the outline nodes' velocities; does nothing in a model without rates. After update_outlines of the same motion.
+void update_outline_velocities(const Model& model, const Motion& motion, Outlines& outlines);
+
 }  // namespace pliant

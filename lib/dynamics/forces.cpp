@@ -40,6 +40,7 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
       return result;
     }
   }
+  update_outline_velocities(model_, motion, outlines_);
   result.contact = contact_.forces(outlines_, committed, trial);
   parallel_for(static_cast<int>(model_.batches.size()), [&](int b) {
     const Batch& batch = model_.batches[b];
