@@ -99,6 +99,7 @@ class Builder {
     for (std::size_t g = 0; g < model_.scene.grains.size(); ++g) add_grains(static_cast<int>(g));
     for (const Wall& wall : model_.scene.walls) add_wall(wall);
     make_batches();
+    model_.corrected_mass = !model_.groups.empty() && model_.scene.discretisation.mass == Mass::corrected;
     model_.rates = depends_on_rates(model_.scene);
     return std::move(model_);
   }

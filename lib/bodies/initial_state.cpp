@@ -1,5 +1,7 @@
 #include "bodies/initial_state.hpp"
 
+#include "bodies/mass_correction.hpp"
+
 #include <cmath>
 
 namespace pliant {
@@ -54,7 +56,7 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
     for (int c = 0; c < 3; ++c)
       if (rigid.dof[c].mode == Drive::Mode::velocity) v.rigid[3 * r + c] = rigid.dof[c].history.at(0);
   }
-  return v;
+  return reduced_momentum(model, v);
 }
 
 }  // namespace pliant

@@ -80,6 +80,7 @@ struct Model {
   std::vector<RigidBody> rigid_bodies;
   std::vector<Body> bodies;        ///< grains in the scene's order, then walls
   std::size_t compliant_size = 0;  ///< length of Dofs::compliant
+  bool corrected_mass = false;     ///< states hold momentum over lumped mass: see mass_correction.hpp
   bool rates = false;              ///< some force depends on velocities: only then are rates formed
 
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[groups[batch.group].shape]; }

@@ -94,10 +94,10 @@ void print_shapes(const Model& model) {
     const Discretisation& space = shape.space;
     const double points = static_cast<double>(space.table.weight.size());
     print_row("shape", fmt::format("{} nodes, {} on the outline; {:.0f} integration points of {:.1f} neighbours each; "
-                                   "least shape function {:.3f}; completeness {:.1e}",
+                                   "least shape function {:.3f}; condition {:.1e}; completeness {:.1e}",
                                    shape.nodes(), model.outlines[shape.outline].count, points,
                                    static_cast<double>(space.table.node.size()) / points, space.min_shape_value,
-                                   space.completeness_residual));
+                                   space.condition, space.completeness_residual));
   }
 }
 

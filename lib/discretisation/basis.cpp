@@ -1,5 +1,6 @@
 #include "discretisation/basis.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant {
@@ -28,6 +29,16 @@ Basis linear_triangles(const FieldMesh& mesh) {
       shape.value.push_back(cross(a - x, b - x) / twice_area);
       shape.gradient.push_back(Vec2(a.y() - b.y(), b.x() - a.x()) / twice_area);
     }
+    return shape;
+  };
+}
+
+Basis watched(const Basis& basis, BasisQuality& quality) {
+  return [basis, &quality](const Vec2& x, int triangle) {
+    ShapeFunctions shape = basis(x, triangle);
+    const double least = *std::min_element(shape.value.begin(), shape.value.end());
+    if (least < -nothing) quality.least_value = std::min(quality.least_value, least);
+    quality.condition = std::max(quality.condition, shape.condition);
     return shape;
   };
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <map>
+
 #include "core/errors.hpp"
 #include "discretisation/quadrature.hpp"
 
@@ -21,6 +24,40 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
                       "positive: change `support` or the number of nodes",
                       mass[i], i));
   return mass;
+}
+
+ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {
+  const MeshQuadrature quadrature = mesh_quadrature(mesh, 6);
+  std::vector<std::map<int, double>> mass(lumped.size());
+  for (std::size_t g = 0; g < quadrature.weight.size(); ++g) {
+    const ShapeFunctions shape = basis(quadrature.position[g], quadrature.triangle[g]);
+    for (std::size_t a = 0; a < shape.node.size(); ++a)
+      for (std::size_t b = 0; b < shape.node.size(); ++b)
+        mass[shape.node[a]][shape.node[b]] += quadrature.weight[g] * shape.value[a] * shape.value[b];
+  }
+  ShapeRows rows;
+  rows.start.push_back(0);
+  for (std::size_t i = 0; i < mass.size(); ++i) {
+    for (const auto& [j, m] : mass[i]) {
+      rows.node.push_back(j);
+      rows.value.push_back((static_cast<std::size_t>(j) == i ? 2.0 : 0.0) - m / lumped[i]);
+    }
+    rows.start.push_back(static_cast<int>(rows.node.size()));
+  }
+  return rows;
+}
+
+double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped) {
+  constexpr std::size_t most_nodes = 1000;  // a dense eigenvalue problem of this size takes a tenth of a second
+  const std::size_t n = lumped.size();
+  if (n > most_nodes) return 2;
+  Eigen::MatrixXd symmetric = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
+  for (std::size_t i = 0; i < n; ++i)
+    for (int e = correction.start[i]; e < correction.start[i + 1]; ++e) {
+      const int j = correction.node[e];
+      symmetric(static_cast<Eigen::Index>(i), j) = correction.value[e] * std::sqrt(lumped[i] / lumped[j]);
+    }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
 }  // namespace pliant

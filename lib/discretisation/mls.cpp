@@ -51,7 +51,12 @@ std::vector<Neighbour> find_neighbours(const MlsNodes& nodes, const Vec2& x) {
   return found;
 }
 
-Matrix3d inverse_moment(const std::vector<Neighbour>& neighbours, const Vec2& x) {
+struct InverseMoment {
+  Matrix3d matrix;
+  double condition;
+};
+
+InverseMoment inverse_moment(const std::vector<Neighbour>& neighbours, const Vec2& x) {
   Matrix3d moment = Matrix3d::Zero();
   for (const Neighbour& n : neighbours) moment += n.weight * n.basis * n.basis.transpose();
   const Eigen::PartialPivLU<Matrix3d> lu(moment);
@@ -60,7 +65,7 @@ Matrix3d inverse_moment(const std::vector<Neighbour>& neighbours, const Vec2& x)
         fmt::format("discretisation: the point ({:.4g}, {:.4g}) (in mean node distances from the centroid) has "
                     "{} neighbour nodes, not three off one line; raise `support`",
                     x.x(), x.y(), neighbours.size()));
-  return lu.inverse();
+  return {lu.inverse(), 1 / lu.rcond()};
 }
 
 }  // namespace
@@ -83,12 +88,13 @@ MlsNodes make_mls_nodes(const Points& nodes, int support) {
 // point at which the basis is taken (first term of dc) and the weights in M (second term).
 ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x) {
   const std::vector<Neighbour> neighbours = find_neighbours(nodes, x);
-  const Matrix3d inverse = inverse_moment(neighbours, x);
+  const auto [inverse, condition] = inverse_moment(neighbours, x);
   const Vector3d c = inverse.col(0);
   Eigen::Matrix<double, 3, 2> moment_gradient_c = Eigen::Matrix<double, 3, 2>::Zero();  // (dM/dx_a) c
   for (const Neighbour& n : neighbours) moment_gradient_c += n.basis.dot(c) * n.basis * n.weight_gradient.transpose();
   const Eigen::Matrix<double, 3, 2> c_gradient = inverse.rightCols<2>() - inverse * moment_gradient_c;
   ShapeFunctions result;
+  result.condition = condition;
   for (const Neighbour& n : neighbours) {
     result.node.push_back(n.node);
     result.value.push_back(c.dot(n.basis) * n.weight);

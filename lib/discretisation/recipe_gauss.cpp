@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "discretisation/quadrature.hpp"
 #include "discretisation/recipes.hpp"
 
@@ -18,8 +16,6 @@ RecipeResult build_at_gauss_points(const FieldMesh& mesh, const Basis& basis, in
     table.node.insert(table.node.end(), shape.node.begin(), shape.node.end());
     table.gradient.insert(table.gradient.end(), shape.gradient.begin(), shape.gradient.end());
     table.start.push_back(static_cast<int>(table.node.size()));
-    result.min_shape_value =
-        std::min(result.min_shape_value, *std::min_element(shape.value.begin(), shape.value.end()));
   }
   return result;
 }

@@ -7,7 +7,6 @@ namespace pliant {
 /// What a recipe gives; coordinates in mean node distances.
 struct RecipeResult {
   IntegrationTable table;
-  double min_shape_value = 0;
   double completeness_residual = 0;
 };
 

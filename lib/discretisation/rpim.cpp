@@ -43,7 +43,9 @@ Basis radial_point_interpolation(const MlsNodes& nodes) {
       right.row(i) << radial(r.squaredNorm()), radial_gradient(-r).transpose();
     }
     right.bottomRows(3) = Eigen::Matrix3d::Identity();
-    const Eigen::MatrixXd solution = moment.fullPivLu().solve(right);
+    const Eigen::FullPivLU<Eigen::MatrixXd> factors(moment);
+    const Eigen::MatrixXd solution = factors.solve(right);
+    shape.condition = 1 / factors.rcond();
     for (Eigen::Index i = 0; i < n; ++i) {
       shape.value.push_back(solution(i, 0));
       shape.gradient.emplace_back(solution(i, 1), solution(i, 2));

@@ -87,17 +87,22 @@ Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& s
   const double area = polygon_properties(outline_of(mesh)).area;
   const double length = std::sqrt(area / static_cast<double>(mesh.nodes.size()));
   const FieldMesh scaled = nondimensional(mesh, length);
-  const Basis basis = basis_of(scaled, settings);
+  BasisQuality quality;
+  const Basis basis = watched(basis_of(scaled, settings), quality);
   Discretisation result;
   result.mesh = mesh;
   result.node_rows = rows_at_nodes(scaled, basis);
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
   result.unit_mass = lumped_mass(scaled, basis);
+  if (settings.mass == Mass::corrected) {
+    result.mass_correction = mass_correction(scaled, basis, result.unit_mass);
+    result.correction_bound = correction_bound(result.mass_correction, result.unit_mass);
+  }
   result.nodal_distance = nearest_distances(mesh.nodes);
   RecipeResult recipe = build(scaled, basis, result.outline_rows, settings);
   result.table = std::move(recipe.table);
-  const auto& values = result.node_rows.value;
-  result.min_shape_value = std::min(recipe.min_shape_value, *std::min_element(values.begin(), values.end()));
+  result.min_shape_value = quality.least_value;
+  result.condition = quality.condition;
   result.completeness_residual = recipe.completeness_residual;
   give_dimensions(result, length);
   return result;

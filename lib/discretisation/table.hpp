@@ -35,8 +35,12 @@ struct Discretisation {
   ShapeRows node_rows;                 ///< at all field nodes
   std::vector<double> unit_mass;       ///< [nodes], lumped mass at density 1, m2
   std::vector<double> nodal_distance;  ///< [nodes], distance to the nearest other node, m
-  double min_shape_value = 0;          ///< least phi met at integration points and nodes (METHOD 2)
-  double completeness_residual = 0;    ///< `mls`: largest relative residual of conditions (1) and (2)
+  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (METHOD 2). Empty: lumped.
+  ShapeRows mass_correction;
+  double correction_bound = 1;       ///< on its largest eigenvalue
+  double min_shape_value = 0;        ///< least phi met at integration points and nodes (METHOD 2)
+  double condition = 1;              ///< largest condition number of the systems that the shape functions solve
+  double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)
 };
 
 /// Discretises a mesh by the scene's recipe. Throws InputError when the recipe's limits are exceeded.

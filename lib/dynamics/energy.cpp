@@ -5,6 +5,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
+#include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "core/parallel.hpp"
 
@@ -16,13 +17,14 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0;
 }  // namespace
 
 double kinetic_energy(const Model& model, const Dofs& velocity) {
+  const Dofs moving = material_velocity(model, velocity);
   double total = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
     const Batch& batch = model.batches[b];
     const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
-    const Lanes* v = &velocity.compliant[batch.offset];
+    const Lanes *y = &velocity.compliant[batch.offset], *v = &moving.compliant[batch.offset];
     Lanes energy{};
     for (std::size_t i = 0; i < mass.size(); ++i)
-      energy += 0.5 * mass[i] * (v[2 * i] * v[2 * i] + v[2 * i + 1] * v[2 * i + 1]);
+      energy += 0.5 * mass[i] * (y[2 * i] * v[2 * i] + y[2 * i + 1] * v[2 * i + 1]);
     return sum(energy * batch.density * batch.weight);
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
@@ -43,7 +45,8 @@ Audit Auditor::audit(const State& state) {
   Audit result;
   // The same forces once more: the history stands still at an accepted state, so nothing slips.
   ContactHistory history = state.history;
-  const Evaluation evaluation = forces_.evaluate(state.motion(), history, scratch_, force_);
+  const Evaluation evaluation = forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time},
+                                                 history, scratch_, force_);
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);

@@ -14,6 +14,7 @@ struct Energies {
   double mechanical() const { return kinetic + strain + contact; }
 };
 
+/// `velocity` as a state holds it: see bodies/mass_correction.hpp.
 double kinetic_energy(const Model& model, const Dofs& velocity);
 
 /// Sums and checks of one state: energies, and what should vanish in the balances of momentum.

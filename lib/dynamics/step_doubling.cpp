@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
 #include "dynamics/failure.hpp"
@@ -79,7 +80,9 @@ double StepDoubling::try_step(State& state, double end_time, StepReport& report,
 }
 
 bool StepDoubling::evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report) {
-  report.evaluation = forces_.evaluate({trial_.position, trial_.velocity, time}, from, to, trial_.force, &state);
+  report.evaluation =
+      forces_.evaluate({trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, time}, from, to,
+                       trial_.force, &state);
   ++report.evaluations;
   trial_time_ = time;
   return report.evaluation.sound;
@@ -87,11 +90,12 @@ bool StepDoubling::evaluate(State& state, double time, ContactHistory& from, Con
 
 /// v + half a and u + half v of that, from `time` on, into trial; the arguments may be the trial's own.
 void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half) {
+  const bool corrected = model_.corrected_mass;
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
         trial_.velocity.compliant[i] = velocity.compliant[i] + half * inverse_mass * force.compliant[i];
-        trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
+        if (!corrected) trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
         trial_.velocity.rigid[i] = dof.imposed() ? imposed_velocity(dof, time + half)
@@ -99,6 +103,10 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
         trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, position.rigid[i], time, half)
                                                  : position.rigid[i] + half * trial_.velocity.rigid[i];
       });
+  if (!corrected) return;
+  moving_velocity_ = material_velocity(model_, trial_.velocity);
+  for (std::size_t i = 0; i < position.compliant.size(); ++i)
+    trial_.position.compliant[i] = position.compliant[i] + half * moving_velocity_.compliant[i];
 }
 
 /// u2 - u1 = dt^2/4 a_half - dt^2/2 a; displacements are u = sum phi U, at the field nodes.
@@ -109,6 +117,10 @@ double StepDoubling::batch_error(const Batch& batch, const State& state, double 
   const Lanes *start = &state.force.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
   for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(shape.nodes()); ++i)
     d[i] = 0.25 * dt * dt * shape.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
+  if (model_.corrected_mass) {
+    const std::vector<Lanes> uncorrected(d, d + 2 * shape.nodes());
+    correct_velocity(shape, uncorrected.data(), d);
+  }
   Lanes worst{}, any_nan{};
   for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
     Lanes x{}, y{};

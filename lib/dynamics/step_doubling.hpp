@@ -24,6 +24,7 @@ class StepDoubling {
   Forces& forces_;
   const Model& model_;
   double wave_time_;               ///< from node to node, s
+  Dofs moving_velocity_;           ///< with corrected mass only: C y
   Trial trial_;                    ///< at the half step, then at the end
   double trial_time_ = 0;          ///< of the trial's last evaluation, s
   ContactHistory half_history_;    ///< at the half step

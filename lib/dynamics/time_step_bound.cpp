@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "bodies/internal_forces.hpp"
+#include "bodies/mass_correction.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -26,6 +27,15 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const std::vector<double>& we
   for (std::size_t i = 0; i < weight.size(); ++i)
     total += weight[i] * (a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]);
   return total;
+}
+
+/// D C D^-1 of a force, so that the division by the lumped mass that follows makes it the acceleration W f.
+std::vector<Lanes> corrected(const CompliantShape& shape, std::vector<Lanes> force) {
+  std::vector<Lanes> result(force.size());
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] *= shape.inverse_unit_mass[i / 2];
+  correct_velocity(shape, force.data(), result.data());
+  for (std::size_t i = 0; i < force.size(); ++i) result[i] *= shape.space.unit_mass[i / 2];
+  return result;
 }
 
 /// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It does not depend on the angle.
@@ -78,7 +88,7 @@ double TimeStepBound::contact_frequency(const Body& body, const double* stiffnes
   }
   double largest = 0;
   for (int i = 0; i < shape.nodes(); ++i) largest = std::max(largest, row_sum[i] * shape.inverse_unit_mass[i]);
-  return largest / model_.scene.materials[body.material].density;
+  return shape.space.correction_bound * largest / model_.scene.materials[body.material].density;
 }
 
 void TimeStepBound::iterate_batch(const Batch& batch, const Lanes* position, int iterations) {
@@ -98,6 +108,7 @@ void TimeStepBound::iterate_batch(const Batch& batch, const Lanes* position, int
     std::fill(response.begin(), response.end(), Lanes{});
     add_internal_forces(model_, batch, probe.data(), response.data());
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
+    if (model_.corrected_mass) response = corrected(shape, response);
     const Lanes before = weighted_dot(u, u, shape.space.unit_mass);
     const Lanes after = weighted_dot(response.data(), response.data(), shape.inverse_unit_mass);
     Lanes& w2 = internal_[&batch - model_.batches.data()];

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
 #include "dynamics/failure.hpp"
@@ -66,7 +67,7 @@ double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.
 
 void Verlet::try_step(State& state, double end_time, StepReport& report) {
   predict(state, report.dt);
-  report.evaluation = forces_.evaluate({trial_.position, trial_.velocity, end_time}, state.history, trial_.history,
+  report.evaluation = forces_.evaluate({trial_.position, half_step_velocity(), end_time}, state.history, trial_.history,
                                        trial_.force, &state, [&](int b) { finish_batch(state, report.dt, b); });
   report.damping_work = report.dt * report.evaluation.damping_power;
   ++report.evaluations;
@@ -76,7 +77,8 @@ void Verlet::try_step(State& state, double end_time, StepReport& report) {
 
 /// Positions at the end of the step. Forces that depend on velocities see those of the half step, by which the positions move.
 void Verlet::predict(const State& state, double dt) {
-  if (model_.rates) predict_half_step_velocity(state, dt);
+  if (model_.rates || model_.corrected_mass) predict_half_step_velocity(state, dt);
+  if (model_.corrected_mass) return predict_with_corrected_mass(state, dt);
   const double half = 0.5 * dt * dt;
   for_each_dof(
       model_,
@@ -89,6 +91,20 @@ void Verlet::predict(const State& state, double dt) {
         trial_.position.rigid[i] =
             dof.imposed() ? imposed_position(dof, x, state.time, dt)
                           : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+      });
+}
+
+void Verlet::predict_with_corrected_mass(const State& state, double dt) {
+  half_step_velocity_ = material_velocity(model_, trial_.velocity);
+  for_each_dof(
+      model_,
+      [&](std::size_t i, Lanes) {
+        trial_.position.compliant[i] = state.position.compliant[i] + dt * half_step_velocity_.compliant[i];
+      },
+      [&](std::size_t i, const RigidDof& dof) {
+        const double x = state.position.rigid[i];
+        trial_.position.rigid[i] =
+            dof.imposed() ? imposed_position(dof, x, state.time, dt) : x + dt * half_step_velocity_.rigid[i];
       });
 }
 
@@ -121,7 +137,7 @@ void Verlet::finish_batch(const State& state, double dt, int b) {
     worst = max(worst, change);
     any_nan += change;
   }
-  const double result = largest(worst * batch.inverse_density);
+  const double result = shape.space.correction_bound * largest(worst * batch.inverse_density);
   change_[b] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
 }
 

@@ -17,16 +17,19 @@ class Verlet {
  private:
   void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
+  void predict_with_corrected_mass(const State& state, double dt);
   void predict_half_step_velocity(const State& state, double dt);
   void finish_batch(const State& state, double dt, int b);
   double error(const State& state, double dt) const;
   void accept(State& state, double end_time, double next_dt, const StepReport& report);
   double largest_dt() const;
+  const Dofs& half_step_velocity() const { return model_.corrected_mass ? half_step_velocity_ : trial_.velocity; }
 
   Forces& forces_;
   const Model& model_;
   TimeStepBound bound_;
   Trial trial_;
+  Dofs half_step_velocity_;     ///< with corrected mass only: C y
   std::vector<double> change_;  ///< [batches], of the acceleration over the nodal distance, 1/s2
 };
 

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "bodies/internal_forces.hpp"
+#include "bodies/mass_correction.hpp"
 #include "bodies/nodal.hpp"
 #include "materials/with_material.hpp"
 
@@ -100,6 +101,7 @@ bool FrameRecorder::wants(const char* field) const {
 GridFrame FrameRecorder::bodies_frame(const Simulation& simulation) const {
   const State& state = simulation.state();
   GridFrame frame;
+  const Dofs velocities = material_velocity(model_, state.velocity);
   Field velocity{"velocity", Field::Centre::point, 2, {}};
   Field von_mises{"von_mises", Field::Centre::cell, 1, {}}, jacobian{"jacobian", Field::Centre::cell, 1, {}},
       pressure{"pressure", Field::Centre::cell, 1, {}};
@@ -107,7 +109,7 @@ GridFrame FrameRecorder::bodies_frame(const Simulation& simulation) const {
     if (body.wall) continue;
     if (body.kind == BodyKind::compliant) {
       append(nodal_values(model_, body, state.position), body.centre, frame.positions);
-      append(nodal_values(model_, body, state.velocity), Vec2(0, 0), velocity.values);
+      append(nodal_values(model_, body, velocities), Vec2(0, 0), velocity.values);
       for (const CellState& cell : cell_states(model_, body, state.position)) {
         von_mises.values.push_back(static_cast<float>(cell.von_mises / cell.weight));
         jacobian.values.push_back(static_cast<float>(cell.jacobian / cell.weight));

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bodies/mass_correction.hpp"
 #include "bodies/nodal.hpp"
 
 namespace pliant {
@@ -60,7 +61,7 @@ std::vector<double> ProbeSampler::sample(Simulation& simulation) const {
     case ProbeQuantity::position:
       return mean(simulation, simulation.state().position, true);
     case ProbeQuantity::velocity:
-      return mean(simulation, simulation.state().velocity, false);
+      return mean(simulation, material_velocity(model_, simulation.state().velocity), false);
     case ProbeQuantity::diameter:
       return extent(simulation);
     case ProbeQuantity::energy:

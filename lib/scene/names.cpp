@@ -12,7 +12,8 @@ bool is_scene_key(std::string_view word) {
   static constexpr std::string_view keys =
       " alpha angle beta between body caps cohesion columns contact contacts count density descriptors diameter "
       "discretisation domain end fields first force frames friction gauss_points gradient grains gravity "
-      "half_angles height heights integrator kind law level material materials mix name nodes of origin outline_nodes "
+      "half_angles height heights integrator kind law level mass material materials mix name nodes of origin "
+      "outline_nodes "
       "packing period pitch points poisson positions pressure probes quantity range recipe rotation row_pitch "
       "rows safety seed shape shapes share shear_stiffness shear_strength sides skin solid spacing stiffness "
       "strength support target tension thickness time title tolerance uniform velocity walls width x y young ";

@@ -62,6 +62,7 @@ DiscretisationSettings read_discretisation(TableReader table) {
                                  {"t3", Recipe::t3},
                                  {"es-t3", Recipe::es_t3},
                                  {"rpim", Recipe::rpim}}});
+  table.optional("mass", settings.mass, Choice<Mass>{{{"lumped", Mass::lumped}, {"corrected", Mass::corrected}}});
   const bool triangles = settings.recipe == Recipe::t3 || settings.recipe == Recipe::es_t3;
   if (!triangles) table.optional("support", settings.support, Integer{7, settings.recipe == Recipe::mls ? 14 : 25});
   if (!triangles && settings.recipe != Recipe::mls &&

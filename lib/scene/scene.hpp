@@ -17,6 +17,7 @@ enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, rigid };
 enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions };
+enum class Mass { lumped, corrected };
 enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive };
 enum class Integrator { verlet, step_doubling };
@@ -146,6 +147,7 @@ struct DiscretisationSettings {
   Recipe recipe = Recipe::mls;
   int support = 8;       ///< nodal support radius = distance to the support-th nearest node
   int gauss_points = 3;  ///< mls-gauss, rpim: 1, 3 or 6
+  Mass mass = Mass::lumped;
 };
 
 struct Scene {
