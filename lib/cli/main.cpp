@@ -1,5 +1,6 @@
 #include <charconv>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_sinks.h>
@@ -7,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/check.hpp"
+#include "cli/shape_function.hpp"
 #include "core/errors.hpp"
 #include "results/run.hpp"
 #include "scene/units.hpp"
@@ -58,6 +60,17 @@ int main_program(int argc, char** argv) {
     command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")
         ->check(CLI::Range(1, 1024));
   }
+  CLI::App* shape_function_command =
+      app.add_subcommand("shape-function", "CSV of one shape function of a disc, e.g. shape-function --recipe rpim");
+  ShapeFunctionRequest shape_function;
+  const std::map<std::string, Recipe> recipes{{"mls", Recipe::mls}, {"rpim", Recipe::rpim}, {"t3", Recipe::t3}};
+  shape_function_command->add_option("--recipe", shape_function.settings.recipe, "mls, rpim or t3")
+      ->transform(CLI::CheckedTransformer(recipes));
+  shape_function_command->add_option("--support", shape_function.settings.support, "Nodes in a support")
+      ->check(CLI::Range(7, 25));
+  shape_function_command->add_option("--nodes", shape_function.nodes, "Nodes of the disc")->check(CLI::Range(30, 5000));
+  shape_function_command->add_option("--grid", shape_function.grid, "Points along either axis")
+      ->check(CLI::Range(3, 2000));
   run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>");
   run_command->add_flag("--force", arguments.run.force, "Overwrite the results in the output folder");
   run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
@@ -69,6 +82,7 @@ int main_program(int argc, char** argv) {
   if (arguments.run.quiet) spdlog::set_level(spdlog::level::err);
   if (*run_command) run(arguments);
   if (*check_command) print_check(load(arguments), arguments.run.threads);
+  if (*shape_function_command) fmt::print("{}", shape_function_csv(shape_function));
   return 0;
 }
 

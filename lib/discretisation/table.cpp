@@ -30,18 +30,6 @@ MlsNodes nodes_with_supports(const FieldMesh& mesh, const DiscretisationSettings
   return make_mls_nodes(mesh.nodes, settings.support);
 }
 
-Basis basis_of(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  switch (settings.recipe) {
-    case Recipe::t3:
-    case Recipe::es_t3:
-      return linear_triangles(mesh);
-    case Recipe::rpim:
-      return radial_point_interpolation(nodes_with_supports(mesh, settings));
-    default:
-      return moving_least_squares(nodes_with_supports(mesh, settings));
-  }
-}
-
 RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows,
                    const DiscretisationSettings& settings) {
   switch (settings.recipe) {
@@ -83,12 +71,24 @@ void give_dimensions(Discretisation& result, double length) {
 
 }  // namespace
 
+Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+  switch (settings.recipe) {
+    case Recipe::t3:
+    case Recipe::es_t3:
+      return linear_triangles(mesh);
+    case Recipe::rpim:
+      return radial_point_interpolation(nodes_with_supports(mesh, settings));
+    default:
+      return moving_least_squares(nodes_with_supports(mesh, settings));
+  }
+}
+
 Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& settings) {
   const double area = polygon_properties(outline_of(mesh)).area;
   const double length = std::sqrt(area / static_cast<double>(mesh.nodes.size()));
   const FieldMesh scaled = nondimensional(mesh, length);
   BasisQuality quality;
-  const Basis basis = watched(basis_of(scaled, settings), quality);
+  const Basis basis = watched(make_basis(scaled, settings), quality);
   Discretisation result;
   result.mesh = mesh;
   result.node_rows = rows_at_nodes(scaled, basis);
