@@ -4,7 +4,7 @@
     ./pliant plot out/third_body_mini
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
 
-grains.png (kinds at four times), velocity.png, von_mises.png, steps.png, forces.png, energy.png, probes.png (what else
+grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, steps.png, forces.png, energy.png, probes.png (what else
 the scene's probes measure): what the run has data for; the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
 """
 
@@ -58,6 +58,7 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "grains.png": (lambda: maps.grains(run, chosen) if frames else None, "frames"),
         "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),
         "von_mises.png": (lambda: maps.von_mises(run, chosen) if frames else None, "frames with von_mises"),
+        "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with contact_damage"),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),

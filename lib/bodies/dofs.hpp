@@ -14,6 +14,12 @@ struct Dofs {
   Dofs() = default;
   Dofs(std::size_t compliant_size, std::size_t rigid_size)
       : compliant(compliant_size, Lanes{}), rigid(rigid_size, 0.0) {}
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("compliant", compliant);
+    visitor("rigid", rigid);
+  }
 };
 
 /// Where all bodies are and how they move.

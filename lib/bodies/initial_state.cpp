@@ -4,24 +4,36 @@
 
 #include <cmath>
 
+#include "bodies/body_view.hpp"
+
 namespace pliant {
 
 Dofs zero_dofs(const Model& model) { return Dofs(model.compliant_size, 3 * model.rigid_bodies.size()); }
 
+namespace {
+
+/// Padding lanes repeat the last body.
+void fill_padding(const Model& model, Dofs& q) {
+  for (int b = 0; b < model.lane_batches; ++b) {
+    const Batch& batch = model.batches[b];
+    for (std::size_t i = batch.offset; i < batch.offset + 2 * static_cast<std::size_t>(batch.slots); ++i)
+      for (int lane = batch.count; lane < lane_count; ++lane) q.compliant[i][lane] = q.compliant[i][batch.count - 1];
+  }
+}
+
+}  // namespace
+
 Dofs initial_positions(const Model& model) {
   Dofs q = zero_dofs(model);
-  for (const Batch& batch : model.batches) {
-    const Points& nodes = model.shape_of(batch).space.mesh.nodes;
-    const std::vector<int>& members = model.groups[batch.group].bodies;
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const double angle = model.bodies[members[batch.first + std::min(lane, batch.count - 1)]].angle;
-      const double c = std::cos(angle), s = std::sin(angle);
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        q.compliant[batch.offset + 2 * i][lane] = c * nodes[i].x() - s * nodes[i].y();
-        q.compliant[batch.offset + 2 * i + 1][lane] = s * nodes[i].x() + c * nodes[i].y();
-      }
-    }
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    const Points& nodes = model.shape_of(body).space.mesh.nodes;
+    const BodyPlaces places(model, body);
+    const double c = std::cos(body.angle), s = std::sin(body.angle);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      set_node(places, i, {c * nodes[i].x() - s * nodes[i].y(), s * nodes[i].x() + c * nodes[i].y()}, q);
   }
+  fill_padding(model, q);
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const Body& body = model.bodies[model.rigid_bodies[r].body];
     q.rigid[3 * r] = body.centre.x();
@@ -33,18 +45,15 @@ Dofs initial_positions(const Model& model) {
 
 Dofs initial_velocities(const Model& model, const Dofs& q) {
   Dofs v = zero_dofs(model);
-  for (const Batch& batch : model.batches) {
-    const std::vector<int>& members = model.groups[batch.group].bodies;
-    const int nodes = model.shape_of(batch).nodes();
-    for (int lane = 0; lane < batch.count; ++lane) {
-      const InitialVelocity& field = model.scene.grains[model.bodies[members[batch.first + lane]].grains].velocity;
-      for (int i = 0; i < nodes; ++i) {
-        const std::size_t at = batch.offset + 2 * static_cast<std::size_t>(i);
-        const Vec2 r(q.compliant[at][lane], q.compliant[at + 1][lane]);
-        const Vec2 velocity = field.uniform + field.rotation * Vec2(-r.y(), r.x()) + field.gradient * r;
-        v.compliant[at][lane] = velocity.x();
-        v.compliant[at + 1][lane] = velocity.y();
-      }
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    const InitialVelocity& field = model.scene.grains[body.grains].velocity;
+    const BodyPlaces places(model, body);
+    const BodyView positions(model, body, q);
+    for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
+      const Vec2 r = positions[static_cast<std::size_t>(i)];
+      const Vec2 velocity = field.uniform / body.scale + field.rotation * Vec2(-r.y(), r.x()) + field.gradient * r;
+      set_node(places, static_cast<std::size_t>(i), velocity, v);
     }
   }
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
@@ -54,7 +63,8 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
       v.rigid[3 * r] = field.uniform.x(), v.rigid[3 * r + 1] = field.uniform.y(), v.rigid[3 * r + 2] = field.rotation;
     }
     for (int c = 0; c < 3; ++c)
-      if (rigid.dof[c].mode == Drive::Mode::velocity) v.rigid[3 * r + c] = rigid.dof[c].history.at(0);
+      if (const RigidDof& dof = rigid.dof[c]; dof.imposed(0))
+        v.rigid[3 * r + c] = dof.mode == Drive::Mode::velocity ? dof.history.at(0) : 0.0;
   }
   return reduced_momentum(model, v);
 }

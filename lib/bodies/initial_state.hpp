@@ -7,7 +7,7 @@ namespace pliant {
 
 Dofs zero_dofs(const Model& model);
 
-/// Reference shapes, turned by each body's angle. Compliant positions are relative to the batch's centres.
+/// Reference shapes, turned by each body's angle. Compliant positions are relative to the batch's centres, in units of the body's scale.
 Dofs initial_positions(const Model& model);
 
 /// Uniform, rotational and linear initial velocity fields of the scene, and the imposed ones of driven walls at t = 0.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bodies/body_view.hpp"
+#include "bodies/spread_forces.hpp"
 #include "materials/with_material.hpp"
 
 namespace pliant {
@@ -83,12 +85,14 @@ Lanes energy(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q) {
 }  // namespace
 
 Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* positions, Lanes* forces) {
+  if (batch.layout == Layout::spread) return add_spread_forces(model, batch, positions, forces);
   const Rows rows(model.shape_of(batch).space.table);
   return with_material(model.groups[batch.group].law,
                        [&](auto law) { return add_forces(law, rows, batch.mu, batch.lambda, positions, forces); });
 }
 
 Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
+  if (batch.layout == Layout::spread) return spread_strain_energy(model, batch, positions);
   const Rows rows(model.shape_of(batch).space.table);
   return batch.weight * with_material(model.groups[batch.group].law,
                                       [&](auto law) { return energy(law, rows, batch.mu, batch.lambda, positions); });
@@ -96,15 +100,13 @@ Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positio
 
 std::vector<Tensor<double>> deformation_gradients(const Model& model, const Body& body, const Dofs& position) {
   const IntegrationTable& table = model.shape_of(body).space.table;
-  const Lanes* positions = &position.compliant[model.batches[body.batch].offset];
-  const int lane = body.lane;
+  const BodyView q(model, body, position);
   std::vector<Tensor<double>> result(table.weight.size(), Tensor<double>{0, 0, 0, 0});
   for (std::size_t g = 0; g < result.size(); ++g)
     for (int e = table.start[g]; e < table.start[g + 1]; ++e) {
-      const Vec2 b = table.gradient[e];
-      const double x = positions[2 * table.node[e]][lane], y = positions[2 * table.node[e] + 1][lane];
-      result[g].xx += x * b.x(), result[g].xy += x * b.y();
-      result[g].yx += y * b.x(), result[g].yy += y * b.y();
+      const Vec2 b = table.gradient[e], x = q[static_cast<std::size_t>(table.node[e])];
+      result[g].xx += x.x() * b.x(), result[g].xy += x.x() * b.y();
+      result[g].yx += x.y() * b.x(), result[g].yy += x.y() * b.y();
     }
   return result;
 }

@@ -1,28 +1,55 @@
 #include "bodies/mass_correction.hpp"
 
-#include "core/parallel.hpp"
+#include "bodies/node_arrays.hpp"
 
 namespace pliant {
 
-void correct_velocity(const CompliantShape& shape, const Lanes* y, Lanes* v) {
-  const ShapeRows& rows = shape.space.mass_correction;
-  for (int i = 0; i < shape.nodes(); ++i) {
-    Lanes x_sum{}, y_sum{};
-    for (int e = rows.start[i]; e < rows.start[i + 1]; ++e) {
-      x_sum += rows.value[e] * y[2 * rows.node[e]];
-      y_sum += rows.value[e] * y[2 * rows.node[e] + 1];
-    }
-    v[2 * i] = x_sum;
-    v[2 * i + 1] = y_sum;
+namespace {
+
+/// [x, y] sums of eight bodies, one a lane.
+void correct_lanes(const ShapeRows& rows, int node, const Lanes* y, Lanes* v) {
+  Lanes x_sum{}, y_sum{};
+  for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
+    x_sum += rows.value[e] * y[2 * rows.node[e]];
+    y_sum += rows.value[e] * y[2 * rows.node[e] + 1];
   }
+  v[2 * node] = x_sum;
+  v[2 * node + 1] = y_sum;
+}
+
+/// The same of one body, whose nodes stand at `place`.
+void correct_spread(const ShapeRows& rows, int node, const int* place, const double* y, double* v) {
+  double x_sum = 0, y_sum = 0;
+  for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
+    x_sum += rows.value[e] * y[place[rows.node[e]]];
+    y_sum += rows.value[e] * y[place[rows.node[e]] + lane_count];
+  }
+  v[place[node]] = x_sum;
+  v[place[node] + lane_count] = y_sum;
+}
+
+}  // namespace
+
+void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
+  const CompliantShape& shape = model.shape_of(batch);
+  const ShapeRows& rows = shape.space.mass_correction;
+  if (batch.layout == Layout::shared) {
+    for (int i = 0; i < shape.nodes(); ++i) correct_lanes(rows, i, y, v);
+    return;
+  }
+  v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
+  const int* place = model.spread_shape_of(batch).place.data();
+  parallel_for(shape.nodes(), [&](int i) {
+    correct_spread(rows, i, place, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
+  });
 }
 
 Dofs material_velocity(const Model& model, const Dofs& y) {
   Dofs v = y;
   if (!model.corrected_mass) return v;
-  parallel_for(static_cast<int>(model.batches.size()), [&](int b) {
+  for_each_batch(model, [&](int b) {
     const Batch& batch = model.batches[b];
-    correct_velocity(model.shape_of(batch), &y.compliant[batch.offset], &v.compliant[batch.offset]);
+    correct_velocity(model, batch, &y.compliant[batch.offset], &v.compliant[batch.offset]);
   });
   return v;
 }

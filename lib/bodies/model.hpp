@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "bodies/layouts.hpp"
 #include "bodies/outline.hpp"
+#include "bodies/outline_conditions.hpp"
 #include "core/lanes.hpp"
 #include "discretisation/table.hpp"
 #include "scene/scene.hpp"
@@ -25,15 +27,26 @@ struct CompliantGroup {
   std::vector<int> bodies;  ///< [bodies], global index of the body in each lane; padding lanes are absent
 };
 
-/// Eight bodies of a group. Padding lanes carry a copy of a resting body and weight 0.
+/// Eight bodies of a group, or one body spread over the lanes. Padding lanes carry a copy of a resting body and weight 0. Degrees of freedom are
+/// stored in units of each body's scale s: positions q/s, velocities, and forces f/s. So F, stresses and nodal distances are those of the shape
+/// itself, and only constants differ: m/s^2 and f/s give q/s, and energies are those of s = 1 times s^2.
 struct Batch {
   int group = 0;
-  int first = 0;                               ///< index within the group of the body in lane 0
-  int count = 0;                               ///< bodies, 1 to 8
-  std::size_t offset = 0;                      ///< of node 0, x, in Dofs::compliant
-  Lanes mu, lambda, density, inverse_density;  ///< material constants a lane
-  Lanes weight;                                ///< 1 for a body, 0 for padding
-  Lanes centre_x, centre_y;                    ///< fixed centres: positions are stored relative to them
+  int first = 0;           ///< index within the group of the body in lane 0
+  int count = 0;           ///< bodies, 1 to 8; 1 when spread
+  std::size_t offset = 0;  ///< of slot 0, x, in Dofs::compliant
+  int slots = 0;           ///< [slots x 2] entries there
+  Layout layout = Layout::shared;
+  int tables = -1;                    ///< spread: index in Model::spread_shapes
+  int first_region = 0, regions = 1;  ///< in Model::regions
+  Lanes mu, lambda;                   ///< material constants a lane, Pa
+  Lanes density, inverse_density;     ///< density x s^2, so that unit masses give the mass that belongs to f/s and q/s
+  Lanes scale, inverse_scale;         ///< s; all 1 unless `scaled`
+  bool scaled = false;
+  Lanes weight;                               ///< s^2 for a body, 0 for padding
+  Lanes centre_x, centre_y;                   ///< fixed centres, m: positions are stored relative to them
+  Lanes viscosity{}, mass_damping{};          ///< of Material
+  bool viscous = false, mass_damped = false;  ///< some lane's is not 0
 };
 
 /// One degree of freedom of a rigid body and what moves it.
@@ -41,9 +54,13 @@ struct RigidDof {
   Drive::Mode mode = Drive::Mode::free;
   History history;          ///< velocity, force or pressure
   double force_scale = 1;   ///< force = history x force_scale: signed period for a pressure
+  double damping = 0;       ///< of the dashpot beside the load, N s/m2 (N s)
+  double mass_damping = 0;  ///< of the material, 1/s
+  Window window;            ///< of the mode: free outside
   double mass = 0;          ///< kg/m, or kg m for the angle
-  double inverse_mass = 0;  ///< 0 when the motion is imposed
-  bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }
+  double inverse_mass = 0;  ///< 0 when the motion is imposed all the time
+  bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }  ///< at some time
+  bool imposed(double time) const { return imposed() && window.contains(time); }
 };
 
 struct RigidBody {
@@ -59,8 +76,9 @@ struct Body {
   BodyKind kind = BodyKind::rigid;
   bool wall = false;
   int grains = -1;            ///< index in Scene::grains; -1 for a wall
+  int shape = -1;             ///< index in Scene::shapes; -1 for a wall
   int material = 0;           ///< index in Scene::materials
-  int batch = -1, lane = -1;  ///< compliant
+  int batch = -1, lane = -1;  ///< compliant; a spread body counts as lane 0
   int rigid = -1;             ///< rigid: index in Model::rigid_bodies
   int outline = 0;            ///< index of its outline shape
   Vec2 centre{0, 0};          ///< initial centre, m
@@ -76,20 +94,37 @@ struct Model {
   std::vector<OutlineShape> outlines;
   std::vector<CompliantShape> shapes;
   std::vector<CompliantGroup> groups;
-  std::vector<Batch> batches;
+  std::vector<Batch> batches;  ///< those of several bodies first, then spread ones
+  int lane_batches = 0;        ///< of several bodies: batches[0, lane_batches), each of them region of the same number
+  std::vector<Region> regions;
+  std::vector<SpreadShape> spread_shapes;
+  std::vector<Chunk> point_chunks, outline_chunks;  ///< of all spread bodies
   std::vector<RigidBody> rigid_bodies;
   std::vector<Body> bodies;        ///< grains in the scene's order, then walls
   std::size_t compliant_size = 0;  ///< length of Dofs::compliant
   bool corrected_mass = false;     ///< states hold momentum over lumped mass: see mass_correction.hpp
   bool rates = false;              ///< some force depends on velocities: only then are rates formed
+  bool outline_rates = false;      ///< and on those of outline nodes
+  std::vector<OutlinePressure> pressures;
+  std::vector<OutlineSupport> supports;
+  std::vector<double> switch_times;  ///< growing, s: when a condition sets in or ends; steps end there
 
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[groups[batch.group].shape]; }
   const CompliantShape& shape_of(const Body& body) const { return shape_of(batches[body.batch]); }
+  const SpreadShape& spread_shape_of(const Batch& batch) const { return spread_shapes[batch.tables]; }
   int dof_count() const;
   int node_count() const;  ///< field nodes of compliant bodies and outline nodes of rigid ones
 };
 
+/// What a caller may want to choose himself; no part of a scene.
+struct BuildOptions {
+  /// Batches of at most `sparse_bodies` bodies are spread, body by body, when their shapes have so many nodes together: below, nobody waits for
+  /// the empty lanes. 0: always; a large number: never.
+  int least_sparse_nodes = 1000;
+  std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: as the scene says
+};
+
 /// Builds bodies, tables and masses. Throws InputError for what the scene reader cannot see (shapes that cannot be meshed).
-Model build_model(const Scene& scene);
+Model build_model(const Scene& scene, const BuildOptions& options = {});
 
 }  // namespace pliant

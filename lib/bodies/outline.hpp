@@ -26,7 +26,17 @@ struct Outlines {
   std::vector<double> x, y;                    ///< [nodes and copies], m
   std::vector<double> force_x, force_y;        ///< [nodes and copies], contact force, N/m; 0 in the copies
   std::vector<double> x_refresh, y_refresh;    ///< positions at the last contact refresh
-  std::vector<double> velocity_x, velocity_y;  ///< [nodes and copies], m/s; empty without Model::rates
+  std::vector<double> velocity_x, velocity_y;  ///< [nodes and copies], m/s; empty without Model::outline_rates
+  std::vector<double> tributary_length;        ///< [nodes and copies], present, m; empty: that of the shapes holds
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("x", x), visitor("y", y);
+    visitor("force_x", force_x), visitor("force_y", force_y);
+    visitor("x_refresh", x_refresh), visitor("y_refresh", y_refresh);
+    visitor("tributary_length", tributary_length);
+    visitor("velocity_x", velocity_x), visitor("velocity_y", velocity_y);
+  }
 };
 
 /// Floor division: the turn that a node index beyond [0, count) lies in.

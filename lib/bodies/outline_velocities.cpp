@@ -22,7 +22,7 @@ void rigid_velocities(const Outlines& outlines, int offset, int count, const dou
 }  // namespace
 
 void update_outline_velocities(const Model& model, const Motion& motion, Outlines& outlines) {
-  if (!model.rates) return;
+  if (!model.outline_rates) return;
   outlines.velocity_x.resize(outlines.x.size());
   outlines.velocity_y.resize(outlines.y.size());
   parallel_for(static_cast<int>(model.bodies.size()), [&](int b) {

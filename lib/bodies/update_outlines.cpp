@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodies/body_view.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -15,15 +16,17 @@ void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
   }
 }
 
+template <bool scaled>
 void update_batch(const Model& model, const Batch& batch, const Lanes* q, Outlines& outlines) {
   const CompliantShape& shape = model.shape_of(batch);
   const ShapeRows& rows = shape.space.outline_rows;
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
+  const Lanes centre_x = batch.centre_x * batch.inverse_scale, centre_y = batch.centre_y * batch.inverse_scale;
   for (int first = 0; first < count; first += lane_count) {
     Lanes x[lane_count]{}, y[lane_count]{}, x_of_body[lane_count], y_of_body[lane_count];
     for (int k = first; k < std::min(first + lane_count, count); ++k) {
-      Lanes sum_x = batch.centre_x, sum_y = batch.centre_y;
+      Lanes sum_x = centre_x, sum_y = centre_y;
       for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
         sum_x += rows.value[e] * q[2 * rows.node[e]];
         sum_y += rows.value[e] * q[2 * rows.node[e] + 1];
@@ -31,6 +34,8 @@ void update_batch(const Model& model, const Batch& batch, const Lanes* q, Outlin
       x[k - first] = sum_x;
       y[k - first] = sum_y;
     }
+    if constexpr (scaled)
+      for (int k = 0; k < lane_count; ++k) x[k] *= batch.scale, y[k] *= batch.scale;
     transpose(x, x_of_body);
     transpose(y, y_of_body);
     for (int lane = 0; lane < batch.count; ++lane) {  // the last ones reach into the cyclic copies, which come after
@@ -41,6 +46,33 @@ void update_batch(const Model& model, const Batch& batch, const Lanes* q, Outlin
   for (int lane = 0; lane < batch.count; ++lane) {
     const int offset = outlines.offset[bodies[lane]];
     extend_cyclically(model.outlines[shape.outline], &outlines.x[offset], &outlines.y[offset]);
+  }
+}
+
+/// One chunk of a spread body's outline nodes.
+void update_chunk(const Model& model, const Chunk& chunk, const Dofs& positions, Outlines& outlines) {
+  const Batch& batch = model.batches[chunk.batch];
+  const int number = model.groups[batch.group].bodies[batch.first];
+  const Body& body = model.bodies[number];
+  const ShapeRows& rows = model.shape_of(body).space.outline_rows;
+  const BodyView q(model, body, positions);
+  for (int k = chunk.first; k < chunk.last; ++k) {
+    Vec2 x(0, 0);
+    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
+      x += rows.value[e] * q[static_cast<std::size_t>(rows.node[e])];
+    x = body.centre + body.scale * x;
+    outlines.x[outlines.offset[number] + k] = x.x();
+    outlines.y[outlines.offset[number] + k] = x.y();
+  }
+}
+
+void update_spread(const Model& model, const Dofs& positions, Outlines& outlines) {
+  parallel_for(static_cast<int>(model.outline_chunks.size()),
+               [&](int c) { update_chunk(model, model.outline_chunks[c], positions, outlines); });
+  for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b) {
+    const int body = model.groups[model.batches[b].group].bodies[model.batches[b].first];
+    const int offset = outlines.offset[body];
+    extend_cyclically(model.outlines[outlines.shape[body]], &outlines.x[offset], &outlines.y[offset]);
   }
 }
 
@@ -55,6 +87,43 @@ void update_rigid(const Model& model, const RigidBody& rigid, const double* posi
     y[k] = position[1] + (s * p.x() + c * p.y());
   }
   extend_cyclically(shape, x, y);
+}
+
+template <bool scaled>
+void add_to_lanes(const Model& model, const Batch& batch, const Outlines& outlines, Lanes* forces) {
+  const CompliantShape& shape = model.shape_of(batch);
+  const ShapeRows& rows = shape.space.outline_rows;
+  const int* bodies = &model.groups[batch.group].bodies[batch.first];
+  const int count = model.outlines[shape.outline].count;
+  for (int first = 0; first < count; first += lane_count) {
+    Lanes x_of_body[lane_count]{}, y_of_body[lane_count]{}, fx[lane_count], fy[lane_count];
+    for (int lane = 0; lane < batch.count; ++lane) {
+      x_of_body[lane] = load(&outlines.force_x[outlines.offset[bodies[lane]] + first]);
+      y_of_body[lane] = load(&outlines.force_y[outlines.offset[bodies[lane]] + first]);
+    }
+    transpose(x_of_body, fx);
+    transpose(y_of_body, fy);
+    if constexpr (scaled)
+      for (int k = 0; k < lane_count; ++k) fx[k] *= batch.inverse_scale, fy[k] *= batch.inverse_scale;
+    for (int k = first; k < std::min(first + lane_count, count); ++k)
+      for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
+        forces[2 * rows.node[e]] += rows.value[e] * fx[k - first];
+        forces[2 * rows.node[e] + 1] += rows.value[e] * fy[k - first];
+      }
+  }
+}
+
+void add_to_region(const Model& model, const Region& region, const Outlines& outlines, Lanes* forces) {
+  const Batch& batch = model.batches[region.batch];
+  const SpreadShape& shape = model.spread_shape_of(batch);
+  const int offset = outlines.offset[model.groups[batch.group].bodies[batch.first]];
+  const double inverse_scale = batch.inverse_scale[0];
+  double* f = reinterpret_cast<double*>(forces);
+  for (int e = shape.outline_start[region.number]; e < shape.outline_start[region.number + 1]; ++e) {
+    const SpreadShape::OutlineEntry& entry = shape.outline_entries[e];
+    f[entry.node] += entry.value * inverse_scale * outlines.force_x[offset + entry.outline];
+    f[entry.node + lane_count] += entry.value * inverse_scale * outlines.force_y[offset + entry.outline];
+  }
 }
 
 }  // namespace
@@ -75,32 +144,21 @@ Outlines make_outlines(const Model& model) {
 }
 
 void update_outlines(const Model& model, const Dofs& positions, Outlines& outlines) {
-  parallel_for(static_cast<int>(model.batches.size()), [&](int b) {
-    update_batch(model, model.batches[b], &positions.compliant[model.batches[b].offset], outlines);
+  parallel_for(model.lane_batches, [&](int b) {
+    const Batch& batch = model.batches[b];
+    const Lanes* q = &positions.compliant[batch.offset];
+    batch.scaled ? update_batch<true>(model, batch, q, outlines) : update_batch<false>(model, batch, q, outlines);
   });
+  if (!model.outline_chunks.empty()) update_spread(model, positions, outlines);
   parallel_for(static_cast<int>(model.rigid_bodies.size()),
                [&](int r) { update_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], outlines); });
 }
 
-void add_outline_forces(const Model& model, const Batch& batch, const Outlines& outlines, Lanes* forces) {
-  const CompliantShape& shape = model.shape_of(batch);
-  const ShapeRows& rows = shape.space.outline_rows;
-  const int* bodies = &model.groups[batch.group].bodies[batch.first];
-  const int count = model.outlines[shape.outline].count;
-  for (int first = 0; first < count; first += lane_count) {
-    Lanes x_of_body[lane_count]{}, y_of_body[lane_count]{}, fx[lane_count], fy[lane_count];
-    for (int lane = 0; lane < batch.count; ++lane) {
-      x_of_body[lane] = load(&outlines.force_x[outlines.offset[bodies[lane]] + first]);
-      y_of_body[lane] = load(&outlines.force_y[outlines.offset[bodies[lane]] + first]);
-    }
-    transpose(x_of_body, fx);
-    transpose(y_of_body, fy);
-    for (int k = first; k < std::min(first + lane_count, count); ++k)
-      for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
-        forces[2 * rows.node[e]] += rows.value[e] * fx[k - first];
-        forces[2 * rows.node[e] + 1] += rows.value[e] * fy[k - first];
-      }
-  }
+void add_outline_forces(const Model& model, const Region& region, const Outlines& outlines, Lanes* forces) {
+  const Batch& batch = model.batches[region.batch];
+  if (batch.layout == Layout::spread) return add_to_region(model, region, outlines, forces);
+  batch.scaled ? add_to_lanes<true>(model, batch, outlines, forces)
+               : add_to_lanes<false>(model, batch, outlines, forces);
 }
 
 void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines,

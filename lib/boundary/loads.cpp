@@ -1,22 +1,26 @@
 #include "boundary/loads.hpp"
 
+#include "bodies/node_arrays.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 
 double applied_load(const RigidDof& dof, double time) {
   const bool loaded = dof.mode == Drive::Mode::force || dof.mode == Drive::Mode::pressure;
-  return loaded ? dof.force_scale * dof.history.at(time) : 0.0;
+  return loaded && dof.window.contains(time) ? dof.force_scale * dof.history.at(time) : 0.0;
 }
 
-void add_gravity(const Model& model, const Batch& batch, Lanes* forces) {
+void add_gravity(const Model& model, const Region& region, Lanes* forces) {
   const Vec2& g = model.scene.gravity;
   if (g.x() == 0 && g.y() == 0) return;
-  const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    forces[2 * i] += batch.density * (mass[i] * g.x());
-    forces[2 * i + 1] += batch.density * (mass[i] * g.y());
-  }
+  const Batch& batch = model.batches[region.batch];
+  const Lanes density = batch.density * batch.inverse_scale;
+  with_nodes(model, batch, [&](const auto& nodes) {
+    for (int i = region.first; i < region.last; ++i) {
+      forces[2 * i] += density * (nodes.unit_mass[i] * g.x());
+      forces[2 * i + 1] += density * (nodes.unit_mass[i] * g.y());
+    }
+  });
 }
 
 void add_rigid_loads(const Model& model, const RigidBody& rigid, double time, double* force) {
@@ -44,7 +48,7 @@ double external_work(const Model& model, const Dofs& position, const Dofs& next_
       const std::size_t i = 3 * r + static_cast<std::size_t>(c);
       const RigidDof& dof = rigid.dof[c];
       const double moved = next_position.rigid[i] - position.rigid[i];
-      if (dof.imposed()) {
+      if (dof.imposed(time)) {
         const double v0 = velocity.rigid[i], v1 = next_velocity.rigid[i];
         work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
       } else {
@@ -58,14 +62,16 @@ double external_work(const Model& model, const Dofs& position, const Dofs& next_
 double gravity_moment(const Model& model, const Dofs& position) {
   const Vec2& g = model.scene.gravity;
   if (g.x() == 0 && g.y() == 0) return 0;
-  double total = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
-    const Batch& batch = model.batches[b];
-    const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
-    Lanes moment{};
-    for (std::size_t i = 0; i < mass.size(); ++i)
-      moment += mass[i] * (g.x() * position.compliant[batch.offset + 2 * i] +
-                           g.y() * position.compliant[batch.offset + 2 * i + 1]);
-    return sum(moment * batch.density * batch.weight);
+  double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
+    const Region& region = model.regions[r];
+    const Batch& batch = model.batches[region.batch];
+    const Lanes* q = &position.compliant[batch.offset];
+    return with_nodes(model, batch, [&](const auto& nodes) {
+      Lanes moment{};
+      for (int i = region.first; i < region.last; ++i)
+        moment += nodes.unit_mass[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
+      return sum(moment * (batch.density * batch.inverse_scale) * batch.weight);
+    });
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
     for (int c = 0; c < 2; ++c)

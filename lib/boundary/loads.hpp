@@ -8,8 +8,8 @@ namespace pliant {
 /// Force that a history applies to one rigid degree of freedom at time t, N/m (0 for imposed and free ones).
 double applied_load(const RigidDof& dof, double time);
 
-/// Adds gravity to a batch's forces: [nodes x 2].
-void add_gravity(const Model& model, const Batch& batch, Lanes* forces);
+/// Adds gravity at the nodes of one region to its batch's forces: [slots x 2].
+void add_gravity(const Model& model, const Region& region, Lanes* forces);
 
 /// Adds applied loads and gravity to a rigid body's force [x, y, moment].
 void add_rigid_loads(const Model& model, const RigidBody& rigid, double time, double* force);

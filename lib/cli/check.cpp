@@ -58,6 +58,21 @@ void print_bodies(const Model& model) {
   print_row("DOFs", std::to_string(model.dof_count()));
 }
 
+/// Solid fractions of what fills a region: of the outlines as they start.
+void print_packings(const Model& model) {
+  for (std::size_t g = 0; g < model.scene.grains.size(); ++g) {
+    const Packing& packing = model.scene.grains[g].packing;
+    if (packing.kind != PackingKind::random && packing.kind != PackingKind::fourier_voronoi) continue;
+    double area = 0;
+    for (const Body& body : model.bodies)
+      if (body.grains == static_cast<int>(g)) area += body.area;
+    const double region = (packing.right - packing.left) * (packing.top - packing.bottom);
+    print_row("packing",
+              fmt::format("{}: {} grains from y = {} to {}, solid fraction {:.4f}", model.scene.grains[g].name,
+                          packing.count, si(packing.bottom, "m"), si(packing.top, "m"), area / region));
+  }
+}
+
 struct Share {
   int bodies = 0;
   double mass = 0;  ///< kg/m
@@ -90,7 +105,9 @@ void print_masses(const Model& model) {
 }
 
 void print_shapes(const Model& model) {
-  for (const CompliantShape& shape : model.shapes) {
+  constexpr std::size_t most_shown = 8;  // of many variants the first say enough
+  for (std::size_t s = 0; s < std::min(most_shown, model.shapes.size()); ++s) {
+    const CompliantShape& shape = model.shapes[s];
     const Discretisation& space = shape.space;
     const double points = static_cast<double>(space.table.weight.size());
     print_row("shape", fmt::format("{} nodes, {} on the outline; {:.0f} integration points of {:.1f} neighbours each; "
@@ -99,6 +116,8 @@ void print_shapes(const Model& model) {
                                    static_cast<double>(space.table.node.size()) / points, space.min_shape_value,
                                    space.condition, space.completeness_residual));
   }
+  if (model.shapes.size() > most_shown)
+    print_row("", fmt::format("and {} more shapes", model.shapes.size() - most_shown));
 }
 
 std::string describe(const ContactPair& pair, double pressure) {
@@ -217,6 +236,7 @@ void print_check(const Scene& scene, int threads) {
   const Model model = build_model(scene);
   print_row("scene", scene.title.empty() ? scene.name : scene.title);
   print_bodies(model);
+  print_packings(model);
   print_masses(model);
   print_shapes(model);
   const Stability stable = stability(model);

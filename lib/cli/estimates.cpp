@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
-#include "results/probes.hpp"
+#include "scene/quantities.hpp"
 
 namespace pliant {
 namespace {
@@ -19,14 +20,18 @@ constexpr double dataset_bytes = 2600, frame_groups_bytes = 1600, file_bytes = 1
 constexpr double xdmf_dataset_bytes = 240, xdmf_frame_bytes = 1300;
 constexpr double probe_cell_bytes = 17, step_row_bytes = 75;
 
-std::string law_name(const ContactLaw& law) {
-  return law.index() == 0 ? "frictionless" : law.index() == 1 ? "mohr-coulomb" : "cohesive";
-}
-
 /// Points and cells of the grids of a frame.
 struct GridSize {
   double points = 0, cells = 0, outline_points = 0;
 };
+
+double values_of(const FrameField& field, const GridSize& size) {
+  if (field.constant) return 0;
+  const double entries = field.grid == FrameField::Grid::outlines   ? size.outline_points
+                         : field.centre == FrameField::Centre::cell ? size.cells
+                                                                    : size.points;
+  return entries * (field.components == 2 ? 3 : field.components);
+}
 
 GridSize grid_size(const Model& model) {
   GridSize size;
@@ -45,8 +50,8 @@ GridSize grid_size(const Model& model) {
 /// 1/m of a body's outline where it is round all over or in its caps; 0 where it may lie flat.
 double curvature_of(const Model& model, const Body& body) {
   if (!body.wall) {
-    const ShapeSpec& shape = model.scene.shape(model.scene.grains[body.grains].shape);
-    return shape.kind == ShapeKind::disc ? 2 / shape.diameter : 0;
+    const ShapeSpec& shape = model.scene.shapes[body.shape];
+    return shape.kind == ShapeKind::disc ? 2 / (body.scale * shape.diameter) : 0;
   }
   for (const Wall& wall : model.scene.walls)
     if (wall.name == body.name && wall.caps) return 2 / wall.caps->diameter;
@@ -68,22 +73,18 @@ bool alike(const ContactPair& a, const ContactPair& b) {
   return names && same(a.stiffness, b.stiffness) && same(a.spacing, b.spacing) && same(a.curvature, b.curvature);
 }
 
-bool is_automatic(const Scene& scene, const Body& a, const Body& b) {
-  const ContactRule* rule = scene.rule(scene.materials[a.material].name, scene.materials[b.material].name);
-  return rule && !rule->stiffness;
-}
-
 ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
   const Body &a = model.bodies[first], &b = model.bodies[second];
-  const ContactLaw& law = laws.laws[laws.between(first, second)];
+  const ContactLaw law = laws.between(first, second);
   ContactPair pair;
   pair.first = material_label(model, a), pair.second = material_label(model, b);
   if (!b.wall && (a.wall || pair.second < pair.first)) std::swap(pair.first, pair.second);
-  pair.law = law_name(law);
-  pair.automatic = is_automatic(model.scene, a, b);
+  pair.law = std::visit([](const auto& l) { return l.name; }, law);
+  pair.automatic = laws.automatic_stiffness(first, second);
   std::visit([&](const auto& l) { pair.stiffness = l.normal_stiffness; }, law);
   std::visit([&](const auto& l) { pair.shear_stiffness = l.has_shear ? l.shear_stiffness : 0; }, law);
   if (const Cohesive* cohesive = std::get_if<Cohesive>(&law)) pair.strength = cohesive->strength;
+  if (const CohesiveFatigue* bond = std::get_if<CohesiveFatigue>(&law)) pair.strength = bond->strength;
   pair.reach = reach_of(law);
   pair.spacing = std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing);
   if (a.kind == BodyKind::compliant || b.kind == BodyKind::compliant) return pair;
@@ -91,6 +92,20 @@ ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first,
   pair.curvature = of_a + of_b;
   if (pair.curvature > 0) pair.width = 2 / std::max(of_a, of_b);
   return pair;
+}
+
+/// Of the bodies of each party, grains and walls apart, the one with the finest outline, another, and the one with the coarsest.
+std::vector<std::vector<int>> representatives(const Model& model, const ContactLaws& laws) {
+  std::map<std::pair<int, bool>, std::vector<int>> parties;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    parties[{laws.party(b), model.bodies[b].wall}].push_back(b);
+  std::vector<std::vector<int>> result;
+  for (auto& [party, members] : parties) {
+    std::stable_sort(members.begin(), members.end(), [&](int a, int b) { return laws.spacing(a) < laws.spacing(b); });
+    if (members.size() > 3) members = {members[0], members[1], members.back()};
+    result.push_back(members);
+  }
+  return result;
 }
 
 double largest_until(const History& history, double end) {
@@ -118,24 +133,20 @@ double ContactPair::penetration(double pressure) const {
 }
 
 std::vector<ContactPair> contact_pairs(const Model& model, const ContactLaws& laws) {
-  // Two bodies of each class; walls have outlines, and so classes, of their own.
-  std::vector<std::vector<int>> of_class(static_cast<std::size_t>(laws.classes));
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
-    std::vector<int>& members = of_class[laws.body_class[b]];
-    if (members.size() < 2) members.push_back(b);
-  }
+  const std::vector<std::vector<int>> parties = representatives(model, laws);
   std::vector<ContactPair> pairs;
   const auto is_known = [&](const ContactPair& pair) {
     return std::any_of(pairs.begin(), pairs.end(), [&](const ContactPair& other) { return alike(other, pair); });
   };
-  for (std::size_t i = 0; i < of_class.size(); ++i)
-    for (std::size_t j = i; j < of_class.size(); ++j) {
-      if (i == j && of_class[i].size() < 2) continue;
-      const int first = of_class[i].front(), second = of_class[j].back();
-      if (model.bodies[first].wall && model.bodies[second].wall) continue;
-      const ContactPair pair = make_pair_of(model, laws, first, second);
-      if (!is_known(pair)) pairs.push_back(pair);
-    }
+  const auto add = [&](int first, int second) {
+    if (first == second || (model.bodies[first].wall && model.bodies[second].wall)) return;
+    const ContactPair pair = make_pair_of(model, laws, first, second);
+    if (!is_known(pair)) pairs.push_back(pair);
+  };
+  for (auto i = parties.begin(); i != parties.end(); ++i)
+    for (auto j = i; j != parties.end(); ++j)
+      for (const int first : *i)
+        for (const int second : *j) add(first, second);
   return pairs;
 }
 
@@ -147,8 +158,7 @@ std::int64_t output_count(double period, double end) {
 double frame_bytes(const Model& model) {
   const GridSize size = grid_size(model);
   double values = 2 * size.points + 2 * size.outline_points;
-  for (const std::string& field : model.scene.frames.fields)
-    values += field == "velocity" ? 3 * size.points : field == "contact_pressure" ? size.outline_points : size.cells;
+  for (const std::string& field : model.scene.frames.fields) values += values_of(frame_field(field), size);
   return sizeof(float) * values;
 }
 
@@ -166,7 +176,7 @@ OutputSize output_size(const Model& model, double steps) {
   double cells = 1;
   for (const Probe& probe : scene.probes) {
     size.probe_rows = std::max(size.probe_rows, output_count(probe.period, scene.time.end));
-    cells += static_cast<double>(ProbeSampler(model, probe).columns().size());
+    cells += static_cast<double>(probe_quantity(probe.quantity).columns.size());
   }
   size.probes_csv = static_cast<double>(size.probe_rows) * cells * probe_cell_bytes;
   constexpr double all = 200'000, thinned = 10;  // of StepLog

@@ -11,33 +11,40 @@
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
 #include "results/run.hpp"
+#include "scene/schema.hpp"
 #include "scene/units.hpp"
 
 namespace pliant {
 namespace {
 
 struct Arguments {
-  std::string scene, until;
+  std::string scene, until, checkpoint_every;
   RunOptions run;
 };
 
 /// A time such as "0.02 us"; a plain number means seconds, as in scene files.
-double parse_until(const std::string& text) {
-  double until = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), until);
+double parse_time(const char* option, const std::string& text) {
+  double time = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
   const bool plain = error == std::errc() && end == text.data() + text.size();
   try {
-    if (!plain) until = parse_quantity(text, "s");
+    if (!plain) time = parse_quantity(text, "s");
   } catch (const UnitError& failure) {
-    throw InputError(fmt::format("--until {}: {}", text, failure.what()));
+    throw InputError(fmt::format("{} {}: {}", option, text, failure.what()));
   }
-  if (std::isfinite(until) && until > 0) return until;
-  throw InputError(fmt::format("--until {}: must be a positive time, as in --until \"0.02 us\"", text));
+  if (std::isfinite(time) && time > 0) return time;
+  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
 }
 
 Scene load(const Arguments& arguments) {
-  Scene scene = read_scene(arguments.scene);
-  if (!arguments.until.empty()) scene.time.end = parse_until(arguments.until);
+  if (arguments.scene.empty() && (!arguments.run.resume || arguments.run.out.empty()))
+    throw InputError("no scene file is named; only --resume with --out can do without");
+  Scene scene = arguments.scene.empty() ? scene_of_checkpoint(arguments.run.out) : read_scene(arguments.scene);
+  if (!arguments.until.empty()) scene.time.end = parse_time("--until", arguments.until);
+  if (arguments.checkpoint_every == "never")
+    scene.checkpoint_period.reset();
+  else if (!arguments.checkpoint_every.empty())
+    scene.checkpoint_period = parse_time("--checkpoint-every", arguments.checkpoint_every);
   return scene;
 }
 
@@ -47,6 +54,21 @@ void run(Arguments arguments) {
   run_scene(scene, arguments.run);
 }
 
+/// The keys of scene files, learned from scenes that together ask for all of them.
+void print_schema(const std::vector<std::string>& files) {
+  SceneSchema schema;
+  for (const std::string& file : files) read_scene(file, &schema);
+  fmt::print(
+      "# Keys of scene files\n\n"
+      "Written by `./pliant schema` from the code that reads scenes (change it there, then `./pliant schema >\n"
+      "docs/scene.md`). A quantity is a number in SI units or a string with a unit, such as \"2 GPa\"; \"a number\" "
+      "has\n"
+      "none. `with` names the choice in the same table that a key belongs to. Unknown keys are refused. Reasons of "
+      "the\n"
+      "defaults: [defaults.md](defaults.md).\n\n{}",
+      schema.markdown());
+}
+
 int main_program(int argc, char** argv) {
   CLI::App app{"Pliant: rigid and compliant grains in one simulation"};
   app.require_subcommand(1);
@@ -54,8 +76,9 @@ int main_program(int argc, char** argv) {
   CLI::App* run_command = app.add_subcommand("run", "Simulate a scene, e.g. run cases/two_discs.toml --threads 2");
   CLI::App* check_command =
       app.add_subcommand("check", "Dry run: what a scene holds and costs, e.g. check cases/third_body.toml");
+  check_command->add_option("scene", arguments.scene, "Scene file (TOML)")->required();
+  run_command->add_option("scene", arguments.scene, "Scene file (TOML); with --resume and --out that of the folder");
   for (CLI::App* command : {run_command, check_command}) {
-    command->add_option("scene", arguments.scene, "Scene file (TOML)")->required();
     command->add_option("--until", arguments.until, "End time instead of the scene's, as in \"0.02 us\"");
     command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")
         ->check(CLI::Range(1, 1024));
@@ -72,8 +95,14 @@ int main_program(int argc, char** argv) {
   shape_function_command->add_option("--grid", shape_function.grid, "Points along either axis")
       ->check(CLI::Range(3, 2000));
   run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>");
-  run_command->add_flag("--force", arguments.run.force, "Overwrite the results in the output folder");
+  CLI::Option* force = run_command->add_flag("--force", arguments.run.force, "Overwrite results in the output folder");
+  run_command->add_flag("--resume", arguments.run.resume, "Go on from the output folder's checkpoint")->excludes(force);
+  run_command->add_option("--checkpoint-every", arguments.checkpoint_every,
+                          "Wall time between checkpoints, as in \"10 min\", or never; default the scene's");
   run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
+  CLI::App* schema_command = app.add_subcommand("schema", "Table of the keys that the given scenes are asked for");
+  std::vector<std::string> files;
+  schema_command->add_option("scenes", files, "Scene files (TOML)")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -81,6 +110,7 @@ int main_program(int argc, char** argv) {
   }
   if (arguments.run.quiet) spdlog::set_level(spdlog::level::err);
   if (*run_command) run(arguments);
+  if (*schema_command) print_schema(files);
   if (*check_command) print_check(load(arguments), arguments.run.threads);
   if (*shape_function_command) fmt::print("{}", shape_function_csv(shape_function));
   return 0;
@@ -94,6 +124,9 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%l: %v");
   try {
     return pliant::main_program(argc, argv);
+  } catch (const pliant::Stopped& stopped) {
+    fmt::print(stderr, "{}\n", stopped.what());
+    return static_cast<int>(stopped.code());
   } catch (const pliant::Error& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return static_cast<int>(error.code());

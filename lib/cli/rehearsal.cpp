@@ -26,16 +26,15 @@ double next_output(const Scene& scene, double time) {
 }
 
 /// The probes of a scene, with nobody to write to.
-class Samples {
+class ProbeRehearsal {
  public:
-  explicit Samples(const Model& model) : model_(model) {
-    for (const Probe& probe : model.scene.probes) samplers_.emplace_back(model, probe);
-  }
+  explicit ProbeRehearsal(const Model& model) : model_(model), samplers_(make_samplers(model)) {}
   void take_due(Simulation& simulation) const {
     constexpr double rounding = 1e-9;
+    const Snapshot snapshot(simulation);
     for (std::size_t p = 0; p < samplers_.size(); ++p) {
       const double samples = simulation.state().time / model_.scene.probes[p].period;
-      if (std::abs(samples - std::round(samples)) < rounding) samplers_[p].sample(simulation);
+      if (std::abs(samples - std::round(samples)) < rounding) samplers_[p].sample(snapshot);
     }
   }
 
@@ -50,7 +49,7 @@ Rehearsal rehearse(Simulation& simulation) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = simulation.model().scene;
   const State& state = simulation.state();
-  const Samples samples(simulation.model());
+  const ProbeRehearsal samples(simulation.model());
   const Clock::time_point start = Clock::now();
   const std::int64_t before = state.evaluations;
   double seconds = 0, grown_time = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/self_contact.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {
@@ -199,6 +200,25 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
     narrow(sides[slave], rough[slave], scratch, segments.begin, margin, skin, patch.nodes[slave],
            patch.segments[1 - slave]);
+  }
+}
+
+void find_self_patches(const Model& model, const Outlines& outlines, int body, const ContactLaw& law, double margin,
+                       double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
+  const Side side = make_side(model, outlines, body, 0);
+  const int n = side.shape->count;
+  constexpr int together = 2, unseen = 2;
+  for (int begin = 0; begin < n; begin += together) {
+    const Arc nodes{begin, std::min(together, n - begin)};
+    const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
+    if (segments.count <= 0) continue;
+    scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
+    Patch patch;
+    patch.first = patch.second = body;
+    patch.part = begin;
+    patch.law = law;
+    narrow(side, nodes, scratch, segments.begin, margin, skin, patch.nodes[0], patch.segments[1]);
+    if (patch.nodes[0].count > 0) patches.push_back(patch);
   }
 }
 

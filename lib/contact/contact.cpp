@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include "contact/close_phase.hpp"
+#include "contact/patch_survey.hpp"
+#include "contact/self_contact.hpp"
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -33,25 +38,46 @@ double relative_motion(const Box& a, const Box& b) {
   return dx * dx + dy * dy;
 }
 
-MasterWindow& thread_scratch() {
-  thread_local MasterWindow window;
-  return window;
+/// Patches are kept in this order.
+auto key(const Patch& p) { return std::tie(p.first, p.second, p.images, p.part); }
+
+bool has_fixed_refresh(const ContactSettings& settings) {
+  return settings.refresh_steps > 0 || settings.refresh_period > 0;
 }
 
 int padded(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
 }  // namespace
 
-ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(make_contact_laws(model)) {
+ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(model) {
   double finest = 1e300;
   for (const OutlineShape& outline : model.outlines) finest = std::min(finest, outline.spacing);
   skin_ = model.scene.skin * finest;
-  broad_margin_ = laws_.max_reach + (1 + extra_skins) * skin_;
+  broad_margin_ = laws_.max_reach() + (1 + extra_skins) * skin_;
   motion_.resize(model.bodies.size());
 }
 
-bool ContactSystem::refresh_needed(const Outlines& outlines) {
+bool ContactSystem::refresh_needed(const Outlines& outlines, const RunClock& clock) {
   if (!fresh_) return true;
+  return has_fixed_refresh(model_.scene.contact) ? period_is_over(clock) : moved_by_the_skin(outlines);
+}
+
+bool ContactSystem::period_is_over(const RunClock& clock) const {
+  const ContactSettings& settings = model_.scene.contact;
+  if (settings.refresh_steps > 0) return clock.steps >= refreshed_.steps + settings.refresh_steps;
+  return clock.time >= refreshed_.time + settings.refresh_period;
+}
+
+void ContactSystem::warn_of_missed_contacts(const Outlines& outlines) {
+  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !moved_by_the_skin(outlines)) return;
+  warned_ = true;
+  spdlog::warn(
+      "bodies move further than the contact skin, {:.3g} m, from one contact refresh to the next: contacts can be "
+      "missed; shorten [contact] refresh, or leave it \"safe\"",
+      skin_);
+}
+
+bool ContactSystem::moved_by_the_skin(const Outlines& outlines) {
   const int bodies = static_cast<int>(model_.bodies.size());
   parallel_for(bodies, [&](int b) { motion_[b] = motion_box(model_.outlines[outlines.shape[b]], outlines, b); });
   const double largest_own = parallel_max(bodies, 0, [&](int b) {
@@ -64,21 +90,27 @@ bool ContactSystem::refresh_needed(const Outlines& outlines) {
   return largest_pair >= skin_ * skin_ || 4 * largest_own >= std::pow((1 + extra_skins) * skin_, 2);
 }
 
-void ContactSystem::refresh(Outlines& outlines, ContactHistory& history) {
+void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+  warn_of_missed_contacts(outlines);
   const int bodies = static_cast<int>(model_.bodies.size());
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
   pairs_ = broad_phase(model_, boxes, broad_margin_);
   const std::vector<Patch> old = std::move(patches_);
   find_patches(outlines, boxes);
+  if (model_.scene.contact.self_contact) add_self_patches(outlines);
   lay_out_patches();
+  const bool start = history.place.empty();
   carry_history(old, history);
+  if (start) refuse_self_overlap(outlines);
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    locate_newcomers(model_, laws_, outlines, patches_[p], skin_, history, thread_scratch());
+    locate_newcomers(model_, outlines, patches_[p], skin_, history, thread_scratch());
+    if (start) make_bonds(model_, outlines, patches_[p], skin_, history, thread_scratch());
   });
   outlines.x_refresh = outlines.x;
   outlines.y_refresh = outlines.y;
   fresh_ = true;
+  refreshed_ = clock;
   ++refreshes_;
 }
 
@@ -89,7 +121,7 @@ void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box
     Patch& patch = found[p];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second);
-    find_arcs(model_, outlines, boxes, patch, reach_of(laws_.laws[patch.law]) + skin_, skin_, thread_scratch());
+    find_arcs(model_, outlines, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
   });
   patches_.clear();
   for (const Patch& patch : found)
@@ -115,46 +147,41 @@ void ContactSystem::lay_out_patches() {
 }
 
 void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory& history) const {
-  const auto key = [](const Patch& p) { return std::tie(p.first, p.second, p.images); };
-  ContactHistory next{std::vector<double>(static_cast<std::size_t>(records_), std::numeric_limits<double>::quiet_NaN()),
-                      std::vector<double>(static_cast<std::size_t>(records_), 0.0)};
+  ContactHistory next;
+  const int arrays = laws_.damages() ? 4 : 2;
+  for (int a = 0; a < arrays; ++a) {
+    const auto& [values, of_strangers] = ContactHistory::arrays[a];
+    (next.*values).assign(static_cast<std::size_t>(records_), of_strangers);
+  }
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     const Patch& patch = patches_[p];
-    const auto from = std::lower_bound(old.begin(), old.end(), patch,
-                                       [&](const Patch& a, const Patch& b) { return key(a) < key(b); });
+    const auto from =
+        std::lower_bound(old.begin(), old.end(), patch, [](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;
     for (int side = 0; side < 2; ++side) {
       const int n = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline].count;
       for (int i = 0; i < patch.nodes[side].count; ++i) {
         const int node = patch.nodes[side].begin + i - from->nodes[side].begin, at = node - turn_of(node, n) * n;
         if (at >= from->nodes[side].count) continue;
-        next.place[patch.record[side] + i] = history.place[from->record[side] + at];
-        next.slip[patch.record[side] + i] = history.slip[from->record[side] + at];
+        for (int a = 0; a < arrays; ++a) {
+          const auto values = ContactHistory::arrays[a].values;
+          (next.*values)[patch.record[side] + i] = (history.*values)[from->record[side] + at];
+        }
       }
     }
   });
   history = std::move(next);
 }
 
-/// Calls add(node, entry) for every entry of a body's arcs in the force buffers, in a fixed order.
-template <class Add>
-void ContactSystem::for_each_force(int body, int nodes, Add&& add) const {
-  for (const ArcForce& arc : body_arcs_[body]) {
-    int node = arc.begin - turn_of(arc.begin, nodes) * nodes;
-    for (int i = 0; i < arc.count; ++i) {
-      add(node, arc.force + i);
-      if (++node == nodes) node = 0;
-    }
-  }
-}
-
 PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial) {
-  trial.place.resize(committed.place.size());
-  trial.slip.resize(committed.slip.size());
+  for (const auto& [values, of_strangers] : ContactHistory::arrays) (trial.*values).resize((committed.*values).size());
+  // Patches whose laws keep no damage leave their records alone.
+  trial.damage = committed.damage;
+  trial.opening = committed.opening;
+  measure_lengths(outlines);
   const int count = static_cast<int>(patches_.size());
   parallel_for(count, [&](int p) {
-    totals_[p] =
-        compute_patch(model_, laws_, outlines, patches_[p], skin_, committed, trial, forces_, thread_scratch());
+    totals_[p] = compute_patch(model_, outlines, patches_[p], skin_, committed, trial, forces_, thread_scratch());
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     const int n = model_.outlines[outlines.shape[b]].count;
@@ -168,29 +195,33 @@ PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& comm
   for (const PatchTotals& t : totals_) {
     total.stored += t.stored;
     total.dissipated += t.dissipated;
+    total.damping_power += t.damping_power;
     total.deepest = std::max(total.deepest, t.deepest);
     total.contacts += t.contacts;
   }
   return total;
 }
 
-std::vector<double> ContactSystem::stiffness_bound(Outlines& outlines, const std::vector<double>& compliance) {
-  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    const Patch& patch = patches_[p];
-    const double a = compliance[patch.first], b = compliance[patch.second];
-    // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
-    const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
-    const ContactLaw& law = laws_.laws[patch.law];
-    compute_patch_stiffness(model_, outlines, patch, stiffness_of(law), skin_, reach_of(law) + skin_, factor, forces_,
-                            thread_scratch());
-  });
-  std::vector<double> result(outlines.x.size(), 0.0);
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    double* stiffness = &result[outlines.offset[b]];
-    for_each_force(b, model_.outlines[outlines.shape[b]].count,
-                   [&](int node, int entry) { stiffness[node] += forces_.x[entry]; });
-  });
-  return result;
+void ContactSystem::add_self_patches(const Outlines& outlines) {
+  const std::size_t pairs = pairs_.size();
+  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
+    if (model_.bodies[b].kind != BodyKind::compliant) continue;
+    pairs_.push_back({b, b, 0});  // watched as any pair: the body's parts may move by the skin against each other
+    const ContactLaw law = laws_.between(b, b);
+    find_self_patches(model_, outlines, b, law, reach_of(law) + skin_, skin_, patches_, thread_scratch());
+  }
+  if (pairs_.size() > pairs)
+    std::sort(patches_.begin(), patches_.end(), [](const Patch& a, const Patch& b) { return key(a) < key(b); });
+}
+
+/// A limb thinner than contact sees would press its own far side out.
+void ContactSystem::refuse_self_overlap(const Outlines& outlines) const {
+  for (const Patch& patch : patches_)
+    if (patch.first == patch.second && overlaps(model_, outlines, patch, skin_, thread_scratch()))
+      throw InputError(fmt::format(
+          "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
+          "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",
+          model_.bodies[patch.first].name, model_.outlines[outlines.shape[patch.first]].spacing + skin_));
 }
 
 }  // namespace pliant

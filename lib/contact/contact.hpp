@@ -1,14 +1,22 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "contact/broad_phase.hpp"
 #include "contact/contact_laws.hpp"
+#include "contact/history.hpp"
 #include "contact/patch_forces.hpp"
 
 namespace pliant {
+
+/// What a fixed refresh period counts.
+struct RunClock {
+  double time = 0;         ///< of the positions, s
+  std::int64_t steps = 0;  ///< accepted so far
+};
 
 /// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its skin, and computes the
 /// forces on outline nodes. The history belongs to the caller's state.
@@ -16,10 +24,12 @@ class ContactSystem {
  public:
   explicit ContactSystem(const Model& model);
 
-  /// True when some close pair may have moved by the skin since the last refresh, or always before the first.
-  bool refresh_needed(const Outlines& outlines);
+  /// True when some close pair may have moved by the skin since the last refresh, or always before the first. With a fixed period: when
+  /// it is over; contacts that come earlier are missed.
+  bool refresh_needed(const Outlines& outlines, const RunClock& clock = {});
   /// Rebuilds the patches and carries the history, that of the outlines' positions, over to them; newcomers get their places.
-  void refresh(Outlines& outlines, ContactHistory& history);
+  /// Throws InputError when a body that may touch itself does so at the start.
+  void refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
 
   /// Contact forces into outlines.force_x, force_y; the new history goes to `trial`.
   PatchTotals forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial);
@@ -28,21 +38,57 @@ class ContactSystem {
   /// pair is that of its two bodies taken alone (METHOD 6). `compliance` [bodies]: largest w^2 a body shows per unit contact stiffness.
   std::vector<double> stiffness_bound(Outlines& outlines, const std::vector<double>& compliance);
 
+  /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of stiffness; 0: no dashpot.
+  std::vector<double> damping_ratios() const;
+
+  /// [outline nodes] least damage of each node's bonds; 1: it has none.
+  std::vector<double> nodal_damage(const Outlines& outlines, const ContactHistory& history) const;
+
   const ContactLaws& laws() const { return laws_; }
   const std::vector<Patch>& patches() const { return patches_; }
   long refreshes() const { return refreshes_; }
   double skin() const { return skin_; }
+
+  /// What a refresh leaves behind; the layout follows from the patches.
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("pairs", pairs_);
+    visitor("patches", patches_);
+    visitor("fresh", fresh_);
+    visitor("warned", warned_);
+    visitor("refreshed", refreshed_);
+    visitor("refreshes", refreshes_);
+  }
+  void loaded() {
+    for (Patch& patch : patches_) patch.law = laws_.between(patch.first, patch.second);
+    lay_out_patches();
+  }
 
  private:
   struct ArcForce {
     int begin, count, force;  ///< outline node of the first entry (not reduced), entries, place in the buffers
   };
 
+  bool moved_by_the_skin(const Outlines& outlines);
+  bool period_is_over(const RunClock& clock) const;
+  void warn_of_missed_contacts(const Outlines& outlines);
   void find_patches(const Outlines& outlines, const std::vector<Box>& boxes);
+  void add_self_patches(const Outlines& outlines);
+  void refuse_self_overlap(const Outlines& outlines) const;
+  void measure_lengths(Outlines& outlines) const;
   void lay_out_patches();
   void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
+  /// Calls add(node, entry) for every entry of a body's arcs in the force buffers, in a fixed order.
   template <class Add>
-  void for_each_force(int body, int nodes, Add&& add) const;
+  void for_each_force(int body, int nodes, Add&& add) const {
+    for (const ArcForce& arc : body_arcs_[body]) {
+      int node = arc.begin - turn_of(arc.begin, nodes) * nodes;
+      for (int i = 0; i < arc.count; ++i) {
+        add(node, arc.force + i);
+        if (++node == nodes) node = 0;
+      }
+    }
+  }
 
   const Model& model_;
   ContactLaws laws_;
@@ -54,7 +100,8 @@ class ContactSystem {
   PatchForces forces_;
   std::vector<PatchTotals> totals_;  ///< [patches]
   std::vector<Box> motion_;          ///< [bodies], box of the outline nodes' displacements since the refresh
-  bool fresh_ = false;
+  bool fresh_ = false, warned_ = false;
+  RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0;
 };
 

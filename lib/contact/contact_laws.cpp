@@ -1,12 +1,12 @@
 #include "contact/contact_laws.hpp"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "scene/contact_rules.hpp"
 
 namespace pliant {
 namespace {
@@ -18,91 +18,183 @@ constexpr double auto_range_factor = 0.12;
 /// length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before they govern the time step.
 constexpr double rigid_pair_factor = 3;
 
-struct BodyClass {
-  BodyKind kind;
-  int material, outline;
-  auto operator<=>(const BodyClass&) const = default;
-};
-
-/// Stiffness 8 E/h of a pair; 0 when both are rigid.
-double auto_stiffness(const Model& model, const BodyClass& a, const BodyClass& b) {
-  double young = 1e300;
-  for (const BodyClass* c : {&a, &b})
-    if (c->kind == BodyKind::compliant) young = std::min(young, model.scene.materials[c->material].young);
-  const double h = std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing);
-  return young < 1e300 ? auto_stiffness_factor * young / h : 0;
+ContactParty party_of(const Scene& scene, const Body& body) {
+  const std::string& name = body.wall ? body.name : scene.grains[body.grains].name;
+  return contact_party(scene, scene.materials[body.material].name, name, body.wall);
 }
 
-const ContactRule& rule_between(const Scene& scene, const std::string& a, const std::string& b) {
-  const ContactRule* general = nullptr;
-  for (const ContactRule& rule : scene.contacts) {
-    if ((rule.first == a && rule.second == b) || (rule.first == b && rule.second == a)) return rule;
-    if (rule.first == "all") general = &rule;
-  }
-  if (!general)
-    throw InputError(
-        fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
-                    scene.file.string(), a, b));
-  return *general;
+/// Of a motion along one axis: the freer of the two. 0: imposed in both.
+double inverse_mass(const Model& model, const Body& body) {
+  if (body.kind == BodyKind::compliant) return 0;
+  const RigidBody& rigid = model.rigid_bodies[body.rigid];
+  return std::max(rigid.dof[0].inverse_mass, rigid.dof[1].inverse_mass);
 }
 
-ContactLaw make_law(const Scene& scene, const ContactRule& rule, double kn, double h) {
-  const double kt = rule.shear_stiffness.value_or(kn);
-  switch (rule.law) {
-    case ContactLawKind::frictionless:
-      return Frictionless{kn, 0, 0};
-    case ContactLawKind::mohr_coulomb:
-      return MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion};
-    case ContactLawKind::cohesive:
-      break;
-  }
-  const double range = rule.range.value_or(auto_range_factor * h);
-  if (range <= rule.strength / kn)
-    throw InputError(fmt::format(
-        "{}: [[contacts]] between '{}' and '{}': range {:.3g} m must exceed strength / stiffness = {:.3g} m; "
-        "give a larger range or stiffness",
-        scene.file.string(), rule.first, rule.second, range, rule.strength / kn));
-  return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
+std::string pair_text(const ContactRule& rule) {
+  return fmt::format("[[contacts]] between '{}' and '{}'", rule.first, rule.second);
 }
 
-ContactLaw law_between(const Model& model, const BodyClass& a, const BodyClass& b, double largest_auto) {
-  const Scene& scene = model.scene;
-  const std::string& name_a = scene.materials[a.material].name;
-  const std::string& name_b = scene.materials[b.material].name;
-  const ContactRule& rule = rule_between(scene, name_a, name_b);
-  const double own = auto_stiffness(model, a, b);
-  const double kn = rule.stiffness.value_or(own > 0 ? own : rigid_pair_factor * largest_auto);
-  if (kn <= 0)
-    throw InputError(
-        fmt::format("{}: [[contacts]] between '{}' and '{}': stiffness \"auto\" needs a compliant body in the scene; "
-                    "give a value in Pa/m",
-                    scene.file.string(), name_a, name_b));
-  return make_law(scene, rule, kn, std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing));
+/// z acos(z) / sqrt(1 - z^2), continued beyond 1.
+double decay_until_release(double z) {
+  if (std::abs(z - 1) < 1e-8) return 1;
+  return z < 1 ? z * std::acos(z) / std::sqrt(1 - z * z) : z * std::acosh(z) / std::sqrt(z * z - 1);
 }
 
 }  // namespace
 
-ContactLaws make_contact_laws(const Model& model) {
-  ContactLaws result;
-  std::map<BodyClass, int> index;
-  std::vector<BodyClass> classes;
-  for (const Body& body : model.bodies) {
-    const BodyClass key{body.kind, body.material, body.outline};
-    const auto [at, is_new] = index.try_emplace(key, static_cast<int>(classes.size()));
-    if (is_new) classes.push_back(key);
-    result.body_class.push_back(at->second);
+double damping_ratio(double restitution, bool pull) {
+  const double decay = -std::log(restitution);
+  if (decay == 0) return 0;
+  if (pull) return decay / std::hypot(M_PI, decay);
+  double low = 0, high = 1;
+  while (2 * decay_until_release(high) < decay) high *= 2;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (2 * decay_until_release(middle) < decay ? low : high) = middle;
   }
-  double largest_auto = 0;
-  for (const BodyClass& a : classes)
-    for (const BodyClass& b : classes) largest_auto = std::max(largest_auto, auto_stiffness(model, a, b));
-  result.classes = static_cast<int>(classes.size());
-  for (const BodyClass& a : classes)
-    for (const BodyClass& b : classes) {
-      result.pair_law.push_back(static_cast<int>(result.laws.size()));
-      result.laws.push_back(law_between(model, a, b, largest_auto));
-      result.max_reach = std::max(result.max_reach, reach_of(result.laws.back()));
+  return 0.5 * (low + high);
+}
+
+ContactLaws::ContactLaws(const Model& model) : file_(model.scene.file.string()), rules_(model.scene.contacts) {
+  for (const Body& body : model.bodies) add_body(model, body);
+  find_rules(model.scene);
+  for (int a = 0; a < static_cast<int>(parties_.size()); ++a)
+    for (int b = 0; b < static_cast<int>(parties_.size()); ++b)
+      largest_auto_ = std::max(largest_auto_, auto_stiffness(extreme(a, true), extreme(b, true)));
+  look_at_extremes();
+}
+
+void ContactLaws::add_body(const Model& model, const Body& body) {
+  const std::string name = party_of(model.scene, body).name;
+  const double h = model.outlines[body.outline].spacing, inverse = inverse_mass(model, body);
+  auto party = std::find_if(parties_.begin(), parties_.end(), [&](const Party& p) {
+    return p.kind == body.kind && p.material == body.material && p.name == name;
+  });
+  if (party == parties_.end()) {
+    const double young = body.kind == BodyKind::compliant ? model.scene.materials[body.material].young : 0;
+    party = parties_.insert(party, Party{body.kind, body.material, name, young, h, h, 0});
+  }
+  party->least_h = std::min(party->least_h, h);
+  party->largest_h = std::max(party->largest_h, h);
+  party->largest_inverse_mass = std::max(party->largest_inverse_mass, inverse);
+  bodies_.push_back({static_cast<int>(party - parties_.begin()), h, inverse});
+}
+
+void ContactLaws::find_rules(const Scene& scene) {
+  const auto describe = [&](const Party& party) {
+    const bool wall = std::any_of(scene.walls.begin(), scene.walls.end(),
+                                  [&](const Wall& w) { return !party.name.empty() && w.name == party.name; });
+    return ContactParty{scene.materials[party.material].name, party.name, wall};
+  };
+  for (const Party& a : parties_)
+    for (const Party& b : parties_) {
+      const ContactParty first = describe(a), second = describe(b);
+      const RuleMatch match = match_rule(scene, first, second);
+      const bool never_meets = &a == &b && first.wall;
+      if (!match.rule && !never_meets)
+        throw InputError(
+            fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
+                        file_, first.material, second.material));
+      pair_rule_.push_back(match.rule ? static_cast<int>(match.rule - scene.contacts.data()) : -1);
     }
-  return result;
+}
+
+/// Lengths, and stiffness with its inverse, grow with the finer of the two spacings.
+void ContactLaws::look_at_extremes() {
+  for (int a = 0; a < static_cast<int>(parties_.size()); ++a)
+    for (int b = 0; b < static_cast<int>(parties_.size()); ++b)
+      for (const bool finest : {true, false}) {
+        const Side first = extreme(a, finest), second = extreme(b, finest);
+        if (!rule(first, second)) continue;
+        const ContactLaw law = make_law(first, second);
+        max_reach_ = std::max(max_reach_, reach_of(law));
+        damages_ |= has_damage(law);
+        damps_ |= damping_ratio(first, second) > 0;
+      }
+}
+
+ContactLaws::Side ContactLaws::extreme(int party, bool finest) const {
+  const Party& p = parties_[party];
+  return {party, finest ? p.least_h : p.largest_h, p.largest_inverse_mass};
+}
+
+ContactLaw ContactLaws::between(int first, int second) const { return make_law(bodies_[first], bodies_[second]); }
+
+bool ContactLaws::automatic_stiffness(int first, int second) const {
+  return !rule(bodies_[first], bodies_[second])->stiffness;
+}
+
+double ContactLaws::largest_stiffness(int body) const {
+  double largest = 0;
+  for (int other = 0; other < static_cast<int>(parties_.size()); ++other)
+    if (const Side side = extreme(other, true); rule(bodies_[body], side))
+      largest = std::max(largest, stiffness_of(make_law(bodies_[body], side)));
+  return largest;
+}
+
+double ContactLaws::largest_damping_ratio(int body) const {
+  double largest = 0;
+  for (int other = 0; other < static_cast<int>(parties_.size()); ++other)
+    largest = std::max(largest, damping_ratio(bodies_[body], extreme(other, true)));
+  return largest;
+}
+
+/// Stiffness 8 E/h of a pair; 0 when both are rigid.
+double ContactLaws::auto_stiffness(const Side& a, const Side& b) const {
+  double young = 1e300;
+  for (const Side* side : {&a, &b})
+    if (parties_[side->party].kind == BodyKind::compliant) young = std::min(young, parties_[side->party].young);
+  return young < 1e300 ? auto_stiffness_factor * young / std::min(a.h, b.h) : 0;
+}
+
+ContactLaw ContactLaws::make_law(const Side& a, const Side& b) const {
+  const ContactRule& rule = *this->rule(a, b);
+  const double own = auto_stiffness(a, b), h = std::min(a.h, b.h);
+  const double kn = rule.stiffness.value_or(own > 0 ? own : rigid_pair_factor * largest_auto_);
+  if (kn <= 0)
+    throw InputError(fmt::format("{}: {}: stiffness \"auto\" needs a compliant body in the scene; give a value in Pa/m",
+                                 file_, pair_text(rule)));
+  const double kt = rule.shear_stiffness.value_or(kn);
+  if (rule.law == ContactLawKind::frictionless) return with_impact(Frictionless{kn, 0, 0}, rule, a, b);
+  if (rule.law == ContactLawKind::mohr_coulomb)
+    return with_impact(MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion}, rule, a, b);
+  const double range = rule.range.value_or(auto_range_factor * h);
+  if (range <= rule.strength / kn)
+    throw InputError(
+        fmt::format("{}: {}: range {:.3g} m must exceed strength / stiffness = {:.3g} m; give a larger range or "
+                    "stiffness",
+                    file_, pair_text(rule), range, rule.strength / kn));
+  if (rule.law == ContactLawKind::cohesive)
+    return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
+  return CohesiveFatigue{kn,
+                         kn / (rule.shear_ratio * rule.shear_ratio),
+                         range,
+                         rule.strength,
+                         rule.shear_ratio,
+                         rule.residual_strength,
+                         rule.friction,
+                         rule.fatigue_threshold,
+                         rule.fatigue_rate,
+                         rule.shear_fatigue_rate,
+                         rule.bond_gap};
+}
+
+/// 0 where there is no dashpot: only two rigid bodies of which one can move have one.
+double ContactLaws::damping_ratio(const Side& a, const Side& b) const {
+  const ContactRule* rule = this->rule(a, b);
+  const bool rigid = parties_[a.party].kind == BodyKind::rigid && parties_[b.party].kind == BodyKind::rigid;
+  if (!rule || !rigid || !rule->restitution || a.inverse_mass + b.inverse_mass == 0) return 0;
+  return pliant::damping_ratio(*rule->restitution, rule->pull);
+}
+
+template <class Law>
+ContactLaw ContactLaws::with_impact(const Law& law, const ContactRule& rule, const Side& a, const Side& b) const {
+  if (const double z = damping_ratio(a, b); z > 0) {
+    const double root = 2 * z * std::sqrt(law.normal_stiffness / (a.inverse_mass + b.inverse_mass));
+    return Damped<Law>{law, root, z, rule.pull};
+  }
+  if (rule.smoothing > 0) return Smoothed<Law>{law, rule.smoothing * std::min(a.h, b.h)};
+  return law;
 }
 
 }  // namespace pliant

@@ -1,39 +1,72 @@
 #pragma once
 
-#include <variant>
+#include <string>
 #include <vector>
 
 #include "bodies/model.hpp"
-#include "contact/laws/cohesive.hpp"
-#include "contact/laws/frictionless.hpp"
-#include "contact/laws/mohr_coulomb.hpp"
+#include "contact/contact_law.hpp"
 
 namespace pliant {
 
-using ContactLaw = std::variant<Frictionless, MohrCoulomb, Cohesive>;
+/// Which law holds between two bodies. Rules are found once a scene for each two parties, bodies of equal kind, material and name in rules; the law
+/// itself also depends on both outline spacings, and is made when a pair is.
+class ContactLaws {
+ public:
+  /// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid bodies get three
+  /// times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
+  explicit ContactLaws(const Model& model);
 
-/// The law of every pair of bodies, resolved once a scene. Bodies of equal material, outline and kind form a class.
-struct ContactLaws {
-  std::vector<int> body_class;  ///< [bodies]
-  int classes = 0;
-  std::vector<int> pair_law;  ///< [classes x classes], index in `laws`
-  std::vector<ContactLaw> laws;
-  double max_reach = 0;  ///< m
+  ContactLaw between(int first, int second) const;
+  bool automatic_stiffness(int first, int second) const;
 
-  int between(int first, int second) const { return pair_law[body_class[first] * classes + body_class[second]]; }
+  double max_reach() const { return max_reach_; }             ///< of any pair, m
+  double largest_stiffness(int body) const;                   ///< of any pair with this body, Pa/m
+  double largest_damping_ratio(int body) const;               ///< likewise; 0: no dashpot
+  bool damages() const { return damages_; }                   ///< some law keeps damage
+  bool damps() const { return damps_; }                       ///< some law has a dashpot
+  int party(int body) const { return bodies_[body].party; }   ///< number of the body's party
+  double spacing(int body) const { return bodies_[body].h; }  ///< of its outline, m
+
+ private:
+  struct Party {
+    BodyKind kind;
+    int material;
+    std::string name;
+    double young;               ///< Pa; 0: rigid
+    double least_h, largest_h;  ///< outline spacings, m
+    double largest_inverse_mass;
+  };
+  /// What a law depends on besides the rule.
+  struct Side {
+    int party;
+    double h, inverse_mass;
+  };
+
+  void add_body(const Model& model, const Body& body);
+  void find_rules(const Scene& scene);
+  void look_at_extremes();
+  const ContactRule* rule(const Side& a, const Side& b) const {
+    const int index = pair_rule_[static_cast<std::size_t>(a.party) * parties_.size() + b.party];
+    return index < 0 ? nullptr : &rules_[index];
+  }
+  Side extreme(int party, bool finest) const;
+  double auto_stiffness(const Side& a, const Side& b) const;
+  ContactLaw make_law(const Side& a, const Side& b) const;
+  double damping_ratio(const Side& a, const Side& b) const;
+  template <class Law>
+  ContactLaw with_impact(const Law& law, const ContactRule& rule, const Side& a, const Side& b) const;
+
+  std::string file_;
+  std::vector<ContactRule> rules_;
+  std::vector<Party> parties_;
+  std::vector<Side> bodies_;
+  std::vector<int> pair_rule_;  ///< [parties x parties], index in rules_; -1: the pair never meets
+  double largest_auto_ = 0, max_reach_ = 0;
+  bool damages_ = false, damps_ = false;
 };
 
-inline double reach_of(const ContactLaw& law) {
-  return std::visit([](const auto& l) { return l.reach; }, law);
-}
-inline double stiffness_of(const ContactLaw& law) {
-  return std::visit(
-      [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },
-      law);
-}
-
-/// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid bodies get three
-/// times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
-ContactLaws make_contact_laws(const Model& model);
+/// Damping ratio of a linear spring and dashpot that bounce with this restitution in (0, 1]. `pull`: the force ends with g = 0,
+/// e = exp(-pi z / sqrt(1 - z^2)); else when it would pull, e = exp(-2 z acos(z) / sqrt(1 - z^2)), z > 1 with acosh and the root of z^2 - 1.
+double damping_ratio(double restitution, bool pull);
 
 }  // namespace pliant

@@ -42,4 +42,10 @@ class MasterWindow {
   std::vector<MasterSegment> rows_;  ///< from the segment before the first on
 };
 
+/// One for each thread, so that its memory is found once.
+inline MasterWindow& thread_scratch() {
+  thread_local MasterWindow window;
+  return window;
+}
+
 }  // namespace pliant

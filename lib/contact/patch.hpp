@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include "contact/contact_law.hpp"
 
 namespace pliant {
 
@@ -11,15 +11,24 @@ struct Arc {
   int end() const { return begin + count; }
 };
 
-/// Two bodies that may touch before the next refresh, and the parts of their outlines that can take part.
+/// Two bodies that may touch before the next refresh, and the parts of their outlines that can take part. Of a body that may touch itself
+/// (first = second), some nodes, as those of the first, and segments far from them along the outline, as those of the second.
 struct Patch {
-  int first = 0, second = 0;  ///< bodies, first < second
+  int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
-  int law = 0;                ///< index in ContactLaws::laws
-  Arc nodes[2];               ///< that may touch the other body; no node twice
-  Arc segments[2];            ///< that the other's nodes may touch
-  int record[2] = {0, 0};     ///< first history record of each side's nodes (padded to whole lanes)
-  int force[2] = {0, 0};      ///< first entry of each side's force buffer, which begins at node forces(side).begin
+  int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
+  ContactLaw law;
+  Arc nodes[2];            ///< that may touch the other body; no node twice
+  Arc segments[2];         ///< that the other's nodes may touch
+  int record[2] = {0, 0};  ///< first history record of each side's nodes (padded to whole lanes)
+  int force[2] = {0, 0};   ///< first entry of each side's force buffer, which begins at node forces(side).begin
+
+  /// All but the law, which follows from the bodies.
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part);
+    visitor("nodes", nodes), visitor("segments", segments), visitor("record", record), visitor("force", force);
+  }
 
   /// Outline nodes that this patch puts forces on.
   Arc forces(int side) const {
@@ -29,13 +38,6 @@ struct Patch {
     const int begin = n.begin < s.begin ? n.begin : s.begin, end = n.end() > s.end() + 1 ? n.end() : s.end() + 1;
     return {begin, end - begin};
   }
-};
-
-/// Contact history, one record a slave node and other body (METHOD 4): committed on accepted steps only.
-struct ContactHistory {
-  std::vector<double>
-      place;  ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
-  std::vector<double> slip;  ///< elastic tangential displacement then, m
 };
 
 }  // namespace pliant

@@ -2,60 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
-#include "contact/slip.hpp"
+#include "contact/pass.hpp"
+#include "contact/patch_survey.hpp"
+#include "contact/response.hpp"
 
 namespace pliant {
 namespace {
-
-/// One pass: the slave's nodes and the buffers of both sides.
-struct Pass {
-  const OutlineShape* slave;
-  const double* slave_x;
-  const double* slave_y;
-  Arc nodes;
-  double slave_shift;
-  int record;
-  int slave_force;   ///< buffer entry of the first node
-  int master_force;  ///< buffer entry of the window's first row
-};
-
-struct SlaveNodes {
-  Lanes x, y, tributary_length;
-};
-
-/// Eight consecutive slave nodes from position i of the arc.
-SlaveNodes load_slaves(const Pass& pass, int i) {
-  const int index = pass.nodes.begin + i;
-  const int turn = turn_of(index, pass.slave->count);
-  const int node = index - turn * pass.slave->count;
-  return {load(pass.slave_x + node) + (pass.slave_shift + turn * pass.slave->turn_shift), load(pass.slave_y + node),
-          load(pass.slave->tributary_length.data() + node)};
-}
-
-/// Traction of eight nodes, with the tangential part brought up to date.
-struct Contact {
-  Lanes pressure, shear, energy;  ///< shear acts on the slave along the tangent
-  Lanes slip, slip_work;          ///< slip_work: dissipated per length, J/m2
-};
-
-template <class Law>
-Contact respond(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes place,
-                Lanes old_place, Lanes old_slip) {
-  const Traction traction = law(p.gap);
-  Contact c{traction.pressure, {}, traction.energy, {}, {}};
-  if constexpr (Law::has_shear) {
-    const Lanes trial = old_slip + moved_along(window, p, touching & (old_place == old_place), old_place, place);
-    const Lanes largest = select(touching, traction.shear_limit * (1 / law.shear_stiffness), Lanes{});
-    c.slip = min(max(trial, -largest), largest);
-    c.shear = -law.shear_stiffness * c.slip;
-    // Mean of the old and the new traction times the plastic slip: what the tangential forces do, less what is stored.
-    c.slip_work = (0.5 * law.shear_stiffness) * (old_slip + c.slip) * (trial - c.slip);
-    c.energy += 0.5 * law.shear_stiffness * c.slip * c.slip;
-  }
-  return c;
-}
 
 /// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's distance, and makes the
 /// force the exact conjugate of the slip.
@@ -74,18 +29,52 @@ void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, La
 
 /// PatchTotals before the lanes are added up.
 struct LaneTotals {
-  Lanes stored{}, dissipated{}, deepest{};
+  Lanes stored{}, dissipated{}, damping_power{}, deepest{};
   int contacts = 0;
 };
 
 void add(double* to, Lanes value) { store(to, load(to) + value); }
 
-/// Nodes that left the master: their elastic slip is set free.
+/// Nodes that left the master: what they had stored is set free.
 template <class Law>
-Lanes release(const Law& law, const Pass& pass, int i, Lanes old_slip, ContactHistory& trial) {
+Lanes release(const Law& law, const Pass& pass, int i, Lanes old_slip, const ContactHistory& committed,
+              ContactHistory& trial) {
   store(&trial.place[pass.record + i], broadcast(std::numeric_limits<double>::quiet_NaN()));
   store(&trial.slip[pass.record + i], Lanes{});
-  return (0.5 * law.shear_stiffness) * old_slip * old_slip;
+  const Lanes sheared = (0.5 * law.shear_stiffness) * old_slip * old_slip;
+  if constexpr (keeps_damage<Law>) {
+    store(&trial.damage[pass.record + i], broadcast(1));
+    store(&trial.opening[pass.record + i], Lanes{});
+    const CohesiveFatigue::Bond bond = load_bond(committed, pass.record + i);
+    return select(bond.damage < 1.0, law.damage_work(bond, broadcast(1), bond.opening, bond.slip), sheared);
+  }
+  return sheared;
+}
+
+/// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work on.
+Lanes gap_rate(const Pass& pass, int i, const Projection& p, LaneBits touching) {
+  const int index = pass.nodes.begin + i, node = index - turn_of(index, pass.slave->count) * pass.slave->count;
+  Lanes rate{};
+  for (unsigned left = bits(touching); left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left), foot = static_cast<int>(p.number[lane]);
+    const auto relative = [&](const double* slave, const double* master) {
+      return slave[node + lane] - (1 - p.xi[lane]) * master[foot] - p.xi[lane] * master[foot + 1];
+    };
+    rate[lane] = p.normal_x[lane] * relative(pass.slave_vx, pass.master_vx) +
+                 p.normal_y[lane] * relative(pass.slave_vy, pass.master_vy);
+  }
+  return rate;
+}
+
+/// Adds the dashpot's pressure and what friction makes of it. Returns its power on the weights, W/m.
+template <class Law>
+Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
+                  Traction& traction) {
+  const Lanes rate = gap_rate(pass, i, p, touching);
+  const Lanes damping = law.damping_pressure(traction.pressure, rate, pass.damping);
+  traction.shear_limit += law.more_shear_limit(traction.pressure, traction.pressure + damping);
+  traction.pressure += damping;
+  return select(touching, -weight * damping * rate, Lanes{});
 }
 
 template <class Law>
@@ -94,20 +83,32 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
   const double inverse_longest = 1 / window.longest();
   const double outward = law.reach + (Law::has_shear ? skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
+    const int record = pass.record + i;
     const SlaveNodes nodes = load_slaves(pass, i);
     const LaneBits active = first_lanes(pass.nodes.count - i);
     const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
     const Projection p = project(window, nodes.x, nodes.y, outward);
-    const Lanes old_place = load(&committed.place[pass.record + i]), old_slip = load(&committed.slip[pass.record + i]);
+    const Lanes old_place = load(&committed.place[record]), old_slip = load(&committed.slip[record]);
     if (!any(p.hit)) {
-      totals.dissipated += half_length * release(law, pass, i, old_slip, trial);
+      totals.dissipated += half_length * release(law, pass, i, old_slip, committed, trial);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
     const Lanes place = place_of(p);
-    const Contact c = respond(law, window, p, touching, place, old_place, old_slip);
-    store(&trial.place[pass.record + i], select(p.hit, place, broadcast(std::numeric_limits<double>::quiet_NaN())));
-    store(&trial.slip[pass.record + i], select(touching, c.slip, Lanes{}));
+    Contact c;
+    if constexpr (keeps_damage<Law>) {
+      Lanes damage;
+      c = respond_with_damage(law, window, p, touching, place, old_place, load_bond(committed, record), damage);
+      store(&trial.damage[record], damage);
+      store(&trial.opening[record], select(p.hit, max(p.gap, Lanes{}), Lanes{}));
+    } else {
+      Traction traction = law(p.gap);
+      if constexpr (has_dashpot<Law>)
+        totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
+      c = respond(law, window, p, touching, place, old_place, old_slip, traction);
+    }
+    store(&trial.place[record], select(p.hit, place, broadcast(std::numeric_limits<double>::quiet_NaN())));
+    store(&trial.slip[record], select(touching, c.slip, Lanes{}));
     totals.dissipated += half_length * c.slip_work;
     if (!any(touching)) continue;
     const Lanes weight = select(touching, half_length, Lanes{});
@@ -124,99 +125,36 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
   }
 }
 
-/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
-Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch, int slave_side) {
-  const int slave = slave_side == 0 ? patch.first : patch.second;
-  const double shift = patch.images * model.scene.period.value_or(0);
-  const int offset = outlines.offset[slave], master_side = 1 - slave_side;
-  return {&model.outlines[outlines.shape[slave]],
-          &outlines.x[offset],
-          &outlines.y[offset],
-          patch.nodes[slave_side],
-          slave_side == 0 ? 0.0 : shift,
-          patch.record[slave_side],
-          patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
-          patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin};
-}
-
-void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side, double skin,
-                 MasterWindow& window) {
-  const int master = master_side == 0 ? patch.first : patch.second;
-  const double shift = master_side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0);
-  const int offset = outlines.offset[master];
-  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset],
-              patch.segments[master_side], shift, skin);
-}
-
-void clear_forces(const Patch& patch, PatchForces& forces) {
-  for (int side = 0; side < 2; ++side) {
-    std::fill_n(forces.x.begin() + patch.force[side], patch.forces(side).count, 0.0);
-    std::fill_n(forces.y.begin() + patch.force[side], patch.forces(side).count, 0.0);
-  }
-}
-
-/// Calls visit(pass, slave side, i, nodes, projection) for each eight slave nodes, from position i on, of which some stand beside the master, at
-/// most `outward` off.
-template <class Visit>
-void for_each_projection(const Model& model, const Outlines& outlines, const Patch& patch, double skin, double outward,
-                         MasterWindow& scratch, Visit&& visit) {
-  for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    for (int i = 0; i < pass.nodes.count; i += lane_count) {
-      const SlaveNodes nodes = load_slaves(pass, i);
-      if (const Projection p = project(scratch, nodes.x, nodes.y, outward); any(p.hit))
-        visit(pass, slave_side, i, nodes, p);
-    }
-  }
+void look_up_velocities(const Outlines& outlines, const Patch& patch, int slave_side, Pass& pass) {
+  const int slave = outlines.offset[slave_side == 0 ? patch.first : patch.second],
+            master = outlines.offset[slave_side == 0 ? patch.second : patch.first];
+  pass.slave_vx = &outlines.velocity_x[slave], pass.slave_vy = &outlines.velocity_y[slave];
+  pass.master_vx = &outlines.velocity_x[master], pass.master_vy = &outlines.velocity_y[master];
 }
 
 }  // namespace
 
-PatchTotals compute_patch(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
-                          double skin, const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
+PatchTotals compute_patch(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
+                          const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
                           MasterWindow& scratch) {
   LaneTotals totals;
   clear_forces(patch, forces);
-  for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    std::visit([&](const auto& law) { compute_pass(law, pass, scratch, skin, committed, trial, forces, totals); },
-               laws.laws[patch.law]);
-  }
-  return {sum(totals.stored), sum(totals.dissipated), largest(totals.deepest), totals.contacts};
-}
-
-void locate_newcomers(const Model& model, const ContactLaws& laws, const Outlines& outlines, const Patch& patch,
-                      double skin, ContactHistory& history, MasterWindow& scratch) {
-  const ContactLaw& law = laws.laws[patch.law];
-  if (!std::visit([](const auto& l) { return l.has_shear; }, law)) return;
-  for_each_projection(model, outlines, patch, skin, reach_of(law) + skin, scratch,
-                      [&](const Pass& pass, int, int i, const SlaveNodes&, const Projection& p) {
-                        double* place = &history.place[pass.record + i];
-                        const Lanes old = load(place);
-                        store(place, select(p.hit & (old != old), place_of(p), old));
-                      });
-}
-
-void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
-                             double skin, double outward, const double (&factor)[2], PatchForces& forces,
-                             MasterWindow& scratch) {
-  clear_forces(patch, forces);
-  const auto add_stiffness = [&](const Pass& pass, int slave_side, int i, const SlaveNodes& nodes,
-                                 const Projection& p) {
-    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      if (!p.hit[lane]) continue;
-      const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
-      const int at = pass.master_force + static_cast<int>(p.row[lane]);
-      forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
-      forces.x[at] += factor[1 - slave_side] * (1 - p.xi[lane]) * k;
-      forces.x[at + 1] += factor[1 - slave_side] * p.xi[lane] * k;
+  const auto compute = [&]<class Law>(const Law& law) {
+    double damping = 0;
+    if constexpr (has_dashpot<Law>)
+      if (const double length = touching_length(model, outlines, patch, skin, scratch); length > 0)
+        damping = law.root_damping / std::sqrt(length);
+    for (int slave_side = 0; slave_side < 2; ++slave_side) {
+      if (patch.nodes[slave_side].count == 0) continue;
+      Pass pass = make_pass(model, outlines, patch, slave_side);
+      if constexpr (has_dashpot<Law>) look_up_velocities(outlines, patch, slave_side, pass), pass.damping = damping;
+      fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
+      compute_pass(law, pass, scratch, skin, committed, trial, forces, totals);
     }
   };
-  for_each_projection(model, outlines, patch, skin, outward, scratch, add_stiffness);
+  std::visit(compute, patch.law);
+  return {sum(totals.stored), sum(totals.dissipated), sum(totals.damping_power), largest(totals.deepest),
+          totals.contacts};
 }
 
 }  // namespace pliant

@@ -5,8 +5,15 @@
 
 namespace pliant {
 
-/// Process exit codes, as documented in the README.
-enum class ExitCode { success = 0, bad_input = 2, physics_failure = 3, input_output = 4 };
+/// Process exit codes, as documented in the README. Stopped by a signal: 128 and its number, as shells have it.
+enum class ExitCode {
+  success = 0,
+  bad_input = 2,
+  physics_failure = 3,
+  input_output = 4,
+  interrupted = 130,
+  terminated = 143
+};
 
 /// An error whose message is complete for the user: what, where, the value, the allowed range, the next step.
 class Error : public std::runtime_error {
@@ -31,6 +38,11 @@ struct PhysicsError : Error {
 /// A file or folder cannot be read or written (exit code 4 for outputs).
 struct OutputError : Error {
   explicit OutputError(const std::string& message) : Error(ExitCode::input_output, message) {}
+};
+
+/// A signal asked the program to stop, and it did so in order (exit codes 130 and 143).
+struct Stopped : Error {
+  Stopped(int signal, const std::string& message) : Error(static_cast<ExitCode>(128 + signal), message) {}
 };
 
 }  // namespace pliant

@@ -29,9 +29,8 @@ double parallel_max(int count, double start, Value&& value) {
 }
 
 /// Sum of value(i) whose rounding does not depend on the number of threads: fixed blocks, added in order.
-template <class Value>
+template <int block = 256, class Value>
 double ordered_sum(int count, Value&& value) {
-  constexpr int block = 256;
   const int blocks = (count + block - 1) / block;
   std::vector<double> partial(static_cast<std::size_t>(blocks), 0.0);
   parallel_for(blocks, [&](int b) {

@@ -15,7 +15,8 @@ Points boundary_moments(const FieldMesh& mesh, const ShapeRows& outline_rows);
 /// (1) sum_i b_gi = 0 and sum_i b_gi (x) X_i = I at every point and
 /// (2) sum_g w_g b_gi = sum_k s_k phi_i(x_k) for every node
 /// (METHOD 2; the unsymmetric origin is Chen, Hillman, Rueter 2013). The table's gradients must already be linearly
-/// complete, as those of moving least squares are. Throws InputError when the residual stays above 1e-12. Coordinates
+/// complete, as those of moving least squares are. Throws InputError when the residual stays above 1e-12 (above 4500 nodes: their
+/// number times the rounding unit). Coordinates
 /// should be of the order of one node distance. Returns the largest residual of (1) and (2).
 double make_gradients_consistent(IntegrationTable& table, const FieldMesh& mesh, const ShapeRows& outline_rows);
 

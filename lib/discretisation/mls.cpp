@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/errors.hpp"
 
@@ -39,14 +40,14 @@ struct Neighbour {
 
 std::vector<Neighbour> find_neighbours(const MlsNodes& nodes, const Vec2& x) {
   std::vector<Neighbour> found;
-  for (std::size_t i = 0; i < nodes.position.size(); ++i) {
+  for (const int i : nodes.near(x)) {
     const Vec2 r = nodes.position[i] - x;
     const double radius = nodes.radius[i], limit = support_edge * radius;
     if (r.squaredNorm() >= limit * limit) continue;
     const double distance = r.norm();
     const Weight w = cubic_spline(distance / radius);
     const Vec2 gradient = distance > 0 ? Vec2(-w.slope / (radius * distance) * r) : Vec2(0, 0);
-    found.push_back({static_cast<int>(i), Vector3d(1, r.x(), r.y()), w.value, gradient});
+    found.push_back({i, Vector3d(1, r.x(), r.y()), w.value, gradient});
   }
   return found;
 }
@@ -74,14 +75,18 @@ MlsNodes make_mls_nodes(const Points& nodes, int support) {
   if (static_cast<int>(nodes.size()) <= support)
     throw InputError(fmt::format("discretisation: support = {} needs more than {} nodes; the shape has {}", support,
                                  support, nodes.size()));
-  MlsNodes result{nodes, {}};
-  std::vector<double> squared(nodes.size());
-  for (const Vec2& x : nodes) {
-    std::transform(nodes.begin(), nodes.end(), squared.begin(), [&](const Vec2& y) { return (y - x).squaredNorm(); });
-    std::nth_element(squared.begin(), squared.begin() + support, squared.end());  // the node itself is number 0
-    result.radius.push_back(std::sqrt(squared[support]));
-  }
+  MlsNodes result{nodes, {}, 0, std::make_shared<NodeGrid>(make_node_grid(nodes))};
+  for (const Vec2& x : nodes)  // the node itself is number 0
+    result.radius.push_back(std::sqrt(result.grid->square_distance_to_nearest(x, support)));
+  result.reach = *std::max_element(result.radius.begin(), result.radius.end());
   return result;
+}
+
+std::vector<int> MlsNodes::near(const Vec2& x) const {
+  if (grid) return grid->near(x, reach);
+  std::vector<int> all(position.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 // With c(x) the first row of M^-1 in the basis centred at the fixed point, phi_i = c . p_i w_i. Moving x moves the

@@ -1,14 +1,22 @@
 #pragma once
 
+#include <memory>
+
 #include "core/vec2.hpp"
 #include "discretisation/basis.hpp"
+#include "discretisation/node_grid.hpp"
 
 namespace pliant {
 
 /// Nodes with the radii of their supports: what moving least squares needs of a mesh.
 struct MlsNodes {
-  Points position;             ///< [nodes]
-  std::vector<double> radius;  ///< [nodes]
+  Points position;                                 ///< [nodes]
+  std::vector<double> radius;                      ///< [nodes]
+  double reach = 0;                                ///< the largest radius, when there is a grid
+  std::shared_ptr<const NodeGrid> grid = nullptr;  ///< finds the nodes near a point; without one all are looked at
+
+  /// Numbers of nodes, ascending, that hold all whose support reaches x.
+  std::vector<int> near(const Vec2& x) const;
 };
 
 /// Gives each node the distance to its support-th nearest other node as radius (METHOD 2). Throws InputError when there

@@ -19,8 +19,8 @@ Vec2 radial_gradient(const Vec2& r) {
 
 std::vector<int> supporting_nodes(const MlsNodes& nodes, const Vec2& x) {
   std::vector<int> found;
-  for (std::size_t i = 0; i < nodes.position.size(); ++i)
-    if ((nodes.position[i] - x).norm() < nodes.radius[i]) found.push_back(static_cast<int>(i));
+  for (const int i : nodes.near(x))
+    if ((nodes.position[i] - x).norm() < nodes.radius[i]) found.push_back(i);
   return found;
 }
 

@@ -45,13 +45,9 @@ RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& o
 }
 
 std::vector<double> nearest_distances(const Points& nodes) {
+  const NodeGrid grid = make_node_grid(nodes);
   std::vector<double> distances;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < nodes.size(); ++j)
-      if (j != i) least = std::min(least, (nodes[j] - nodes[i]).squaredNorm());
-    distances.push_back(std::sqrt(least));
-  }
+  for (const Vec2& x : nodes) distances.push_back(std::sqrt(grid.square_distance_to_nearest(x, 1)));
   return distances;
 }
 

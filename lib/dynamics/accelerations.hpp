@@ -2,7 +2,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
-#include "core/parallel.hpp"
+#include "bodies/node_arrays.hpp"
 
 namespace pliant {
 
@@ -17,15 +17,18 @@ void for_each_rigid_dof(const Model& model, Update&& update) {
 /// The bodies are shared out over the threads; updates touch only index i.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
-  parallel_for(static_cast<int>(model.batches.size()), [&](int b) {
-    const Batch& batch = model.batches[b];
-    const std::vector<double>& inverse_unit_mass = model.shape_of(batch).inverse_unit_mass;
-    std::size_t i = batch.offset;
-    for (double inverse : inverse_unit_mass) {
-      const Lanes inverse_mass = inverse * batch.inverse_density;
-      compliant(i++, inverse_mass);
-      compliant(i++, inverse_mass);
-    }
+  parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
+    const Region& region = model.regions[r];
+    const Batch& batch = model.batches[region.batch];
+    with_nodes(model, batch, [&](auto nodes) {
+      const Lanes inverse_density = batch.inverse_density;  // here it cannot alias what the updates write
+      std::size_t i = batch.offset + 2 * static_cast<std::size_t>(region.first);
+      for (int slot = region.first; slot < region.last; ++slot) {
+        const Lanes inverse_mass = nodes.inverse_unit_mass[slot] * inverse_density;
+        compliant(i++, inverse_mass);
+        compliant(i++, inverse_mass);
+      }
+    });
   });
   for_each_rigid_dof(model, rigid);
 }

@@ -3,14 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include <spdlog/spdlog.h>
+
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/mass_correction.hpp"
+#include "bodies/node_arrays.hpp"
+#include "bodies/small_strain.hpp"
 #include "boundary/loads.hpp"
+#include "boundary/outline_loads.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
+
+/// Displacement gradients up to which linear elasticity errs by some percent.
+constexpr double small_strain = 0.03;
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
 
@@ -18,14 +26,16 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0;
 
 double kinetic_energy(const Model& model, const Dofs& velocity) {
   const Dofs moving = material_velocity(model, velocity);
-  double total = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
-    const Batch& batch = model.batches[b];
-    const std::vector<double>& mass = model.shape_of(batch).space.unit_mass;
+  double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
+    const Region& region = model.regions[r];
+    const Batch& batch = model.batches[region.batch];
     const Lanes *y = &velocity.compliant[batch.offset], *v = &moving.compliant[batch.offset];
-    Lanes energy{};
-    for (std::size_t i = 0; i < mass.size(); ++i)
-      energy += 0.5 * mass[i] * (y[2 * i] * v[2 * i] + y[2 * i + 1] * v[2 * i + 1]);
-    return sum(energy * batch.density * batch.weight);
+    return with_nodes(model, batch, [&](const auto& nodes) {
+      Lanes energy{};
+      for (int i = region.first; i < region.last; ++i)
+        energy += 0.5 * nodes.unit_mass[i] * (y[2 * i] * v[2 * i] + y[2 * i + 1] * v[2 * i + 1]);
+      return sum(energy * batch.density * batch.weight);
+    });
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -40,8 +50,20 @@ Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(z
   energy_start_ = audit(start).energy.mechanical();
 }
 
+void Auditor::warn_of_strain(const State& state) {
+  if (warned_of_strain_) return;
+  const double strain = largest_small_strain(forces_.model(), state.position);
+  if (strain <= small_strain) return;
+  warned_of_strain_ = true;
+  spdlog::warn(
+      "displacement gradients of \"linear-elastic\" bodies reach {:.2g} at t = {:.6g} s: the law is a check for small "
+      "strains and rotations, some percent at most; take \"neo-hookean\"",
+      strain, state.time);
+}
+
 Audit Auditor::audit(const State& state) {
   const Model& model = forces_.model();
+  warn_of_strain(state);
   Audit result;
   // The same forces once more: the history stands still at an accepted state, so nothing slips.
   ContactHistory history = state.history;
@@ -50,9 +72,12 @@ Audit Auditor::audit(const State& state) {
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);
-  result.energy.strain = ordered_sum(static_cast<int>(model.batches.size()), [&](int b) {
-    return sum(strain_energy(model, model.batches[b], &state.position.compliant[model.batches[b].offset]));
+  std::vector<double> strain(model.batches.size());
+  for_each_batch(model, [&](int b) {
+    strain[b] = sum(strain_energy(model, model.batches[b], &state.position.compliant[model.batches[b].offset]));
   });
+  result.energy.strain = ordered_sum(static_cast<int>(strain.size()), [&](int b) { return strain[b]; });
+  result.energy.boundary = support_energy(model, state.position, state.time);
   result.energy.dissipated = state.dissipated;
   result.energy.external_work = state.external_work + gravity_moment(model, state.position) - gravity_start_;
   result.momentum_error = std::max(contact_imbalance(), internal_imbalance(state.position));
@@ -61,7 +86,8 @@ Audit Auditor::audit(const State& state) {
 
 double Auditor::balance_error(const Energies& energy) const {
   const double imbalance = energy.mechanical() - energy_start_ - energy.external_work + energy.dissipated;
-  return ratio(std::abs(imbalance), std::max(std::abs(energy.external_work), std::abs(energy_start_)));
+  return ratio(std::abs(imbalance),
+               std::max({std::abs(energy.external_work), std::abs(energy_start_), energy.dissipated}));
 }
 
 /// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but a force's
@@ -83,25 +109,29 @@ double Auditor::contact_imbalance() const {
 
 double Auditor::internal_imbalance(const Dofs& position) const {
   const Model& model = forces_.model();
-  return parallel_max(static_cast<int>(model.batches.size()), 0, [&](int b) {
+  std::vector<double> imbalance(model.batches.size());
+  for_each_batch(model, [&](int b) {
     const Batch& batch = model.batches[b];
-    const std::size_t nodes = static_cast<std::size_t>(model.shape_of(batch).nodes());
-    std::vector<Lanes> f(2 * nodes, Lanes{});
+    const std::size_t slots = static_cast<std::size_t>(batch.slots);
+    std::vector<Lanes> f(2 * slots, Lanes{});
     const Lanes* q = &position.compliant[batch.offset];
     add_internal_forces(model, batch, q, f.data());
     Lanes fx{}, fy{}, moment{}, magnitude = broadcast(1e-300), lever = broadcast(1e-300);
-    for (std::size_t i = 0; i < nodes; ++i) {
+    for (std::size_t i = 0; i < slots; ++i) {
       fx += f[2 * i], fy += f[2 * i + 1];
       magnitude += abs(f[2 * i]) + abs(f[2 * i + 1]);
       moment += q[2 * i] * f[2 * i + 1] - q[2 * i + 1] * f[2 * i];
       lever += abs(q[2 * i] * f[2 * i + 1]) + abs(q[2 * i + 1] * f[2 * i]);
     }
+    for (Lanes* total : {&fx, &fy, &moment, &magnitude, &lever}) *total = sum_over_body(batch, *total);
     // Rounding of an unloaded grain is not an imbalance: forces count relative to the elastic scale of the grain.
-    const double scale = std::sqrt(model.bodies[model.groups[batch.group].bodies[batch.first]].area);
-    const Lanes floor = batch.mu * (1e-3 * scale);
+    const Body& body = model.bodies[model.groups[batch.group].bodies[batch.first]];
+    const double size = std::sqrt(body.area) / body.scale;
+    const Lanes floor = batch.mu * (1e-3 * size);
     const Lanes linear = max(abs(fx), abs(fy)) / max(magnitude, floor);
-    return largest(max(linear, abs(moment) / max(lever, floor * scale)));
+    imbalance[b] = largest(max(linear, abs(moment) / max(lever, floor * size)));
   });
+  return imbalance.empty() ? 0 : *std::max_element(imbalance.begin(), imbalance.end());
 }
 
 }  // namespace pliant

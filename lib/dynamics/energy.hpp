@@ -9,9 +9,10 @@ namespace pliant {
 struct Energies {
   double kinetic = 0, strain = 0;
   double contact = 0;        ///< stored in contacts; negative where cohesive surfaces are joined
-  double dissipated = 0;     ///< by slip, summed from the laws' own work
+  double boundary = 0;       ///< in the springs of soft supports
+  double dissipated = 0;     ///< by slip, dashpots and viscosity, summed from the laws' own work
   double external_work = 0;  ///< of loads, imposed motions and gravity
-  double mechanical() const { return kinetic + strain + contact; }
+  double mechanical() const { return kinetic + strain + contact + boundary; }
 };
 
 /// `velocity` as a state holds it: see bodies/mass_correction.hpp.
@@ -32,11 +33,18 @@ class Auditor {
   Auditor(Forces& forces, const State& start);
   Audit audit(const State& state);
 
-  /// |mechanical - mechanical at start - external work + dissipated| over the larger of external work and initial mechanical energy; 0 when both
-  /// vanish.
+  /// |mechanical - mechanical at start - external work + dissipated| over the largest of external work, initial mechanical energy and
+  /// dissipation; 0 when all vanish.
   double balance_error(const Energies& energy) const;
 
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("gravity_start", gravity_start_);
+    visitor("energy_start", energy_start_);
+  }
+
  private:
+  void warn_of_strain(const State& state);
   double internal_imbalance(const Dofs& position) const;
   double contact_imbalance() const;
 
@@ -45,6 +53,7 @@ class Auditor {
   double energy_start_ = 0;
   Dofs force_;
   ContactHistory scratch_;
+  bool warned_of_strain_ = false;
 };
 
 }  // namespace pliant

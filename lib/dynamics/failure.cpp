@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "bodies/body_view.hpp"
 #include "bodies/internal_forces.hpp"
 #include "contact/deepest_node.hpp"
 #include "core/errors.hpp"
@@ -16,10 +17,6 @@ constexpr double least_share = 1e-9;  ///< of the largest time step: below, the 
 std::string name_of(const Model& model, int body) { return fmt::format("body {} '{}'", body, model.bodies[body].name); }
 
 std::string place(const Vec2& x) { return fmt::format("({:.6g}, {:.6g}) m", x.x(), x.y()); }
-
-const Lanes* positions_of(const Model& model, const Body& body, const Dofs& dofs) {
-  return &dofs.compliant[model.batches[body.batch].offset];
-}
 
 struct LeastJacobian {
   double value = 1e300;
@@ -48,12 +45,13 @@ Vec2 reference_position(const Discretisation& space, int point) {
 
 std::string describe_inversion(const Model& model, const Dofs& position) {
   const LeastJacobian least = least_jacobian(model, position);
-  const Discretisation& space = model.shape_of(model.batches[model.bodies[least.body].batch]).space;
+  const Body& body = model.bodies[least.body];
+  const Discretisation& space = model.shape_of(body).space;
   return fmt::format(
       "{} is turned inside out: J = {:.3g} <= 0 at integration point {} of {}, about {} of its reference shape; reduce "
       "the load, the tolerance or the time step's safety factor",
       name_of(model, least.body), least.value, least.point, space.table.weight.size(),
-      place(reference_position(space, least.point)));
+      place(body.scale * reference_position(space, least.point)));
 }
 
 std::string describe_nan(const Model& model, int body, const Dofs& dofs) {
@@ -64,11 +62,11 @@ std::string describe_nan(const Model& model, int body, const Dofs& dofs) {
       if (!std::isfinite(dofs.rigid[3 * static_cast<std::size_t>(b.rigid) + c])) return names[c];
     return {};
   }
-  const Points& nodes = model.shape_of(model.batches[b.batch]).space.mesh.nodes;
-  const Lanes* values = positions_of(model, b, dofs);
+  const Points& nodes = model.shape_of(b).space.mesh.nodes;
+  const BodyView values(model, b, dofs);
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    if (!std::isfinite(values[2 * i][b.lane] + values[2 * i + 1][b.lane]))
-      return fmt::format("node {}, {} in its reference shape,", i, place(nodes[i]));
+    if (!std::isfinite(values[i].sum()))
+      return fmt::format("node {}, {} in its reference shape,", i, place(b.scale * nodes[i]));
   return {};
 }
 

@@ -5,9 +5,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/update_outlines.hpp"
 #include "boundary/loads.hpp"
+#include "boundary/outline_loads.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -22,19 +24,27 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 }  // namespace
 
 Forces::Forces(const Model& model)
-    : model_(model), outlines_(make_outlines(model)), contact_(model), least_jacobian_(model.batches.size(), 1e300) {}
+    : model_(model),
+      outlines_(make_outlines(model)),
+      contact_(model),
+      least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
+  for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
+    stresses_.emplace_back(static_cast<std::size_t>(model.spread_shape_of(model.batches[b]).points()));
+  if (model.rates) damping_power_.resize(model.regions.size() + model.point_chunks.size() + model.rigid_bodies.size());
+}
 
 Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
-                            State* accepted, const BatchWork& afterwards) {
+                            State* accepted, const RegionWork& afterwards) {
   const Dofs& position = motion.position;
   Evaluation result;
   update_outlines(model_, position, outlines_);
-  if (contact_.refresh_needed(outlines_)) {
+  const RunClock clock{motion.time, accepted ? accepted->steps : 0};
+  if (contact_.refresh_needed(outlines_, clock)) {
     if (accepted) update_outlines(model_, accepted->position, outlines_);
-    contact_.refresh(outlines_, accepted ? accepted->history : committed);
+    contact_.refresh(outlines_, accepted ? accepted->history : committed, clock);
     if (accepted) update_outlines(model_, position, outlines_);
     result.refreshed = true;
-    result.sound = !contact_.refresh_needed(outlines_);
+    result.sound = !contact_.refresh_needed(outlines_, clock);
     if (accepted && &accepted->history != &committed) {
       result.sound = false;
       return result;
@@ -42,23 +52,66 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
   }
   update_outline_velocities(model_, motion, outlines_);
   result.contact = contact_.forces(outlines_, committed, trial);
-  parallel_for(static_cast<int>(model_.batches.size()), [&](int b) {
-    const Batch& batch = model_.batches[b];
-    Lanes* f = &force.compliant[batch.offset];
-    std::fill_n(f, 2 * model_.shape_of(batch).nodes(), Lanes{});
-    add_outline_forces(model_, batch, outlines_, f);
-    add_gravity(model_, batch, f);
-    least_jacobian_[b] = least_of(add_internal_forces(model_, batch, &position.compliant[batch.offset], f));
-    if (afterwards) afterwards(b);
-  });
+  const OutlineLoads loads(model_, motion.time, outlines_);
+  result.damping_power = result.contact.damping_power + loads.damping_power();
+  lane_forces(motion, force, afterwards);
+  if (!stresses_.empty()) spread_forces(motion, force, afterwards);
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
     outline_force_resultant(model_, rigid, outlines_, &position.rigid[3 * r], &force.rigid[3 * r]);
     add_rigid_loads(model_, rigid, motion.time, &force.rigid[3 * r]);
+    if (model_.rates)
+      damping_power_[model_.regions.size() + model_.point_chunks.size() + static_cast<std::size_t>(r)] =
+          add_rigid_damping(rigid, motion.time, &motion.velocity.rigid[3 * r], &force.rigid[3 * r]);
   });
+  for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.sound &= result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
   return result;
+}
+
+/// All forces on bodies that stand one a lane.
+void Forces::lane_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards) {
+  parallel_for(model_.lane_batches, [&](int b) {
+    const Batch& batch = model_.batches[b];
+    const Region& region = model_.regions[b];
+    Lanes* f = &force.compliant[batch.offset];
+    std::fill_n(f, 2 * batch.slots, Lanes{});
+    add_outline_forces(model_, region, outlines_, f);
+    add_gravity(model_, region, f);
+    const Lanes *q = &motion.position.compliant[batch.offset], *v = &motion.velocity.compliant[batch.offset];
+    least_jacobian_[b] = least_of(add_internal_forces(model_, batch, q, f));
+    if (model_.rates)
+      damping_power_[b] = viscous_power(model_, batch, q, v, f) + add_mass_damping(model_, region, v, f);
+    if (afterwards) afterwards(b);
+  });
+}
+
+/// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
+void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards) {
+  const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
+  parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
+    const Chunk& chunk = model_.point_chunks[c];
+    const Batch& batch = model_.batches[chunk.batch];
+    const Lanes* q = &motion.position.compliant[batch.offset];
+    least_jacobian_[model_.lane_batches + c] = spread_stresses(model_, chunk, q, stresses_of(chunk.batch));
+    if (batch.viscous)
+      damping_power_[model_.regions.size() + static_cast<std::size_t>(c)] =
+          add_viscous_stresses(model_, chunk, q, &motion.velocity.compliant[batch.offset], stresses_of(chunk.batch));
+  });
+  parallel_for(static_cast<int>(model_.regions.size()) - model_.lane_batches, [&](int i) {
+    const int r = model_.lane_batches + i;
+    const Region& region = model_.regions[r];
+    Lanes* f = &force.compliant[model_.batches[region.batch].offset];
+    std::fill(f + 2 * region.first, f + 2 * region.last, Lanes{});
+    add_outline_forces(model_, region, outlines_, f);
+    add_gravity(model_, region, f);
+    add_spread_forces(model_, region, stresses_of(region.batch), f);
+    if (model_.rates)
+      damping_power_[r] =
+          add_mass_damping(model_, region, &motion.velocity.compliant[model_.batches[region.batch].offset], f);
+    if (afterwards) afterwards(r);
+  });
 }
 
 void Forces::warn_of_depth(const Evaluation& evaluation, double time) {

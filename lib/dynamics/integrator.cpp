@@ -3,14 +3,17 @@
 #include <utility>
 
 #include "boundary/loads.hpp"
+#include "boundary/outline_loads.hpp"
 
 namespace pliant {
 
 void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
                const StepReport& report) {
   state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
-                                       state.force, trial.force, state.time, report.dt);
+                                       state.force, trial.force, state.time, report.dt) +
+                         outline_work(model, state.motion(), {trial.position, trial.velocity, end_time});
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
+  state.damped += report.damping_work;
   std::swap(state.position, trial.position);
   std::swap(state.velocity, trial.velocity);
   std::swap(state.force, trial.force);

@@ -1,5 +1,6 @@
 #include "dynamics/simulation.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "bodies/initial_state.hpp"
@@ -30,6 +31,9 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
 }
 
 StepReport Simulation::step(double until) {
+  const auto& times = model_.switch_times;
+  const auto next = std::upper_bound(times.begin(), times.end(), state_.time);
+  if (next != times.end()) until = std::min(until, *next);
   if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) return verlet->step(state_, until);
   return std::get<StepDoubling>(integrator_).step(state_, until);
 }

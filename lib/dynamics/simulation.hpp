@@ -26,6 +26,17 @@ class Simulation {
   double largest_dt() const;      ///< stability bound, s; infinite for step-doubling
   std::string governing() const;  ///< what limits the stability bound
 
+  /// Everything that the coming steps and audits depend on: a simulation of the same model that reads it goes on with
+  /// the same bits.
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("state", state_);
+    visitor("forces", forces_);
+    visitor("auditor", *auditor_);
+    if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) visitor("verlet", *verlet);
+    if (StepDoubling* doubling = std::get_if<StepDoubling>(&integrator_)) visitor("step_doubling", *doubling);
+  }
+
  private:
   const Model& model_;
   State state_;

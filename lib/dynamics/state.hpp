@@ -4,17 +4,19 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
-#include "contact/patch.hpp"
+#include "contact/history.hpp"
 
 namespace pliant {
 
-/// Everything that changes during a run. It enumerates itself (visit), so that hash, comparison and checkpoint cannot forget a part.
+/// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
+/// checkpoint cannot forget a part.
 struct State {
   double time = 0;           ///< s
   double next_dt = 0;        ///< what the controller proposes, s
   double jerk = 0;           ///< verlet: error over dt^3, the largest of late, 1/s3
   double external_work = 0;  ///< of loads and imposed motions, J/m
-  double dissipated = 0;     ///< by contact laws, J/m
+  double dissipated = 0;     ///< by contact laws and by damping, J/m
+  double damped = 0;         ///< of that, by forces that depend on velocities, J/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
   Dofs position, velocity, force;
   ContactHistory history;
@@ -23,23 +25,20 @@ struct State {
 
   /// visitor(name, value) for every member; arrays come as vectors.
   template <class Visitor>
-  void visit(Visitor&& visitor) const {
+  void visit(Visitor&& visitor) {
     visitor("time", time);
     visitor("next_dt", next_dt);
     visitor("jerk", jerk);
     visitor("external_work", external_work);
     visitor("dissipated", dissipated);
+    visitor("damped", damped);
     visitor("steps", steps);
     visitor("rejections", rejections);
     visitor("evaluations", evaluations);
-    visitor("position.compliant", position.compliant);
-    visitor("position.rigid", position.rigid);
-    visitor("velocity.compliant", velocity.compliant);
-    visitor("velocity.rigid", velocity.rigid);
-    visitor("force.compliant", force.compliant);
-    visitor("force.rigid", force.rigid);
-    visitor("history.place", history.place);
-    visitor("history.slip", history.slip);
+    visitor("position", position);
+    visitor("velocity", velocity);
+    visitor("force", force);
+    visitor("history", history);
   }
 };
 

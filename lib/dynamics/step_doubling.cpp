@@ -23,9 +23,39 @@ double wave_time(const Model& model) {
   for (const Batch& batch : model.batches) {
     const std::vector<double>& distance = model.shape_of(batch).space.nodal_distance;
     const double least = *std::min_element(distance.begin(), distance.end());
-    result = std::min(result, least * std::sqrt(batch.density[0] / (batch.lambda[0] + 2 * batch.mu[0])));
+    // Density x s^2 makes it the time over the scaled distance; padding repeats a body.
+    result = std::min(result, least * -largest(-sqrt(batch.density / (batch.lambda + 2.0 * batch.mu))));
   }
   return result;
+}
+
+struct LanePair {
+  Lanes x{}, y{};
+};
+
+/// u = sum phi U at one field node of the bodies of a batch.
+LanePair displacement(const ShapeRows& rows, const Lanes* d, int node) {
+  LanePair u;
+  for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
+    u.x += rows.value[e] * d[2 * rows.node[e]];
+    u.y += rows.value[e] * d[2 * rows.node[e] + 1];
+  }
+  return u;
+}
+
+/// The same at the nodes of one slot of a spread body; 0 in padding.
+LanePair displacement(const ShapeRows& rows, const SpreadShape& shape, const double* d, int slot) {
+  LanePair u;
+  const int first = lane_count * slot, count = std::min(lane_count, static_cast<int>(shape.order.size()) - first);
+  for (int lane = 0; lane < count; ++lane) {
+    const int node = shape.order[first + lane];
+    for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
+      const double* of_node = d + shape.place[rows.node[e]];
+      u.x[lane] += rows.value[e] * of_node[0];
+      u.y[lane] += rows.value[e] * of_node[lane_count];
+    }
+  }
+  return u;
 }
 
 }  // namespace
@@ -98,10 +128,10 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
         if (!corrected) trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed() ? imposed_velocity(dof, time + half)
-                                                 : velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
-        trial_.position.rigid[i] = dof.imposed() ? imposed_position(dof, position.rigid[i], time, half)
-                                                 : position.rigid[i] + half * trial_.velocity.rigid[i];
+        trial_.velocity.rigid[i] = dof.imposed(time) ? imposed_velocity(dof, time + half)
+                                                     : velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
+        trial_.position.rigid[i] = dof.imposed(time) ? imposed_position(dof, position.rigid[i], time, half)
+                                                     : position.rigid[i] + half * trial_.velocity.rigid[i];
       });
   if (!corrected) return;
   moving_velocity_ = material_velocity(model_, trial_.velocity);
@@ -109,30 +139,43 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
     trial_.position.compliant[i] = position.compliant[i] + half * moving_velocity_.compliant[i];
 }
 
-/// u2 - u1 = dt^2/4 a_half - dt^2/2 a; displacements are u = sum phi U, at the field nodes.
-double StepDoubling::batch_error(const Batch& batch, const State& state, double dt) {
-  const CompliantShape& shape = model_.shape_of(batch);
-  const ShapeRows& rows = shape.space.node_rows;
+/// u2 - u1 = dt^2/4 a_half - dt^2/2 a at the degrees of freedom.
+void StepDoubling::find_difference(const Region& region, const State& state, double dt) {
+  const Batch& batch = model_.batches[region.batch];
   Lanes* d = &difference_[batch.offset];
   const Lanes *start = &state.force.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
-  for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(shape.nodes()); ++i)
-    d[i] = 0.25 * dt * dt * shape.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
-  if (model_.corrected_mass) {
-    const std::vector<Lanes> uncorrected(d, d + 2 * shape.nodes());
-    correct_velocity(shape, uncorrected.data(), d);
-  }
-  Lanes worst{}, any_nan{};
-  for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
-    Lanes x{}, y{};
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) {
-      x += rows.value[e] * d[2 * rows.node[e]];
-      y += rows.value[e] * d[2 * rows.node[e] + 1];
-    }
-    const Lanes here = max(abs(x), abs(y)) * (1 / shape.space.nodal_distance[k]);
-    worst = max(worst, here);
-    any_nan += x + y;
-  }
-  return std::isfinite(sum(any_nan)) ? largest(worst) : std::numeric_limits<double>::infinity();
+  with_nodes(model_, batch, [&](const auto& nodes) {
+    for (int i = 2 * region.first; i < 2 * region.last; ++i)
+      d[i] = 0.25 * dt * dt * nodes.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
+  });
+}
+
+void StepDoubling::correct_difference() {
+  const std::vector<Lanes> uncorrected = difference_;
+  for_each_batch(model_, [&](int b) {
+    const Batch& batch = model_.batches[b];
+    correct_velocity(model_, batch, &uncorrected[batch.offset], &difference_[batch.offset]);
+  });
+}
+
+double StepDoubling::region_error(const Region& region) const {
+  const Batch& batch = model_.batches[region.batch];
+  const Lanes* d = &difference_[batch.offset];
+  const ShapeRows& rows = model_.shape_of(batch).space.node_rows;
+  const auto largest_of = [&](const auto& displacement_at) {
+    return with_nodes(model_, batch, [&](const auto& nodes) {
+      Lanes worst{}, any_nan{};
+      for (int slot = region.first; slot < region.last; ++slot) {
+        const LanePair u = displacement_at(slot);
+        worst = max(worst, max(abs(u.x), abs(u.y)) * (1 / nodes.nodal_distance[slot]));
+        any_nan += u.x + u.y;
+      }
+      return std::isfinite(sum(any_nan)) ? largest(worst) : std::numeric_limits<double>::infinity();
+    });
+  };
+  if (batch.layout == Layout::shared) return largest_of([&](int node) { return displacement(rows, d, node); });
+  const SpreadShape& shape = model_.spread_shape_of(batch);
+  return largest_of([&](int slot) { return displacement(rows, shape, reinterpret_cast<const double*>(d), slot); });
 }
 
 /// Componentwise difference of the outline nodes between the two ends u1 and u2.
@@ -143,7 +186,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
     const RigidDof& dof = body.dof[c];
     const double a = dof.inverse_mass * state.force.rigid[3 * r + c],
                  a_half = dof.inverse_mass * trial_.force.rigid[3 * r + c];
-    change[c] = dof.imposed() ? 0.0 : 0.25 * dt * dt * (a_half - 2 * a);
+    change[c] = dof.imposed(state.time) ? 0.0 : 0.25 * dt * dt * (a_half - 2 * a);
     end[c] = trial_.position.rigid[3 * r + c];
   }
   const double c2 = std::cos(end[2]), s2 = std::sin(end[2]), c1 = std::cos(end[2] - change[2]),
@@ -159,8 +202,11 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 }
 
 double StepDoubling::error(const State& state, double dt) {
-  const double compliant = parallel_max(static_cast<int>(model_.batches.size()), 0,
-                                        [&](int b) { return batch_error(model_.batches[b], state, dt); });
+  // A spread body's region needs the differences of its neighbours: all first.
+  parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], state, dt); });
+  if (model_.corrected_mass) correct_difference();
+  const double compliant =
+      parallel_max(static_cast<int>(model_.regions.size()), 0, [&](int r) { return region_error(model_.regions[r]); });
   return parallel_max(static_cast<int>(model_.rigid_bodies.size()), compliant,
                       [&](int r) { return rigid_error(static_cast<std::size_t>(r), state, dt); });
 }

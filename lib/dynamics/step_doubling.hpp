@@ -12,13 +12,17 @@ class StepDoubling {
 
   /// Takes one accepted step that ends at `until` at the latest.
   StepReport step(State& state, double until);
+  template <class Visitor>
+  void visit(Visitor&&) {}  ///< nothing outlives a step
 
  private:
   double try_step(State& state, double end_time, StepReport& report, bool once_more = true);
   bool evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);
-  double batch_error(const Batch& batch, const State& state, double dt);
+  void find_difference(const Region& region, const State& state, double dt);
+  void correct_difference();
+  double region_error(const Region& region) const;
   double rigid_error(std::size_t rigid, const State& state, double dt) const;
 
   Forces& forces_;

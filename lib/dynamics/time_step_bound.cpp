@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/mass_correction.hpp"
+#include "bodies/node_arrays.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -21,20 +23,22 @@ constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.
 constexpr double probe_size = 1e-6;
 
-/// sum over nodes of a_i b_i w_i in each lane.
-Lanes weighted_dot(const Lanes* a, const Lanes* b, const std::vector<double>& weight) {
+/// sum over slots of a_i b_i w_i in each lane.
+template <class Weight>
+Lanes weighted_dot(const Lanes* a, const Lanes* b, const Weight* weight, int slots) {
   Lanes total{};
-  for (std::size_t i = 0; i < weight.size(); ++i)
-    total += weight[i] * (a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]);
+  for (int i = 0; i < slots; ++i) total += weight[i] * (a[2 * i] * b[2 * i] + a[2 * i + 1] * b[2 * i + 1]);
   return total;
 }
 
 /// D C D^-1 of a force, so that the division by the lumped mass that follows makes it the acceleration W f.
-std::vector<Lanes> corrected(const CompliantShape& shape, std::vector<Lanes> force) {
+std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector<Lanes> force) {
   std::vector<Lanes> result(force.size());
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] *= shape.inverse_unit_mass[i / 2];
-  correct_velocity(shape, force.data(), result.data());
-  for (std::size_t i = 0; i < force.size(); ++i) result[i] *= shape.space.unit_mass[i / 2];
+  with_nodes(model, batch, [&](const auto& nodes) {
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] *= nodes.inverse_unit_mass[i / 2];
+    correct_velocity(model, batch, force.data(), result.data());
+    for (std::size_t i = 0; i < force.size(); ++i) result[i] *= nodes.unit_mass[i / 2];
+  });
   return result;
 }
 
@@ -66,18 +70,39 @@ TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : mode
   for (const Body& body : model.bodies)
     compliance_.push_back(contact_frequency(body, model.outlines[body.outline].tributary_length.data()));
   contact_floor_.assign(model.bodies.size(), 0.0);
-  if (model.bodies.size() < 2) return;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const int* laws_of_class = &laws.pair_law[laws.body_class[b] * laws.classes];
-    for (int other = 0; other < laws.classes; ++other)
-      contact_floor_[b] = std::max(contact_floor_[b], compliance_[b] * stiffness_of(laws.laws[laws_of_class[other]]));
+  bound_conditions();
+  if (model.bodies.size() < 2 && !model.scene.contact.self_contact) return;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    contact_floor_[b] = compliance_[b] * laws.largest_stiffness(static_cast<int>(b));
+}
+
+/// Soft supports and dashpots that do not depend on the motion. Their sum bounds them together.
+void TimeStepBound::bound_conditions() {
+  support_.assign(model_.bodies.size(), 0.0);
+  damping_.assign(model_.bodies.size(), 0.0);
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+    const Body& body = model_.bodies[b];
+    damping_[b] = body.kind == BodyKind::rigid ? damping_rate(model_.rigid_bodies[body.rigid])
+                                               : model_.scene.materials[body.material].mass_damping;
+  }
+  for (const OutlineSupport& support : model_.supports) {
+    const Body& body = model_.bodies[support.body];
+    std::vector<double> length(static_cast<std::size_t>(model_.outlines[body.outline].count), 0.0);
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) length[support.nodes[i]] = support.length[i];
+    const double frequency = contact_frequency(body, length.data());
+    support_[support.body] += support.stiffness * frequency;
+    damping_[support.body] += support.damping * frequency;
+  }
+  if (std::any_of(model_.batches.begin(), model_.batches.end(), [](const Batch& batch) { return batch.viscous; })) {
+    viscous_.assign(model_.batches.size(), Lanes{});
+    viscous_direction_ = direction_;
   }
 }
 
 double TimeStepBound::contact_frequency(const Body& body, const double* stiffness) const {
   const OutlineShape& outline = model_.outlines[body.outline];
   if (body.kind == BodyKind::rigid) return rigid_frequency(model_.rigid_bodies[body.rigid], outline, stiffness);
-  const CompliantShape& shape = model_.shape_of(model_.batches[body.batch]);
+  const CompliantShape& shape = model_.shape_of(body);
   const ShapeRows& rows = shape.space.outline_rows;
   std::vector<double> row_sum(static_cast<std::size_t>(shape.nodes()), 0.0);
   for (int k = 0; k < outline.count; ++k) {
@@ -88,19 +113,20 @@ double TimeStepBound::contact_frequency(const Body& body, const double* stiffnes
   }
   double largest = 0;
   for (int i = 0; i < shape.nodes(); ++i) largest = std::max(largest, row_sum[i] * shape.inverse_unit_mass[i]);
-  return shape.space.correction_bound * largest / model_.scene.materials[body.material].density;
+  return shape.space.correction_bound * largest / model_.batches[body.batch].density[body.lane];
 }
 
-void TimeStepBound::iterate_batch(const Batch& batch, const Lanes* position, int iterations) {
-  const CompliantShape& shape = model_.shape_of(batch);
-  const std::size_t size = 2 * static_cast<std::size_t>(shape.nodes());
+void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) {
+  const Batch& batch = model_.batches[b];
+  const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
   std::vector<Lanes> at_rest(size, Lanes{}), probe(size), response(size);
   Lanes* u = &direction_[batch.offset];
   add_internal_forces(model_, batch, position, at_rest.data());
-  const double step = probe_size * shape.space.nodal_distance[0];
+  const double step = probe_size * model_.shape_of(batch).space.nodal_distance[0];
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Lanes scale = broadcast(1e-300);
     for (std::size_t i = 0; i < size; ++i) scale = max(scale, abs(u[i]));
+    scale = largest_of_body(batch, scale);
     for (std::size_t i = 0; i < size; ++i) {
       u[i] /= scale;
       probe[i] = position[i] + step * u[i];
@@ -108,53 +134,96 @@ void TimeStepBound::iterate_batch(const Batch& batch, const Lanes* position, int
     std::fill(response.begin(), response.end(), Lanes{});
     add_internal_forces(model_, batch, probe.data(), response.data());
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
-    if (model_.corrected_mass) response = corrected(shape, response);
-    const Lanes before = weighted_dot(u, u, shape.space.unit_mass);
-    const Lanes after = weighted_dot(response.data(), response.data(), shape.inverse_unit_mass);
-    Lanes& w2 = internal_[&batch - model_.batches.data()];
-    w2 = sqrt(after / before) * batch.inverse_density;
-    for (std::size_t i = 0; i < size; ++i) u[i] = response[i] * shape.inverse_unit_mass[i / 2] * batch.inverse_density;
+    if (model_.corrected_mass) response = corrected(model_, batch, response);
+    with_nodes(model_, batch, [&](const auto& nodes) {
+      const Lanes before = sum_over_body(batch, weighted_dot(u, u, nodes.unit_mass, batch.slots));
+      const Lanes after =
+          sum_over_body(batch, weighted_dot(response.data(), response.data(), nodes.inverse_unit_mass, batch.slots));
+      internal_[b] = sqrt(after / before) * batch.inverse_density;
+      for (std::size_t i = 0; i < size; ++i)
+        u[i] = response[i] * nodes.inverse_unit_mass[i / 2] * batch.inverse_density;
+    });
+  }
+}
+
+/// The viscous forces are linear in the velocities, so that each iteration is exact.
+void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations) {
+  const Batch& batch = model_.batches[b];
+  std::vector<Lanes> response(2 * static_cast<std::size_t>(batch.slots));
+  Lanes* v = &viscous_direction_[batch.offset];
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Lanes scale = broadcast(1e-300);
+    for (std::size_t i = 0; i < response.size(); ++i) scale = max(scale, abs(v[i]));
+    scale = largest_of_body(batch, scale);
+    for (std::size_t i = 0; i < response.size(); ++i) v[i] /= scale;
+    std::fill(response.begin(), response.end(), Lanes{});
+    add_viscous_forces(model_, batch, position, v, response.data());
+    with_nodes(model_, batch, [&](const auto& nodes) {
+      const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.unit_mass, batch.slots));
+      const Lanes after =
+          sum_over_body(batch, weighted_dot(response.data(), response.data(), nodes.inverse_unit_mass, batch.slots));
+      viscous_[b] = sqrt(after / before) * batch.inverse_density;
+      for (std::size_t i = 0; i < response.size(); ++i) v[i] = -response[i] * nodes.inverse_unit_mass[i / 2];
+    });
   }
 }
 
 void TimeStepBound::update_internal(const Dofs& position, int iterations) {
   const bool first = !internal_.empty() && internal_[0][0] == 0;
-  parallel_for(static_cast<int>(model_.batches.size()), [&](int b) {
-    const Batch& batch = model_.batches[b];
-    iterate_batch(batch, &position.compliant[batch.offset], first ? start_iterations : iterations);
+  for_each_batch(model_, [&](int b) {
+    iterate_batch(b, &position.compliant[model_.batches[b].offset], first ? start_iterations : iterations);
+    if (model_.batches[b].viscous)
+      iterate_viscous(b, &position.compliant[model_.batches[b].offset], first ? start_iterations : iterations);
   });
 }
 
 void TimeStepBound::update_contact(Forces& forces) {
   const std::vector<double> stiffness = forces.stiffness_bound(compliance_);
+  const std::vector<double> damping = forces.contact().damping_ratios();
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     contact_[b] =
         std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[forces.outlines().offset[b]]));
+    // A dashpot takes the longest stable step of its spring down to sqrt(1 + z^2) - z of it (METHOD 6).
+    if (const double z = damping[b]; z > 0) contact_[b] *= std::pow(std::sqrt(1 + z * z) + z, 2);
   });
 }
 
 double TimeStepBound::total(std::size_t b, double contact_factor) const {
   const Body& body = model_.bodies[b];
-  return contact_factor * contact_[b] +
+  return contact_factor * contact_[b] + support_[b] +
          (body.kind == BodyKind::compliant ? internal_margin * internal_[body.batch][body.lane] : 0.0);
+}
+
+double TimeStepBound::damping(std::size_t b) const {
+  const Body& body = model_.bodies[b];
+  const bool viscous = body.kind == BodyKind::compliant && model_.batches[body.batch].viscous;
+  return damping_[b] + (viscous ? internal_margin * viscous_[body.batch][body.lane] : 0.0);
+}
+
+/// With dashpots that see the half-step velocity a mode of rate c = 2 z w grows from w^2 dt^2 + 2 c dt = 4 on: dt = 2/w (sqrt(1 + z^2) - z).
+/// The forms of stiffness, damping and mass are symmetric, so the largest w^2 and the largest c bound all modes.
+double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const {
+  const double w2 = total(b, contact_factor), c = damping(b);
+  return model_.scene.time.safety * 4 / (c + std::sqrt(c * c + 4 * w2));
 }
 
 std::size_t TimeStepBound::limiting_body(double contact_factor) const {
   std::size_t worst = 0;
   for (std::size_t b = 1; b < model_.bodies.size(); ++b)
-    if (total(b, contact_factor) > total(worst, contact_factor)) worst = b;
+    if (largest_dt_of(b, contact_factor) < largest_dt_of(worst, contact_factor)) worst = b;
   return worst;
 }
 
 double TimeStepBound::largest_dt(double contact_factor) const {
-  const double w2 = total(limiting_body(contact_factor), contact_factor);
-  return w2 > 0 ? model_.scene.time.safety * 2 / std::sqrt(w2) : std::numeric_limits<double>::infinity();
+  return largest_dt_of(limiting_body(contact_factor), contact_factor);
 }
 
 std::string TimeStepBound::governing() const {
   const std::size_t b = limiting_body();
-  const double w2 = total(b);
-  return fmt::format("{} (contact {:.0f} % of w^2)", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0);
+  const double w2 = total(b), c = damping(b);
+  const std::string damped = c > 0 ? fmt::format(", damping {:.3g} /s", c) : "";
+  return fmt::format("{} (contact {:.0f} % of w^2{})", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0,
+                     damped);
 }
 
 }  // namespace pliant

@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-/// Stability bound of explicit central differences, dt <= safety x 2/sqrt(1.05 w_b^2 + w_c^2), body by body (METHOD 6).
+/// Stability bound of explicit central differences, dt <= safety x 2/w (sqrt(1 + z^2) - z), body by body (METHOD 6):
+/// w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);
@@ -22,11 +23,24 @@ class TimeStepBound {
   /// Name of the limiting body and share of contact in its w^2, for messages.
   std::string governing() const;
 
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("direction", direction_);
+    visitor("internal", internal_);
+    visitor("contact", contact_);
+    visitor("viscous_direction", viscous_direction_);
+    visitor("viscous", viscous_);
+  }
+
  private:
-  void iterate_batch(const Batch& batch, const Lanes* position, int iterations);
+  void bound_conditions();
+  void iterate_viscous(int b, const Lanes* position, int iterations);
+  void iterate_batch(int b, const Lanes* position, int iterations);
   double contact_frequency(const Body& body, const double* stiffness) const;
   std::size_t limiting_body(double contact_factor = 1) const;
   double total(std::size_t body, double contact_factor = 1) const;
+  double damping(std::size_t body) const;
+  double largest_dt_of(std::size_t body, double contact_factor = 1) const;
 
   const Model& model_;
   std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant
@@ -35,6 +49,9 @@ class TimeStepBound {
   std::vector<double>
       contact_floor_;               ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
   std::vector<double> compliance_;  ///< [bodies] w^2 per unit contact stiffness
+  std::vector<double> support_;     ///< [bodies] w^2 of soft supports, 1/s2
+  std::vector<double> damping_;     ///< [bodies] largest rate of dashpots and mass-proportional damping, 1/s
+  std::vector<Lanes> viscous_direction_, viscous_;  ///< as direction_ and internal_, for Kelvin-Voigt: rates, 1/s
 };
 
 }  // namespace pliant

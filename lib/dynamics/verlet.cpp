@@ -31,7 +31,7 @@ double controller_factor(double error, double tolerance) {
 Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces), model_(forces.model()), bound_(forces.model(), forces.contact().laws()) {
   trial_.position = trial_.velocity = trial_.force = zero_dofs(model_);
-  change_.resize(model_.batches.size());
+  change_.resize(model_.regions.size());
   bound_.update_internal(state.position);
   bound_.update_contact(forces_);
 }
@@ -68,7 +68,7 @@ double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.
 void Verlet::try_step(State& state, double end_time, StepReport& report) {
   predict(state, report.dt);
   report.evaluation = forces_.evaluate({trial_.position, half_step_velocity(), end_time}, state.history, trial_.history,
-                                       trial_.force, &state, [&](int b) { finish_batch(state, report.dt, b); });
+                                       trial_.force, &state, [&](int r) { finish_region(state, report.dt, r); });
   report.damping_work = report.dt * report.evaluation.damping_power;
   ++report.evaluations;
   if (report.evaluation.refreshed) bound_.update_contact(forces_);
@@ -89,8 +89,8 @@ void Verlet::predict(const State& state, double dt) {
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i];
         trial_.position.rigid[i] =
-            dof.imposed() ? imposed_position(dof, x, state.time, dt)
-                          : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt)
+                                    : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
       });
 }
 
@@ -104,7 +104,7 @@ void Verlet::predict_with_corrected_mass(const State& state, double dt) {
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i];
         trial_.position.rigid[i] =
-            dof.imposed() ? imposed_position(dof, x, state.time, dt) : x + dt * half_step_velocity_.rigid[i];
+            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * half_step_velocity_.rigid[i];
       });
 }
 
@@ -115,7 +115,7 @@ void Verlet::predict_half_step_velocity(const State& state, double dt) {
         trial_.velocity.compliant[i] = state.velocity.compliant[i] + 0.5 * dt * inverse_mass * state.force.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed()
+        trial_.velocity.rigid[i] = dof.imposed(state.time)
                                        ? imposed_velocity(dof, state.time + 0.5 * dt)
                                        : state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * state.force.rigid[i];
       });
@@ -123,22 +123,26 @@ void Verlet::predict_half_step_velocity(const State& state, double dt) {
 
 /// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is accepted, because the forces come
 /// out of the cache then.
-void Verlet::finish_batch(const State& state, double dt, int b) {
-  const Batch& batch = model_.batches[b];
-  const CompliantShape& shape = model_.shape_of(batch);
+void Verlet::finish_region(const State& state, double dt, int r) {
+  const Region& region = model_.regions[r];
+  const Batch& batch = model_.batches[region.batch];
   const Lanes *old_force = &state.force.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
   const Lanes* old_velocity = &state.velocity.compliant[batch.offset];
   Lanes* velocity = &trial_.velocity.compliant[batch.offset];
-  Lanes worst{}, any_nan{};
-  for (int i = 0; i < 2 * shape.nodes(); ++i) {
-    const double inverse_unit_mass = shape.inverse_unit_mass[i / 2];
-    velocity[i] = old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
-    const Lanes change = inverse_unit_mass / shape.space.nodal_distance[i / 2] * abs(force[i] - old_force[i]);
-    worst = max(worst, change);
-    any_nan += change;
-  }
-  const double result = shape.space.correction_bound * largest(worst * batch.inverse_density);
-  change_[b] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
+  const double correction_bound = model_.shape_of(batch).space.correction_bound;
+  with_nodes(model_, batch, [&](const auto& nodes) {
+    Lanes worst{}, any_nan{};
+    for (int i = 2 * region.first; i < 2 * region.last; ++i) {
+      const auto inverse_unit_mass = nodes.inverse_unit_mass[i / 2];
+      velocity[i] =
+          old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
+      const Lanes change = inverse_unit_mass / nodes.nodal_distance[i / 2] * abs(force[i] - old_force[i]);
+      worst = max(worst, change);
+      any_nan += change;
+    }
+    const double result = correction_bound * largest(worst * batch.inverse_density);
+    change_[r] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
+  });
 }
 
 /// max of dt^2 |a_new - a_old| / (6 d) over all components; rigid bodies by their outline nodes.
@@ -149,6 +153,7 @@ double Verlet::error(const State& state, double dt) const {
   for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r) {
     const RigidBody& body = model_.rigid_bodies[r];
     const auto change = [&](std::size_t c) {
+      if (body.dof[c].imposed(state.time)) return 0.0;
       return std::abs(trial_.force.rigid[3 * r + c] - state.force.rigid[3 * r + c]) * body.dof[c].inverse_mass;
     };
     const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
@@ -162,7 +167,7 @@ void Verlet::accept(State& state, double end_time, double next_dt, const StepRep
   const double half = 0.5 * report.dt;
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
     trial_.velocity.rigid[i] =
-        dof.imposed()
+        dof.imposed(state.time)
             ? imposed_velocity(dof, end_time)
             : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
   });

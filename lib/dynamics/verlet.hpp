@@ -13,13 +13,17 @@ class Verlet {
   /// Takes one accepted step that ends at `until` at the latest.
   StepReport step(State& state, double until);
   const TimeStepBound& bound() const { return bound_; }
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("bound", bound_);
+  }
 
  private:
   void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
   void predict_with_corrected_mass(const State& state, double dt);
   void predict_half_step_velocity(const State& state, double dt);
-  void finish_batch(const State& state, double dt, int b);
+  void finish_region(const State& state, double dt, int r);
   double error(const State& state, double dt) const;
   void accept(State& state, double end_time, double next_dt, const StepReport& report);
   double largest_dt() const;
@@ -30,7 +34,7 @@ class Verlet {
   TimeStepBound bound_;
   Trial trial_;
   Dofs half_step_velocity_;     ///< with corrected mass only: C y
-  std::vector<double> change_;  ///< [batches], of the acceleration over the nodal distance, 1/s2
+  std::vector<double> change_;  ///< [regions], of the acceleration over the nodal distance, 1/s2
 };
 
 }  // namespace pliant

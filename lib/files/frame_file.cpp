@@ -113,11 +113,12 @@ struct FrameFile::Implementation {
   XdmfDocument document;
   int count = 0;
 
-  Implementation(const std::filesystem::path& folder, std::vector<GridTopology> topologies)
+  Implementation(const std::filesystem::path& folder, std::vector<GridTopology> topologies, Opening opening)
       : heavy(folder / "frames.h5"),
         light(folder / "frames.xdmf"),
         grids(checked(heavy, std::move(topologies))),
         document(heavy, grids) {
+    if (opening == Opening::resume) return;
     Hdf5File file(heavy, Hdf5File::Mode::create);
     for (const GridTopology& grid : grids) write_topology(file, grid);
     file.write_empty_list("/times");
@@ -151,6 +152,21 @@ struct FrameFile::Implementation {
     file.close();
   }
 
+  /// Frames that a killed run was about to add may be in the file without their time.
+  void cut_back() const {
+    Hdf5File file(heavy, Hdf5File::Mode::append);
+    const std::size_t wanted = static_cast<std::size_t>(count), there = file.list_size("/times");
+    if (there < wanted)
+      throw OutputError(fmt::format("{}: has {} frames, {} at the checkpoint; it was changed: start anew (--force)",
+                                    heavy.string(), there, wanted));
+    if (there > wanted) file.shorten_list("/times", wanted);
+    for (const GridTopology& grid : grids)
+      for (int index = count; file.has(frame_group(grid.name, index)); ++index)
+        file.remove(frame_group(grid.name, index));
+    file.close();
+    write_file_atomically(light, document.text());
+  }
+
   void check(const std::vector<GridFrame>& frames) const {
     if (frames.size() != grids.size()) {
       throw OutputError(fmt::format("{}: a frame of {} grids was given, the file has {}; give one for each grid",
@@ -160,13 +176,19 @@ struct FrameFile::Implementation {
   }
 };
 
-FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids)
-    : implementation_(std::make_unique<Implementation>(folder, std::move(grids))) {}
+FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening)
+    : implementation_(std::make_unique<Implementation>(folder, std::move(grids), opening)) {}
 
 FrameFile::~FrameFile() = default;
 
 void FrameFile::append(double time, const std::vector<GridFrame>& frames) { implementation_->append(time, frames); }
 
 int FrameFile::count() const { return implementation_->count; }
+
+int& FrameFile::written_count() { return implementation_->count; }
+
+std::vector<std::string>& FrameFile::document_frames() { return implementation_->document.frames(); }
+
+void FrameFile::loaded() { implementation_->cut_back(); }
 
 }  // namespace pliant

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "files/text_files.hpp"
+
 namespace pliant {
 
 /// Files know arrays and names, no mechanics. All arrays are row-major.
@@ -37,13 +39,24 @@ struct GridFrame {
 /// both files are complete and readable. Throws OutputError.
 class FrameFile {
  public:
-  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids);
+  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening = Opening::create);
   ~FrameFile();
   /// One GridFrame a grid, in the order of the constructor.
   void append(double time, const std::vector<GridFrame>& frames);
   int count() const;
 
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("count", written_count());
+    visitor("document", document_frames());
+  }
+  /// Cuts off the frames after those that were read by visit. Throws OutputError when the files hold less.
+  void loaded();
+
  private:
+  int& written_count();
+  std::vector<std::string>& document_frames();
+
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };

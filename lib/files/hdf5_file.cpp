@@ -167,6 +167,22 @@ void Hdf5File::append_value(const std::string& name, double value) {
   checked(H5Dwrite(set.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, &value), path_, name);
 }
 
+std::size_t Hdf5File::list_size(const std::string& name) {
+  const Hdf5Handle set(checked(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), path_, name), H5Dclose);
+  const Hdf5Handle space(checked(H5Dget_space(set.id()), path_, name), H5Sclose);
+  return static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.id()));
+}
+
+void Hdf5File::shorten_list(const std::string& name, std::size_t size) {
+  const Hdf5Handle set(checked(H5Dopen2(file_, name.c_str(), H5P_DEFAULT), path_, name), H5Dclose);
+  const hsize_t extent = size;
+  checked(H5Dset_extent(set.id(), &extent), path_, name);
+}
+
+bool Hdf5File::has(const std::string& name) const { return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0; }
+
+void Hdf5File::remove(const std::string& name) { checked(H5Ldelete(file_, name.c_str(), H5P_DEFAULT), path_, name); }
+
 void Hdf5File::flush() { checked(H5Fflush(file_, H5F_SCOPE_LOCAL), path_, "/"); }
 
 void Hdf5File::close() {

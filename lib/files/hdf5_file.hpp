@@ -60,6 +60,11 @@ class Hdf5File {
   /// A one-dimensional dataset that grows by `append_value`.
   void write_empty_list(const std::string& name);
   void append_value(const std::string& name, double value);
+  /// Number of values of a list.
+  std::size_t list_size(const std::string& name);
+  void shorten_list(const std::string& name, std::size_t size);
+  bool has(const std::string& name) const;
+  void remove(const std::string& name);
   /// Hands everything to the system.
   void flush();
   /// Flushes, closes and syncs to the disk. The destructor alone tells of no failure.

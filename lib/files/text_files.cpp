@@ -74,18 +74,49 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
   sync_folder(file);
 }
 
-CsvFile::CsvFile(const std::filesystem::path& file, const std::vector<std::string>& columns)
+CsvFile::CsvFile(const std::filesystem::path& file, const std::vector<std::string>& columns, Opening opening)
     : path_(file), columns_(columns.size()) {
-  file_ = std::fopen(file.c_str(), "wbe");
-  if (file_ == nullptr) fail(path_, "be created", errno);
-  for (std::size_t i = 0; i < columns.size(); ++i) pending_ += (i > 0 ? "," : "") + quoted(columns[i]);
-  pending_ += '\n';
+  file_ = std::fopen(file.c_str(), opening == Opening::create ? "wbe" : "r+be");
+  if (file_ == nullptr) fail(path_, opening == Opening::create ? "be created" : "be opened", errno);
+  std::string header;
+  for (std::size_t i = 0; i < columns.size(); ++i) header += (i > 0 ? "," : "") + quoted(columns[i]);
+  header += '\n';
   try {
-    flush();
+    opening == Opening::create ? write_header(header) : require_header(header);
   } catch (...) {
     std::fclose(file_);  // no destructor runs for an object that was never complete
     throw;
   }
+}
+
+void CsvFile::write_header(const std::string& header) {
+  pending_ = header;
+  flush();
+}
+
+void CsvFile::require_header(const std::string& header) {
+  std::string found(header.size(), '\0');
+  if (std::fread(found.data(), 1, found.size(), file_) == found.size() && found == header) return;
+  throw OutputError(
+      fmt::format("{}: has other columns than this run; it was changed, or another run wrote it: start "
+                  "anew (--force)",
+                  path_.string()));
+}
+
+void CsvFile::loaded() {
+  pending_.clear();
+  const off_t whole = static_cast<off_t>(written_);
+  if (::lseek(::fileno(file_), 0, SEEK_END) < whole)
+    throw OutputError(
+        fmt::format("{}: is shorter than at the checkpoint ({} bytes); it was changed: start anew "
+                    "(--force)",
+                    path_.string(), written_));
+  if (::ftruncate(::fileno(file_), whole) != 0) fail(path_, "be cut back to the checkpoint", errno);
+  ::lseek(::fileno(file_), whole, SEEK_SET);
+}
+
+void CsvFile::sync() {
+  if (::fsync(::fileno(file_)) != 0 && errno != EINVAL) fail(path_, "be written", errno);
 }
 
 CsvFile::~CsvFile() {

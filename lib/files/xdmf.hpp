@@ -17,6 +17,8 @@ class XdmfDocument {
   /// Adds frame `index` of all grids; `frames` are told apart by names and shapes alone.
   void add(int index, double time, const std::vector<GridTopology>& grids, const std::vector<GridFrame>& frames);
   std::string text() const;
+  /// [grids] what it says of the frames so far.
+  std::vector<std::string>& frames() { return frames_; }
 
  private:
   std::string attribute(const Field& field, const std::string& folder, const GridTopology& grid) const;

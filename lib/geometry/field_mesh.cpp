@@ -7,6 +7,7 @@
 #include "core/errors.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/outline.hpp"
+#include "geometry/outline_search.hpp"
 #include "geometry/polygon.hpp"
 #include "geometry/relaxation.hpp"
 #include "geometry/triangulate.hpp"
@@ -16,13 +17,13 @@ namespace {
 
 struct Seed {
   Vec2 position;
-  double depth;  // distance to the outline
+  double depth;  // distance to the outline, once they are sorted by it
 };
 
 // Points of a hexagonal lattice inside the outline, deeper than the height of an equilateral triangle. The odd offset
 // keeps the lattice from being symmetric to the outline: points then enter one by one as the spacing shrinks, not a
 // whole ring at a time.
-std::vector<Seed> hexagonal_seeds(const Points& outline, double spacing) {
+std::vector<Seed> hexagonal_seeds(const Points& outline, const OutlineSearch& search, double spacing) {
   Vec2 low = outline[0], high = outline[0];
   for (const Vec2& p : outline) low = low.cwiseMin(p), high = high.cwiseMax(p);
   std::vector<Seed> seeds;
@@ -32,9 +33,8 @@ std::vector<Seed> hexagonal_seeds(const Points& outline, double spacing) {
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const Vec2 p = low + Vec2((column - 0.3 + 0.5 * (row % 2)) * spacing, (row + 0.43) * row_height);
-      if (!is_inside(outline, p)) continue;
-      const double depth = distance_to_outline(outline, p);
-      if (depth > row_height) seeds.push_back({p, depth});
+      if (!search.is_inside(p)) continue;
+      if (search.distance(p, 2 * row_height) > row_height) seeds.push_back({p, 0});
     }
   return seeds;
 }
@@ -42,17 +42,19 @@ std::vector<Seed> hexagonal_seeds(const Points& outline, double spacing) {
 // Exactly `count` seeds: the coarsest lattice with at least as many, less those nearest to the outline.
 Points interior_seeds(const Points& outline, int count) {
   const double area = polygon_properties(outline).area;
+  const OutlineSearch search(outline);
   double fine = std::sqrt(area / count) / 8, coarse = 2 * std::sqrt(area / count);
   for (int step = 0; step < 30; ++step) {
     const double middle = (fine + coarse) / 2;
-    (static_cast<int>(hexagonal_seeds(outline, middle).size()) >= count ? fine : coarse) = middle;
+    (static_cast<int>(hexagonal_seeds(outline, search, middle).size()) >= count ? fine : coarse) = middle;
   }
-  std::vector<Seed> seeds = hexagonal_seeds(outline, fine);
+  std::vector<Seed> seeds = hexagonal_seeds(outline, search, fine);
   if (static_cast<int>(seeds.size()) < count)
     throw InputError(
         fmt::format("mesh: no room for {} interior nodes beside {} outline nodes; the shape is too thin for "
                     "this number of nodes",
                     count, outline.size()));
+  for (Seed& seed : seeds) seed.depth = search.distance(seed.position);
   std::sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) {
     return std::tuple(-a.depth, a.position.x(), a.position.y()) < std::tuple(-b.depth, b.position.x(), b.position.y());
   });

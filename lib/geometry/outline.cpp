@@ -111,7 +111,7 @@ void require_valid_polygon(const ShapeSpec& shape) {
   if (shape.points.size() < 3)
     throw InputError(
         fmt::format("shape '{}': a polygon of {} points; it needs at least 3", shape.name, shape.points.size()));
-  if (const std::string defect = polygon_defect(shape.points); !defect.empty())
+  if (const std::string defect = polygon_defect(shape.points).text; !defect.empty())
     throw InputError(fmt::format("shape '{}': {}; give each corner once, in order", shape.name, defect));
   const double area = polygon_properties(shape.points).area;
   if (!(area > 0))

@@ -36,21 +36,15 @@ double perimeter(const Points& polygon) {
 
 bool is_inside(const Points& polygon, const Vec2& x) {
   bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Vec2 &a = polygon[i], &b = polygon[j];
-    if ((a.y() > x.y()) == (b.y() > x.y())) continue;
-    if (x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) inside = !inside;
-  }
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
+    if (edge_is_crossed(polygon[i], polygon[j], x)) inside = !inside;
   return inside;
 }
 
 double distance_to_outline(const Points& polygon, const Vec2& x) {
   double least = (x - polygon[0]).squaredNorm();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2 edge = polygon[(i + 1) % polygon.size()] - polygon[i], r = x - polygon[i];
-    const double xi = std::clamp(r.dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (r - xi * edge).squaredNorm());
-  }
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    least = std::min(least, square_distance_to_edge(polygon[i], polygon[(i + 1) % polygon.size()], x));
   return std::sqrt(least);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/outline_search.hpp"
 #include "geometry/polygon.hpp"
 #include "geometry/triangulate.hpp"
 
@@ -12,14 +13,18 @@ namespace {
 // Stops when no node moves by more than this share of the spacing: far below what changes a triangle's quality.
 constexpr double settled = 1e-4;
 constexpr int max_sweeps = 300;
+// A large mesh is mended near its outline after few sweeps, and to even out its inside would take thousands: with 30 of them the least angle of
+// 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
+constexpr int min_sweeps = 30;
+constexpr double node_sweeps = 1.5e6;  // of all sweeps, from 5,000 nodes on
 // Least distance to the outline, in outline spacings; equilateral triangles would have 0.87.
 constexpr double least_depth = 0.7;
 
 // The node distance wanted at a place: `rim` at the outline, growing by `growth` a unit of depth.
 struct SizeField {
-  const Points& outline;
+  const OutlineSearch& outline;
   double rim, growth;
-  double at(const Vec2& x) const { return rim + growth * distance_to_outline(outline, x); }
+  double at(const Vec2& x) const { return growth == 0 ? rim : rim + growth * outline.distance(x); }
 };
 
 Vec2 centroid(const FieldMesh& mesh, const Triangle& t) {
@@ -30,23 +35,25 @@ double area(const FieldMesh& mesh, const Triangle& t) {
   return cross(mesh.nodes[t[1]] - mesh.nodes[t[0]], mesh.nodes[t[2]] - mesh.nodes[t[0]]) / 2;
 }
 
-// Number of equilateral triangles of the wanted size that fill the mesh's area.
-double triangle_demand(const FieldMesh& mesh, const SizeField& size) {
+// Number of equilateral triangles of the wanted size that fill the mesh's area; `depth`: of each triangle's centroid.
+double triangle_demand(const FieldMesh& mesh, const SizeField& size, const std::vector<double>& depth) {
   double demand = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const double h = size.at(centroid(mesh, t));
-    demand += area(mesh, t) / (std::sqrt(3.0) / 4 * h * h);
+  for (std::size_t t = 0; t < depth.size(); ++t) {
+    const double h = size.rim + size.growth * depth[t];
+    demand += area(mesh, mesh.triangles[t]) / (std::sqrt(3.0) / 4 * h * h);
   }
   return demand;
 }
 
 // The growth at which demand meets the number of triangles (bisection); none where the outline is coarse already.
-SizeField fitted_size(const FieldMesh& mesh, const Points& outline) {
-  SizeField size{outline, perimeter(outline) / mesh.outline_count, 0};
+SizeField fitted_size(const FieldMesh& mesh, const OutlineSearch& outline, double rim) {
+  SizeField size{outline, rim, 0};
+  std::vector<double> depth;
+  for (const Triangle& t : mesh.triangles) depth.push_back(outline.distance(centroid(mesh, t)));
   double slow = 0, fast = 1;
   for (int step = 0; step < 30; ++step) {
     size.growth = (slow + fast) / 2;
-    (triangle_demand(mesh, size) > static_cast<double>(mesh.triangles.size()) ? slow : fast) = size.growth;
+    (triangle_demand(mesh, size, depth) > static_cast<double>(mesh.triangles.size()) ? slow : fast) = size.growth;
   }
   size.growth = slow;
   return size;
@@ -77,8 +84,8 @@ Points optimal_positions(const FieldMesh& mesh, const SizeField& size) {
 
 // A node that would come too near the outline, or cross it at a notch, waits for its neighbours to make room.
 bool may_move(const SizeField& size, const Vec2& from, const Vec2& to) {
-  const double least = std::min(least_depth * size.rim, distance_to_outline(size.outline, from));
-  return is_inside(size.outline, to) && distance_to_outline(size.outline, to) >= least;
+  const double enough = least_depth * size.rim, depth = size.outline.distance(to, enough);
+  return size.outline.is_inside(to) && (depth >= enough || depth >= size.outline.distance(from, enough));
 }
 
 }  // namespace
@@ -86,9 +93,12 @@ bool may_move(const SizeField& size, const Vec2& from, const Vec2& to) {
 void relax_interior(FieldMesh& mesh) {
   const Points outline(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count);
   mesh.triangles = triangulate_inside(mesh.nodes, mesh.outline_count);
-  const SizeField size = fitted_size(mesh, outline);
+  const OutlineSearch search(outline);
+  const SizeField size = fitted_size(mesh, search, perimeter(outline) / mesh.outline_count);
   double largest_move = size.rim;
-  for (int sweep = 0; sweep < max_sweeps && largest_move > settled * size.rim; ++sweep) {
+  const double sweeps =
+      std::clamp<double>(node_sweeps / static_cast<double>(mesh.nodes.size()), min_sweeps, max_sweeps);
+  for (int sweep = 0; sweep < sweeps && largest_move > settled * size.rim; ++sweep) {
     const Points target = optimal_positions(mesh, size);
     largest_move = 0;
     for (std::size_t i = mesh.outline_count; i < mesh.nodes.size(); ++i) {

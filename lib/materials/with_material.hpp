@@ -1,5 +1,6 @@
 #pragma once
 
+#include "materials/linear_elastic.hpp"
 #include "materials/melody.hpp"
 #include "materials/neo_hookean.hpp"
 #include "materials/neo_hookean_quadratic.hpp"
@@ -15,6 +16,8 @@ auto with_material(MaterialLaw law, Action&& action) {
       return action(NeoHookeanQuadratic{});
     case MaterialLaw::melody:
       return action(Melody{});
+    case MaterialLaw::linear_elastic:
+      return action(LinearElastic{});
     default:
       return action(NeoHookean{});
   }

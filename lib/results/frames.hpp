@@ -3,29 +3,46 @@
 #include <filesystem>
 #include <memory>
 
-#include "dynamics/simulation.hpp"
 #include "files/frame_file.hpp"
+#include "results/frame_fields.hpp"
 
 namespace pliant {
 
-/// frames.h5 and frames.xdmf: grid "bodies" (triangles of all grains) and grid "outlines" (segments of all bodies).
-/// Positions are not wrapped into the period.
+/// frames.h5 and frames.xdmf: grid "bodies" (triangles of all grains) and grid "outlines" (segments of all bodies), with
+/// the fields that the scene asks for and no others. Positions are not wrapped into the period.
 class FrameRecorder {
  public:
-  FrameRecorder(const Model& model, const std::filesystem::path& folder);
+  FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);
   double next_time() const;  ///< infinite without frames
-  void record_due(const Simulation& simulation);
+  void record_due(Simulation& simulation);
   int count() const { return count_; }
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("count", count_);
+    if (file_) visitor("file", *file_);
+  }
 
  private:
-  GridFrame bodies_frame(const Simulation& simulation) const;
-  GridFrame outlines_frame(const Simulation& simulation) const;
-  bool wants(const char* field) const;
+  template <class Function>
+  struct Wanted {
+    FrameField field;
+    Function function;
+  };
+
+  void choose_fields();
+  const FieldMesh& mesh_of(const Body& body) const;
+  GridTopology bodies_grid() const;
+  GridTopology outlines_grid() const;
+  GridFrame bodies_frame(const Snapshot& snapshot) const;
+  GridFrame outlines_frame(const Snapshot& snapshot) const;
 
   const Model& model_;
   double period_;
   int count_ = 0;
   std::vector<FieldMesh> rigid_meshes_;  ///< [outline shapes], empty where no rigid grain has it
+  std::vector<Wanted<ConstantField>> constant_fields_;
+  std::vector<Wanted<BodyField>> body_fields_;
+  std::vector<Wanted<OutlineField>> outline_fields_;
   std::unique_ptr<FrameFile> file_;
 };
 

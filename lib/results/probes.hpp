@@ -3,36 +3,42 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/simulation.hpp"
 #include "files/text_files.hpp"
+#include "results/probe_functions.hpp"
 
 namespace pliant {
 
-/// What one [[probes]] entry measures: its columns, and their values for the current state.
+/// What one [[probes]] entry measures: its columns, and their values.
 class ProbeSampler {
  public:
+  /// Throws InputError for what only the model can tell to be wrong: a node that the body does not have.
   ProbeSampler(const Model& model, const Probe& probe);
   const std::vector<std::string>& columns() const { return columns_; }
-  std::vector<double> sample(Simulation& simulation) const;
+  std::vector<double> sample(const Snapshot& snapshot) const;
 
  private:
-  std::vector<double> mean(const Simulation& simulation, const Dofs& dofs, bool positions) const;
-  std::vector<double> force(const Simulation& simulation) const;
-  std::vector<double> extent(const Simulation& simulation) const;
-
-  const Model& model_;
-  const Probe& probe_;
-  std::vector<int> bodies_;
+  Selection selection_;
+  const ProbeFunction& function_;
+  Reduction reduction_;
   std::vector<std::string> columns_;
 };
+
+/// One a probe of the scene. Throws InputError.
+std::vector<ProbeSampler> make_samplers(const Model& model);
 
 /// probes.csv: a row whenever some probe is due, empty cells where another is not.
 class ProbeRecorder {
  public:
-  ProbeRecorder(const Model& model, const std::filesystem::path& folder);
+  ProbeRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);
   double next_time() const;  ///< infinite without probes
   void record_due(Simulation& simulation);
   void flush() { file_.flush(); }
+  void sync() { file_.sync(); }
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("counts", counts_);
+    visitor("file", file_);
+  }
 
  private:
   std::vector<ProbeSampler> samplers_;

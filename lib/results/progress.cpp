@@ -13,6 +13,11 @@ ProgressLine::ProgressLine(bool quiet)
 
 double ProgressLine::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+void ProgressLine::begin(const State& state) {
+  start_time_ = state.time;
+  last_evaluations_ = state.evaluations;
+}
+
 bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report, Audit& audit) {
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - last_).count();
@@ -20,7 +25,8 @@ bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report,
   const State& state = simulation.state();
   audit = simulation.audit();
   const double rate = static_cast<double>(state.evaluations - last_evaluations_) / since;
-  const double left = state.time > 0 ? seconds() * (simulation.model().scene.time.end - state.time) / state.time : 0;
+  const double done = state.time - start_time_, to_do = simulation.model().scene.time.end - state.time;
+  const double left = done > 0 ? seconds() * to_do / done : 0;
   if (!quiet_) {
     const std::string line = fmt::format(
         "t = {:.4g} of {:.4g} s | dt {:.3g} s ({}{}) | {:.0f} evaluations/s | balance {:.2e} | {:.0f} s left",

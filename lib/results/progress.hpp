@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 #include "dynamics/simulation.hpp"
 
@@ -11,6 +12,8 @@ namespace pliant {
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
+  /// The state that this process starts from, for speeds and the time left.
+  void begin(const State& state);
   /// Cheap when no line is due. Returns the audit it took, if any, through `audit`.
   bool show_if_due(Simulation& simulation, const StepReport& report, Audit& audit);
   void finish() const;
@@ -20,7 +23,8 @@ class ProgressLine {
   using Clock = std::chrono::steady_clock;
   bool quiet_, terminal_;
   Clock::time_point start_, last_;
-  long last_evaluations_ = 0;
+  double start_time_ = 0;  ///< of the scene, s
+  std::int64_t last_evaluations_ = 0;
 };
 
 }  // namespace pliant

@@ -5,83 +5,90 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
-#include <optional>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
-#include "results/frames.hpp"
-#include "results/probes.hpp"
-#include "results/progress.hpp"
-#include "results/step_log.hpp"
-#include "results/summary.hpp"
+#include "files/folder_lock.hpp"
+#include "results/checkpoint.hpp"
+#include "results/recorder.hpp"
+#include "results/stop_signals.hpp"
 
 namespace pliant {
 namespace {
 
-std::string read_text(const std::filesystem::path& file) {
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string read_text(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
 }
 
-/// One run's outputs, opened together and kept in step with the simulation.
-class Recorder {
- public:
-  Recorder(const Model& model, const RunOptions& options, const std::string& scene_text)
-      : folder_(options.out),
-        probes_(model, options.out),
-        frames_(model, options.out),
-        steps_(options.out),
-        progress_(options.quiet) {
-    write_file_atomically(folder_ / "scene.toml", scene_text);
+/// A run under way: its simulation, its outputs and its checkpoints.
+struct Run {
+  const RunOptions& options;
+  const std::string& scene_text;
+  Simulation& simulation;
+  Recorder& recorder;
+  Clock::time_point last_checkpoint = Clock::now();
+
+  void write_checkpoint(const std::string& status) {
+    pliant::write_checkpoint(options.out, scene_text, simulation, recorder);
+    recorder.figures.checkpoint_time = simulation.state().time;
+    recorder.write_summary(simulation, status);
+    last_checkpoint = Clock::now();
   }
 
-  double next_output(double end) const { return std::min({end, probes_.next_time(), frames_.next_time()}); }
-
-  void record_outputs(Simulation& simulation) {
-    probes_.record_due(simulation);
-    frames_.record_due(simulation);
+  bool checkpoint_due() const {
+    const std::optional<double> period = simulation.model().scene.checkpoint_period;
+    return period && seconds_since(last_checkpoint) >= *period;
   }
-
-  void record_step(Simulation& simulation, const StepReport& report) {
-    steps_.record(simulation.state(), report);
-    Audit audit;
-    if (!progress_.show_if_due(simulation, report, audit)) return;
-    figures.worst_momentum_error = std::max(figures.worst_momentum_error, audit.momentum_error);
-    probes_.flush();
-    steps_.flush();
-  }
-
-  void finish(Simulation& simulation, const std::string& failure = "") {
-    figures.wall_seconds = progress_.seconds();
-    figures.evaluations = simulation.state().evaluations;
-    progress_.finish();
-    probes_.flush();
-    steps_.flush();
-    write_file_atomically(folder_ / "summary.json", summary_json(simulation, figures, failure));
-  }
-
-  RunFigures figures;
-
- private:
-  std::filesystem::path folder_;
-  ProbeRecorder probes_;
-  FrameRecorder frames_;
-  StepLog steps_;
-  ProgressLine progress_;
 };
 
-void advance(Simulation& simulation, Recorder& recorder) {
+void stop_if_asked(Run& run) {
+  const int signal = StopSignals::received();
+  if (signal == 0) return;
+  run.write_checkpoint(fmt::format("stopped: {}", signal_name(signal)));
+  run.recorder.finish_progress();
+  throw Stopped(signal, fmt::format("stopped by {} at t = {:.6g} s; the checkpoint is in {}: go on with --resume",
+                                    signal_name(signal), run.simulation.state().time, run.options.out.string()));
+}
+
+void advance(Run& run) {
+  Simulation& simulation = run.simulation;
   const double end = simulation.model().scene.time.end;
-  recorder.record_outputs(simulation);
+  const StopSignals signals;
+  run.recorder.begin(simulation.state());
+  run.recorder.record_outputs(simulation);
+  run.recorder.write_summary(simulation, "running");
   while (simulation.state().time < end) {
-    const StepReport report = simulation.step(recorder.next_output(end));
-    recorder.record_outputs(simulation);
-    recorder.record_step(simulation, report);
+    const StepReport report = simulation.step(run.recorder.next_output(end));
+    run.recorder.record_outputs(simulation);
+    run.recorder.record_step(simulation, report);
+    if (simulation.state().time < end) stop_if_asked(run);
+    if (run.checkpoint_due()) run.write_checkpoint("running");
   }
+  run.write_checkpoint("finished");
+  run.recorder.finish_progress();
+}
+
+/// A failed run's last words: its summary, and what there is to go on from. Returns the message.
+std::string last_words(Run& run, const Error& error) {
+  run.recorder.finish_progress();
+  try {
+    run.recorder.write_summary(run.simulation, std::string("failed: ") + error.what());
+  } catch (const OutputError&) {
+    // The disk is full, which `error` tells already.
+  }
+  const double time = run.recorder.figures.checkpoint_time;
+  return fmt::format("{}; results up to there are in {}, {}", error.what(), run.options.out.string(),
+                     time < 0 ? "no checkpoint yet" : fmt::format("last good checkpoint: t = {:.6g} s", time));
 }
 
 void print_summary(Simulation& simulation, const RunFigures& figures, const RunOptions& options) {
@@ -91,35 +98,69 @@ void print_summary(Simulation& simulation, const RunFigures& figures, const RunO
       "{}: t = {:.6g} s in {:.1f} s, {} steps, {} rejected, {} evaluations ({:.0f}/s), energy balance {:.2e}, momentum "
       "{:.1e}\n",
       options.out.string(), state.time, figures.wall_seconds, state.steps, state.rejections, state.evaluations,
-      static_cast<double>(figures.evaluations) / figures.wall_seconds, simulation.balance_error(audit.energy),
+      static_cast<double>(state.evaluations) / figures.wall_seconds, simulation.balance_error(audit.energy),
       std::max(audit.momentum_error, figures.worst_momentum_error));
+}
+
+/// Simulates until the end; `checkpoint`: where to start, or nullptr.
+void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
+  const Model model = build_model(scene);
+  make_samplers(model);  // refuses nodes that no body has, before anything is written
+  Simulation simulation(model);
+  // Read before the folder is emptied: the scene may lie in it.
+  const std::string scene_text = read_text(scene.file);
+  FolderLock::refuse_taken(options.out);
+  if (!checkpoint) prepare_output_folder(options.out, options.force);
+  const FolderLock lock(options.out);
+  Recorder recorder(model, options.out, options.quiet, checkpoint ? Opening::resume : Opening::create);
+  if (checkpoint) checkpoint->restore(simulation, recorder);
+  write_file_atomically(options.out / "scene.toml", scene_text);
+  recorder.figures.threads = omp_get_max_threads();
+  recorder.figures.preparation_seconds = seconds_since(start);
+  if (checkpoint) recorder.figures.checkpoint_time = simulation.state().time;
+  if (!options.quiet)
+    fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s{}\n", scene.name, model.bodies.size(),
+               model.node_count(), model.dof_count(), recorder.figures.preparation_seconds,
+               checkpoint ? fmt::format(", going on from t = {:.6g} s", simulation.state().time) : "");
+  Run run{options, scene_text, simulation, recorder};
+  try {
+    advance(run);
+  } catch (const PhysicsError& error) {
+    throw PhysicsError(last_words(run, error));
+  } catch (const OutputError& error) {
+    throw OutputError(last_words(run, error));
+  }
+  if (!options.quiet) print_summary(simulation, recorder.figures, options);
 }
 
 }  // namespace
 
 void run_scene(const Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
   if (options.threads > 0) omp_set_num_threads(options.threads);
-  const auto start = std::chrono::steady_clock::now();
-  const Model model = build_model(scene);
-  Simulation simulation(model);
-  // Read before the folder is emptied: the scene may lie in it.
-  const std::string scene_text = read_text(scene.file);
-  prepare_output_folder(options.out, options.force);
-  Recorder recorder(model, options, scene_text);
-  recorder.figures.threads = omp_get_max_threads();
-  recorder.figures.preparation_seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!options.quiet)
-    fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s\n", scene.name, model.bodies.size(),
-               model.node_count(), model.dof_count(), recorder.figures.preparation_seconds);
-  try {
-    advance(simulation, recorder);
-  } catch (const PhysicsError& error) {
-    recorder.finish(simulation, error.what());
-    throw PhysicsError(fmt::format("{}; results up to there are in {}", error.what(), options.out.string()));
+  if (!options.resume) return simulate(scene, options, nullptr, start);
+  const Checkpoint checkpoint(options.out);
+  const std::string difference = scene_difference(checkpoint.scene_text(), read_text(scene.file));
+  if (!difference.empty())
+    throw InputError(
+        fmt::format("{}: not the scene of the checkpoint in {}: {}; only the end, the title and "
+                    "[checkpoint] may change",
+                    scene.file.string(), options.out.string(), difference));
+  if (checkpoint.time() >= scene.time.end) {
+    if (!options.quiet)
+      fmt::print("{}: has reached t = {:.6g} s already; nothing to do (a later --until goes on)\n",
+                 options.out.string(), checkpoint.time());
+    return;
   }
-  recorder.finish(simulation);
-  if (!options.quiet) print_summary(simulation, recorder.figures, options);
+  checkpoint.warn_of_other_build();
+  simulate(scene, options, &checkpoint, start);
+}
+
+Scene scene_of_checkpoint(const fs::path& folder) {
+  const Checkpoint checkpoint(folder);
+  Scene scene = read_scene(folder / "scene.toml");
+  scene.name = checkpoint.scene_name();
+  return scene;
 }
 
 }  // namespace pliant

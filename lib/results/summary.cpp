@@ -17,7 +17,7 @@ long peak_memory_bytes() {
   return usage.ru_maxrss * 1024L;
 }
 
-std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& failure) {
+std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& status) {
   const State& state = simulation.state();
   const Model& model = simulation.model();
   const Audit audit = simulation.audit();
@@ -25,7 +25,7 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   nlohmann::ordered_json json;
   json["scene"] = model.scene.name;
   json["title"] = model.scene.title;
-  json["status"] = failure.empty() ? "finished" : "failed: " + failure;
+  json["status"] = status;
   json["time"] = state.time;
   json["end"] = model.scene.time.end;
   json["state_hash"] = fmt::format("{:016x}", state_hash(state));
@@ -35,10 +35,11 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   json["preparation_seconds"] = figures.preparation_seconds;
   json["wall_seconds"] = figures.wall_seconds;
   json["evaluations_per_second"] =
-      figures.wall_seconds > 0 ? static_cast<double>(figures.evaluations) / figures.wall_seconds : 0.0;
+      figures.wall_seconds > 0 ? static_cast<double>(state.evaluations) / figures.wall_seconds : 0.0;
   json["energy"] = {{"kinetic", e.kinetic},
                     {"strain", e.strain},
                     {"contact", e.contact},
+                    {"boundary", e.boundary},
                     {"dissipated", e.dissipated},
                     {"external_work", e.external_work},
                     {"balance_error", simulation.balance_error(e)}};
@@ -50,6 +51,8 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   json["commit"] = build_commit;
   json["compiler"] = build_compiler;
   json["threads"] = figures.threads;
+  json["resumed"] = figures.resumed;
+  json["checkpoint_time"] = figures.checkpoint_time < 0 ? nlohmann::json() : nlohmann::json(figures.checkpoint_time);
   return json.dump(2) + "\n";
 }
 

@@ -6,18 +6,21 @@
 
 namespace pliant {
 
-/// Wall-clock figures of a run.
+/// Wall-clock figures of a run, over all processes that took part in it.
 struct RunFigures {
-  double preparation_seconds = 0, wall_seconds = 0;
-  long evaluations = 0;
+  double preparation_seconds = 0;  ///< of this process
+  double wall_seconds = 0;
   double worst_momentum_error = 0;  ///< over all audits of the run
   int threads = 1;
+  int resumed = 0;              ///< times that the run went on from a checkpoint
+  double checkpoint_time = -1;  ///< s of the scene; -1: none yet
 };
 
 /// Largest resident memory of this process so far, bytes.
 long peak_memory_bytes();
 
-/// summary.json: what a run was, what it cost and how well its books balance; `failure`: why it stopped early, or empty.
-std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& failure);
+/// summary.json: what a run was, what it cost and how well its books balance. `status`: "running" (at the last
+/// checkpoint, or the start), "finished", "stopped: SIGINT" or "failed: ..." with the reason.
+std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& status);
 
 }  // namespace pliant

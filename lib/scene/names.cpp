@@ -8,16 +8,24 @@
 
 namespace pliant {
 
-bool is_scene_key(std::string_view word) {
+std::string_view scene_keys() {
   static constexpr std::string_view keys =
-      " alpha angle beta between body caps cohesion columns contact contacts count density descriptors diameter "
-      "discretisation domain end fields first force frames friction gauss_points gradient grains gravity "
-      "half_angles height heights integrator kind law level mass material materials mix name nodes of origin "
-      "outline_nodes "
-      "packing period pitch points poisson positions pressure probes quantity range recipe rotation row_pitch "
-      "rows safety seed shape shapes share shear_stiffness shear_strength sides skin solid spacing stiffness "
-      "strength support target tension thickness time title tolerance uniform velocity walls width x y young ";
-  return word.find(' ') == word.npos && keys.find(fmt::format(" {} ", word)) != keys.npos;
+      " alpha angle angles beta between body bond_gap bottom boundary box caps checkpoint cohesion columns "
+      "contact contacts count damping density descriptors deviation diameter direction discretisation "
+      "displacement distribution domain end factors fatigue_rate fatigue_threshold fields file first force "
+      "frames friction from gauss_points gradient grains gravity half_angles height heights high integrator "
+      "kind law left length level low mass mass_damping material materials mean median mix mode moment name "
+      "node nodes of origin outline outline_nodes packing part period pitch points poisson positions pressure "
+      "probes pull quantity range recipe reduce refresh residual_strength restitution right rotation rounding "
+      "row_pitch rows safety seed self_contact shape shapes share shares shear_fatigue_rate shear_ratio "
+      "shear_stiffness shear_strength side sides size skin smoothing solid solid_fraction spacing stiffness "
+      "strength support target tension thickness time title tolerance top uniform unit until variants velocity "
+      "viscosity walls width with x y young ";
+  return keys;
+}
+
+bool is_scene_key(std::string_view word) {
+  return word.find(' ') == word.npos && scene_keys().find(fmt::format(" {} ", word)) != std::string_view::npos;
 }
 
 int edit_distance(std::string_view a, std::string_view b) {

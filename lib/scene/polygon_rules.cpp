@@ -17,12 +17,6 @@ bool boxes_apart(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   return (a.cwiseMax(b).array() < c.cwiseMin(d).array()).any() || (c.cwiseMax(d).array() < a.cwiseMin(b).array()).any();
 }
 
-/// Whether two segments share a point; touching counts.
-bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  if (boxes_apart(a, b, c, d)) return false;
-  return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
-}
-
 /// An edge that runs back over the one before it.
 bool folds_back(const Vec2& before, const Vec2& corner, const Vec2& after) {
   return side(before, corner, after) == 0 && (corner - before).dot(after - corner) < 0;
@@ -30,20 +24,26 @@ bool folds_back(const Vec2& before, const Vec2& corner, const Vec2& after) {
 
 }  // namespace
 
-std::string polygon_defect(const Points& polygon) {
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  if (boxes_apart(a, b, c, d)) return false;
+  return side(a, b, c) * side(a, b, d) <= 0 && side(c, d, a) * side(c, d, b) <= 0;
+}
+
+PolygonDefect polygon_defect(const Points& polygon) {
   const std::size_t n = polygon.size();
   const auto point = [&](std::size_t i) -> const Vec2& { return polygon[i % n]; };
   for (std::size_t i = 0; i < n; ++i) {
-    if (point(i) == point(i + 1)) return fmt::format("points {} and {} coincide", i + 1, (i + 1) % n + 1);
+    const std::size_t next = (i + 1) % n;
+    if (point(i) == point(next)) return {fmt::format("points {} and {} coincide", i + 1, next + 1), next};
   }
   for (std::size_t i = 0; i < n; ++i) {
     if (folds_back(point(i), point(i + 1), point(i + 2))) {
-      return fmt::format("edges {} and {} fold back", i + 1, (i + 1) % n + 1);
+      return {fmt::format("edges {} and {} fold back", i + 1, (i + 1) % n + 1), (i + 1) % n};
     }
     for (std::size_t j = i + 2; j < n; ++j) {
       if ((j + 1) % n == i) continue;
       if (segments_meet(point(i), point(i + 1), point(j), point(j + 1))) {
-        return fmt::format("edges {} and {} cross or touch", i + 1, j + 1);
+        return {fmt::format("edges {} and {} cross or touch", i + 1, j + 1), j};
       }
     }
   }

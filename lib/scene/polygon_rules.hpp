@@ -6,9 +6,17 @@
 
 namespace pliant {
 
-/// Why a closed polygon cannot bound a body ("points 2 and 3 coincide", "edges 1 and 4 cross"); empty when it can.
-/// Points and edges count from 1; edge i starts at point i. Time O(points^2).
-std::string polygon_defect(const Points& polygon);
+/// Whether two segments a b and c d share a point; touching counts.
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d);
+
+struct PolygonDefect {
+  std::string text;       ///< such as "points 2 and 3 coincide", "edges 1 and 4 cross"; empty: there is none
+  std::size_t point = 0;  ///< index of a point at the defect
+};
+
+/// Why a closed polygon cannot bound a body. In the text points and edges count from 1; edge i starts at point i. Time
+/// O(points^2).
+PolygonDefect polygon_defect(const Points& polygon);
 
 double signed_area(const Points& polygon);  ///< m2, positive for counter-clockwise
 

@@ -1,64 +1,93 @@
+#include <algorithm>
+
+#include "scene/contact_rules.hpp"
 #include "scene/read_tables.hpp"
 
 namespace pliant {
 
 namespace {
 
-void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
-  if (table.has("between") && table.value("between").node.is_string()) {
-    table.required("between", rule.first, OneOf{"word", {"all"}});
-    rule.second = rule.first;
-    return;
-  }
-  std::vector<std::string> pair;
-  table.required("between", pair, List<OneOf>{{"material", names_of(scene.materials)}, 2, 2});
-  rule.first = pair[0];
-  rule.second = pair[1];
+std::string name_of(const ContactParty& party) {
+  return party.name.empty() ? fmt::format("'{}'", party.material)
+                            : fmt::format("'{}' of '{}'", party.name, party.material);
 }
 
-void check_unique(const TableReader& table, const ContactRule& rule, const std::vector<ContactRule>& others) {
-  for (const ContactRule& other : others) {
-    const bool same = (other.first == rule.first && other.second == rule.second) ||
-                      (other.first == rule.second && other.second == rule.first);
-    if (same) table.fail("between", fmt::format("a second rule for {} and {}; keep one", rule.first, rule.second));
+/// A pair needs a rule, and only one.
+const ContactRule& require_rule(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
+                                const ContactParty& a, const ContactParty& b) {
+  if (tables.empty()) root.fail_missing("contacts", "at least one table [[contacts]]");
+  const RuleMatch match = match_rule(scene, a, b);
+  if (!match.rule) {
+    tables.back().fail(
+        fmt::format("no contact rule for the materials '{0}' and '{1}'; add [[contacts]] between = "
+                    "[\"{0}\", \"{1}\"] or between = \"all\"",
+                    a.material, b.material));
+  }
+  if (match.rival) {
+    const auto pair = [](const ContactRule& rule) { return fmt::format("[{}, {}]", rule.first, rule.second); };
+    tables[static_cast<std::size_t>(match.rival - scene.contacts.data())].fail(
+        "between",
+        fmt::format("says as much of {} and {} as the rule between {} does; name both sides more closely, or "
+                    "add a rule for these two",
+                    name_of(a), name_of(b), pair(*match.rule)));
+  }
+  return *match.rule;
+}
+
+/// The automatic stiffness follows from the compliant bodies of the scene.
+void check_pair(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
+                const ContactParty& a, const ContactParty& b) {
+  const ContactRule& rule = require_rule(root, scene, tables, a, b);
+  const bool compliant = std::any_of(scene.grains.begin(), scene.grains.end(),
+                                     [](const Grains& grains) { return has_body(grains, BodyKind::compliant); });
+  if (compliant || rule.stiffness) return;
+  const TableReader& table = tables[static_cast<std::size_t>(&rule - scene.contacts.data())];
+  table.fail(
+      fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
+                  "bodies; add stiffness in {} (Pa/m)",
+                  a.material, b.material, table.title()));
+}
+
+void check_rules(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables) {
+  const std::vector<ContactParty> parties = contact_parties(scene);
+  for (auto a = parties.begin(); a != parties.end(); ++a)
+    for (auto b = a; b != parties.end(); ++b)
+      if (a != b || !a->wall) check_pair(root, scene, tables, *a, *b);
+}
+
+/// "safe", a whole number of steps, or a time.
+void read_refresh(TableReader& table, ContactSettings& contact) {
+  if (!table.has("refresh")) return;
+  const std::string allowed = "\"safe\", a number of steps from 1, or a time with its unit, > 0";
+  const Value value = table.value("refresh");
+  if (value.node.is_integer()) {
+    table.required("refresh", contact.refresh_steps, Integer{1, 1'000'000});
+  } else if (!value.node.is_string()) {
+    value.reject(allowed);
+  } else {
+    contact.refresh_period = QuantityOr{"safe", {"s", positive}}(value).value_or(0);
   }
 }
 
-void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
-  table.required("friction", rule.friction, Quantity{"1", non_negative});
-  table.optional("cohesion", rule.cohesion, Quantity{"Pa", non_negative});
-  table.optional("tension", rule.tension, Quantity{"Pa", non_negative});
-}
-
-void read_cohesive(TableReader& table, ContactRule& rule) {
-  table.required("strength", rule.strength, Quantity{"Pa", positive});
-  table.optional("shear_strength", rule.shear_strength, QuantityOr{"auto", {"Pa", non_negative}});
-  table.optional("range", rule.range, QuantityOr{"auto", {"m", positive}});
-  if (!rule.range || !rule.stiffness) return;
-  const double peak = rule.strength / *rule.stiffness;
-  if (*rule.range <= peak) {
-    table.value("range").reject(
-        fmt::format("more than strength / stiffness = {} m, the gap of the greatest tension", peak));
-  }
+void read_settings(TableReader settings, Scene& scene) {
+  settings.optional("skin", scene.skin, Quantity{"1", positive});
+  settings.optional(
+      "length", scene.contact.length,
+      Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});
+  read_refresh(settings, scene.contact);
+  settings.optional("self_contact", scene.contact.self_contact, Flag{});
+  settings.finish();
 }
 
 }  // namespace
 
-ContactRule read_contact(TableReader table, const Scene& scene) {
-  ContactRule rule;
-  read_between(table, rule, scene);
-  check_unique(table, rule, scene.contacts);
-  table.required("law", rule.law,
-                 Choice<ContactLawKind>{{{"frictionless", ContactLawKind::frictionless},
-                                         {"mohr-coulomb", ContactLawKind::mohr_coulomb},
-                                         {"cohesive", ContactLawKind::cohesive}}});
-  const QuantityOr stiffness{"auto", {"Pa/m", positive}};
-  table.optional("stiffness", rule.stiffness, stiffness);
-  if (rule.law != ContactLawKind::frictionless) table.optional("shear_stiffness", rule.shear_stiffness, stiffness);
-  if (rule.law == ContactLawKind::mohr_coulomb) read_mohr_coulomb(table, rule);
-  if (rule.law == ContactLawKind::cohesive) read_cohesive(table, rule);
-  table.finish();
-  return rule;
+void read_contacts(TableReader& root, Scene& scene) {
+  if (root.has("contact") && root.value("contact").node.is_array())
+    root.value("contact").reject("a table [contact] of settings; rules for pairs of materials are [[contacts]]");
+  read_settings(root.optional_table("contact"), scene);
+  const std::vector<TableReader> tables = root.tables("contacts");
+  for (const TableReader& table : tables) scene.contacts.push_back(read_contact(table, scene));
+  check_rules(root, scene, tables);
 }
 
 }  // namespace pliant

@@ -1,34 +1,6 @@
-#include <cmath>
-
 #include "scene/read_tables.hpp"
 
 namespace pliant {
-
-namespace {
-
-/// Refuses a period that would write more rows or frames than anybody can read.
-void check_output_count(const TableReader& table, double end, double period) {
-  const double count = end / period;
-  if (count <= static_cast<double>(SceneLimits::outputs)) return;
-  table.fail("period", fmt::format("{:.3g} outputs until the end at {} s; allowed: at most {}, so a period >= {} s",
-                                   count, end, SceneLimits::outputs, end / SceneLimits::outputs));
-}
-
-/// What a probe of this quantity may be of.
-std::vector<std::string> probe_targets(ProbeQuantity quantity, const Scene& scene) {
-  std::vector<std::string> targets;
-  if (quantity != ProbeQuantity::diameter) targets = names_of(scene.walls);
-  if (quantity == ProbeQuantity::friction_factor) return targets;
-  for (const Grains& grains : scene.grains) targets.push_back(grains.name);
-  for (const auto& [name, kind] : {std::pair("compliant", BodyKind::compliant), std::pair("rigid", BodyKind::rigid)}) {
-    for (const Grains& grains : scene.grains) {
-      if (has_body(grains, kind) && targets.back() != name) targets.push_back(name);
-    }
-  }
-  return targets;
-}
-
-}  // namespace
 
 void read_domain(TableReader table, Scene& scene) {
   table.optional("period", scene.period, Quantity{"m", positive});
@@ -74,38 +46,9 @@ DiscretisationSettings read_discretisation(TableReader table) {
   return settings;
 }
 
-Probe read_probe(TableReader table, const Scene& scene) {
-  Probe probe;
-  table.required("name", probe.name, Identifier{});
-  table.required("quantity", probe.quantity,
-                 Choice<ProbeQuantity>{{{"force", ProbeQuantity::force},
-                                        {"friction_factor", ProbeQuantity::friction_factor},
-                                        {"position", ProbeQuantity::position},
-                                        {"velocity", ProbeQuantity::velocity},
-                                        {"diameter", ProbeQuantity::diameter},
-                                        {"energy", ProbeQuantity::energy}}});
-  if (probe.quantity != ProbeQuantity::energy) {
-    table.required("of", probe.of, OneOf{"wall or grains", probe_targets(probe.quantity, scene)});
-  }
-  table.required("period", probe.period, Quantity{"s", positive});
-  check_output_count(table, scene.time.end, probe.period);
+void read_checkpoint(TableReader table, Scene& scene) {
+  table.optional("period", scene.checkpoint_period, QuantityOr{"never", {"s", positive}});
   table.finish();
-  return probe;
-}
-
-Frames read_frames(TableReader table, const Scene& scene) {
-  const OneOf field{"field", {"velocity", "von_mises", "jacobian", "pressure", "contact_pressure"}};
-  Frames frames;
-  table.required("period", frames.period, Quantity{"s", positive});
-  check_output_count(table, scene.time.end, frames.period);
-  table.optional("fields", frames.fields, List<OneOf>{field, 0});
-  for (std::size_t i = 0; i < frames.fields.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (frames.fields[i] == frames.fields[j]) table.fail("fields", fmt::format("\"{}\" twice", frames.fields[i]));
-    }
-  }
-  table.finish();
-  return frames;
 }
 
 }  // namespace pliant

@@ -26,15 +26,31 @@ TimeSettings read_time(TableReader table);
 DiscretisationSettings read_discretisation(TableReader table);
 Probe read_probe(TableReader table, const Scene& scene);
 Frames read_frames(TableReader table, const Scene& scene);
+void read_checkpoint(TableReader table, Scene& scene);
 
 Material read_material(TableReader table, const std::string& name);
-ShapeSpec read_shape(TableReader table, const std::string& name);
+/// One shape, or all variants of it.
+std::vector<ShapeSpec> read_shape(TableReader table, const std::string& name);
+SizeDistribution read_size(TableReader table);
+/// `grains`: with shapes and sizes, from which a solid fraction gives the number of grains.
+Packing read_packing(TableReader table, const Scene& scene, const Grains& grains);
 Grains read_grains(TableReader table, const Scene& scene);
 Wall read_wall(TableReader table, const Scene& scene);
+BoundaryCondition read_condition(TableReader table, const Scene& scene);
 ContactRule read_contact(TableReader table, const Scene& scene);
+/// [contact] and all [[contacts]]; every pair of bodies gets exactly one rule. After grains and walls.
+void read_contacts(TableReader& root, Scene& scene);
 
-/// Number of bodies of a set of grains.
-std::int64_t body_count(const Grains& grains);
+double extent_of(const ShapeSpec& shape);  ///< largest distance of two points, m
+double area_of(const ShapeSpec& shape);    ///< m2
+
+inline const Quantity share_of_grains{"1", Range{.low = 0, .high = 1, .low_open = true}};
+/// Throws InputError at the key unless the sum is 1.
+void check_shares(const TableReader& table, const std::string& key, double sum);
+
+/// Linear elasticity is not objective: refuses grains of such a material that start turned.
+void check_angle(const TableReader& table, const Grains& grains, const Scene& scene);
+
 bool has_body(const Grains& grains, BodyKind kind);
 
 template <class Named>

@@ -1,52 +1,24 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/read_drive.hpp"
 #include "scene/read_tables.hpp"
 
 namespace pliant {
 
 namespace {
 
-struct DriveKind {
-  std::string key;
-  std::string unit;
-  Drive::Mode mode;
-};
-
 /// What may drive a wall along one axis; a pressure has no meaning along the wall.
 std::vector<DriveKind> drive_kinds(bool normal) {
-  std::vector<DriveKind> kinds{{"velocity", "m/s", Drive::Mode::velocity}, {"force", "N/m", Drive::Mode::force}};
-  if (normal) kinds.push_back({"pressure", "Pa", Drive::Mode::pressure});
+  std::vector<DriveKind> kinds{{"velocity", "m/s", Drive::Mode::velocity, ""},
+                               {"force", "N/m", Drive::Mode::force, "Pa s"}};
+  if (normal) kinds.push_back({"pressure", "Pa", Drive::Mode::pressure, "Pa s/m"});
   return kinds;
 }
 
-Drive read_drive_table(TableReader table, const std::vector<DriveKind>& kinds) {
-  Drive drive;
-  int given = 0;
-  for (const DriveKind& kind : kinds) {
-    if (!table.optional(kind.key, drive.history, HistoryOf{{kind.unit}})) continue;
-    drive.mode = kind.mode;
-    if (++given > 1)
-      table.fail(kind.key, "only one of velocity, force and pressure can drive an axis; remove the others");
-  }
-  table.finish();
-  if (given == 0)
-    table.fail(fmt::format("nothing drives the wall in {}; give one of velocity, force, pressure", table.title()));
-  return drive;
+bool needs_mass(const Drive& drive) {
+  return (drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity) || !drive.window.always();
 }
-
-/// "fixed" (the default), "free", or a table with one history.
-Drive read_drive(TableReader& table, const std::string& axis) {
-  if (!table.has(axis)) return {};
-  if (table.value(axis).node.is_table()) return read_drive_table(table.required_table(axis), drive_kinds(axis == "y"));
-  Drive drive;
-  const Value value = table.value(axis);
-  if (!value.node.is_string()) value.reject("\"fixed\", \"free\" or a table such as { velocity = \"1 m/s\" }");
-  drive.mode = Choice<Drive::Mode>{{{"fixed", Drive::Mode::fixed}, {"free", Drive::Mode::free}}}(value);
-  return drive;
-}
-
-bool needs_mass(const Drive& drive) { return drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity; }
 
 /// Caps side by side must leave room for the straight segments that join them.
 void check_caps(const TableReader& table, const Caps& caps, double period) {
@@ -102,8 +74,8 @@ Wall read_wall(TableReader table, const Scene& scene) {
   const double finest = *scene.period / SceneLimits::wall_nodes;
   table.optional("spacing", wall.spacing, Quantity{"m", Range{.low = finest, .high = *scene.period}});
   if (table.has("caps")) wall.caps = read_caps(table.required_table("caps"), *scene.period);
-  wall.x = read_drive(table, "x");
-  wall.y = read_drive(table, "y");
+  wall.x = read_drive(table, "x", drive_kinds(false), {});
+  wall.y = read_drive(table, "y", drive_kinds(true), {});
   if (needs_mass(wall.x) || needs_mass(wall.y)) {
     table.required("thickness", wall.thickness, Quantity{"m", positive});
   } else {

@@ -44,18 +44,41 @@ double History::integral(double t0, double t1) const {
   return sum + 0.5 * (at(from) + at(t1)) * (t1 - from);
 }
 
+double History::slope(double t) const {
+  const auto after = std::upper_bound(time.begin(), time.end(), t);
+  if (after == time.begin() || after == time.end()) return 0;
+  const auto i = static_cast<std::size_t>(after - time.begin());
+  return (value[i] - value[i - 1]) / (time[i] - time[i - 1]);
+}
+
 const Material& Scene::material(const std::string& name) const { return find_named(materials, name, "material"); }
 
 const ShapeSpec& Scene::shape(const std::string& name) const { return find_named(shapes, name, "shape"); }
 
-const ContactRule* Scene::rule(const std::string& first_material, const std::string& second_material) const {
-  const ContactRule* general = nullptr;
-  for (const ContactRule& one : contacts) {
-    const bool same = one.first == first_material && one.second == second_material;
-    if (same || (one.first == second_material && one.second == first_material)) return &one;
-    if (one.first == "all") general = &one;
+std::vector<std::pair<int, double>> Scene::shape_shares(const Grains& grains) const {
+  std::vector<std::pair<int, double>> all;
+  const auto add = [&](const ShapeShare& part) {
+    std::vector<int> members;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (shapes[i].family == part.shape || shapes[i].name == part.shape) members.push_back(static_cast<int>(i));
+    if (members.empty()) shape(part.shape);  // throws
+    for (const int member : members) all.emplace_back(member, part.share / static_cast<double>(members.size()));
+  };
+  if (grains.shapes.empty()) add({grains.shape, 1});
+  for (const ShapeShare& part : grains.shapes) add(part);
+  return all;
+}
+
+std::int64_t Packing::grain_count() const {
+  switch (kind) {
+    case PackingKind::positions:
+      return static_cast<std::int64_t>(positions.size());
+    case PackingKind::hexagonal:
+    case PackingKind::grid:
+      return std::int64_t{columns} * rows;
+    default:
+      return count;
   }
-  return general;
 }
 
 }  // namespace pliant

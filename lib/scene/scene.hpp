@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/vec2.hpp"
@@ -13,15 +16,16 @@ namespace pliant {
 /// What the user asked for, validated and in SI units (per metre of thickness). Immutable after reading.
 /// Numbers that the scene may leave open carry their default here; `auto` values are std::nullopt.
 
-enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, rigid };
+enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, linear_elastic, rigid };
 enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
-enum class PackingKind { hexagonal, grid, positions };
+enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
 enum class Mass { lumped, corrected };
 enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
-enum class ContactLawKind { frictionless, mohr_coulomb, cohesive };
+enum class ContactLawKind { frictionless, mohr_coulomb, cohesive, cohesive_fatigue };
+enum class ContactLength { reference, current };
 enum class Integrator { verlet, step_doubling };
-enum class ProbeQuantity { force, friction_factor, position, velocity, diameter, energy };
+enum class Reduction { mean, sum, min, max };
 
 /// Piecewise linear function of time, constant beyond its ends. One entry: a constant.
 struct History {
@@ -29,24 +33,46 @@ struct History {
   std::vector<double> value;  ///< [entries]
   double at(double t) const;
   double integral(double t0, double t1) const;  ///< exact integral of value over [t0, t1]
+  double slope(double t) const;                 ///< 1/s; at a kink that of the piece after it
+};
+
+/// When something acts: from <= t < until, s.
+struct Window {
+  double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();
+  bool contains(double t) const { return from <= t && t < until; }
+  bool always() const { return std::isinf(from) && std::isinf(until); }
 };
 
 struct Material {
   std::string name;
   MaterialLaw law = MaterialLaw::neo_hookean;
-  double density = 0;  ///< kg/m3
-  double young = 0;    ///< Pa; 0 for `rigid`
-  double poisson = 0;  ///< [0, 0.5); 0 for `rigid`
+  double density = 0;       ///< kg/m3
+  double young = 0;         ///< Pa; 0 for `rigid`
+  double poisson = 0;       ///< [0, 0.5); 0 for `rigid`
+  double viscosity = 0;     ///< Kelvin-Voigt, of compliant bodies: second Piola stress 2 viscosity E_dot, Pa s
+  double mass_damping = 0;  ///< of grains: force - mass_damping m v, 1/s
 };
 
 struct ShapeSpec {
-  std::string name;
+  std::string name;  ///< of a family of variants: "pebble.1", "pebble.2", ...
   ShapeKind kind = ShapeKind::disc;
   double diameter = 0;               ///< disc: diameter of the circle whose area the polygon has, m
   Points points;                     ///< polygon: its corners; curve: many points on it; counter-clockwise, m
   std::optional<int> nodes;          ///< field nodes of a compliant body of this shape ...
   std::optional<double> spacing;     ///< ... or their distance, m: exactly one of the two is given
   std::optional<int> outline_nodes;  ///< overrides the number of outline nodes
+  std::string family;                ///< what all variants of a shape are called; empty: it has none
+  std::vector<double> descriptors;   ///< of a Fourier grain that each cell of a packing fits to itself; else empty
+};
+
+/// Sizes of grains, relative to their shape as it is defined, between `low` and `high`.
+struct SizeDistribution {
+  enum class Kind { list, uniform, normal, lognormal } kind = Kind::list;
+  double low = 1, high = 1;        ///< limits; beyond them a distribution is cut off
+  double centre = 1;               ///< mean of a normal, median of a lognormal distribution before the cut
+  double deviation = 0;            ///< standard deviation, of the size or of its natural logarithm, before the cut
+  std::vector<double> factors{1};  ///< list: the sizes ...
+  std::vector<double> shares{1};   ///< ... and the share of the grains that has each, sum 1
 };
 
 struct Packing {
@@ -56,6 +82,19 @@ struct Packing {
   double row_pitch = 0;  ///< distance of rows, m
   Vec2 origin{0, 0};     ///< centre of the first grain (column 0, row 0), m
   Points positions;      ///< kind positions: centres, m
+  // Kinds random and fourier_voronoi fill the period, or random a box, between two levels.
+  double bottom = 0, top = 0;  ///< m
+  double left = 0, right = 0;  ///< of the box; without a period only, m
+  int count = 0;               ///< grains
+  std::optional<double> solid_fraction =
+      std::nullopt;  ///< of all grains in the region; nullopt: that of `count` grains
+  std::int64_t grain_count() const;
+};
+
+/// A shape, or a family of variants, and how many of the grains have it.
+struct ShapeShare {
+  std::string shape;
+  double share = 1;  ///< all shares sum to 1
 };
 
 struct MixEntry {
@@ -72,8 +111,10 @@ struct InitialVelocity {
 };
 
 struct Grains {
-  std::string name;  ///< default "grains", "grains2", ...
-  std::string shape;
+  std::string name;                ///< default "grains", "grains2", ...
+  std::string shape;               ///< a shape or a family of variants; empty: see `shapes`
+  std::vector<ShapeShare> shapes;  ///< of grains of several shapes
+  SizeDistribution size;
   Packing packing;
   std::vector<MixEntry> mix;  ///< one entry when the scene gives `body` and `material` directly
   std::uint64_t seed = 0;
@@ -81,10 +122,18 @@ struct Grains {
   InitialVelocity velocity;
 };
 
-/// What moves one degree of freedom of a wall.
+/// What moves one degree of freedom of a wall or a rigid grain, or what the soft support of an outline follows.
 struct Drive {
-  enum class Mode { fixed, velocity, force, pressure, free } mode = Mode::fixed;
-  History history;  ///< m/s, N/m or Pa; pressure acts on period x thickness and is positive towards the grains
+  enum class Mode { fixed, velocity, force, pressure, free, displacement } mode = Mode::fixed;
+  History history;     ///< m/s (rad/s), N/m (N for a moment), m, or Pa: on period x thickness, towards the grains
+  double damping = 0;  ///< of a dashpot beside a load: force - damping v, in the load's unit over m/s (rad/s)
+  Window window{};     ///< of drives with a history: free outside
+
+  static Drive none() {
+    Drive drive;
+    drive.mode = Mode::free;
+    return drive;
+  }
 };
 
 /// Half-round bumps of discs on a wall, one column after another across the period, joined by straight segments.
@@ -108,29 +157,82 @@ struct Wall {
   Drive x, y;  ///< rotation is blocked
 };
 
-struct ContactRule {
-  std::string first, second;  ///< material names; both "all" for the rule that applies where no other does
-  ContactLawKind law = ContactLawKind::frictionless;
-  std::optional<double> stiffness;        ///< kn, Pa/m; nullopt: auto
-  std::optional<double> shear_stiffness;  ///< kt, Pa/m; nullopt: equal to kn
-  double friction = 0;                    ///< mohr-coulomb
-  double cohesion = 0;                    ///< mohr-coulomb, Pa
-  double tension = 0;                     ///< mohr-coulomb tensile cut-off, Pa
-  double strength = 0;                    ///< cohesive: normal strength, Pa
-  std::optional<double> shear_strength;   ///< cohesive: nullopt: equal to strength
-  std::optional<double> range;            ///< cohesive: g_max, m; nullopt: auto (0.12 h)
+/// Part of an outline: the segments whose middle lies there at the start.
+struct OutlinePart {
+  enum class Kind { all, angles, box, side } kind = Kind::all;
+  double first = 0, second = 0;  ///< angles: directions from the body's centre, counter-clockwise, rad
+  Vec2 low{0, 0}, high{0, 0};    ///< box, m
+  Vec2 side{0, 0};               ///< side: outward normals less than 45 degrees from this direction
 };
 
+/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines (METHOD 5).
+struct BoundaryCondition {
+  enum class Kind { drive, pressure, support } kind = Kind::drive;
+  std::string grains;                         ///< name of a set of grains ...
+  std::optional<int> number;                  ///< ... and the one of them, or all
+  Drive x = Drive::none(), y = x, angle = x;  ///< drive; support (fixed, free, velocity, displacement)
+  OutlinePart part;                           ///< pressure, support
+  Window window;                              ///< pressure, support
+  History pressure;                           ///< Pa, positive: pushes
+  bool following = true;                      ///< on the present outline along its normal; else on the one at the start
+  std::optional<Vec2> direction;    ///< not following: unit vector of the traction; nullopt: against the first normal
+  std::optional<double> stiffness;  ///< support: Pa/m; nullopt: 8 E/h as in contacts
+  double damping = 0;               ///< support: Pa s/m
+};
+
+/// What holds between two sorts of bodies (METHOD 4). Which rule a pair gets: scene/contact_rules.hpp.
+struct ContactRule {
+  std::string first, second;  ///< names of materials, grains or walls; "all": any
+  ContactLawKind law = ContactLawKind::frictionless;
+  std::optional<double> stiffness;        ///< kn, Pa/m; nullopt: auto
+  std::optional<double> shear_stiffness;  ///< kt, Pa/m; nullopt: equal to kn; cohesive-fatigue: kn / shear_ratio^2
+  double friction = 0;                    ///< mohr-coulomb; cohesive-fatigue: of broken contacts
+  double cohesion = 0;                    ///< mohr-coulomb, Pa
+  double tension = 0;                     ///< mohr-coulomb tensile cut-off, Pa
+  double smoothing = 0;                   ///< frictionless, mohr-coulomb: quadratic start of the pressure, over h
+  std::optional<double> restitution;      ///< frictionless, mohr-coulomb: of rigid pairs; nullopt: elastic
+  bool pull = false;                      ///< the dashpot of the restitution may pull
+  double strength = 0;                    ///< cohesive laws: normal strength, Pa
+  std::optional<double> shear_strength;   ///< cohesive: nullopt: equal to strength
+  std::optional<double> range;            ///< cohesive laws: g_max, m; nullopt: auto (0.12 h)
+  double shear_ratio = 1;                 ///< cohesive-fatigue: normal over shear strength
+  double residual_strength = 0;           ///< cohesive-fatigue: normal strength of broken contacts, Pa
+  double bond_gap = 0;                    ///< cohesive-fatigue: narrower gaps at the start are bonds, m
+  double fatigue_threshold = 0;           ///< cohesive-fatigue: stress above which damage grows with every load, Pa
+  double fatigue_rate = 0;                ///< cohesive-fatigue: damage per stress, 1/Pa
+  double shear_fatigue_rate = 0;          ///< the same in shear, 1/Pa
+};
+
+/// Settings of contact that hold for the whole scene; the skin stands in Scene.
+struct ContactSettings {
+  ContactLength length = ContactLength::reference;  ///< what the pressure on a node acts on
+  int refresh_steps = 0;                            ///< rebuild candidates every so many steps; 0: when needed
+  double refresh_period = 0;                        ///< the same in time, s
+  bool self_contact = false;                        ///< compliant bodies may touch themselves
+};
+
+/// A rectangle.
+struct ProbeBox {
+  Vec2 low{0, 0}, high{0, 0};  ///< opposite corners, m
+};
+
+/// One measurement; scene/quantities.hpp lists the quantities and which of these settings each takes. `of` and `with`
+/// name a wall, grains, one of them ("grains 17"), or "compliant", "rigid" or "all" grains.
 struct Probe {
   std::string name;
-  ProbeQuantity quantity = ProbeQuantity::energy;
-  std::string of;     ///< wall name, grains name (mean over its bodies), or "compliant" / "rigid"; empty for energy
-  double period = 0;  ///< s
+  std::string quantity;
+  std::string of;                    ///< empty for the whole scene
+  double period = 0;                 ///< s
+  std::string with;                  ///< partners of contacts; empty: all
+  std::optional<int> node;           ///< of the one body that `of` names
+  std::optional<Reduction> reduce;   ///< over bodies, points or contacts; nullopt: the quantity's own
+  std::vector<std::string> between;  ///< the two walls that bound the region, or none
+  std::optional<ProbeBox> box;       ///< the region
 };
 
 struct Frames {
   double period = 0;                ///< s; 0: no frames
-  std::vector<std::string> fields;  ///< of: velocity, von_mises, jacobian, pressure, contact_pressure; kind always
+  std::vector<std::string> fields;  ///< names of frame_fields(); kind and body are always there
 };
 
 struct TimeSettings {
@@ -157,24 +259,31 @@ struct Scene {
   std::optional<double> period;  ///< m
   Vec2 gravity{0, 0};            ///< m/s2
   double skin = 0.5;             ///< contact skin over the finest outline spacing
+  ContactSettings contact;
   TimeSettings time;
   DiscretisationSettings discretisation;
   std::vector<Material> materials;
   std::vector<ShapeSpec> shapes;
   std::vector<Grains> grains;
   std::vector<Wall> walls;
+  std::vector<BoundaryCondition> boundary;
   std::vector<ContactRule> contacts;
   std::vector<Probe> probes;
   Frames frames;
+  std::optional<double> checkpoint_period = 600.0;  ///< wall time between checkpoints, s; nullopt: "never"
 
   const Material& material(const std::string& name) const;  ///< throws InputError for an unknown name
   const ShapeSpec& shape(const std::string& name) const;
-  /// The contact rule of a pair of materials: its own, else the one for all; nullptr when there is none.
-  const ContactRule* rule(const std::string& first_material, const std::string& second_material) const;
+  /// Shapes that a set of grains is made of, as indices in `shapes` with their shares; families as their variants.
+  std::vector<std::pair<int, double>> shape_shares(const Grains& grains) const;
 };
 
 /// Reads and validates a scene file. Throws InputError with file, line and column, what was found, what is
 /// allowed and the nearest name. Nothing is written.
 Scene read_scene(const std::filesystem::path& file);
+/// What a run that goes on would do otherwise by the text `now` of a scene file than by `before`: the first key that
+/// differs, with both values; empty when none does. The end, the title and [checkpoint] may differ: they change no
+/// step. Throws InputError for text that is not TOML.
+std::string scene_difference(const std::string& before, const std::string& now);
 
 }  // namespace pliant

@@ -18,6 +18,7 @@ bool earlier(const toml::source_position& a, const toml::source_position& b) {
 bool TableReader::has(const std::string& key) {
   if (!is_scene_key(key)) throw std::logic_error(fmt::format("'{}' is missing in is_scene_key", key));
   known_.insert(key);
+  if (schema_) schema_->asked(number_, key, table_->contains(key));
   return table_->contains(key);
 }
 
@@ -33,13 +34,25 @@ TableReader TableReader::required_table(const std::string& key) {
 
 TableReader TableReader::optional_table(const std::string& key) {
   static const toml::table empty;
-  if (!has(key)) return {empty, child_title(key), *file_};
+  note_tables(key, "a table");
+  if (!has(key)) return child(empty, key);
   const Value found = value(key);
   if (!found.node.is_table()) found.reject("a table");
-  return {*found.node.as_table(), child_title(key), *file_};
+  return child(*found.node.as_table(), key);
+}
+
+TableReader TableReader::child(const toml::table& table, const std::string& key) const {
+  const bool at_the_top = pattern_ == top_pattern;
+  return {table, child_title(key), *file_, schema_,
+          at_the_top ? fmt::format("[{}]", key) : fmt::format("{} of {}", key, pattern_)};
+}
+
+void TableReader::note_tables(const std::string& key, const char* allowed) {
+  if (schema_) schema_->note(number_, key, {SceneSchema::table_type, allowed, {}, false});
 }
 
 std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const std::string& key) {
+  note_tables(key, "tables, each with a name");
   if (!has(key)) return {};
   const Value all = value(key);
   if (!all.node.is_table()) all.reject(fmt::format("tables [{}.NAME]", key));
@@ -48,7 +61,8 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const
     const Value one{node, fmt::format("'{}.{}'", key, name.str()), *file_};
     if (!node.is_table()) one.reject("a table");
     if (!Identifier::valid(name.str())) one.fail(fmt::format("{}: allowed: {}", one.label, Identifier{}.allowed()));
-    named.emplace_back(name.str(), TableReader(*node.as_table(), fmt::format("[{}.{}]", key, name.str()), *file_));
+    named.emplace_back(name.str(), TableReader(*node.as_table(), fmt::format("[{}.{}]", key, name.str()), *file_,
+                                               schema_, fmt::format("[{}.NAME]", key)));
   }
   std::stable_sort(named.begin(), named.end(), [](const auto& a, const auto& b) {
     return earlier(a.second.table_->source().begin, b.second.table_->source().begin);
@@ -57,6 +71,7 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const
 }
 
 std::vector<TableReader> TableReader::tables(const std::string& key) {
+  note_tables(key, "an array of tables");
   if (!has(key)) return {};
   const std::string allowed = fmt::format("an array of tables [[{}]]", key);
   std::vector<TableReader> all;
@@ -65,7 +80,8 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
     const auto number = all.size() + 1;
     const std::string title =
         nested() ? fmt::format("{} {} of {}", key, number, title_) : fmt::format("[[{}]] {}", key, number);
-    all.emplace_back(*element.node.as_table(), title, *file_);
+    all.emplace_back(*element.node.as_table(), title, *file_, schema_,
+                     nested() ? fmt::format("{} of {}", key, pattern_) : fmt::format("[[{}]]", key));
   }
   return all;
 }

@@ -4,9 +4,11 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
+#include "scene/schema.hpp"
 #include "scene/value.hpp"
 
 namespace pliant {
@@ -16,22 +18,30 @@ namespace pliant {
 /// is_scene_key; the default is the value that the field has already.
 class TableReader {
  public:
-  TableReader(const toml::table& table, std::string title, const std::string& file)
-      : table_(&table), title_(std::move(title)), file_(&file) {}
+  /// `schema`, if any, learns what is asked for; `pattern` is the title without names and numbers.
+  TableReader(const toml::table& table, std::string title, const std::string& file, SceneSchema* schema = nullptr,
+              std::string pattern = {})
+      : table_(&table), title_(std::move(title)), file_(&file), schema_(schema), pattern_(std::move(pattern)) {
+    if (schema_) number_ = schema_->begin_table(pattern_);
+  }
 
   /// Sets the field from a key that must be there.
   template <class Field, class Kind>
   void required(const std::string& key, Field& field, const Kind& kind) {
     if (!has(key)) fail_missing(key, kind.allowed());
+    if (schema_) schema_->note(number_, key, {typeid(Kind).name(), kind.allowed(), {}, true});
     field = static_cast<Field>(kind(value(key)));
+    note_choice(key, field, kind);
   }
 
   /// Sets the field when the key is there; returns whether it is.
   template <class Field, class Kind>
   bool optional(const std::string& key, Field& field, const Kind& kind) {
-    if (!has(key)) return false;
-    field = static_cast<Field>(kind(value(key)));
-    return true;
+    const bool there = has(key);
+    if (schema_) schema_->note(number_, key, {typeid(Kind).name(), kind.allowed(), default_text(field, kind), false});
+    if (there) field = static_cast<Field>(kind(value(key)));
+    note_choice(key, field, kind);
+    return there;
   }
 
   bool has(const std::string& key);     ///< also marks the key as known
@@ -46,6 +56,7 @@ class TableReader {
   std::vector<TableReader> tables(const std::string& key);
 
   const std::string& title() const { return title_; }
+  const std::string& file() const { return *file_; }
   /// Throws InputError at the table.
   [[noreturn]] void fail(const std::string& message) const;
   /// Throws InputError at the value of a key that is there.
@@ -58,6 +69,17 @@ class TableReader {
  private:
   bool nested() const { return title_.starts_with('['); }
   std::string child_title(const std::string& key) const;
+  TableReader child(const toml::table& table, const std::string& key) const;
+  void note_tables(const std::string& key, const char* allowed);
+
+  template <class Field, class Kind>
+  void note_choice(const std::string& key, const Field& field, const Kind& kind) {
+    if constexpr (requires { kind.entries; }) {
+      if (!schema_) return;
+      for (const auto& [name, entry] : kind.entries)
+        if (entry == field) schema_->chosen(number_, key, name);
+    }
+  }
   std::vector<const toml::key*> unknown_keys() const;
   /// The likeliest among the keys that nothing asked for; nullptr: none is suspect.
   const toml::key* misspelling_of(const std::string& key) const;
@@ -65,6 +87,9 @@ class TableReader {
   const toml::table* table_;
   std::string title_;  ///< such as [materials.soft]
   const std::string* file_;
+  SceneSchema* schema_;
+  std::string pattern_;
+  int number_ = 0;  ///< of this table in the schema
   std::set<std::string> known_;
 };
 

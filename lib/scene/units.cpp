@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/errors.hpp"
+#include "scene/text_file.hpp"
 
 namespace pliant {
 
@@ -68,16 +69,10 @@ double convert(const std::string& from_text, const std::string& to_text, double 
   return cv_convert_double(converter.get(), number);
 }
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 }  // namespace
 
 double parse_quantity(const std::string& text, const std::string& unit) {
-  const std::string quantity = trimmed(text);
+  const std::string quantity(trimmed(text));
   const char* begin = quantity.data() + (quantity.starts_with('+') ? 1 : 0);
   const char* end = quantity.data() + quantity.size();
   double number = 0;
@@ -85,7 +80,7 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   if (status == std::errc::result_out_of_range) throw UnitError("a number that double precision cannot hold");
   if (status != std::errc{}) throw UnitError("no number at its start");
   if (!std::isfinite(number)) throw UnitError("a number that is not finite");
-  const double converted = convert(trimmed({rest, static_cast<std::size_t>(end - rest)}), unit, number);
+  const double converted = convert(std::string(trimmed({rest, static_cast<std::size_t>(end - rest)})), unit, number);
   if (!std::isfinite(converted)) throw UnitError("a number that double precision cannot hold");
   return converted;
 }

@@ -101,6 +101,12 @@ std::int64_t Integer::operator()(const Value& value) const {
   return number->get();
 }
 
+bool Flag::operator()(const Value& value) const {
+  const auto* flag = value.node.as_boolean();
+  if (!flag) value.reject(allowed());
+  return flag->get();
+}
+
 bool Identifier::valid(std::string_view name) {
   const auto in_names = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';

@@ -72,6 +72,11 @@ struct Integer {
   std::int64_t operator()(const Value& value) const;
 };
 
+struct Flag {
+  std::string allowed() const { return "true or false"; }
+  bool operator()(const Value& value) const;
+};
+
 /// Free text on one line.
 struct Text {
   std::string allowed() const { return "a string"; }

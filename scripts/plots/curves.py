@@ -18,6 +18,7 @@ _DENSE = 1500
 _BINS = 500
 # A curve this much smaller than the largest of its panel is a line at zero: it is named, not drawn.
 _NEGLIGIBLE = 1e-9
+_LEGEND_COLUMNS = 6
 # Estimates of nearly nothing (free flight, a start at rest) shall not squeeze the others.
 _DECADES = 8
 
@@ -75,8 +76,8 @@ def _logarithmic(axes: Axes, values: np.ndarray) -> None:
 def _legend(axes: Axes, curves: int) -> None:
     """In a line above the panel: it hides nothing there, and all panels keep one width."""
     if curves > 0:
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=curves, fontsize=9, frameon=False,
-                    borderpad=0.1, columnspacing=1.2, handlelength=1.4)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=min(curves, _LEGEND_COLUMNS), fontsize=9,
+                    frameon=False, borderpad=0.1, columnspacing=1.2, handlelength=1.4)
 
 
 def steps(run: Run) -> Figure | None:
@@ -264,24 +265,27 @@ def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, co
 
 
 def probes(run: Run) -> Figure | None:
-    """What forces and energies leave over: positions, velocities, diameters, friction factors; a panel for each."""
+    """What forces and energies leave over; a panel for each quantity and unit, whatever number of probes it has."""
     table = run.probes
     if table is None:
         return None
     kinetic = table.get("kinetic")
     taken = set(_force_sources(table)) | ({kinetic.source} if kinetic is not None else set())
     shown = {run.probe_of.get(source, source) for source in _force_sources(table)}  # their friction is in forces.png
-    groups: dict[str, list[Column]] = {}
+    groups: dict[tuple[str, str], list[Column]] = {}
     for column in table.columns:
         drawn = column.name == "friction_factor" and run.probe_of.get(column.source, column.source) in shown
         if column.source not in taken and not drawn and np.isfinite(column.values).any():
-            groups.setdefault(_quantity(column), []).append(column)
-    groups = {name: columns for name, columns in groups.items() if any(np.any(c.values != 0) for c in columns)}
+            quantity = run.probe_quantity.get(column.source, "").replace("_", " ") or _quantity(column)
+            groups.setdefault((quantity, column.unit), []).append(column)
+    groups = {key: columns for key, columns in groups.items() if any(np.any(c.values != 0) for c in columns)}
     if not groups:
         return None
     figure, axes, factor = _panels(len(groups), f"{run.title}: probes", table)
-    for panel, (name, columns) in zip(axes, groups.items()):
-        _draw_together(panel, table, columns, factor, name, lambda c: _probe_label(run, c))
+    for panel, ((quantity, _), columns) in zip(axes, groups.items()):
+        names = {_quantity(c) for c in columns}
+        title = names.pop() if len(names) == 1 else quantity
+        _draw_together(panel, table, columns, factor, title, lambda c: _probe_label(run, c, columns))
     return figure
 
 
@@ -289,7 +293,14 @@ def _quantity(column: Column) -> str:
     return column.name.removesuffix("_x").removesuffix("_y").replace("_", " ")
 
 
-def _probe_label(run: Run, column: Column) -> str:
-    """Whose, and which component: "left x"."""
-    component = column.name[-1] if column.name.endswith(("_x", "_y")) else ""
-    return f"{run.probe_of.get(column.source) or column.source} {component}".strip()
+def _probe_label(run: Run, column: Column, beside: list[Column]) -> str:
+    """Whose, and which component: "left x". Probes of the same bodies go by their own names, columns by theirs."""
+    of = run.probe_of.get(column.source) or column.source
+    alike = {c.source for c in beside if (run.probe_of.get(c.source) or c.source) == of}
+    whose = column.source if len(alike) > 1 else of
+    if len({_quantity(c) for c in beside}) > 1:
+        which = column.name.replace("_", " ")
+    else:
+        which = column.name[-1] if column.name.endswith(("_x", "_y")) else ""
+    several = len({c.source for c in beside}) > 1 or not which
+    return f"{whose if several or len(which) == 1 else ''} {which}".strip()

@@ -3,7 +3,7 @@
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection, TriMesh
+from matplotlib.collections import LineCollection, PolyCollection, TriMesh
 from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
@@ -30,6 +30,12 @@ def draw(axes: Axes, scene: Scenery, triangles: np.ndarray, colours: np.ndarray,
     axes.set_aspect("equal")
     axes.set_xlabel(units.label("x", unit))
     axes.set_ylabel(units.label("y", unit))
+
+
+def draw_coloured(axes: Axes, segments: np.ndarray, colours: np.ndarray, box: Box, width: float) -> None:
+    """Segments [n x 2 x 2] in colours [n x 4], upon what `draw` drew."""
+    factor, _ = units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
+    axes.add_collection(LineCollection(segments * factor, colors=colours, linewidths=width, capstyle="round"))
 
 
 def _draw_triangles(axes: Axes, triangles: np.ndarray, colours: np.ndarray) -> None:

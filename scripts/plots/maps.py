@@ -1,4 +1,4 @@
-"""Maps of bodies: kinds, velocity norm, von Mises stress."""
+"""Maps of bodies: kinds, velocity norm, von Mises stress, damage of bonds."""
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from plots import units
-from plots.drawing import EDGE, KIND_COLOURS, Box, draw, finish_sheet, outline_width, sheet, whole_and_window
+from plots.drawing import EDGE, KIND_COLOURS, Box, draw, draw_coloured, finish_sheet, outline_width, sheet, whole_and_window
 from plots.run_data import COMPLIANT, RIGID, WALL, Frames, Run
 from plots.scenery import Scenery, common_box, refined, scenery
 
@@ -121,6 +121,30 @@ def von_mises(run: Run, indices: list[int]) -> Figure | None:
             draw(panel, scene, scene.triangles, colour, box, outline_width(scene))
         finish_sheet(axes, times)
     _add_colour_bar(figure, axes, mappable, name, values.max() * factor)
+    return figure
+
+
+def damage(run: Run, indices: list[int]) -> Figure | None:
+    """Bonds of the first frame, on the outlines that they join: from whole to torn."""
+    assert run.frames is not None
+    fields = {index: run.frames.field("outlines", index, "contact_damage") for index in {0, *indices}}
+    if any(field is None for field in fields.values()):
+        return None
+    bonded = fields[0] < 1
+    if not bonded.any():
+        return None
+    sceneries = [scenery(run, index) for index in indices]
+    box = common_box(sceneries)
+    figure, axes = sheet(box, len(indices), f"{run.title}: damage of bonds", beside=1.4)
+    mappable = ScalarMappable(Normalize(0, 1), plt.get_cmap("turbo"))
+    ends = run.frames.grids["outlines"].cells
+    for panel, scene, index in zip(axes, sceneries, indices):
+        draw(panel, scene, scene.triangles, np.tile(to_rgba_array(NEUTRAL), (len(scene.triangles), 1)), box, 0)
+        joined = bonded[ends[scene.edge_cells]].all(axis=1)
+        values = fields[index][ends[scene.edge_cells[joined]]].mean(axis=1)
+        draw_coloured(panel, scene.edges[joined], mappable.to_rgba(values), box, 4 * outline_width(scene))
+    finish_sheet(axes, _times(run, indices))
+    figure.colorbar(mappable, ax=axes, label="damage: 0 whole, 1 torn", shrink=0.8, aspect=30, pad=0.02)
     return figure
 
 

@@ -152,6 +152,7 @@ class Run:
     period: float | None  # m
     tolerance: float | None  # of the error estimate, where the scene gives it
     probe_of: dict[str, str]  # what a probe looks at: {"force_lower": "lower"}
+    probe_quantity: dict[str, str]  # what it measures: {"force_lower": "force"}
     probes: Table | None
     steps: Table | None
     frames: Frames | None
@@ -181,6 +182,7 @@ def _read(folder: Path) -> Run:
         period,
         time.get("tolerance", time.get("target")),
         {probe["name"]: probe.get("of", "") for probe in scene.get("probes", []) if "name" in probe},
+        {probe["name"]: probe.get("quantity", "") for probe in scene.get("probes", []) if "name" in probe},
         read_table(folder / "probes.csv"),
         read_table(folder / "steps.csv"),
         frames if frames is not None and len(frames.times) > 0 else None,

@@ -16,6 +16,7 @@ class Scenery:
     cells: np.ndarray  # [triangles] cell of the grid each is a picture of
     kind: np.ndarray  # [triangles]
     edges: np.ndarray  # [segments x 2 x 2] outlines of grains
+    edge_cells: np.ndarray  # [segments] cell of the outlines' grid each is a picture of
     walls: np.ndarray  # [segments x 2 x 2]
     box: tuple[float, float, float, float]  # x and y limits
 
@@ -33,14 +34,14 @@ def scenery(run: Run, index: int) -> Scenery:
     assert frames is not None
     triangles, cells = _polygons(frames, "bodies", index, run.period)
     kind = frames.grids["bodies"].kind[cells]
-    edges, walls = np.empty((0, 2, 2)), np.empty((0, 2, 2))
+    edges, walls, edge_cells = np.empty((0, 2, 2)), np.empty((0, 2, 2)), np.empty(0, dtype=int)
     if "outlines" in frames.grids:
         segments, originals = _polygons(frames, "outlines", index, run.period)
         of_wall = frames.grids["outlines"].kind[originals] == WALL
-        edges, walls = segments[~of_wall], segments[of_wall]
+        edges, edge_cells, walls = segments[~of_wall], originals[~of_wall], segments[of_wall]
         if run.period is not None:
             walls = wrapped_segments(walls, run.period)
-    return Scenery(triangles, cells, kind, edges, walls, _box(triangles[kind != WALL], walls, run.period))
+    return Scenery(triangles, cells, kind, edges, edge_cells, walls, _box(triangles[kind != WALL], walls, run.period))
 
 
 def _polygons(frames: Frames, grid: str, index: int, period: float | None) -> tuple[np.ndarray, np.ndarray]:

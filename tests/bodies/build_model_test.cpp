@@ -188,5 +188,25 @@ TEST(InitialState, VelocityFields) {
   EXPECT_EQ(v.rigid, (std::vector<double>{0.5, -1, 2}));
 }
 
+// EXACT: bodies carry the shapes and sizes of their packing, in any kind of body; shapes fitted to cells join the scene's.
+TEST(BuildModel, PackingsGiveShapesAndSizes) {
+  Scene scene = mixed_scene(10, 4, {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}});
+  scene.shapes.push_back(disc_shape("large", 1.2, 20, 50));
+  Grains& grains = scene.grains[0];
+  grains.shape.clear();
+  grains.shapes = {{"disc", 0.25}, {"large", 0.75}};
+  grains.size.factors = {0.5, 2};
+  grains.size.shares = {0.5, 0.5};
+  const Model model = build_model(scene);
+  const auto count = [&](auto&& holds) { return std::count_if(model.bodies.begin(), model.bodies.end(), holds); };
+  EXPECT_EQ(count([](const Body& b) { return b.shape == 0; }), 10);
+  EXPECT_EQ(count([](const Body& b) { return b.shape == 1; }), 30);
+  EXPECT_EQ(count([](const Body& b) { return b.scale == 0.5; }), 20);
+  EXPECT_EQ(count([](const Body& b) { return b.scale == 2; }), 20);
+  EXPECT_GT(count([](const Body& b) { return b.shape == 0 && b.scale == 2 && b.kind == BodyKind::rigid; }), 0);
+  for (const Body& b : model.bodies)
+    EXPECT_EQ(model.outlines[b.outline].count, b.shape == 0 ? 24 : 20) << "each body shows the outline of its shape";
+}
+
 }  // namespace
 }  // namespace pliant

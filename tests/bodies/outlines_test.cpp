@@ -160,7 +160,7 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
     };
     if (body.kind == BodyKind::compliant) {
       const Batch& batch = moved.model.batches[body.batch];
-      add_outline_forces(moved.model, batch, moved.outlines, &force.compliant[batch.offset]);
+      add_outline_forces(moved.model, moved.model.regions[body.batch], moved.outlines, &force.compliant[batch.offset]);
       for (std::size_t i = batch.offset; i < batch.offset + 100; ++i) {
         double q = there.compliant[i][body.lane];
         move(q, force.compliant[i][body.lane]);

@@ -10,6 +10,14 @@
 namespace pliant {
 namespace {
 
+Probe energy_probe(double period) {
+  Probe probe;
+  probe.name = "p";
+  probe.quantity = "energy";
+  probe.period = period;
+  return probe;
+}
+
 TEST(LargestPressure, IsThatOfTheWallsUntilTheEnd) {
   Scene scene = testing::bare_scene();
   scene.period = 4;
@@ -58,7 +66,7 @@ TEST(LeastSteps, MeetTheOutputs) {
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 34);
   scene.frames.period = 1;
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 40);
-  scene.probes.push_back({"p", ProbeQuantity::energy, "", 0.5});
+  scene.probes.push_back(energy_probe(0.5));
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 40);
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.6), 20);
   EXPECT_DOUBLE_EQ(least_steps(scene, 0, 0.3), 0);
@@ -94,7 +102,7 @@ TEST(ContactPairs, AreThoseThatCanMeet) {
   scene.contacts.push_back(testing::mohr_coulomb(50, 0.3));
   scene.contacts[1].first = "hard", scene.contacts[1].second = "soft";
   const Model model = build_model(scene);
-  const std::vector<ContactPair> pairs = contact_pairs(model, make_contact_laws(model));
+  const std::vector<ContactPair> pairs = contact_pairs(model, ContactLaws(model));
   // EXACT: the only soft disc does not meet itself, and the wall no wall.
   ASSERT_EQ(pairs.size(), 4U);
   const auto find = [&](const std::string& first, const std::string& second) {
@@ -124,7 +132,7 @@ TEST(OutputSizes, GrowWithWhatIsAskedFor) {
   EXPECT_EQ(none.frames, 0);  // EXACT
   EXPECT_EQ(none.frames_h5 + none.frames_xdmf + none.probes_csv, 0);
   scene.frames = {1e-4, {"velocity"}};
-  scene.probes.push_back({"p", ProbeQuantity::energy, "", 1e-5});
+  scene.probes.push_back(energy_probe(1e-5));
   const OutputSize some = output_size(build_model(scene), 400'000);
   EXPECT_EQ(some.frames, 11);
   EXPECT_EQ(some.probe_rows, 101);
@@ -137,7 +145,7 @@ TEST(Rehearsal, CountsWhatARunCounts) {
   scene.grains[0].velocity.uniform = Vec2(1, 0);
   scene.time.end = 0.5;
   scene.frames.period = 0.05;
-  scene.probes.push_back({"p", ProbeQuantity::energy, "", 0.03});
+  scene.probes.push_back(energy_probe(0.03));
   const Model model = build_model(scene);
   Simulation rehearsed(model);
   const Rehearsal first = rehearse(rehearsed);

@@ -63,6 +63,19 @@ TEST(ContactLaws, Cohesive) {
                                              {"apart", 0.9, 0, 0, 0}});
 }
 
+// kn = 10, smooth over 0.2: the straight branch starts at a pressure of 1 and meets zero at 0.1. Energy: 10 x^3/1.2, then the parabola about 0.1 and
+// 10 x 0.04/24.
+TEST(ContactLaws, Smoothed) {
+  expect_table(Smoothed<Frictionless>{{10, 0, 0}, 0.2}, {{"end of the start", -0.2, 1, 0, 10 * 0.008 / 1.2},
+                                                         {"half way", -0.1, 0.25, 0, 10 * 0.001 / 1.2},
+                                                         {"deep", -0.5, 4, 0, 0.8 + 0.4 / 24},
+                                                         {"just met", 0, 0, 0, 0},
+                                                         {"apart", 0.3, 0, 0, 0}});
+  expect_table(Smoothed<MohrCoulomb>{{10, 10, 0, 0.5, 0.2}, 0.2}, {{"deep", -0.5, 4, 2.2, 0.8 + 0.4 / 24},
+                                                                   {"half way", -0.1, 0.25, 0.325, 10 * 0.001 / 1.2},
+                                                                   {"apart", 1e-9, 0, 0, 0}});
+}
+
 // EXACT: dpsi/dg = -p wherever the law is smooth; central differences of quadratics have no truncation error:
 // 1e-16/1e-5.
 TEST(ContactLaws, PressureIsTheDerivativeOfTheEnergy) {
@@ -75,6 +88,7 @@ TEST(ContactLaws, PressureIsTheDerivativeOfTheEnergy) {
     EXPECT_LT(defect(Frictionless{10, 0, 0}, gap), 1e-9);
     EXPECT_LT(defect(MohrCoulomb{10, 10, 0.1, 0.5, 0.2}, gap), 1e-9);
     EXPECT_LT(defect(Cohesive{10, 10, 0.6, 2, 3}, gap), 1e-9);
+    EXPECT_LT(defect(Smoothed<Frictionless>{{10, 0, 0}, 0.2}, gap), 1e-9);
   }
 }
 
@@ -113,15 +127,15 @@ ContactRule with_auto_stiffness(ContactRule rule) {
 }
 
 // EXACT, METHOD 4: 8 E/h of the softer body and the finer outline; range 0.12 h; kt = kn, tau_c = sigma_c.
-TEST(MakeContactLaws, AutomaticStiffnessAndRange) {
+TEST(LawsOfPairs, AutomaticStiffnessAndRange) {
   Scene scene = five_bodies();
   scene.contacts = {with_auto_stiffness(cohesive(0, 1e-3, 0, 0))};
   scene.contacts[0].shear_strength.reset();
   const Model model = build_model(scene);
-  const ContactLaws laws = make_contact_laws(model);
+  const ContactLaws laws(model);
   const double coarse = model.outlines[model.bodies[0].outline].spacing,
                fine = model.outlines[model.bodies[2].outline].spacing;
-  const auto law = [&](int a, int b) { return std::get<Cohesive>(laws.laws[laws.between(a, b)]); };
+  const auto law = [&](int a, int b) { return std::get<Cohesive>(laws.between(a, b)); };
   const auto expect_law = [&](int a, int b, double young, double h) {
     EXPECT_NEAR(law(a, b).normal_stiffness * h / (8 * young), 1, 1e-14) << a << " " << b;
     EXPECT_NEAR(law(a, b).shear_stiffness * h / (8 * young), 1, 1e-14);
@@ -135,19 +149,19 @@ TEST(MakeContactLaws, AutomaticStiffnessAndRange) {
   expect_law(2, 3, 5, fine);
   // Pairs of rigid bodies: no less than the scene's largest, here that of body 2 and a rigid one or its like.
   EXPECT_GE(law(3, 4).normal_stiffness, 8 * 5 / fine * (1 - 1e-14));
-  EXPECT_NEAR(laws.max_reach, 0.12 * std::max(coarse, model.outlines[model.bodies[3].outline].spacing), 1e-15);
+  EXPECT_NEAR(laws.max_reach(), 0.12 * std::max(coarse, model.outlines[model.bodies[3].outline].spacing), 1e-15);
 }
 
 // EXACT: the rule of the two materials, in either order, before that of all.
-TEST(MakeContactLaws, SpecialRuleComesFirst) {
+TEST(LawsOfPairs, SpecialRuleComesFirst) {
   Scene scene = five_bodies();
   ContactRule special = mohr_coulomb(7, 0.4, 0.1, 0.14);
   special.first = "hard", special.second = "soft";
   special.shear_stiffness = 3;
   scene.contacts = {frictionless(5), special};
-  const ContactLaws laws = make_contact_laws(build_model(scene));
+  const ContactLaws laws(build_model(scene));
   for (const auto& [a, b] : {std::pair{0, 3}, {3, 0}, {1, 4}, {4, 1}}) {
-    const MohrCoulomb law = std::get<MohrCoulomb>(laws.laws[laws.between(a, b)]);
+    const MohrCoulomb law = std::get<MohrCoulomb>(laws.between(a, b));
     EXPECT_EQ(law.normal_stiffness, 7);
     EXPECT_EQ(law.shear_stiffness, 3);
     EXPECT_EQ(law.friction, 0.4);
@@ -156,12 +170,12 @@ TEST(MakeContactLaws, SpecialRuleComesFirst) {
     EXPECT_EQ(stiffness_of(law), 7);
   }
   for (const auto& [a, b] : {std::pair{0, 1}, {0, 2}, {2, 3}, {3, 4}})
-    EXPECT_EQ(std::get<Frictionless>(laws.laws[laws.between(a, b)]).normal_stiffness, 5);
+    EXPECT_EQ(std::get<Frictionless>(laws.between(a, b)).normal_stiffness, 5);
 }
 
 std::string error_of(const Scene& scene) {
   try {
-    make_contact_laws(build_model(scene));
+    ContactLaws(build_model(scene));
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -169,7 +183,7 @@ std::string error_of(const Scene& scene) {
 }
 
 // EXACT: errors name the thing, the value and what to do.
-TEST(MakeContactLaws, RefusesWhatCannotWork) {
+TEST(LawsOfPairs, RefusesWhatCannotWork) {
   Scene scene = five_bodies();
   EXPECT_NE(error_of(scene).find("no [[contacts]] rule between materials 'soft' and 'soft'"), std::string::npos);
   scene.contacts = {cohesive(10, 1, 0.05, 1)};

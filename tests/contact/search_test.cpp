@@ -41,7 +41,9 @@ void expect_equal(const ContactRig& rig, const ContactOracle::Result& expected) 
 }
 
 const ContactRule rules[] = {frictionless(stiffness), mohr_coulomb(stiffness, 0.3, 0.05, 0.2),
-                             cohesive(stiffness, 0.5, 0.02, 0.4)};
+                             cohesive(stiffness, 0.5, 0.02, 0.4), smoothed(frictionless(stiffness), 0.05),
+                             smoothed(mohr_coulomb(stiffness, 0.3, 0.05), 0.1)};
+constexpr int rule_count = 5;
 
 // Two bodies of given kinds pressed into each other; false when a node lies too deep for METHOD's contact box.
 bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_b) {
@@ -59,13 +61,13 @@ bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_
   return true;
 }
 
-// INDEPENDENT: the brute force of contact_oracle.hpp; every pair of five kinds of outline, three laws.
+// INDEPENDENT: the brute force of contact_oracle.hpp; every pair of five kinds of outline, five laws.
 TEST(ContactSearch, EqualsBruteForceOnRandomOutlines) {
   int compared = 0, samples = 0;
   for (int kind_a = 0; kind_a < 5; ++kind_a)
     for (int kind_b = 0; kind_b < 5; ++kind_b)
-      for (int rule = 0; rule < 3; ++rule)
-        for (int sample = 0; sample < 8; ++sample, ++samples) {
+      for (int rule = 0; rule < rule_count; ++rule)
+        for (int sample = 0; sample < 5; ++sample, ++samples) {
           SCOPED_TRACE("kinds " + std::to_string(kind_a) + " " + std::to_string(kind_b) + ", rule " +
                        std::to_string(rule) + ", sample " + std::to_string(sample));
           Random random(1000 * samples + 7);
@@ -98,7 +100,7 @@ TEST(ContactSearch, EqualsBruteForceInAPeriodicHeap) {
   for (int sample = 0; sample < 12; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 50);
-    const ContactRule& rule = rules[sample % 3];
+    const ContactRule& rule = rules[sample % rule_count];
     ContactRig rig(heap(random, rule, sample % 2 == 0));
     rig.evaluate();
     const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
@@ -126,7 +128,7 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
                      std::to_string(sample));
         Random random(1000 * samples + 3);
         Scene scene = bare_scene();
-        const ContactRule& rule = rules[sample % 3];
+        const ContactRule& rule = rules[sample % rule_count];
         scene.contacts = {rule};
         for (const int kind : {kind_a, kind_b})
           add_body(scene, outline_shape("outline", random_outline(random, kind)), BodyKind::rigid, {0, 0},
@@ -148,11 +150,17 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
   EXPECT_GT(compared, samples / 2);
 }
 
-// The same in the heap, every body on its own way and turning, until the system itself asks for a refresh; then again.
-TEST(ContactSearch, MissesNoContactInAMovingHeap) {
+// Every body on its own way and turning, until the system itself asks for a refresh; then again.
+void follow_heap(const ContactRule& rule) {
   Random random(77);
-  ContactRig rig(heap(random, rules[2], true));
-  ContactOracle oracle(rig, rules[2]);
+  ContactRig rig(heap(random, rule, true));
+  ContactOracle oracle(rig, rule);
+  if (rule.bond_gap > 0) {
+    rig.refresh();
+    oracle.evaluate();
+    oracle.bond();
+    oracle.commit();
+  }
   int refreshes = 0;
   for (int step = 0; step < 40; ++step) {
     for (std::size_t b = 0; b + 2 < rig.model.bodies.size(); ++b) {
@@ -171,6 +179,17 @@ TEST(ContactSearch, MissesNoContactInAMovingHeap) {
   }
   EXPECT_GT(refreshes, 2);
   EXPECT_GT(rig.dissipated, 0.001);
+}
+
+TEST(ContactSearch, MissesNoContactInAMovingHeap) { follow_heap(rules[2]); }
+
+// INDEPENDENT: bonds that stretch, wear and break, and the slip and cohesion of what they leave; the books against the work of the tractions.
+TEST(ContactSearch, DamageEqualsBruteForceInAMovingHeap) {
+  ContactRule rule = cohesive_fatigue(stiffness, 0.5, 0.02, 1.3, 0.005);
+  follow_heap(rule);
+  rule.residual_strength = 0.2, rule.friction = 0.4;
+  rule.fatigue_threshold = 0.1, rule.fatigue_rate = 0.6, rule.shear_fatigue_rate = 1.1;
+  follow_heap(rule);
 }
 
 // Two bodies fly at each other, turning, from beyond every margin until they overlap; each step is far below the skin.
@@ -205,7 +224,7 @@ TEST(ContactSearch, SeesBodiesComing) {
   for (int sample = 0; sample < 30; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 4000);
-    approach(random, rules[sample % 3]);
+    approach(random, rules[sample % rule_count]);
   }
 }
 

@@ -31,6 +31,23 @@ TEST_P(Determinism, same_bits_with_1_2_and_3_threads_and_twice) {
   EXPECT_EQ(hash_after(build_model(scene), 1, 2), one) << "EXACT: the model built anew";
 }
 
+TEST_P(Determinism, same_bits_with_damping_and_boundary_conditions) {
+  Scene scene = small_third_body(2);
+  scene.time.integrator = GetParam();
+  for (Material& material : scene.materials) material.viscosity = 0.01, material.mass_damping = 0.1;
+  scene.walls[1].y.damping = 0.2;
+  BoundaryCondition pressure;
+  pressure.kind = BoundaryCondition::Kind::pressure;
+  pressure.grains = "layer";
+  pressure.pressure = {{0}, {0.02}};
+  pressure.window = {0.3, 1.5};
+  scene.boundary = {pressure};
+  const Model model = build_model(scene);
+  const std::uint64_t one = hash_after(model, 1, 2);
+  EXPECT_EQ(hash_after(model, 2, 2), one) << "EXACT: threads";
+  EXPECT_EQ(hash_after(model, 3, 2), one) << "EXACT: threads";
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, ::testing::Values(Integrator::verlet, Integrator::step_doubling));
 
 TEST(StateHash, sees_the_last_bit_of_every_part) {

@@ -103,7 +103,7 @@ TEST_F(TextFiles, OutputFolderIsCreatedAndNotTakenTwice) {
 }
 
 TEST_F(TextFiles, OverwriteEmptiesAFolderOfResults) {
-  for (const char* name : {"summary.json", "scene.toml", "frames.h5", "probes.csv", "grains.png"}) {
+  for (const char* name : {"summary.json", "scene.toml", "frames.h5", "probes.csv", "grains.png", "frame_000001.vtu"}) {
     write_file_atomically(folder_ / name, "x");
   }
   prepare_output_folder(folder_, true);

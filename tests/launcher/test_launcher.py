@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import time
 from dataclasses import dataclass
@@ -35,11 +36,11 @@ class Launcher:
     log: Path
     environment: dict[str, str]
 
-    def start(self, *arguments: str, **environment: str) -> subprocess.Popen[str]:
+    def start(self, *arguments: str, process_group: int | None = None, **environment: str) -> subprocess.Popen[str]:
         (self.root / "elsewhere").mkdir(exist_ok=True)
         return subprocess.Popen([self.root / "pliant", *arguments], text=True, cwd=self.root / "elsewhere",
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
-                                env=self.environment | environment)
+                                process_group=process_group, env=self.environment | environment)
 
     def __call__(self, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
         process = self.start(*arguments, **environment)
@@ -119,7 +120,7 @@ def test_failed_build_stops_and_looks_for_packages_again(launcher: Launcher) -> 
     assert not (launcher.root / "build/packages.stamp").exists()
 
 
-@pytest.mark.parametrize("code", [0, 2, 3, 4])
+@pytest.mark.parametrize("code", [0, 2, 3, 4, 130, 143])
 @pytest.mark.parametrize("command", ["run", "check"])
 def test_exit_codes_pass_through(launcher: Launcher, command: str, code: int) -> None:
     result = launcher(command, "a.toml", ENGINE_EXIT=str(code))
@@ -133,6 +134,8 @@ def test_exit_codes_pass_through(launcher: Launcher, command: str, code: int) ->
     (["--until", "1 us", "--threads", "2", "--force", "a.toml"], "results/a"),
     (["a.toml", "--out", "my results"], "my results"),
     (["--out=o", "a.toml"], "o"),
+    (["--checkpoint-every", "1 min", "--resume", "a.toml"], "results/a"),
+    (["--resume", "--out", "o"], "o"),
 ], ids=lambda value: " ".join(value) if isinstance(value, list) else "")
 def test_pictures_go_where_the_results_are(launcher: Launcher, arguments: list[str], folder: str) -> None:
     result = launcher("run", *arguments)
@@ -176,6 +179,37 @@ def test_a_run_does_not_hold_the_lock(launcher: Launcher) -> None:
     long_run.communicate()
 
 
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
+def test_signals_reach_a_run_once(launcher: Launcher, stop: signal.Signals) -> None:
+    """Also when the terminal sends SIGINT to the launcher's whole process group."""
+    write_script(launcher.root / "build/release/pliant_engine",
+                 'for s in INT TERM; do trap "echo $s >>$LOG.signals; stop=yes" $s; done; echo ready >"$LOG.ready"; '
+                 'for i in $(seq 100); do sleep 0.05; [ -z "$stop" ] || { sleep 0.2; exit 130; }; done')
+    run = launcher.start("run", "a.toml", process_group=0)
+    while not Path(f"{launcher.log}.ready").exists():
+        time.sleep(0.02)
+    os.killpg(run.pid, stop) if stop == signal.SIGINT else run.send_signal(stop)
+    output, _ = run.communicate(timeout=30)
+    assert run.returncode == 130 and "plot" not in output
+    assert Path(f"{launcher.log}.signals").read_text() == f"{stop.name[3:]}\n"
+
+
+def test_schema_reads_the_scenes_of_docs_and_cases(launcher: Launcher) -> None:
+    for name in ["docs/keys/a.toml", "cases/b.toml"]:
+        (launcher.root / name).parent.mkdir(parents=True)
+        (launcher.root / name).touch()
+    files = [f"[{launcher.root}/{name}]" for name in ["docs/keys/a.toml", "cases/b.toml"]]
+    assert launcher("schema").stdout.startswith("[schema]" + "".join(files))
+
+
+@pytest.mark.parametrize("command", ["info", "compare"])
+def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, command: str) -> None:
+    (launcher.root / f"scripts/{command}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
+    result = launcher(command, "my results", "--tolerance", "1e-6")
+    assert result.returncode == 1 and result.stdout == "my results --tolerance 1e-6\n"
+    assert not launcher.calls("ninja")
+
+
 def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) -> None:
     result = launcher("test", "-R", "contact")
     assert result.returncode == 8
@@ -184,7 +218,8 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
     assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build", "bench", "lint", "format"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "info", "compare", "schema", "shape-functions", "export", "test", "build",
+                                     "bench", "lint", "format"])
 def test_every_command_has_help_with_an_example(launcher: Launcher, command: str) -> None:
     result = launcher(command, "--help")
     assert result.returncode == 0
@@ -205,13 +240,13 @@ def test_readme_names_every_command(launcher: Launcher) -> None:
     assert set(readme_commands()) == set(listed)
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "test", "build"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "compare", "export", "test", "build"])
 def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
-    first_line = launcher(command, "--help").stdout.splitlines()[0]
+    usage = re.match(r".*(\n +.*)*", launcher(command, "--help").stdout)[0]
     readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
-    assert readme <= set(re.findall(r"--[a-z-]+", first_line))
-    if command in {"run", "check", "plot"}:
-        assert readme == set(re.findall(r"--[a-z-]+", first_line))
+    assert readme <= set(re.findall(r"--[a-z-]+", usage))
+    if command in {"run", "check", "plot", "compare", "export"}:
+        assert readme == set(re.findall(r"--[a-z-]+", usage))
 
 
 def test_presets_are_the_same_everywhere(launcher: Launcher) -> None:

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A compliant and a rigid disc between a floor and a plate that comes down; every probe and every field.
+/// A compliant and a rigid disc between a floor and a plate that comes down; some probes and every field.
 const std::string pressed_discs = R"(title = "Pressed discs"
 [domain]
 period = 5
@@ -98,7 +98,10 @@ of = "floor"
 period = 0.25
 [frames]
 period = 0.5
-fields = ["velocity", "von_mises", "jacobian", "pressure", "contact_pressure"]
+fields = ["velocity", "von_mises", "jacobian", "pressure", "contact_pressure", "displacement", "acceleration", "tresca",
+  "strain_energy_density", "contact_count", "material", "scale", "contact_shear", "contact_gap", "contact_slip",
+  "stress_xx", "stress_yy", "stress_xy", "stress_zz", "principal_stress_1", "principal_stress_2", "strain_xx",
+  "strain_yy", "strain_xy"]
 )";
 
 std::string replaced(std::string text, const std::string& old, const std::string& by) {
@@ -227,6 +230,7 @@ TEST_F(RunScene, probes_have_units_periods_and_empty_cells) {
                                              "books.kinetic [J/m]",
                                              "books.strain [J/m]",
                                              "books.contact [J/m]",
+                                             "books.boundary [J/m]",
                                              "books.dissipated [J/m]",
                                              "books.external_work [J/m]",
                                              "books.balance_error [-]",
@@ -268,6 +272,13 @@ TEST_F(RunScene, frames_resolve_every_field) {
   EXPECT_EQ(check_frames(), 0) << read(folder_ / "log.txt");
   const std::string script = "/usr/bin/python3 " PLIANT_SOURCE_DIR "/tests/results/check_frames.py " + out().string();
   EXPECT_EQ(shell(script + " 5"), 0) << read(folder_ / "log.txt");
+}
+
+TEST_F(RunScene, a_node_that_no_body_has_is_refused_before_anything_is_written) {
+  const std::string text =
+      replaced(pressed_discs, "of = \"first\"\nperiod = 0.5", "of = \"first\"\nnode = 60\nperiod = 0.5");
+  EXPECT_THROW(run(text), InputError) << "EXACT: 60 nodes count from 0";
+  EXPECT_FALSE(fs::exists(out())) << "EXACT";
 }
 
 TEST_F(RunScene, failure_leaves_readable_outputs_and_exit_code_3) {

@@ -1,69 +1,21 @@
 #include <gtest/gtest.h>
 
-#include <ostream>
 #include <string>
 #include <vector>
 
-#include "core/errors.hpp"
-#include "scene_files.hpp"
+#include "scene/bad_scenes.hpp"
 
 namespace pliant {
 namespace {
 
+using scene_tests::Bad;
+using scene_tests::error_of;
 using scene_tests::good_scene;
-using scene_tests::SceneFile;
-
-/// One change to the good scene; the error must stand at the first `at` of the changed text and contain all phrases.
-struct Bad {
-  std::string name;
-  std::string from, to;
-  std::string at;
-  std::vector<std::string> phrases;
-};
-
-/// What ctest lists beside the test's name.
-void PrintTo(const Bad& bad, std::ostream* out) { *out << '\'' << bad.to << "' for '" << bad.from << '\''; }
-
-std::string error_of(const std::string& text) {
-  const SceneFile file(text);
-  try {
-    read_scene(file.path());
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    const std::string path = file.path().string() + ":";
-    EXPECT_TRUE(message.starts_with(path)) << message;
-    return message.substr(std::min(path.size(), message.size()));
-  }
-  return "no error";
-}
-
-std::string line_and_column(const std::string& text, std::size_t offset) {
-  int line = 1, column = 1;
-  for (std::size_t i = 0; i < offset; ++i) {
-    column = text[i] == '\n' ? 1 : column + 1;
-    line += text[i] == '\n' ? 1 : 0;
-  }
-  return std::to_string(line) + ":" + std::to_string(column) + ": ";
-}
 
 class BadInput : public ::testing::TestWithParam<Bad> {};
 
 // EXACT: place and words of the message.
-TEST_P(BadInput, IsRefusedWithPlaceAndReason) {
-  const Bad& bad = GetParam();
-  std::string text = good_scene;
-  const auto at = text.find(bad.from);
-  ASSERT_NE(at, std::string::npos) << bad.from;
-  text.replace(at, bad.from.size(), bad.to);
-  const auto expected = text.find(bad.at);
-  ASSERT_NE(expected, std::string::npos) << bad.at;
-  const std::string message = error_of(text);
-  EXPECT_TRUE(message.starts_with(line_and_column(text, expected)))
-      << message << "\nexpected at " << line_and_column(text, expected);
-  for (const std::string& phrase : bad.phrases) EXPECT_NE(message.find(phrase), std::string::npos) << message;
-}
-
-std::string name_of(const ::testing::TestParamInfo<Bad>& info) { return info.param.name; }
+TEST_P(BadInput, IsRefusedWithPlaceAndReason) { scene_tests::expect_refused(GetParam()); }
 
 const std::vector<Bad> bad_values{
     {"UnknownKey",
@@ -169,8 +121,8 @@ const std::vector<Bad> misspelt_keys{
     misspelt("InInlineTable", "columns = 10", "colums = 10", "colums", "columns"),
     misspelt("InAnArrayOfTables", "of = \"floor\"", "off = \"floor\"", "off", "of"),
 };
-INSTANTIATE_TEST_SUITE_P(MisspeltKeys, BadInput, ::testing::ValuesIn(misspelt_keys), name_of);
-INSTANTIATE_TEST_SUITE_P(Values, BadInput, ::testing::ValuesIn(bad_values), name_of);
+INSTANTIATE_TEST_SUITE_P(MisspeltKeys, BadInput, ::testing::ValuesIn(misspelt_keys), scene_tests::name_of);
+INSTANTIATE_TEST_SUITE_P(Values, BadInput, ::testing::ValuesIn(bad_values), scene_tests::name_of);
 
 const std::vector<Bad> bad_bodies{
     {"YoungOfRigid",
@@ -256,7 +208,7 @@ const std::vector<Bad> bad_bodies{
     {"ReservedGrainsName", "name = \"boxes\"", "name = \"rigid\"", "[[grains]]\nname", {"'rigid'", "taken"}},
     {"GrainsName", "name = \"boxes\"", "name = \"a/b\"", "\"a/b\"", {"a name of 1 to 64 letters"}},
 };
-INSTANTIATE_TEST_SUITE_P(Bodies, BadInput, ::testing::ValuesIn(bad_bodies), name_of);
+INSTANTIATE_TEST_SUITE_P(Bodies, BadInput, ::testing::ValuesIn(bad_bodies), scene_tests::name_of);
 
 const std::vector<Bad> bad_walls_and_contacts{
     {"WallWithoutPeriod", "period = \"10 um\"\n", "", "[[walls]]", {"wall 'floor'", "add [domain] period"}},
@@ -271,7 +223,7 @@ const std::vector<Bad> bad_walls_and_contacts{
      "x = { velocity = \"10 m/s\" }",
      "x = { pressure = 1 }",
      "pressure",
-     {"unknown key 'pressure'", "force, velocity"}},
+     {"unknown key 'pressure'", "force, from, until, velocity"}},
     {"TwoDrives", "{ velocity = \"10 m/s\" }", "{ velocity = \"10 m/s\", force = 1 }", "1 }\ny", {"only one of"}},
     {"NoDrive", "{ velocity = \"10 m/s\" }", "{ }", "{ }", {"nothing drives"}},
     {"UnknownDrive", "{ velocity = \"10 m/s\" }", "\"fixd\"", "\"fixd\"", {"nearest: fixed"}},
@@ -332,7 +284,7 @@ const std::vector<Bad> bad_walls_and_contacts{
      "[[probes]]\nname = \"drag\"\nquantity = \"energy\"",
      {"'drag'", "taken"}},
 };
-INSTANTIATE_TEST_SUITE_P(WallsAndContacts, BadInput, ::testing::ValuesIn(bad_walls_and_contacts), name_of);
+INSTANTIATE_TEST_SUITE_P(WallsAndContacts, BadInput, ::testing::ValuesIn(bad_walls_and_contacts), scene_tests::name_of);
 
 TEST(BadInputPlaces, AreThoseOfTheFile) {
   // EXACT: counted by hand, so that line_and_column is not trusted alone.

@@ -44,5 +44,30 @@ TEST(Curves, FourierGrainsDifferBySeed) {
   EXPECT_TRUE(fourier_grain(1, {1.2}, 1).empty());
 }
 
+// EXACT: a square with arcs has area a^2 - (4 - pi) r^2 and perimeter 4 a - (8 - 2 pi) r, to the (pi/1440)^2/6 of a chord; its
+// points lie on the edges or at distance r from the corners' centres. With r = a/2 it is a circle.
+TEST(Curves, RoundedSquare) {
+  const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  const Points rounded = rounded_polygon(square, 0.3);
+  EXPECT_NEAR(signed_area(rounded), 4 - (4 - pi) * 0.09, 1e-14);
+  for (const Vec2& p : rounded) {
+    const Vec2 beyond = ((p - Vec2(1, 1)).cwiseAbs() - Vec2(0.7, 0.7)).cwiseMax(0);
+    EXPECT_NEAR(beyond.norm(), 0.3, 2e-6);
+  }
+  EXPECT_NEAR(largest_rounding(square), 1, 1e-15);
+  EXPECT_TRUE(rounded_polygon(square, 1.01).empty());
+  const Points circle = rounded_polygon(square, 1);
+  EXPECT_EQ(polygon_defect(circle).text, "");
+  EXPECT_NEAR(signed_area(circle), pi, 1e-14);
+}
+
+// EXACT: five convex corners lose (1 - pi/4) r^2 each, the concave one gains it.
+TEST(Curves, RoundedConcavePolygon) {
+  const Points l_shape{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  const Points rounded = rounded_polygon(l_shape, 0.2);
+  EXPECT_NEAR(signed_area(rounded), 3 - 4 * (1 - pi / 4) * 0.04, 1e-14);
+  EXPECT_EQ(polygon_defect(rounded).text, "");
+}
+
 }  // namespace
 }  // namespace pliant

@@ -30,6 +30,49 @@ TEST(ReadScene, Settings) {
   EXPECT_EQ(scene.frames.fields, (std::vector<std::string>{"velocity", "von_mises"}));
 }
 
+TEST(ReadScene, ProbesTakeTheirSettings) {
+  // EXACT
+  std::string text = good_scene;
+  text.replace(text.find("[frames]"), 0, R"(
+[[probes]]
+name = "squeezed"
+quantity = "contact_pressure"
+of = "boxes 1"
+with = "compliant"
+reduce = "max"
+period = "1 us"
+[[probes]]
+name = "corner"
+quantity = "displacement"
+of = "boxes 0"
+node = 4
+period = "1 us"
+[[probes]]
+name = "dense"
+quantity = "solid_fraction"
+of = "all"
+box = [[0, "1 um"], ["5 um", 4e-6]]
+period = "1 us"
+[[probes]]
+name = "denser"
+quantity = "solid_fraction"
+of = "rigid"
+between = ["lid", "floor"]
+period = "1 us"
+)");
+  const SceneFile file(text);
+  const Scene scene = read_scene(file.path());
+  EXPECT_EQ(scene.probes.at(1).of, "boxes 1");
+  EXPECT_EQ(scene.probes.at(1).with, "compliant");
+  EXPECT_EQ(scene.probes.at(1).reduce, Reduction::max);
+  EXPECT_FALSE(scene.probes.at(1).node);
+  EXPECT_EQ(scene.probes.at(2).node, 4);
+  EXPECT_FALSE(scene.probes.at(2).reduce);
+  EXPECT_NEAR((scene.probes.at(3).box->low - Vec2(0, 1e-6)).norm(), 0, 1e-20) << "a rounding of 1e-6 is 1e-22";
+  EXPECT_NEAR((scene.probes.at(3).box->high - Vec2(5e-6, 4e-6)).norm(), 0, 1e-20);
+  EXPECT_EQ(scene.probes.at(4).between, (std::vector<std::string>{"lid", "floor"}));
+}
+
 TEST(ReadScene, MaterialsKeepTheOrderOfTheFile) {
   const Scene scene = read_scene(SceneFile(good_scene).path());
   ASSERT_EQ(scene.materials.size(), 2u);
@@ -73,6 +116,39 @@ TEST(ReadScene, WallsAndContacts) {
   EXPECT_EQ(scene.contacts[1].first, "all");
   EXPECT_EQ(scene.contacts[1].friction, 0.3);
   EXPECT_EQ(*scene.contacts[1].stiffness, 1e15);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to);
+
+TEST(ReadScene, ContactSettingsAndLaws) {
+  std::string text =
+      replaced(good_scene, "skin = 0.4", "skin = 0.4\nlength = \"current\"\nself_contact = true\nrefresh = \"2 ns\"");
+  text = replaced(text, "friction = 0.3", "friction = 0.3\nrestitution = 0.5\npull = true");
+  text = replaced(
+      text, "law = \"cohesive\"",
+      "law = \"cohesive-fatigue\"\nbond_gap = \"1 nm\"\nshear_ratio = 2\nresidual_strength = 1\nfriction = 0.2\n"
+      "fatigue_rate = \"1 GPa-1\"\nfatigue_threshold = \"20 MPa\"");
+  const Scene scene = read_scene(SceneFile(text).path());
+  EXPECT_EQ(scene.contact.length, ContactLength::current);
+  EXPECT_TRUE(scene.contact.self_contact);
+  EXPECT_DOUBLE_EQ(scene.contact.refresh_period, 2e-9);
+  EXPECT_EQ(scene.contact.refresh_steps, 0);
+  EXPECT_EQ(*scene.contacts[1].restitution, 0.5);
+  EXPECT_TRUE(scene.contacts[1].pull);
+  const ContactRule& bond = scene.contacts[0];
+  EXPECT_EQ(bond.law, ContactLawKind::cohesive_fatigue);
+  EXPECT_DOUBLE_EQ(bond.bond_gap, 1e-9);
+  EXPECT_EQ(bond.shear_ratio, 2);
+  EXPECT_EQ(bond.residual_strength, 1);
+  EXPECT_EQ(bond.friction, 0.2);
+  EXPECT_DOUBLE_EQ(bond.fatigue_rate, 1e-9);
+  EXPECT_DOUBLE_EQ(bond.shear_fatigue_rate, 1e-9);
+  EXPECT_DOUBLE_EQ(bond.fatigue_threshold, 20e6);
+  EXPECT_EQ(read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = 30")).path()).contact.refresh_steps, 30);
+  const Scene plain = read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = \"safe\"")).path());
+  EXPECT_EQ(plain.contact.refresh_steps, 0);
+  EXPECT_EQ(plain.contact.refresh_period, 0);
+  EXPECT_FALSE(plain.contact.self_contact);
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

@@ -92,14 +92,14 @@ TEST(Names, NearestOnlyWhenItResembles) {
 
 TEST(PolygonRules, FindDefects) {
   // EXACT
-  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), "");
-  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0.5}, {0, 2}}), "");
-  EXPECT_EQ(polygon_defect({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), "edges 1 and 3 cross or touch");
-  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}), "edges 1 and 3 cross or touch");
-  EXPECT_EQ(polygon_defect({{0, 0}, {0, 0}, {1, 0}, {1, 1}}), "points 1 and 2 coincide");
-  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 0}}), "points 4 and 1 coincide");
-  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {1, 0}}), "edges 1 and 2 fold back");
-  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 1.5}, {0, 1.5}}), "edges 3 and 4 fold back");
+  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 1}}).text, "");
+  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0.5}, {0, 2}}).text, "");
+  EXPECT_EQ(polygon_defect({{0, 0}, {1, 1}, {1, 0}, {0, 1}}).text, "edges 1 and 3 cross or touch");
+  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}).text, "edges 1 and 3 cross or touch");
+  EXPECT_EQ(polygon_defect({{0, 0}, {0, 0}, {1, 0}, {1, 1}}).text, "points 1 and 2 coincide");
+  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 0}}).text, "points 4 and 1 coincide");
+  EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {1, 0}}).text, "edges 1 and 2 fold back");
+  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 1.5}, {0, 1.5}}).text, "edges 3 and 4 fold back");
 }
 
 TEST(PolygonRules, AreaAndExtent) {

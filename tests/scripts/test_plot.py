@@ -106,6 +106,22 @@ def test_caption_states_peak_and_plateau(run_folder: Path) -> None:
     assert titles[1] == "friction factor: peak 0.5 at 1.4 us, mean of the last quarter 0.25"
 
 
+def test_probes_of_one_quantity_share_a_panel(tmp_path: Path) -> None:
+    probes = {"core": ("stress", "soft"), "rim": ("stress", "soft"), "left": ("velocity", "a"), "right": ("velocity", "b")}
+    columns = {"core": ["stress_xx [Pa]", "stress_yy [Pa]"], "rim": ["stress_xx [Pa]", "stress_yy [Pa]"],
+               **{name: ["velocity_x [m/s]", "angular_velocity [rad/s]"] for name in ("left", "right")}}
+    names = [f"{probe}.{column}" for probe, own in columns.items() for column in own]
+    values = [f"{t}," + ",".join(str(t * (i + 1)) for i in range(len(names))) for t in range(3)]
+    (tmp_path / "probes.csv").write_text("\n".join([",".join(["time [s]", *names]), *values]) + "\n")
+    (tmp_path / "scene.toml").write_text("".join(
+        f'[[probes]]\nname = "{name}"\nquantity = "{quantity}"\nof = "{of}"\n' for name, (quantity, of) in probes.items()))
+    figure = curves.probes(read_run(tmp_path))
+    assert figure is not None
+    assert [axes.get_ylabel() for axes in figure.axes] == ["stress [Pa]", "velocity [m/s]", "angular velocity [rad/s]"]
+    assert [[line.get_label() for line in axes.lines] for axes in figure.axes] == [
+        ["core stress xx", "core stress yy", "rim stress xx", "rim stress yy"], ["a x", "b x"], ["a", "b"]]
+
+
 def write_steps(folder: Path, rejections: int) -> Path:
     rows = "".join(f"{t}e-9,1e-9,1e-4,{rejections},{2 * t},5\n" for t in range(1, 5))
     (folder / "steps.csv").write_text("time [s],dt [s],error [-],rejections,evaluations,contacts\n" + rows)

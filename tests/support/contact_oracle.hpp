@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -13,32 +15,81 @@ namespace pliant::testing {
 
 struct OracleLaw {
   ContactRule rule;
+  double h = 0;  ///< finer outline spacing of the pair, m
+  bool cohesive() const { return rule.law == ContactLawKind::cohesive; }
   double kn() const { return *rule.stiffness; }
   double kt() const { return rule.law == ContactLawKind::frictionless ? 0 : rule.shear_stiffness.value_or(kn()); }
   /// g_max of cohesion, the opening at which the tensile cut-off is met, or nothing.
   double reach() const {
-    if (rule.law == ContactLawKind::cohesive) return *rule.range;
+    if (cohesive()) return *rule.range;
     return rule.law == ContactLawKind::mohr_coulomb ? rule.tension / kn() : 0;
   }
   double share(double gap) const { return std::clamp((reach() - gap) / (reach() - rule.strength / kn()), 0.0, 1.0); }
   double pressure(double gap) const {
     if (gap >= reach()) return 0;
-    if (rule.law == ContactLawKind::cohesive) return std::max(-kn() * gap, -rule.strength * share(gap));
-    return -kn() * gap;
+    if (cohesive()) return std::max(-kn() * gap, -rule.strength * share(gap));
+    const double width = rule.smoothing * h;
+    if (width > 0 && gap > -width) return kn() * gap * gap / (2 * width);
+    return -kn() * (gap + width / 2);
   }
   double shear_limit(double gap) const {
     if (gap >= reach()) return 0;
-    if (rule.law == ContactLawKind::cohesive) return *rule.shear_strength * share(gap);
+    if (cohesive()) return *rule.shear_strength * share(gap) + rule.friction * std::max(pressure(gap), 0.0);
     return rule.law == ContactLawKind::mohr_coulomb ? rule.cohesion + rule.friction * std::max(pressure(gap), 0.0) : 0;
   }
-  /// Integral of the pressure from the gap to the reach: Simpson's rule on each of the law's straight pieces is exact.
+  /// Integral of the pressure from the gap to the reach: Simpson's rule on each of the law's pieces, straight or square, is exact.
   double energy(double gap) const {
     if (gap >= reach()) return 0;
-    const double corner = rule.law == ContactLawKind::cohesive ? rule.strength / kn() : reach();
+    const double corner = cohesive() ? rule.strength / kn() : rule.smoothing > 0 ? -rule.smoothing * h : reach();
     const auto piece = [&](double a, double b) {
       return (b - a) / 6 * (pressure(a) + 4 * pressure((a + b) / 2) + pressure(std::nextafter(b, a)));
     };
     return gap < corner ? piece(gap, corner) + piece(corner, reach()) : piece(gap, reach());
+  }
+};
+
+/// What is left of a broken bond.
+inline ContactRule residual_of(const ContactRule& rule) {
+  ContactRule left = rule;
+  left.law = ContactLawKind::cohesive;
+  left.strength = rule.residual_strength;
+  left.shear_strength = rule.residual_strength / rule.shear_ratio;
+  left.shear_stiffness = *rule.stiffness / (rule.shear_ratio * rule.shear_ratio);
+  return left;
+}
+
+/// A bond of the law cohesive-fatigue: its damage, opening and slip, and what follows from them by the length.
+struct OracleBond {
+  const ContactRule& rule;
+  double damage, opening, slip;
+
+  double kn() const { return *rule.stiffness; }
+  double kt() const { return kn() / (rule.shear_ratio * rule.shear_ratio); }
+  double tension() const { return (1 - damage) * kn() * opening; }
+  double shear() const { return (1 - damage) * kt() * slip; }
+  double stored() const { return (tension() * opening + shear() * slip) / 2; }
+  double delta() const { return std::hypot(opening, slip / rule.shear_ratio); }
+
+  /// Damage that goes on to another opening and slip bring.
+  double damage_at(double to_opening, double to_slip) const {
+    const OracleBond there{rule, damage, to_opening, to_slip};
+    const double critical = rule.strength / kn(), range = *rule.range, d = there.delta();
+    const double by_opening = d > critical ? range * (d - critical) / (d * (range - critical)) : 0;
+    const double by_loads =
+        rule.fatigue_rate * wear(tension(), there.tension(), rule.fatigue_threshold, rule.strength) +
+        rule.shear_fatigue_rate * wear(std::abs(shear()), std::abs(there.shear()),
+                                       rule.fatigue_threshold / rule.shear_ratio, rule.strength / rule.shear_ratio);
+    return std::min(1.0, std::max(damage + by_loads, by_opening));
+  }
+  /// Mean of the tractions here and there along the way.
+  double work_to(const OracleBond& there) const {
+    return (tension() + there.tension()) / 2 * (there.opening - opening) +
+           (shear() + there.shear()) / 2 * (there.slip - slip);
+  }
+  /// The integrand is straight: its middle value is exact.
+  static double wear(double from, double to, double threshold, double strength) {
+    from = std::max(from, threshold);
+    return to > from ? ((from + to) / 2 - threshold) / (strength - threshold) * (to - from) : 0;
   }
 };
 
@@ -75,12 +126,18 @@ class ContactOracle {
     return result;
   }
   void commit() { committed_ = trial_; }
+  /// Bonds at the start: the next commit takes them over, with the places of an evaluation before.
+  void bond() {
+    for (auto& [key, memory] : trial_)
+      if (memory.gap <= law_.rule.bond_gap) memory.damage = 0, memory.opening = std::max(memory.gap, 0.0);
+  }
 
  private:
   using Key = std::tuple<int, int, int, int>;  // slave, node, master, periods added to the slave
   struct Memory {
     int segment;
     double xi, angle, slip;
+    double damage = 1, opening = 0, gap = 0;
   };
 
   const OutlineShape& shape(int body) const { return rig_.model.outlines[rig_.model.bodies[body].outline]; }
@@ -156,23 +213,65 @@ class ContactOracle {
 
   void respond(int slave, int k, int master, int image, const std::optional<OraclePoint>& point, const Memory* old,
                Result& result) {
-    const double weight = 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
+    const bool bonds = law_.rule.law == ContactLawKind::cohesive_fatigue;
+    const Key key{slave, k, master, image};
+    if (bonds && old && old->damage < 1) return stretch(key, point, *old, result);
+    OracleLaw law = bonds ? OracleLaw{residual_of(law_.rule)} : law_;
+    law.h = std::min(shape(slave).spacing, shape(master).spacing);
+    const double weight = weight_of(slave, k);
     const double start = old ? old->slip : 0;
-    if (!point || point->gap >= law_.reach()) {
+    if (!point || point->gap >= law.reach()) {
       // The place is remembered before the touch, so that slip counts from the first step of it.
-      if (point) trial_[{slave, k, master, image}] = {point->segment, point->xi, point->angle(), 0};
-      result.dissipated += weight * 0.5 * law_.kt() * start * start;
+      if (point) remember(key, *point, 0);
+      result.dissipated += weight * 0.5 * law.kt() * start * start;
       return;
     }
-    ++result.contacts;
-    result.deepest = std::max(result.deepest, -point->gap);
+    count_contact(*point, result);
     const double tried = start + (old ? way(master, *old, *point) : 0);
-    const double most = law_.kt() > 0 ? law_.shear_limit(point->gap) / law_.kt() : 0,
+    const double most = law.kt() > 0 ? law.shear_limit(point->gap) / law.kt() : 0,
                  slip = std::clamp(tried, -most, most);
-    trial_[{slave, k, master, image}] = {point->segment, point->xi, point->angle(), slip};
-    result.stored += weight * (law_.energy(point->gap) + 0.5 * law_.kt() * slip * slip);
-    result.dissipated += weight * 0.5 * law_.kt() * (start + slip) * (tried - slip);
-    share_force(slave, k, master, *point, weight * law_.pressure(point->gap), -weight * law_.kt() * slip, result);
+    remember(key, *point, slip);
+    result.stored += weight * (law.energy(point->gap) + 0.5 * law.kt() * slip * slip);
+    result.dissipated += weight * 0.5 * law.kt() * (start + slip) * (tried - slip);
+    share_force(slave, k, master, *point, weight * law.pressure(point->gap), -weight * law.kt() * slip, result);
+  }
+
+  /// A bond that goes on to the point, or breaks there or before. What its tractions did and is not stored is dissipated.
+  void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
+    const auto [slave, k, master, image] = key;
+    const ContactRule& rule = law_.rule;
+    const double weight = weight_of(slave, k);
+    const OracleBond before{rule, old.damage, old.opening, old.slip};
+    if (!point) {
+      result.dissipated += weight * before.stored();
+      return;
+    }
+    const double gap = point->gap, opening = std::max(gap, 0.0), pressed = std::min(gap, 0.0);
+    const double slip = old.slip + (gap < *rule.range ? way(master, old, *point) : 0);
+    const OracleBond now{rule, before.damage_at(opening, slip), opening, slip};
+    const double lost = before.work_to(now) - (now.stored() - before.stored()),
+                 squeezed = before.kn() * pressed * pressed / 2;
+    result.dissipated += weight * lost;
+    const bool torn = now.damage >= 1;
+    remember(key, *point, torn ? 0 : slip, now.damage, opening);
+    if (gap < *rule.range) count_contact(*point, result);
+    if (torn && gap >= *rule.range) return;
+    const OracleLaw left{residual_of(rule)};
+    result.stored += weight * (torn ? left.energy(gap) : squeezed + now.stored());
+    if (torn) result.dissipated += weight * (squeezed - left.energy(gap));
+    share_force(slave, k, master, *point, weight * (torn ? left.pressure(gap) : -before.kn() * pressed - now.tension()),
+                torn ? 0 : -weight * now.shear(), result);
+  }
+
+  double weight_of(int slave, int k) const {
+    return 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
+  }
+  void count_contact(const OraclePoint& point, Result& result) const {
+    ++result.contacts;
+    result.deepest = std::max(result.deepest, -point.gap);
+  }
+  void remember(const Key& key, const OraclePoint& point, double slip, double damage = 1, double opening = 0) {
+    trial_[key] = {point.segment, point.xi, point.angle(), slip, damage, opening, point.gap};
   }
 
   /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the normal

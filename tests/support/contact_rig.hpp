@@ -75,7 +75,8 @@ class ContactRig {
   /// Contact forces on all degrees of freedom.
   Dofs dof_forces() const {
     Dofs f = zero_dofs(model);
-    for (const Batch& batch : model.batches) add_outline_forces(model, batch, outlines, &f.compliant[batch.offset]);
+    for (const Region& region : model.regions)
+      add_outline_forces(model, region, outlines, &f.compliant[model.batches[region.batch].offset]);
     for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
       outline_force_resultant(model, model.rigid_bodies[r], outlines, &q.rigid[3 * r], &f.rigid[3 * r]);
     return f;

@@ -42,6 +42,22 @@ inline ContactRule cohesive(double stiffness, double strength, double range, dou
   return rule;
 }
 
+inline ContactRule cohesive_fatigue(double stiffness, double strength, double range, double shear_ratio,
+                                    double bond_gap) {
+  ContactRule rule = frictionless(stiffness);
+  rule.law = ContactLawKind::cohesive_fatigue;
+  rule.strength = strength;
+  rule.range = range;
+  rule.shear_ratio = shear_ratio;
+  rule.bond_gap = bond_gap;
+  return rule;
+}
+
+inline ContactRule smoothed(ContactRule rule, double share) {
+  rule.smoothing = share;
+  return rule;
+}
+
 /// An outline of exactly these corners; with `nodes` also a compliant body of that many field nodes.
 inline ShapeSpec outline_shape(const std::string& name, const Points& points, std::optional<int> nodes = {}) {
   ShapeSpec shape;

@@ -8,6 +8,7 @@ namespace pliant {
 /// with the same taper. The energy is that of separated surfaces less what pulling them apart would take.
 struct Cohesive {
   static constexpr bool has_shear = true;
+  static constexpr const char* name = "cohesive";
   double normal_stiffness = 0;  ///< kn, Pa/m
   double shear_stiffness = 0;   ///< kt, Pa/m
   double reach = 0;             ///< g_max, m; larger than strength / kn

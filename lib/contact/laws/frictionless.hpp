@@ -7,6 +7,7 @@ namespace pliant {
 /// p = kn max(-g, 0), no shear (METHOD 4).
 struct Frictionless {
   static constexpr bool has_shear = false;
+  static constexpr const char* name = "frictionless";
   double normal_stiffness = 0;  ///< kn, Pa/m
   double shear_stiffness = 0;   ///< unused
   double reach = 0;             ///< largest gap with a traction, m

@@ -8,6 +8,7 @@ namespace pliant {
 /// The cut-off is a jump of the force between two branches of one potential: closing again gives back what opening took.
 struct MohrCoulomb {
   static constexpr bool has_shear = true;
+  static constexpr const char* name = "mohr-coulomb";
   double normal_stiffness = 0;  ///< kn, Pa/m
   double shear_stiffness = 0;   ///< kt, Pa/m
   double reach = 0;             ///< t / kn, m

@@ -1,0 +1,202 @@
+#include "bodies/apply_conditions.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "bodies/initial_state.hpp"
+#include "bodies/update_outlines.hpp"
+#include "core/errors.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr double auto_stiffness_factor = 8;  ///< times E/h, as of contacts
+
+/// A segment of an outline at the start.
+struct Segment {
+  Vec2 middle{0, 0};
+  Vec2 normal{0, 0};  ///< outward, of the segment's length
+};
+
+std::vector<Segment> segments_of(const Outlines& outlines, int body, int count) {
+  std::vector<Segment> result;
+  for (int i = outlines.offset[body]; i < outlines.offset[body] + count; ++i) {
+    const Vec2 a(outlines.x[i], outlines.y[i]), b(outlines.x[i + 1], outlines.y[i + 1]);
+    result.push_back({0.5 * (a + b), {(b - a).y(), -(b - a).x()}});
+  }
+  return result;
+}
+
+bool lies_between(double angle, double first, double second) {
+  constexpr double turn = 2 * std::numbers::pi;
+  if (second - first >= turn) return true;
+  const auto wrap = [](double a) { return a - turn * std::floor(a / turn); };
+  return wrap(angle - first) <= wrap(second - first);
+}
+
+bool contains(const OutlinePart& part, const Segment& segment, const Vec2& centre) {
+  const Vec2& m = segment.middle;
+  switch (part.kind) {
+    case OutlinePart::Kind::angles:
+      return lies_between(std::atan2(m.y() - centre.y(), m.x() - centre.x()), part.first, part.second);
+    case OutlinePart::Kind::box:
+      return (m.array() >= part.low.array()).all() && (m.array() <= part.high.array()).all();
+    case OutlinePart::Kind::side:
+      return segment.normal.normalized().dot(part.side) > std::numbers::sqrt2 / 2;
+    case OutlinePart::Kind::all:
+      break;
+  }
+  return true;
+}
+
+/// One body as a condition meets it.
+class Target {
+ public:
+  Target(const Model& model, const Outlines& outlines, const BoundaryCondition& condition, int body)
+      : outlines_(outlines), body_(body), segments_(segments_of(outlines, body, count_of(model, body))) {
+    for (const Segment& segment : segments_)
+      chosen_.push_back(contains(condition.part, segment, model.bodies[body].centre));
+    const int count = static_cast<int>(segments_.size());
+    for (int k = 0; k < count; ++k) {
+      const bool before = chosen_[(k + count - 1) % count], after = chosen_[k];
+      if (before || after) nodes_.push_back({k, before, after});
+    }
+    if (nodes_.empty())
+      throw InputError(
+          fmt::format("{}: no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where "
+                      "its outline stands at the start, centre ({}, {}) m",
+                      model.scene.file.string(), model.bodies[body].name, model.bodies[body].centre.x(),
+                      model.bodies[body].centre.y()));
+  }
+
+  OutlinePressure pressure(const BoundaryCondition& condition) const {
+    OutlinePressure result{body_, condition.window, condition.pressure, nodes_, {}};
+    if (condition.following) return result;
+    for (const PartNode& node : nodes_)
+      result.dead_load.push_back(condition.direction ? Vec2(length(node) * *condition.direction) : -normal(node));
+    return result;
+  }
+
+  OutlineSupport support(const BoundaryCondition& condition, double young) const {
+    OutlineSupport result{body_, condition.window, {}, {}, 0, condition.damping, {}, {condition.x, condition.y}};
+    for (const PartNode& node : nodes_) {
+      const int at = outlines_.offset[body_] + node.node;
+      result.nodes.push_back(node.node);
+      result.length.push_back(length(node));
+      result.start.emplace_back(outlines_.x[at], outlines_.y[at]);
+    }
+    result.stiffness = condition.stiffness.value_or(auto_stiffness_factor * young / mean_spacing());
+    return result;
+  }
+
+ private:
+  static int count_of(const Model& model, int body) { return model.outlines[model.bodies[body].outline].count; }
+  const Segment& before(const PartNode& node) const {
+    return segments_[node.node == 0 ? segments_.size() - 1 : static_cast<std::size_t>(node.node) - 1];
+  }
+  const Segment& after(const PartNode& node) const { return segments_[node.node]; }
+  Vec2 normal(const PartNode& node) const {
+    return 0.5 * (node.before * before(node).normal + node.after * after(node).normal);
+  }
+  double length(const PartNode& node) const {
+    return 0.5 * (node.before * before(node).normal.norm() + node.after * after(node).normal.norm());
+  }
+  double mean_spacing() const {
+    double total = 0;
+    for (const Segment& segment : segments_) total += segment.normal.norm();
+    return total / static_cast<double>(segments_.size());
+  }
+
+  const Outlines& outlines_;
+  int body_;
+  std::vector<Segment> segments_;
+  std::vector<bool> chosen_;  ///< [segments]
+  std::vector<PartNode> nodes_;
+};
+
+void apply_drives(RigidBody& rigid, const BoundaryCondition& condition) {
+  const Drive* drives[3] = {&condition.x, &condition.y, &condition.angle};
+  for (int c = 0; c < 3; ++c)
+    if (drives[c]->mode != Drive::Mode::free) apply_drive(rigid.dof[c], *drives[c], rigid.dof[c].mass, 0);
+  rigid.driven = true;
+}
+
+void apply(Model& model, const Outlines& outlines, const BoundaryCondition& condition, int index) {
+  const Body& body = model.bodies[index];
+  if (condition.kind == BoundaryCondition::Kind::drive) return apply_drives(model.rigid_bodies[body.rigid], condition);
+  const Target target(model, outlines, condition, index);
+  if (condition.kind == BoundaryCondition::Kind::pressure)
+    model.pressures.push_back(target.pressure(condition));
+  else
+    model.supports.push_back(target.support(condition, model.scene.materials[body.material].young));
+}
+
+void apply_scene_conditions(Model& model) {
+  if (model.scene.boundary.empty()) return;
+  Outlines outlines = make_outlines(model);
+  update_outlines(model, initial_positions(model), outlines);
+  for (const BoundaryCondition& condition : model.scene.boundary) {
+    int number = 0;
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      const Body& body = model.bodies[b];
+      if (body.wall || model.scene.grains[body.grains].name != condition.grains) continue;
+      if (condition.number.value_or(number) == number) apply(model, outlines, condition, static_cast<int>(b));
+      ++number;
+    }
+  }
+}
+
+/// Compliant bodies have theirs in the lanes of their batches.
+void damp_rigid_grains(Model& model) {
+  for (RigidBody& rigid : model.rigid_bodies)
+    if (const Body& body = model.bodies[rigid.body]; !body.wall)
+      for (RigidDof& dof : rigid.dof) dof.mass_damping = model.scene.materials[body.material].mass_damping;
+}
+
+std::vector<double> switch_times(const Model& model) {
+  std::vector<double> times;
+  const auto add = [&](const Window& window) {
+    for (const double t : {window.from, window.until})
+      if (t > 0 && std::isfinite(t)) times.push_back(t);
+  };
+  for (const RigidBody& rigid : model.rigid_bodies)
+    for (const RigidDof& dof : rigid.dof) add(dof.window);
+  for (const OutlinePressure& pressure : model.pressures) add(pressure.window);
+  for (const OutlineSupport& support : model.supports) add(support.window);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+bool is_damped(const RigidBody& rigid) {
+  return std::any_of(rigid.dof, rigid.dof + 3,
+                     [](const RigidDof& dof) { return dof.damping > 0 || dof.mass_damping > 0; });
+}
+
+}  // namespace
+
+void apply_drive(RigidDof& dof, const Drive& drive, double mass, double pressure_scale) {
+  dof.mode = drive.mode;
+  dof.history = drive.history;
+  dof.window = drive.window;
+  dof.force_scale = drive.mode == Drive::Mode::pressure ? pressure_scale : 1;
+  dof.damping = drive.damping * std::abs(dof.force_scale);
+  dof.mass = mass;
+  dof.inverse_mass = dof.imposed() && dof.window.always() ? 0 : 1 / mass;
+}
+
+void apply_conditions(Model& model) {
+  apply_scene_conditions(model);
+  damp_rigid_grains(model);
+  model.switch_times = switch_times(model);
+  model.outline_rates = std::any_of(model.supports.begin(), model.supports.end(),
+                                    [](const OutlineSupport& support) { return support.damping > 0; });
+  model.rates = std::any_of(model.rigid_bodies.begin(), model.rigid_bodies.end(), is_damped) ||
+                std::any_of(model.batches.begin(), model.batches.end(),
+                            [](const Batch& batch) { return batch.viscous || batch.mass_damped; });
+}
+
+}  // namespace pliant

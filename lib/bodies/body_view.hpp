@@ -1,0 +1,46 @@
+#pragma once
+
+#include "bodies/dofs.hpp"
+#include "bodies/model.hpp"
+
+namespace pliant {
+
+/// Where the degrees of freedom of one compliant body stand in Dofs::compliant, whatever its layout.
+class BodyPlaces {
+ public:
+  BodyPlaces(const Model& model, const Body& body)
+      : first_(model.batches[body.batch].offset * lane_count + static_cast<std::size_t>(body.lane)) {
+    const Batch& batch = model.batches[body.batch];
+    if (batch.layout == Layout::spread) place_ = model.spread_shape_of(batch).place.data();
+  }
+  /// Of a node's x, counted in doubles; its y stands lane_count further.
+  std::size_t operator[](std::size_t node) const {
+    return first_ + (place_ ? static_cast<std::size_t>(place_[node]) : 2 * lane_count * node);
+  }
+
+ private:
+  std::size_t first_;
+  const int* place_ = nullptr;
+};
+
+/// One body's degrees of freedom in the units they are stored in: those of its scale.
+class BodyView {
+ public:
+  BodyView(const Model& model, const Body& body, const Dofs& dofs)
+      : places_(model, body), values_(reinterpret_cast<const double*>(dofs.compliant.data())) {}
+  Vec2 operator[](std::size_t node) const {
+    const double* x = values_ + places_[node];
+    return {x[0], x[lane_count]};
+  }
+
+ private:
+  BodyPlaces places_;
+  const double* values_;
+};
+
+inline void set_node(const BodyPlaces& places, std::size_t node, const Vec2& value, Dofs& dofs) {
+  double* x = reinterpret_cast<double*>(dofs.compliant.data()) + places[node];
+  x[0] = value.x(), x[lane_count] = value.y();
+}
+
+}  // namespace pliant

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/lanes.hpp"
+#include "core/vec2.hpp"
+
+namespace pliant {
+
+/// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y (DESIGN 4):
+/// shared: one body a lane, node i of each in slot i, all copies of one shape and so of one table;
+/// spread: one body alone, its nodes over slots and lanes: its cost is not that of eight, and threads share it.
+enum class Layout { shared, spread };
+
+/// What the nodes of a batch have, slot by slot: one value for all lanes (double), or one a lane (Lanes).
+template <class T>
+struct NodeArrays {
+  const T *unit_mass,
+      *inverse_unit_mass;   ///< [slots], lumped mass at density 1, m2, and its inverse; both 0 in padding
+  const T* nodal_distance;  ///< [slots], m
+};
+
+/// A part of a batch that one thread handles at once: the whole batch, or a stretch of a spread body.
+struct Region {
+  int batch = 0;
+  int number = 0;           ///< within its batch
+  int first = 0, last = 0;  ///< slots [first, last)
+};
+
+/// A stretch of a spread body's integration points, or of its outline nodes.
+struct Chunk {
+  int batch = 0;
+  int first = 0, last = 0;
+};
+
+/// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that slots, points and the
+/// threads' shares of them are patches of the body. A `place` is where x of a node stands from the batch's first entry, counted in doubles;
+/// y stands lane_count further.
+struct SpreadShape {
+  static constexpr int region_slots = 64;    ///< slots of a region: 512 nodes
+  static constexpr int chunk_points = 1024;  ///< integration points of a chunk, a multiple of lane_count
+  static constexpr int chunk_nodes = 128;    ///< outline nodes of a chunk
+
+  std::vector<int> order;                           ///< [nodes], the node that is the n-th in memory
+  std::vector<int> place;                           ///< [nodes], of each node
+  std::vector<Lanes> unit_mass, inverse_unit_mass;  ///< [slots]
+  std::vector<Lanes> nodal_distance;                ///< [slots], m; 1 in padding
+
+  std::vector<double> weight;  ///< [points, whole lanes], m2; 0 in padding
+  std::vector<int> start;      ///< [points, whole lanes, + 1], rows of the two following
+  std::vector<int> node;       ///< [entries], places
+  Points gradient;             ///< [entries], 1/m
+
+  std::vector<int> node_start;  ///< [8 x slots + 1]: the same table by nodes, rows of the two following
+  std::vector<int> point;       ///< [entries]
+  Points node_gradient;         ///< [entries], 1/m
+
+  /// Share of an outline node's force that goes to a node.
+  struct OutlineEntry {
+    int node;     ///< place
+    int outline;  ///< number of the outline node
+    double value;
+  };
+  std::vector<int> outline_start;             ///< [regions + 1], rows of the following
+  std::vector<OutlineEntry> outline_entries;  ///< region by region
+
+  int slots() const { return static_cast<int>(unit_mass.size()); }
+  int points() const { return static_cast<int>(weight.size()); }
+};
+
+/// Place of the number-th node in the order of a spread shape.
+inline int place_of(int number) { return number / lane_count * 2 * lane_count + number % lane_count; }
+
+}  // namespace pliant

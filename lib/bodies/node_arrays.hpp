@@ -1,0 +1,40 @@
+#pragma once
+
+#include "bodies/model.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+
+/// Calls action(arrays) with the NodeArrays of a batch: chosen once, outside every loop.
+template <class Action>
+decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& action) {
+  if (batch.layout == Layout::spread) {
+    const SpreadShape& shape = model.spread_shape_of(batch);
+    return action(
+        NodeArrays<Lanes>{shape.unit_mass.data(), shape.inverse_unit_mass.data(), shape.nodal_distance.data()});
+  }
+  const CompliantShape& shape = model.shape_of(batch);
+  return action(NodeArrays<double>{shape.space.unit_mass.data(), shape.inverse_unit_mass.data(),
+                                   shape.space.nodal_distance.data()});
+}
+
+/// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: a spread body's lanes belong together.
+inline Lanes sum_over_body(const Batch& batch, Lanes lanes) {
+  return batch.layout == Layout::spread ? broadcast(sum(lanes)) : lanes;
+}
+inline Lanes largest_of_body(const Batch& batch, Lanes lanes) {
+  return batch.layout == Layout::spread ? broadcast(largest(lanes)) : lanes;
+}
+
+/// Calls work(b) for each batch. Threads share the batches, but a spread body of many regions comes alone: its own work is shared.
+template <class Work>
+void for_each_batch(const Model& model, Work&& work) {
+  const int count = static_cast<int>(model.batches.size());
+  parallel_for(count, [&](int b) {
+    if (model.batches[b].regions == 1) work(b);
+  });
+  for (int b = model.lane_batches; b < count; ++b)
+    if (model.batches[b].regions > 1) work(b);
+}
+
+}  // namespace pliant

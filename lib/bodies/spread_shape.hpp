@@ -1,0 +1,11 @@
+#pragma once
+
+#include "bodies/layouts.hpp"
+#include "discretisation/table.hpp"
+
+namespace pliant {
+
+/// Lays a shape out for bodies that are spread over the lanes.
+SpreadShape make_spread_shape(const Discretisation& space);
+
+}  // namespace pliant

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <variant>
+
+#include "contact/laws/cohesive.hpp"
+#include "contact/laws/cohesive_fatigue.hpp"
+#include "contact/laws/damped.hpp"
+#include "contact/laws/frictionless.hpp"
+#include "contact/laws/mohr_coulomb.hpp"
+#include "contact/laws/smoothed.hpp"
+
+namespace pliant {
+
+/// The law of one pair of bodies.
+using ContactLaw = std::variant<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, Smoothed<Frictionless>,
+                                Smoothed<MohrCoulomb>, Damped<Frictionless>, Damped<MohrCoulomb>>;
+
+inline double reach_of(const ContactLaw& law) {
+  return std::visit([](const auto& l) { return l.reach; }, law);
+}
+inline double stiffness_of(const ContactLaw& law) {
+  return std::visit(
+      [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },
+      law);
+}
+inline bool has_damage(const ContactLaw& law) { return std::holds_alternative<CohesiveFatigue>(law); }
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+#include "contact/inspect.hpp"
+
+#include <limits>
+
+#include "contact/pass.hpp"
+#include "contact/response.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The law's answer without a dashpot's share.
+template <class Law>
+Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
+               const ContactHistory& committed, int record, Lanes& damage) {
+  const Lanes place = place_of(p), old_place = load(&committed.place[record]);
+  if constexpr (keeps_damage<Law>)
+    return respond_with_damage(law, window, p, touching, place, old_place, load_bond(committed, record), damage);
+  else
+    return respond(law, window, p, touching, place, old_place, load(&committed.slip[record]), law(p.gap));
+}
+
+std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
+                                        const ContactHistory& committed) {
+  std::vector<ContactPoint> points;
+  MasterWindow window;
+  const auto add_points = [&](const auto& law, const Pass& pass, int side, int i, const SlaveNodes& nodes,
+                              const Projection& p) {
+    const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
+    Lanes damage = broadcast(none);
+    const Contact c = answer(law, window, p, touching, committed, pass.record + i, damage);
+    for (int lane = 0; lane < lane_count; ++lane) {
+      if (!touching[lane]) continue;
+      const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
+      points.push_back({side == 0 ? patch.first : patch.second, side == 0 ? patch.second : patch.first,
+                        index - turn_of(index, count) * count, p.gap[lane], c.slip[lane], c.pressure[lane],
+                        c.shear[lane], damage[lane], nodes.tributary_length[lane],
+                        Vec2(p.normal_x[lane], p.normal_y[lane])});
+    }
+  };
+  std::visit(
+      [&](const auto& law) {
+        for_each_projection(model, outlines, patch, skin, law.reach + skin, window,
+                            [&](const auto&... found) { add_points(law, found...); });
+      },
+      patch.law);
+  return points;
+}
+
+}  // namespace
+
+Vec2 TouchingPair::normal() const {
+  Vec2 sum(0, 0);
+  for (const ContactPoint& point : points) sum += (point.slave == first ? -point.length : point.length) * point.normal;
+  const double norm = sum.norm();
+  return norm > 0 ? Vec2(sum / norm) : sum;
+}
+
+std::vector<TouchingPair> inspect_contacts(const Model& model, const ContactSystem& contact, const Outlines& outlines,
+                                           const ContactHistory& history) {
+  std::vector<TouchingPair> pairs;
+  for (const Patch& patch : contact.patches()) {
+    std::vector<ContactPoint> points = inspect_patch(model, outlines, patch, contact.skin(), history);
+    if (!points.empty()) pairs.push_back({patch.first, patch.second, patch.images, std::move(points)});
+  }
+  return pairs;
+}
+
+}  // namespace pliant

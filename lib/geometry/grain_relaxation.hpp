@@ -1,0 +1,78 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/distance_field.hpp"
+#include "geometry/placement.hpp"
+
+namespace pliant {
+
+/// Grains that repel each other and the edges of their region where they are nearer than a small clearance, and so slide
+/// into the gaps until no two overlap. Penalties act between the nodes of one outline and the signed distance from the
+/// other, the minimum is sought by FIRE (E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201). The same bits on any
+/// number of threads. Lengths inside are in units of the mean radius of the circles around the grains.
+class GrainRelaxation {
+ public:
+  /// `grains`: at their full size, wherever they are; outlines of their shapes by index. Both outlive the relaxation.
+  GrainRelaxation(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn);
+
+  /// Moves (and turns) the grains, at the size that they have now; whether they come free of each other: true outlines.
+  bool relax(int sweeps);
+
+  double radius(const Placement& grain) const { return grain.scale * shape_of(grain).radius; }  ///< of its circle, m
+  /// From one grain's centre to the nearest image of another's.
+  Vec2 apart(const Placement& from, const Placement& to) const;
+
+ private:
+  /// A shape of size 1 as grains of any size show it.
+  struct Shape {
+    Points outline;
+    std::vector<double> weight;  // of each node: its share of the outline
+    DistanceField distance;
+    double radius = 0;    // of the circle around it
+    double gyration = 0;  // radius of gyration
+  };
+
+  /// Force and moment on a grain.
+  struct Push {
+    Vec2 force{0, 0};
+    double moment = 0, deepest = 0;
+    void add(const Vec2& f, const Vec2& arm) { force += f, moment += cross(arm, f); }
+    void add(const Push& other);
+  };
+
+  struct Pair {
+    int first, second;
+  };
+
+  struct Fire;
+
+  static Shape make_shape(const Points& outline);
+  const Shape& shape_of(const Placement& grain) const { return shapes_[index_[grain.shape]]; }
+  double inertia(const Placement& grain) const;  // against turning, of a grain of mass 1
+  double reach() const;
+  void find_pairs();
+  bool pairs_are_stale() const;
+  void place_nodes();
+  void push(int slave, int master, const Vec2& to_slave, Push& on_slave, Push& on_master) const;
+  Push push_of_edges(int i) const;
+  double push_all();
+  void step(Fire& fire);
+  void move(double dt);
+  bool overlapping() const;
+
+  std::vector<Placement>& grains_;
+  Strip region_;
+  bool turn_;
+  std::vector<Shape> shapes_;
+  std::vector<int> index_;  // in shapes_, by index of the scene's shapes
+  double unit_ = 0;
+  std::vector<Points> nodes_;  // about the centres, m
+  Points velocity_, found_at_;
+  std::vector<double> spin_;
+  std::vector<Pair> pairs_;
+  std::vector<std::pair<Push, Push>> pair_pushes_;
+  std::vector<Push> pushes_;
+};
+
+}  // namespace pliant

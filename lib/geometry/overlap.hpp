@@ -1,0 +1,10 @@
+#pragma once
+
+#include "core/vec2.hpp"
+
+namespace pliant {
+
+/// Whether two closed polygons share a point: some edges meet, or one lies within the other. Time O(corners^2).
+bool polygons_overlap(const Points& a, const Points& b);
+
+}  // namespace pliant

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "core/vec2.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// Where one grain lies and what it is.
+struct Placement {
+  Vec2 centre{0, 0};  ///< m
+  double angle = 0;   ///< rad
+  double scale = 1;   ///< size over that of its shape
+  int shape = 0;      ///< index in Scene::shapes; beyond its end: in Packed::fitted
+};
+
+struct Packed {
+  std::vector<Placement> grains;
+  std::vector<ShapeSpec> fitted;  ///< shapes that belong to one grain each; most packings have none
+};
+
+/// Places a set of grains of the scene. `random` gives the angles of grains on lattices; what else is random has engines
+/// of its own, from the grains' seed. The same on any number of threads. Throws InputError when they do not fit.
+Packed place_grains(const Scene& scene, const Grains& grains, std::mt19937_64& random);
+
+/// Part of the plane that grains fill: a box, or a strip that repeats itself in x.
+struct Strip {
+  double left = 0, right = 0, bottom = 0, top = 0;  ///< m
+  bool periodic = false;
+  double width() const { return right - left; }
+  double height() const { return top - bottom; }
+  double area() const { return width() * height(); }
+};
+
+/// Outline of a placed grain, m.
+Points placed_outline(const Points& outline, const Placement& grain);
+
+/// Random packing without overlap: grains at random places grow to their size, pushing each other away. Sizes and
+/// shapes are given; centres and, unless `angle` is given, angles are found. `outlines`: of the shapes by index.
+/// Throws InputError with the solid fraction that was reached when they do not come free of each other.
+void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn,
+                   std::uint64_t seed);
+
+/// Grains in the cells of a Voronoi diagram of a periodic strip, after G. Mollon and J. Zhao, Granular Matter 14 (2012) 621,
+/// doi 10.1007/s10035-012-0356-x: cells of areas in proportion to scale^2 x area, each filled by its grain, turned and moved
+/// so that it becomes as large as its cell allows. `grains` come with shapes and sizes relative to each other and leave
+/// with all; they keep to those sizes as far as their cells have room. A shape with descriptors is fitted to each of
+/// its cells: the returned shapes.
+/// Throws InputError with the largest possible solid fraction when the one asked for does not fit.
+std::vector<ShapeSpec> pack_voronoi(std::vector<Placement>& grains, const std::vector<ShapeSpec>& shapes,
+                                    const Strip& region, double solid_fraction, std::uint64_t seed);
+
+}  // namespace pliant

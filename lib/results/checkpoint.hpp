@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "results/recorder.hpp"
+
+namespace pliant {
+
+/// checkpoint.bin of an output folder: everything that a run needs to go on, and the scene and build that it belongs
+/// to. Writing one changes no bit of the run.
+void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
+                      Recorder& recorder);
+
+/// A checkpoint that was read and is not used yet.
+class Checkpoint {
+ public:
+  /// Throws OutputError when there is none, or a damaged one.
+  explicit Checkpoint(const std::filesystem::path& folder);
+
+  const std::string& scene_text() const { return scene_text_; }
+  const std::string& scene_name() const { return scene_name_; }
+  double time() const { return time_; }
+  /// Warns of a checkpoint of another build, whose next bits may differ.
+  void warn_of_other_build() const;
+  /// Puts everything into a simulation of the same scene and a recorder that resumes its folder; files are cut back to
+  /// the checkpoint. Throws OutputError for what does not fit, the simulation and the files are then not to be used.
+  void restore(Simulation& simulation, Recorder& recorder) const;
+
+ private:
+  std::filesystem::path path_;
+  CheckpointText text_;
+  std::string scene_text_, scene_name_, build_, mesh_;
+  double time_ = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,66 @@
+#include "bodies/nodal.hpp"
+#include "results/body_motion.hpp"
+#include "results/point_states.hpp"
+#include "results/probe_functions.hpp"
+
+namespace pliant {
+namespace {
+
+Samples energy(const Snapshot& snapshot, const Selection&) {
+  const Audit& audit = snapshot.audit();
+  const Energies& e = audit.energy;
+  Samples samples(8);
+  samples.add(1, {e.kinetic, e.strain, e.contact, e.boundary, e.dissipated, e.external_work, snapshot.balance_error(),
+                  audit.momentum_error});
+  return samples;
+}
+
+/// The books of the state hold the work of walls and loads alone; the audit adds gravity's.
+Samples works(const Snapshot& snapshot, const Selection&) {
+  const State& state = snapshot.state();
+  Samples samples(4);
+  samples.add(1, {state.external_work, snapshot.audit().energy.external_work - state.external_work,
+                  state.dissipated - state.damped, state.damped});
+  return samples;
+}
+
+double kinetic_energy_of(const Snapshot& snapshot, const Body& body) {
+  const Model& model = snapshot.model();
+  const Dofs& velocity = snapshot.state().velocity;
+  double energy = 0;
+  if (body.kind == BodyKind::rigid) {
+    const double* v = rigid_values(body, velocity);
+    for (int c = 0; c < 3; ++c) energy += 0.5 * model.rigid_bodies[body.rigid].dof[c].mass * v[c] * v[c];
+    return energy;
+  }
+  const std::vector<double>& unit_mass = model.shape_of(body).space.unit_mass;
+  const Points y = dof_values(model, body, velocity), v = dof_values(model, body, snapshot.velocities());
+  double mass = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) energy += 0.5 * unit_mass[i] * y[i].dot(v[i]), mass += unit_mass[i];
+  return body.mass / mass * energy;
+}
+
+Samples kinetic_energy(const Snapshot& snapshot, const Selection& selection) {
+  Samples samples(1);
+  for (int b : selection.bodies) samples.add(1, {kinetic_energy_of(snapshot, snapshot.model().bodies[b])});
+  return samples;
+}
+
+Samples strain_energy(const Snapshot& snapshot, const Selection& selection) {
+  Samples samples(1);
+  for (int b : selection.bodies) {
+    double energy = 0;
+    for (const PointState& p : point_states(snapshot.model(), snapshot.model().bodies[b], snapshot.state().position))
+      energy += p.weight * p.energy;
+    samples.add(1, {energy});
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<ProbeFunction> energy_functions() {
+  return {{"energy", energy}, {"works", works}, {"kinetic_energy", kinetic_energy}, {"strain_energy", strain_energy}};
+}
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+#include "results/recorder.hpp"
+
+#include <algorithm>
+
+#include "files/text_files.hpp"
+
+namespace pliant {
+
+Recorder::Recorder(const Model& model, const std::filesystem::path& folder, bool quiet, Opening opening)
+    : folder_(folder),
+      probes_(model, folder, opening),
+      frames_(model, folder, opening),
+      steps_(folder, opening),
+      progress_(quiet) {}
+
+double Recorder::next_output(double end) const { return std::min({end, probes_.next_time(), frames_.next_time()}); }
+
+void Recorder::record_outputs(Simulation& simulation) {
+  probes_.record_due(simulation);
+  frames_.record_due(simulation);
+}
+
+void Recorder::record_step(Simulation& simulation, const StepReport& report) {
+  steps_.record(simulation.state(), report);
+  Audit audit;
+  if (!progress_.show_if_due(simulation, report, audit)) return;
+  figures.worst_momentum_error = std::max(figures.worst_momentum_error, audit.momentum_error);
+  flush();
+}
+
+void Recorder::flush() {
+  probes_.flush();
+  steps_.flush();
+  figures.wall_seconds = seconds_before_ + progress_.seconds();
+}
+
+void Recorder::sync() {
+  flush();
+  probes_.sync();
+  steps_.sync();
+}
+
+void Recorder::write_summary(Simulation& simulation, const std::string& status) {
+  flush();
+  write_file_atomically(folder_ / "summary.json", summary_json(simulation, figures, status));
+}
+
+void Recorder::loaded() {
+  seconds_before_ = figures.wall_seconds;
+  ++figures.resumed;
+}
+
+}  // namespace pliant

@@ -1,0 +1,68 @@
+#include "results/snapshot.hpp"
+
+#include <algorithm>
+
+#include "bodies/initial_state.hpp"
+#include "bodies/internal_forces.hpp"
+#include "bodies/mass_correction.hpp"
+#include "core/parallel.hpp"
+#include "dynamics/accelerations.hpp"
+
+namespace pliant {
+namespace {
+
+double imposed_acceleration(const RigidDof& dof, double time) {
+  return dof.mode == Drive::Mode::velocity ? dof.history.slope(time) : 0.0;
+}
+
+}  // namespace
+
+const std::vector<TouchingPair>& Snapshot::contacts() const {
+  if (!contacts_) contacts_ = inspect_contacts(model(), simulation_.forces().contact(), outlines(), state().history);
+  return *contacts_;
+}
+
+const std::vector<int>& Snapshot::contact_counts() const {
+  if (contact_counts_) return *contact_counts_;
+  contact_counts_.emplace(model().bodies.size(), 0);
+  for (const TouchingPair& pair : contacts()) {
+    if (pair.first == pair.second) continue;
+    for (int body : {pair.first, pair.second}) ++(*contact_counts_)[body];
+  }
+  return *contact_counts_;
+}
+
+const Dofs& Snapshot::velocities() const {
+  if (!velocities_) velocities_ = material_velocity(model(), state().velocity);
+  return *velocities_;
+}
+
+const Dofs& Snapshot::accelerations() const {
+  if (accelerations_) return *accelerations_;
+  Dofs& a = accelerations_.emplace(zero_dofs(model()));
+  const Dofs& force = state().force;
+  for_each_dof(
+      model(), [&](std::size_t i, Lanes inverse_mass) { a.compliant[i] = inverse_mass * force.compliant[i]; },
+      [&](std::size_t i, const RigidDof& dof) {
+        a.rigid[i] =
+            dof.imposed(state().time) ? imposed_acceleration(dof, state().time) : dof.inverse_mass * force.rigid[i];
+      });
+  return a = material_velocity(model(), a);
+}
+
+const Dofs& Snapshot::internal_forces() const {
+  if (internal_forces_) return *internal_forces_;
+  Dofs& f = internal_forces_.emplace(zero_dofs(model()));
+  parallel_for(static_cast<int>(model().batches.size()), [&](int b) {
+    const Batch& batch = model().batches[b];
+    add_internal_forces(model(), batch, &state().position.compliant[batch.offset], &f.compliant[batch.offset]);
+  });
+  return f;
+}
+
+const Audit& Snapshot::audit() const {
+  if (!audit_) audit_ = simulation_.audit();
+  return *audit_;
+}
+
+}  // namespace pliant

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "contact/inspect.hpp"
+#include "dynamics/simulation.hpp"
+
+namespace pliant {
+
+/// A simulation at one accepted state, as outputs see it. What is costly is found when it is first asked for, once.
+class Snapshot {
+ public:
+  explicit Snapshot(Simulation& simulation) : simulation_(simulation) {}
+
+  const Model& model() const { return simulation_.model(); }
+  const State& state() const { return simulation_.state(); }
+  const ContactSystem& contact() const { return simulation_.forces().contact(); }
+  const Outlines& outlines() const { return simulation_.forces().outlines(); }
+
+  Motion motion() const { return {state().position, velocities(), state().time}; }
+
+  const std::vector<TouchingPair>& contacts() const;
+  const std::vector<int>& contact_counts() const;  ///< [bodies] others that each touches; images count apiece
+  const Dofs& velocities() const;                  ///< see bodies/mass_correction.hpp
+  const Dofs& accelerations() const;               ///< total force over mass; imposed ones by their histories
+  const Dofs& internal_forces() const;             ///< on compliant degrees of freedom, N/m
+  const Audit& audit() const;
+  double balance_error() const { return simulation_.balance_error(audit().energy); }
+
+ private:
+  Simulation& simulation_;
+  mutable std::optional<std::vector<TouchingPair>> contacts_;
+  mutable std::optional<std::vector<int>> contact_counts_;
+  mutable std::optional<Dofs> velocities_, accelerations_, internal_forces_;
+  mutable std::optional<Audit> audit_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <compare>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// Bodies that no contact rule tells apart: one material, and the grains or the wall when some rule calls them by name.
+struct ContactParty {
+  std::string material;
+  std::string name;   ///< of grains or a wall; empty: no rule names them
+  bool wall = false;  ///< a single wall, which does not meet itself; only with a name
+  auto operator<=>(const ContactParty&) const = default;
+};
+
+/// The party of bodies of a material that belong to the grains or the wall of this name.
+ContactParty contact_party(const Scene& scene, const std::string& material, const std::string& name, bool wall);
+
+/// All parties of the scene, sorted, each once.
+std::vector<ContactParty> contact_parties(const Scene& scene);
+
+/// The rule of a pair. A side of a rule that names grains or a wall counts 2, a material 1, "all" 0: the largest sum wins.
+struct RuleMatch {
+  const ContactRule* rule = nullptr;   ///< nullptr: none applies
+  const ContactRule* rival = nullptr;  ///< another of the same sum: the scene does not say which holds
+};
+
+RuleMatch match_rule(const Scene& scene, const ContactParty& a, const ContactParty& b);
+
+}  // namespace pliant

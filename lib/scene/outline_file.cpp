@@ -1,0 +1,123 @@
+#include "scene/outline_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.hpp"
+#include "scene/polygon_rules.hpp"
+#include "scene/text_file.hpp"
+#include "scene/units.hpp"
+
+namespace pliant {
+
+namespace {
+
+char separator_of(std::string_view line) {
+  for (const char candidate : {',', ';', '\t'})
+    if (line.find(candidate) != std::string_view::npos) return candidate;
+  return ' ';
+}
+
+/// "x [mm]" or "x": the unit in m, 0 where there is none.
+double column_unit(const LineReader& reader, std::string_view field, char name) {
+  const auto open = field.find('['), close = field.find(']');
+  const std::string_view head = trimmed(field.substr(0, open));
+  if (head.size() != 1 || (head[0] | 0x20) != name || (open != std::string_view::npos && close + 1 != field.size()))
+    reader.fail(
+        fmt::format("found \"{}\"; allowed: two numbers, or in the first line the names of the columns, "
+                    "\"x, y\" or \"x [mm], y [mm]\"",
+                    reader.line()));
+  if (open == std::string_view::npos) return 0;
+  try {
+    return parse_quantity("1 " + std::string(field.substr(open + 1, close - open - 1)), "m");
+  } catch (const UnitError& error) {
+    reader.fail(fmt::format("column {}: {}; allowed: a unit of length", name, error.what()));
+  }
+}
+
+double header_unit(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  if (fields.size() != 2) reader.fail(fmt::format("found {} columns; allowed: two, x and y", fields.size()));
+  const double x = column_unit(reader, fields[0], 'x'), y = column_unit(reader, fields[1], 'y');
+  if (x != y) reader.fail("the columns have different units; allowed: one unit for both");
+  return x;
+}
+
+Vec2 point_of(const LineReader& reader, const std::vector<std::string_view>& fields) {
+  Vec2 point;
+  if (fields.size() != 2 || !parse_number(fields[0], point.x()) || !parse_number(fields[1], point.y()))
+    reader.fail(fmt::format("found \"{}\"; allowed: two numbers, x and y", reader.line()));
+  return point;
+}
+
+/// The points of one loop: where it closes it must end.
+void add_csv_point(const LineReader& reader, FilePoints& found, const Vec2& point) {
+  const std::size_t n = found.points.size();
+  if (n >= 2 && found.points.back() == found.points.front())
+    reader.fail(
+        fmt::format("a point behind line {}, where the outline comes back to its first point; allowed: one "
+                    "outline a file, no holes",
+                    found.lines.back()));
+  found.points.push_back(point);
+  found.lines.push_back(reader.number());
+}
+
+/// One unit: that of the file or that of the scene.
+double unit_of(const std::string& file, const FilePoints& found, const std::string& unit) {
+  if (found.unit > 0 && !unit.empty())
+    throw InputError(fmt::format("{}: its columns have a unit, and the scene gives '{}' too; remove one", file, unit));
+  if (found.unit > 0) return found.unit;
+  return unit.empty() ? 1 : parse_quantity("1 " + unit, "m");
+}
+
+void require_outline(const std::string& file, const FilePoints& found, std::size_t most_points) {
+  const std::size_t n = found.points.size();
+  if (n < 3)
+    fail_at_line(file, n == 0 ? 1 : found.lines.back(), fmt::format("an outline of {} points; allowed: at least 3", n));
+  if (n > most_points)
+    fail_at_line(file, found.lines[most_points],
+                 fmt::format("an outline of {} points; allowed: at most {}", n, most_points));
+  const PolygonDefect defect = polygon_defect(found.points);
+  if (!defect.text.empty())
+    fail_at_line(file, found.lines[defect.point],
+                 defect.text + "; allowed: a closed outline that does not cross or touch itself");
+}
+
+}  // namespace
+
+FilePoints read_csv_outline(const std::string& file, const std::string& text) {
+  LineReader reader(file, text);
+  FilePoints found;
+  bool first = true;
+  while (reader.next()) {
+    const std::string_view line = trimmed(reader.line().substr(0, reader.line().find('#')));
+    if (line.empty()) continue;
+    const std::vector<std::string_view> fields = fields_of(line, separator_of(line));
+    double number = 0;
+    const bool header = first && !parse_number(fields[0], number);
+    if (header)
+      found.unit = header_unit(reader, fields);
+    else
+      add_csv_point(reader, found, point_of(reader, fields));
+    first = false;
+  }
+  if (found.points.size() > 1 && found.points.back() == found.points.front()) {
+    found.points.pop_back();
+    found.lines.pop_back();
+  }
+  return found;
+}
+
+Points read_outline_file(const std::filesystem::path& file, const std::string& unit, std::size_t most_points) {
+  const std::string name = file.string();
+  const std::string text = read_text_file(file, "an outline (.csv or .msh)");
+  const FilePoints found = file.extension() == ".msh" ? read_gmsh_outline(name, text) : read_csv_outline(name, text);
+  const double scale = unit_of(name, found, unit);
+  require_outline(name, found, most_points);
+  Points outline = found.points;
+  for (Vec2& p : outline) p *= scale;
+  if (signed_area(outline) < 0) std::reverse(outline.begin(), outline.end());
+  return outline;
+}
+
+}  // namespace pliant

@@ -1,0 +1,130 @@
+#include <algorithm>
+
+#include "scene/read_tables.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// What a side of a rule may be called.
+std::vector<std::string> party_names(const Scene& scene) {
+  std::vector<std::string> names = names_of(scene.materials);
+  for (const std::vector<std::string>& more : {names_of(scene.grains), names_of(scene.walls)})
+    names.insert(names.end(), more.begin(), more.end());
+  names.push_back("all");
+  return names;
+}
+
+/// A material may bear the name of grains or a wall, as long as no rule uses it.
+void refuse_ambiguous(const TableReader& table, const std::string& name, const std::vector<std::string>& names) {
+  if (std::count(names.begin(), names.end(), name) < 2) return;
+  table.fail("between", fmt::format("'{}' is a material and also grains or a wall; rename one of them", name));
+}
+
+void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
+  if (table.has("between") && table.value("between").node.is_string()) {
+    table.required("between", rule.first, OneOf{"word", {"all"}});
+    rule.second = rule.first;
+    return;
+  }
+  const std::vector<std::string> names = party_names(scene);
+  std::vector<std::string> pair;
+  table.required("between", pair, List<OneOf>{{"material, grains or wall", names}, 2, 2});
+  for (const std::string& name : pair) refuse_ambiguous(table, name, names);
+  rule.first = pair[0];
+  rule.second = pair[1];
+}
+
+void check_unique(const TableReader& table, const ContactRule& rule, const std::vector<ContactRule>& others) {
+  for (const ContactRule& other : others) {
+    const bool same = (other.first == rule.first && other.second == rule.second) ||
+                      (other.first == rule.second && other.second == rule.first);
+    if (same) table.fail("between", fmt::format("a second rule for {} and {}; keep one", rule.first, rule.second));
+  }
+}
+
+/// Keys of the two laws without tension: a dashpot needs a constant stiffness, so it excludes a smooth start.
+void read_impact(TableReader& table, ContactRule& rule) {
+  table.optional("smoothing", rule.smoothing, Quantity{"1", Range{.low = 0, .high = 1}});
+  const Range restitution{.low = 0.01, .high = 1};
+  double value = 1;
+  if (table.optional("restitution", value, Quantity{"1", restitution})) {
+    rule.restitution = value;
+    table.optional("pull", rule.pull, Flag{});
+    if (rule.smoothing > 0)
+      table.fail("smoothing", "has no meaning with restitution, whose dashpot goes with a constant stiffness");
+  }
+}
+
+void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
+  table.required("friction", rule.friction, Quantity{"1", non_negative});
+  table.optional("cohesion", rule.cohesion, Quantity{"Pa", non_negative});
+  table.optional("tension", rule.tension, Quantity{"Pa", non_negative});
+  if (rule.tension == 0) read_impact(table, rule);
+}
+
+void read_strength(TableReader& table, ContactRule& rule) {
+  table.required("strength", rule.strength, Quantity{"Pa", positive});
+  table.optional("range", rule.range, QuantityOr{"auto", {"m", positive}});
+  if (!rule.range || !rule.stiffness) return;
+  const double peak = rule.strength / *rule.stiffness;
+  if (*rule.range <= peak) {
+    table.value("range").reject(
+        fmt::format("more than strength / stiffness = {} m, the gap of the greatest tension", peak));
+  }
+}
+
+void read_cohesive(TableReader& table, ContactRule& rule) {
+  read_strength(table, rule);
+  table.optional("shear_strength", rule.shear_strength, QuantityOr{"auto", {"Pa", non_negative}});
+}
+
+void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
+  read_strength(table, rule);
+  table.required("bond_gap", rule.bond_gap, Quantity{"m", non_negative});
+  table.optional("shear_ratio", rule.shear_ratio, Quantity{"1", positive});
+  table.optional("friction", rule.friction, Quantity{"1", non_negative});
+  const Range up_to_strength{.low = 0, .high = rule.strength};
+  table.optional("residual_strength", rule.residual_strength, Quantity{"Pa", up_to_strength});
+  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate, Quantity{"Pa-1", non_negative});
+  rule.shear_fatigue_rate = rule.fatigue_rate;
+  const bool grows_in_shear =
+      table.optional("shear_fatigue_rate", rule.shear_fatigue_rate, Quantity{"Pa-1", non_negative});
+  const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
+  if (grows || grows_in_shear)
+    table.required("fatigue_threshold", rule.fatigue_threshold, Quantity{"Pa", below_strength});
+}
+
+}  // namespace
+
+ContactRule read_contact(TableReader table, const Scene& scene) {
+  ContactRule rule;
+  read_between(table, rule, scene);
+  check_unique(table, rule, scene.contacts);
+  table.required("law", rule.law,
+                 Choice<ContactLawKind>{{{"frictionless", ContactLawKind::frictionless},
+                                         {"mohr-coulomb", ContactLawKind::mohr_coulomb},
+                                         {"cohesive", ContactLawKind::cohesive},
+                                         {"cohesive-fatigue", ContactLawKind::cohesive_fatigue}}});
+  const QuantityOr stiffness{"auto", {"Pa/m", positive}};
+  table.optional("stiffness", rule.stiffness, stiffness);
+  const bool own_shear = rule.law == ContactLawKind::mohr_coulomb || rule.law == ContactLawKind::cohesive;
+  if (own_shear) table.optional("shear_stiffness", rule.shear_stiffness, stiffness);
+  switch (rule.law) {
+    case ContactLawKind::frictionless:
+      read_impact(table, rule);
+      break;
+    case ContactLawKind::mohr_coulomb:
+      read_mohr_coulomb(table, rule);
+      break;
+    case ContactLawKind::cohesive:
+      read_cohesive(table, rule);
+      break;
+    case ContactLawKind::cohesive_fatigue:
+      read_cohesive_fatigue(table, rule);
+  }
+  table.finish();
+  return rule;
+}
+
+}  // namespace pliant

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/table_reader.hpp"
+
+namespace pliant {
+
+/// A history that can move an axis.
+struct DriveKind {
+  std::string key;
+  std::string unit;
+  Drive::Mode mode;
+  std::string damping_unit;  ///< of a dashpot beside it; empty: none
+};
+
+/// "fixed", "free", or a table with one of the histories, its dashpot and its times; `otherwise` without the key.
+Drive read_drive(TableReader& table, const std::string& axis, const std::vector<DriveKind>& kinds,
+                 const Drive& otherwise);
+
+/// The keys `from` and `until`.
+Window read_window(TableReader& table);
+
+}  // namespace pliant

@@ -1,0 +1,182 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "scene/curves.hpp"
+#include "scene/outline_file.hpp"
+#include "scene/polygon_rules.hpp"
+#include "scene/read_tables.hpp"
+#include "scene/units.hpp"
+
+namespace pliant {
+
+namespace {
+
+enum class ShapeName { disc, polygon, regular, ellipse, fourier, file };
+
+constexpr std::size_t most_polygon_points = 10'000;
+constexpr std::int64_t most_variants = 1000;
+
+void read_polygon(TableReader& table, ShapeSpec& shape) {
+  table.required("points", shape.points, List<Vector>{{"m"}, 3, most_polygon_points});
+  const std::string defect = polygon_defect(shape.points).text;
+  if (!defect.empty()) table.fail("points", defect + "; allowed: a closed outline that does not cross or touch itself");
+  if (signed_area(shape.points) < 0) std::reverse(shape.points.begin(), shape.points.end());
+}
+
+void read_regular(TableReader& table, ShapeSpec& shape) {
+  int sides = 0;
+  table.required("diameter", shape.diameter, Quantity{"m", positive});
+  table.required("sides", sides, Integer{3, most_polygon_points});
+  shape.points = regular_polygon(sides, shape.diameter);
+}
+
+/// Arcs for corners: the outline is a smooth curve then.
+void read_rounding(TableReader& table, ShapeSpec& shape) {
+  double radius = 0;
+  if (!table.optional("rounding", radius, Quantity{"m", positive})) return;
+  const Points rounded = rounded_polygon(shape.points, radius);
+  if (rounded.empty())
+    table.value("rounding")
+        .reject(fmt::format("a radius that fits all corners, at most {:.6g} m", largest_rounding(shape.points)));
+  shape.points = rounded;
+  shape.kind = ShapeKind::curve;
+}
+
+void read_ellipse(TableReader& table, ShapeSpec& shape) {
+  double width = 0, height = 0;
+  table.required("width", width, Quantity{"m", positive});
+  table.required("height", height, Quantity{"m", positive});
+  shape.points = ellipse(width, height);
+}
+
+void read_unit(TableReader& table, std::string& unit) {
+  if (!table.optional("unit", unit, Text{})) return;
+  try {
+    if (parse_quantity("1 " + unit, "m") > 0) return;
+  } catch (const UnitError&) {
+  }
+  table.value("unit").reject("a unit of length, such as \"mm\"");
+}
+
+/// The outline's own size, or that of the circle of a given diameter.
+void read_file(TableReader& table, ShapeSpec& shape) {
+  std::string file, unit;
+  table.required("file", file, Text{});
+  read_unit(table, unit);
+  const std::filesystem::path path = std::filesystem::path(table.file()).parent_path() / file;
+  if (!std::filesystem::is_regular_file(path))
+    table.value("file").reject(fmt::format("a file; {} is none", path.string()));
+  shape.points = read_outline_file(path, unit, most_polygon_points);
+  if (table.optional("diameter", shape.diameter, Quantity{"m", positive}))
+    shape.points = scaled_to_area(shape.points, std::numbers::pi / 4 * shape.diameter * shape.diameter);
+  table.optional("outline", shape.kind,
+                 Choice<ShapeKind>{{{"polygon", ShapeKind::polygon}, {"curve", ShapeKind::curve}}});
+}
+
+/// Seeds of the variants of a Fourier grain; one that is fitted to each cell has the descriptors instead.
+struct Variants {
+  std::vector<double> descriptors;
+  std::int64_t seed = 1;
+  int count = 1;
+  bool named = false;  ///< a family, be it of one
+};
+
+Variants read_variants(TableReader& table, ShapeSpec& shape) {
+  Variants variants;
+  table.required("diameter", shape.diameter, Quantity{"m", positive});
+  table.required("descriptors", variants.descriptors, List<Quantity>{{"1", Range{.low = 0, .high = 1}}});
+  table.optional("seed", variants.seed, Integer{0, std::numeric_limits<std::int32_t>::max()});
+  variants.named = table.has("variants");
+  if (!variants.named) return variants;
+  const Value value = table.value("variants");
+  if (!value.node.is_string()) {
+    table.required("variants", variants.count, Integer{1, most_variants});
+  } else {
+    if (value.text("") != "each") value.reject(fmt::format("an integer from 1 to {}, or \"each\"", most_variants));
+    shape.descriptors = variants.descriptors;
+    variants.named = false;
+  }
+  return variants;
+}
+
+/// Shapes from the seeds seed, seed + 1, ...: they differ in nothing else.
+std::vector<ShapeSpec> make_variants(const TableReader& table, const ShapeSpec& shape, const Variants& variants) {
+  std::vector<ShapeSpec> shapes(static_cast<std::size_t>(variants.count), shape);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    shapes[i].points =
+        fourier_grain(shape.diameter, variants.descriptors, variants.seed + static_cast<std::int64_t>(i));
+    if (shapes[i].points.empty())
+      table.fail("descriptors",
+                 fmt::format("with seed {} the radius is not positive all round; allowed: descriptors whose sum is "
+                             "below 1",
+                             variants.seed + static_cast<std::int64_t>(i)));
+    if (!variants.named) continue;
+    shapes[i].family = shape.name;
+    shapes[i].name = fmt::format("{}.{}", shape.name, i + 1);
+  }
+  return shapes;
+}
+
+/// Reads one kind of shape by the name it has in scene files.
+std::vector<ShapeSpec> read_outline(TableReader& table, ShapeSpec shape) {
+  ShapeName name;
+  table.required("kind", name,
+                 Choice<ShapeName>{{{"disc", ShapeName::disc},
+                                    {"polygon", ShapeName::polygon},
+                                    {"regular", ShapeName::regular},
+                                    {"ellipse", ShapeName::ellipse},
+                                    {"fourier", ShapeName::fourier},
+                                    {"file", ShapeName::file}}});
+  const bool curved = name == ShapeName::ellipse || name == ShapeName::fourier;
+  shape.kind = name == ShapeName::disc ? ShapeKind::disc : curved ? ShapeKind::curve : ShapeKind::polygon;
+  if (name == ShapeName::disc) table.required("diameter", shape.diameter, Quantity{"m", positive});
+  if (name == ShapeName::polygon) read_polygon(table, shape);
+  if (name == ShapeName::regular) read_regular(table, shape);
+  if (name == ShapeName::polygon || name == ShapeName::regular) read_rounding(table, shape);
+  if (name == ShapeName::ellipse) read_ellipse(table, shape);
+  if (name == ShapeName::file) read_file(table, shape);
+  if (name != ShapeName::fourier) return {shape};
+  const Variants variants = read_variants(table, shape);
+  return make_variants(table, shape, variants);
+}
+
+void read_nodes(TableReader& table, ShapeSpec& shape) {
+  if (table.has("nodes") && table.has("spacing")) table.fail("spacing", "both it and 'nodes' are given; remove one");
+  if (!table.has("nodes") && !table.has("spacing")) table.fail_missing("nodes", "'nodes' (a number) or 'spacing' (m)");
+  const auto fewest = shape.kind == ShapeKind::polygon ? static_cast<std::int64_t>(shape.points.size()) : 6;
+  table.optional("nodes", shape.nodes, Integer{7, SceneLimits::nodes_per_shape});
+  table.optional("outline_nodes", shape.outline_nodes, Integer{fewest, SceneLimits::nodes_per_shape});
+  if (!table.optional("spacing", shape.spacing, Quantity{"m", positive})) return;
+  const double largest = extent_of(shape) / 2;
+  if (*shape.spacing > largest)
+    table.value("spacing").reject(fmt::format("at most half of the shape's extent, {} m", largest));
+  // Interior nodes lie about hexagonally: one node an area of sqrt(3)/2 spacing^2.
+  const double nodes = area_of(shape) / (std::sqrt(3.0) / 2 * *shape.spacing * *shape.spacing);
+  if (nodes <= static_cast<double>(SceneLimits::nodes_per_shape)) return;
+  table.fail("spacing", fmt::format("about {:.3g} nodes in the shape; allowed: at most {}, so a larger spacing", nodes,
+                                    SceneLimits::nodes_per_shape));
+}
+
+}  // namespace
+
+double extent_of(const ShapeSpec& shape) {
+  return shape.kind == ShapeKind::disc ? shape.diameter : largest_extent(shape.points);
+}
+
+double area_of(const ShapeSpec& shape) {
+  return shape.kind == ShapeKind::disc ? std::numbers::pi / 4 * shape.diameter * shape.diameter
+                                       : signed_area(shape.points);
+}
+
+std::vector<ShapeSpec> read_shape(TableReader table, const std::string& name) {
+  ShapeSpec shape;
+  shape.name = name;
+  std::vector<ShapeSpec> shapes = read_outline(table, shape);
+  for (ShapeSpec& one : shapes) read_nodes(table, one);
+  table.finish();
+  return shapes;
+}
+
+}  // namespace pliant

@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <set>
+#include <sstream>
+
+#include "core/errors.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant {
+namespace {
+
+toml::table significant(const std::string& text) {
+  try {
+    toml::table table = toml::parse(text);
+    table.erase("title");
+    table.erase("checkpoint");
+    if (toml::table* time = table["time"].as_table()) time->erase("end");
+    return table;
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("the scene is not valid TOML: {}", error.description()));
+  }
+}
+
+std::string shown(const toml::node* node) {
+  constexpr std::size_t longest = 60;
+  if (!node) return "not there";
+  if (node->is_table()) return "a table";
+  if (const auto* number = node->as_floating_point()) return fmt::format("{}", number->get());
+  std::ostringstream text;
+  node->visit([&](const auto& value) { text << value; });
+  return text.str().size() <= longest ? text.str() : text.str().substr(0, longest) + "...";
+}
+
+/// Of two nodes that are not both tables or both arrays. 1 and 1.0 are the same.
+bool same_value(const toml::node& a, const toml::node& b) {
+  if (a.is_number() && b.is_number()) return a.value<double>() == b.value<double>();
+  const toml::table left{{"x", a}}, right{{"x", b}};
+  return left == right;
+}
+
+std::string difference(const std::string& path, const toml::node* before, const toml::node* now);
+
+std::string table_difference(const std::string& path, const toml::table& before, const toml::table& now) {
+  std::set<std::string> keys;
+  for (const toml::table* table : {&before, &now})
+    for (auto&& [key, value] : *table) keys.emplace(key.str());
+  for (const std::string& key : keys) {
+    const std::string found = difference(path.empty() ? key : path + "." + key, before.get(key), now.get(key));
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+std::string array_difference(const std::string& path, const toml::array& before, const toml::array& now) {
+  for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
+    const std::string found = difference(fmt::format("{} {}", path, i + 1), before.get(i), now.get(i));
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+std::string difference(const std::string& path, const toml::node* before, const toml::node* now) {
+  if (before && now && before->is_table() && now->is_table())
+    return table_difference(path, *before->as_table(), *now->as_table());
+  if (before && now && before->is_array() && now->is_array())
+    return array_difference(path, *before->as_array(), *now->as_array());
+  if (before && now && same_value(*before, *now)) return {};
+  return fmt::format("'{}' was {}, now {}", path, shown(before), shown(now));
+}
+
+}  // namespace
+
+std::string scene_difference(const std::string& before, const std::string& now) {
+  return table_difference({}, significant(before), significant(now));
+}
+
+}  // namespace pliant

@@ -1,0 +1,354 @@
+"""Checkpoints from the command line: a run that was stopped, killed or ended early goes on with the same bits. All
+EXACT."""
+
+from __future__ import annotations
+
+import json
+import re
+import resource
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from conftest import ENGINE, Desk
+
+# Compliant and rigid discs, with friction and cohesion, in a shear across the period.
+LAYER = """\
+[domain]
+period = 6
+[time]
+end = 4
+[materials.soft]
+law = "neo-hookean"
+density = 1
+young = 2.8
+poisson = 0.4
+[materials.hard]
+law = "rigid"
+density = 1
+[shapes.disc]
+kind = "disc"
+diameter = 2
+nodes = 40
+[[grains]]
+shape = "disc"
+packing = { kind = "grid", columns = 3, rows = 3, pitch = 2, row_pitch = 2.01, origin = [1, 0] }
+mix = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
+angle = "random"
+seed = 3
+velocity = { uniform = [0.4, 0], rotation = 0.1 }
+[[walls]]
+name = "lower"
+material = "hard"
+solid = "below"
+level = -1.02
+[[walls]]
+name = "upper"
+material = "hard"
+solid = "above"
+level = 5.04
+thickness = 1
+x = { velocity = [[0, 0.3], [1, 0.6]] }
+y = { pressure = [[0, 0], [2, 0.1]] }
+[[contacts]]
+between = "all"
+law = "mohr-coulomb"
+friction = 0.4
+[[contacts]]
+between = ["soft", "hard"]
+law = "cohesive"
+strength = 0.1
+[[probes]]
+name = "push"
+quantity = "force"
+of = "upper"
+period = 0.01
+[[probes]]
+name = "where"
+quantity = "position"
+of = "grains"
+period = 0.015
+[[probes]]
+name = "books"
+quantity = "energy"
+period = 0.5
+[frames]
+period = 0.5
+fields = ["velocity", "von_mises", "contact_pressure"]
+"""
+
+
+@pytest.fixture(scope="module", params=["verlet", "step-doubling"])
+def whole(request, tmp_path_factory) -> Desk:
+    """An uninterrupted run in `whole`, with one thread."""
+    desk = Desk(tmp_path_factory.mktemp("whole"))
+    desk.write(LAYER.replace("end = 4", f'end = 4\nintegrator = "{request.param}"'))
+    result = desk.run("--out", "whole", "--threads", "1", "--quiet")
+    assert result.returncode == 0, result.stderr
+    return desk
+
+
+@pytest.fixture
+def out(whole) -> str:
+    """A fresh name for a folder."""
+    return f"out{len(list(whole.folder.iterdir()))}"
+
+
+def frames_of(folder: Path) -> dict[str, np.ndarray]:
+    arrays: dict[str, np.ndarray] = {}
+    with h5py.File(folder / "frames.h5") as file:
+        file.visititems(lambda name, item: arrays.update({name: item[()]} if isinstance(item, h5py.Dataset) else {}))
+    return arrays
+
+
+def assert_same(desk: Desk, out: str) -> None:
+    one, other = desk.folder / "whole", desk.folder / out
+    for name in ["probes.csv", "steps.csv", "frames.xdmf"]:
+        assert (one / name).read_bytes() == (other / name).read_bytes(), name
+    left, right = frames_of(one), frames_of(other)
+    assert left.keys() == right.keys()
+    assert all(np.array_equal(left[name], right[name]) for name in left)
+    first, second = desk.summary("whole"), desk.summary(out)
+    for key in ["state_hash", "steps", "rejections", "evaluations", "energy", "status", "time"]:
+        assert first[key] == second[key], key
+
+
+def start(desk: Desk, out: str, *options: str, **process) -> subprocess.Popen[str]:
+    return subprocess.Popen([ENGINE, "run", desk.scene, "--out", out, "--quiet", *options], cwd=desk.folder, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, **process)
+
+
+def wait_for_checkpoint(desk: Desk, out: str) -> None:
+    """Until a second checkpoint has replaced the first."""
+    file, seen = desk.folder / out / "checkpoint.bin", set()
+    for _ in range(20000):
+        if file.exists():
+            seen.add(file.stat().st_ino)
+        if len(seen) > 1:
+            return
+        time.sleep(0.001)
+    raise AssertionError("no checkpoint came")
+
+
+@pytest.mark.parametrize("threads", ["1", "2"])
+def test_a_run_that_ended_early_goes_on(whole, out, threads) -> None:
+    """The end was an output's time: equal steps lead there in both runs."""
+    assert whole.run("--out", out, "--until", "1.5", "--threads", threads, "--quiet").returncode == 0
+    assert whole.summary(out)["time"] == 1.5
+    result = whole.run("--out", out, "--resume", "--threads", threads, "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert result.stderr == "", "the same build wrote it"
+    assert_same(whole, out)
+    assert whole.summary(out)["resumed"] == 1
+
+
+@pytest.mark.parametrize("stop, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_stops_in_order_and_the_run_goes_on(whole, out, stop, code) -> None:
+    process = start(whole, out, "--checkpoint-every", "0.01 s")
+    wait_for_checkpoint(whole, out)
+    process.send_signal(stop)
+    output, errors = process.communicate(timeout=60)
+    assert process.returncode == code
+    assert f"stopped by {stop.name}" in errors and "--resume" in errors and output == ""
+    summary = whole.summary(out)
+    assert summary["status"] == f"stopped: {stop.name}" and 0 < summary["time"] < 4
+    assert not (whole.folder / out / "run.lock").exists()
+    assert whole.run("--out", out, "--resume", "--threads", "2", "--quiet").returncode == 0
+    assert_same(whole, out)
+
+
+def test_killed_again_and_again(whole, out) -> None:
+    """Whatever was written after the last checkpoint is cut back, however often the run is killed."""
+    options: list[str] = []
+    times = [0.0]
+    for _ in range(3):
+        process = start(whole, out, "--checkpoint-every", "0.02 s", *options)
+        wait_for_checkpoint(whole, out)
+        process.kill()
+        process.communicate()
+        times.append(whole.summary(out)["checkpoint_time"])
+        assert whole.summary(out)["status"] == "running"
+        options = ["--resume"]
+    assert times == sorted(times) and times[1] > 0
+    result = whole.run("--out", out, "--resume", "--threads", "1", "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert_same(whole, out)
+    assert whole.summary(out)["resumed"] == 3
+
+
+def test_whatever_follows_the_checkpoint_is_cut_off(whole, out) -> None:
+    """An old checkpoint beside the files of a finished run: the worst that a kill can leave."""
+    assert whole.run("--out", out, "--until", "1.5", "--quiet").returncode == 0
+    checkpoint = whole.folder / out / "checkpoint.bin"
+    old = checkpoint.read_bytes()
+    for _ in range(2):
+        assert whole.run("--out", out, "--resume", "--quiet").returncode == 0
+        checkpoint.write_bytes(old)
+    with h5py.File(whole.folder / out / "frames.h5", "a") as frames:  # killed before the frame's time was listed
+        frames["times"].resize((8,))
+    assert whole.run("--out", out, "--resume", "--quiet").returncode == 0
+    assert_same(whole, out)
+
+
+def test_a_later_end_goes_on(whole, out) -> None:
+    """To the bits of a run that had an output where the first one ended."""
+    assert whole.run("--out", out, "--until", "0.5", "--quiet").returncode == 0
+    result = whole.run("--out", out, "--resume", "--until", "0.25", "--quiet")
+    assert result.returncode == 0 and whole.summary(out)["time"] == 0.5, "nothing to do before the checkpoint"
+    assert whole.run("--out", out, "--resume", "--until", "1", "--quiet").returncode == 0
+    assert whole.run("--out", out + "b", "--until", "1", "--quiet").returncode == 0
+    assert whole.summary(out)["state_hash"] == whole.summary(out + "b")["state_hash"]
+
+
+def test_resume_finds_the_scene_in_the_folder(whole, out) -> None:
+    assert whole.run("--out", out, "--until", "0.5", "--quiet").returncode == 0
+    result = whole.engine("run", "--resume", "--out", out, "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert_same(whole, out)
+    assert whole.summary(out)["scene"] == "scene"
+    result = whole.engine("run", "--resume", "--quiet")
+    assert result.returncode == 2 and "no scene file" in result.stderr
+
+
+@pytest.fixture
+def half(desk) -> Desk:
+    """Half of a run in `out`."""
+    desk.write(LAYER)
+    assert desk.run("--out", "out", "--until", "0.5", "--quiet").returncode == 0
+    return desk
+
+
+def resumed(desk: Desk, *options: str) -> subprocess.CompletedProcess[str]:
+    return desk.run("--out", "out", "--resume", "--quiet", *options)
+
+
+@pytest.mark.parametrize("old, new, said", [
+    ("friction = 0.4", "friction = 0.5", "'contacts 1.friction' was 0.4, now 0.5"),
+    ("[time]", "[time]\ntolerance = 1e-3", "'time.tolerance' was not there, now 0.001"),
+    ("period = 0.01\n", "period = 0.02\n", "'probes 1.period' was 0.01, now 0.02"),
+    ("origin = [1, 0]", "origin = [1.0, 0.5]", "'grains 1.packing.origin 2' was 0, now 0.5"),
+    ('strength = 0.1', 'strength = "0.1 Pa"', "'contacts 2.strength' was 0.1, now '0.1 Pa'"),
+])
+def test_another_scene_is_refused(half, old, new, said) -> None:
+    before = {file: file.read_bytes() for file in (half.folder / "out").iterdir()}
+    half.write(LAYER.replace(old, new))
+    result = resumed(half)
+    assert result.returncode == 2 and said in result.stderr, result.stderr
+    assert {file: file.read_bytes() for file in (half.folder / "out").iterdir()} == before
+
+
+def test_end_title_comments_and_checkpoints_may_change(half) -> None:
+    longer = LAYER.replace("end = 4", "end = 0.75")
+    half.write(f'# longer\ntitle = "x"\n{longer}[checkpoint]\nperiod = "never"\n')
+    assert resumed(half).returncode == 0
+    assert half.summary("out")["time"] == 0.75 and half.summary("out")["title"] == "x"
+
+
+@pytest.mark.parametrize("damage", ["cut", "flipped", "grown", "empty", "missing", "other version", "no checkpoint"])
+def test_a_damaged_checkpoint_is_refused(half, damage) -> None:
+    file = half.folder / "out/checkpoint.bin"
+    content = file.read_bytes()
+    middle = len(content) // 2
+    flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:]
+    spoilt = {"cut": content[:middle], "flipped": flipped, "grown": content + b"x", "empty": b"",
+              "other version": content.replace(b"checkpoint 1", b"checkpoint 2"), "no checkpoint": b"time [s],dt\n"}
+    if damage == "missing":
+        file.unlink()
+    else:
+        file.write_bytes(spoilt[damage])
+    result = resumed(half)
+    assert result.returncode == 4 and "checkpoint.bin" in result.stderr, result.stderr
+    assert {"missing": "No such file", "other version": "another version", "empty": "not a checkpoint",
+            "no checkpoint": "not a checkpoint"}.get(damage, "is damaged") in result.stderr
+
+
+@pytest.mark.parametrize("name", ["probes.csv", "steps.csv", "frames.h5"])
+def test_files_that_lack_what_the_checkpoint_knows_are_refused(half, name) -> None:
+    file = half.folder / "out" / name
+    if name == "frames.h5":
+        with h5py.File(file, "a") as frames:
+            frames["times"].resize((1,))
+    else:
+        file.write_bytes(file.read_bytes()[:-20])
+    result = resumed(half)
+    assert result.returncode == 4 and name in result.stderr and "--force" in result.stderr
+
+
+def test_another_build_is_warned_about(half) -> None:
+    file = half.folder / "out/checkpoint.bin"
+    content = re.sub(rb'"build":"[^,]*', b'"build":"0123456', file.read_bytes())[:-16]
+    file.write_bytes(content + b"%016x" % fnv1a(content))
+    result = half.run("--out", "out", "--resume")
+    assert result.returncode == 0 and "written by another build (0123456" in result.stderr, result.stderr
+
+
+def fnv1a(content: bytes) -> int:
+    value = 14695981039346656037
+    for byte in content:
+        value = (value ^ byte) * 1099511628211 % 2**64
+    return value
+
+
+def test_resume_needs_a_checkpoint_and_excludes_force(desk) -> None:
+    desk.write(LAYER)
+    assert desk.run("--out", "none", "--resume", "--quiet").returncode == 4
+    assert not (desk.folder / "none").exists()
+    assert desk.run("--out", "none", "--resume", "--force", "--quiet").returncode == 2
+
+
+def test_a_folder_in_use_is_refused(half) -> None:
+    process = start(half, "busy", "--until", "400")
+    while not (half.folder / "busy/summary.json").exists():
+        time.sleep(0.01)
+    for option in ["--force", "--resume"]:
+        result = half.run("--out", "busy", option, "--quiet")
+        assert result.returncode == 4, result.stderr
+    assert "another run is writing" in half.run("--out", "busy", "--force", "--quiet").stderr
+    process.kill()
+    process.communicate()
+    assert (half.folder / "busy/run.lock").exists(), "killed: the file stays, its lock does not"
+    assert half.run("--out", "busy", "--until", "0.1", "--force", "--quiet").returncode == 0
+
+
+def limited(bytes_allowed: int) -> None:
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (bytes_allowed, bytes_allowed))
+
+
+def test_a_full_disk_keeps_the_last_good_checkpoint(desk) -> None:
+    """A limit of file sizes stands for the full disk."""
+    desk.write(LAYER.partition("[frames]")[0])
+    assert desk.run("--out", "out", "--until", "0.5", "--quiet").returncode == 0
+    file = desk.folder / "out/checkpoint.bin"
+    good = file.read_bytes()
+    process = start(desk, "out", "--resume", "--checkpoint-every", "0.001 s",
+                    preexec_fn=lambda: limited(len(good) - 1000))
+    errors = process.communicate(timeout=60)[1]
+    assert process.returncode == 4
+    assert "checkpoint.bin: cannot be written: File too large" in errors and "last good checkpoint: t = 0.5 s" in errors
+    assert file.read_bytes() == good
+    assert not list((desk.folder / "out").glob("*.tmp"))
+    assert desk.summary("out")["status"].startswith("failed: ")
+    assert resumed(desk).returncode == 0
+
+
+def test_a_physics_failure_names_the_last_good_checkpoint(desk) -> None:
+    soft = LAYER.replace('law = "mohr-coulomb"', 'law = "mohr-coulomb"\nstiffness = 0.1')
+    desk.write(soft.replace("end = 4", "end = 40"))
+    result = desk.run("--out", "out", "--checkpoint-every", "0.05 s", "--quiet")
+    assert result.returncode == 3
+    time_named = float(re.search(r"last good checkpoint: t = (\S+) s", result.stderr)[1])
+    assert 0 < time_named <= desk.summary("out")["time"]
+    assert json.dumps(desk.summary("out")["status"]).startswith('"failed: contact')
+
+
+@pytest.mark.parametrize("text", ["0 s", "-1 s", "10 um", "soon"])
+def test_checkpoint_period_is_a_positive_time(desk, text) -> None:
+    desk.write(LAYER)
+    result = desk.run("--out", "out", "--checkpoint-every", text, "--quiet")
+    assert result.returncode == 2 and "--checkpoint-every" in result.stderr
+    assert not (desk.folder / "out").exists()

@@ -1,0 +1,141 @@
+// A rigid block with a flat face falls on a floor: spring and dashpot of one degree of freedom (METHOD 4).
+#include <gtest/gtest.h>
+
+#include "contact/contact_laws.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+ContactRule bouncing(double restitution, bool pull, double stiffness = 100) {
+  ContactRule rule = smooth(stiffness);
+  rule.restitution = restitution;
+  rule.pull = pull;
+  return rule;
+}
+
+Scene block_above_floor(const ContactRule& rule, double height, double speed, const Vec2& gravity, double safety) {
+  Scene scene = on_a_floor(1e9, 8, 0.25, gravity);
+  scene.shapes = {box_shape("block", 2, 1, 0.25)};
+  scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.5 + height}}, moving({0, -speed}))};
+  scene.contacts = {rule};
+  scene.time.tolerance = 1e300;
+  scene.time.safety = safety;
+  return scene;
+}
+
+double balance(Simulation& simulation) { return simulation.balance_error(simulation.audit().energy); }
+
+/// Speed after over speed before.
+double rebound(const ContactRule& rule, double safety) {
+  const Model model = build_model(block_above_floor(rule, 0.003, 0.1, {0, 0}, safety));
+  Simulation simulation(model);
+  bool touched = false;
+  for (;;) {
+    simulation.step(1e9);
+    const double gap = simulation.state().position.rigid[1] - 0.5;
+    touched |= gap < 0;
+    if (touched && gap > 1e-4) break;
+  }
+  EXPECT_LT(balance(simulation), 0.25 * safety) << "RATE: the power counts at the half step";
+  return simulation.state().velocity.rigid[1] / 0.1;
+}
+
+/// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and METHOD's figures.
+TEST(Restitution, damping_ratio_inverts_both_end_rules) {
+  const auto restitution = [](double z, bool pull) {
+    double x = 0, v = 1;  // depth and its rate, w = 1
+    for (constexpr double h = 1e-4; x >= 0;) {
+      const auto a = [&](double at, double rate) {
+        const double force = at + 2 * z * rate;
+        return pull ? -force : -std::max(force, 0.0);
+      };
+      const double middle = v + h / 2 * a(x, v);
+      v += h * a(x + h / 2 * v, middle);
+      x += h * middle;
+    }
+    return -v;
+  };
+  for (const bool pull : {false, true})
+    for (const double e : {0.02, 0.1, 0.13, 0.14, 0.3, 0.744, 0.9, 0.99})
+      EXPECT_NEAR(restitution(damping_ratio(e, pull), pull), e, 1e-4) << "h, and the last step of the integration";
+  EXPECT_NEAR(damping_ratio(0.744, false), 0.1, 3e-4) << "three digits of e";
+  EXPECT_NEAR(damping_ratio(0.729, true), 0.1, 3e-4) << "three digits of e";
+  EXPECT_NEAR(damping_ratio(1, false), 0, 1e-12);
+}
+
+/// RATE: with the step, as touch begins and ends within one.
+TEST(Restitution, of_a_flat_block) {
+  for (const bool pull : {false, true})
+    for (const double e : {0.2, 0.5, 0.9}) {
+      const double coarse = std::abs(rebound(bouncing(e, pull), 0.1) - e),
+                   fine = std::abs(rebound(bouncing(e, pull), 0.01) - e);
+      EXPECT_LT(coarse, 0.02) << e << " " << pull;
+      EXPECT_LT(fine, 0.002) << e << " " << pull;
+    }
+}
+
+/// EXACT: without a dashpot, the elastic law, bit by bit.
+TEST(Restitution, of_one_is_elastic) {
+  const auto final_state = [](const ContactRule& rule) {
+    Scene scene = block_above_floor(rule, 0.003, 0.1, {0, 0}, 0.3);
+    scene.time.end = 1;
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    advance(simulation, 1);
+    return state_hash(simulation.state());
+  };
+  EXPECT_EQ(final_state(bouncing(1, false)), final_state(smooth(100)));
+}
+
+/// RATE: under gravity each bounce reaches e^2 of the height before. The impact lasts: its depth, a hundredth of the height here, counts.
+TEST(Restitution, bounce_heights) {
+  const double e = 0.8;
+  Scene scene = block_above_floor(bouncing(e, false, 1e5), 1, 0, {0, -1}, 0.05);
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  std::vector<double> peaks;
+  double last = 0;
+  while (peaks.size() < 2) {
+    simulation.step(1e9);
+    const double rate = simulation.state().velocity.rigid[1];
+    if (last > 0 && rate <= 0) peaks.push_back(simulation.state().position.rigid[1] - 0.5);
+    last = rate;
+  }
+  for (std::size_t i = 0; i < peaks.size(); ++i)
+    EXPECT_NEAR(peaks[i] / std::pow(e, 2.0 * static_cast<double>(i + 1)), 1, 0.01) << "bounce " << i;
+  EXPECT_LT(balance(simulation), 5e-3);
+}
+
+/// Two blocks of different mass: the reduced mass, and momentum. RATE as above.
+TEST(Restitution, of_two_blocks) {
+  Scene scene = empty_scene(1e9);
+  scene.materials.push_back(rigid_material(3, "heavy"));
+  scene.shapes = {box_shape("block", 1, 1, 0.25)};
+  scene.grains = {grains("left", "block", BodyKind::rigid, {{0, 0}}, moving({0.1, 0})),
+                  grains("right", "block", BodyKind::rigid, {{1.002, 0}})};
+  scene.grains[1].mix[0].material = "heavy";
+  scene.contacts = {bouncing(0.5, false)};
+  without_error_control(scene, 0.02);
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  advance(simulation, 2);
+  const double left = simulation.state().velocity.rigid[0], right = simulation.state().velocity.rigid[3];
+  EXPECT_NEAR((right - left) / 0.1, 0.5, 0.005);
+  EXPECT_NEAR((left + 3 * right) / 0.1, 1, 1e-13) << "EXACT: rounding";
+}
+
+/// EXACT: the bound of the time step falls with the damping ratio of METHOD 6; the run at full safety stays bounded: a block at rest settles.
+TEST(Restitution, shortens_the_time_step_and_settles) {
+  const Model elastic = build_model(block_above_floor(smooth(100), -0.001, 0, {0, -0.1}, 0.8)),
+              damped = build_model(block_above_floor(bouncing(0.1, false), -0.001, 0, {0, -0.1}, 0.8));
+  Simulation without(elastic), with(damped);
+  const double z = damping_ratio(0.1, false);
+  EXPECT_LE(with.largest_dt(), without.largest_dt() * (std::sqrt(1 + z * z) - z));
+  advance(with, 200);
+  EXPECT_NEAR(with.state().velocity.rigid[1], 0, 1e-12);
+  EXPECT_GT(with.state().dissipated, 0);
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

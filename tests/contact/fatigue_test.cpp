@@ -1,0 +1,202 @@
+// Bonds with damage: the books against the work of the tractions, and what a run starts with.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/contact_rig.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+constexpr double kn = 100, strength = 0.5, range = 0.03, ratio = 1.25;
+
+ContactRule bond_rule() { return cohesive_fatigue(kn, strength, range, ratio, 0.001); }
+
+// A block on a longer bar, face to face; no node of the bar lies within the range beside the block's corners.
+Scene block_on_bar(const ContactRule& rule, double gap = 0) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  add_body(scene, outline_shape("bar", rectangle(3, 0.5, 0.1)), BodyKind::rigid, {0, 0});
+  add_body(scene, outline_shape("block", rectangle(1.1, 0.5, 0.11)), BodyKind::rigid, {0, 0.5 + gap});
+  return scene;
+}
+
+// Moves the block along a path and books what moving it takes.
+class Path {
+ public:
+  explicit Path(const ContactRule& rule) : rig(block_on_bar(rule)) {
+    rig.step();
+    start_ = rig.totals.stored;
+  }
+  void go(const Vec2& by, int steps) {
+    for (int i = 0; i < steps; ++i) {
+      const Vec2 before = rig.force(1);
+      rig.move(1, by / steps);
+      rig.step();
+      work -= 0.5 * (before + rig.force(1)).dot(by / steps);
+    }
+  }
+  double imbalance() const { return work - (rig.totals.stored - start_) - rig.dissipated; }
+
+  ContactRig rig;
+  double work = 0;
+
+ private:
+  double start_ = 0;
+};
+
+double lost(Path& path) { return path.rig.dissipated; }
+
+// EXACT: opening and shear, apart and together, with damage on the way, closed again: tractions are straight in each step between damage and
+// damage, so that their work is stored or dissipated to rounding, whatever the steps.
+TEST(Fatigue, WorkIsStoredOrDissipated) {
+  for (const int steps : {1, 3, 40}) {
+    Path path(bond_rule());
+    for (const Vec2& by : {Vec2(0, 0.012), Vec2(0.01, 0), Vec2(-0.02, -0.004), Vec2(0.01, -0.008)}) path.go(by, steps);
+    EXPECT_NEAR(path.imbalance(), 0, 1e-14) << steps;
+    EXPECT_GT(lost(path), 5e-4) << "or this test says nothing";
+    EXPECT_NEAR(path.rig.totals.stored, 0, 1e-14) << "the path is closed";
+  }
+}
+
+// EXACT: below the critical opening nothing is lost; along the same way back neither, with damage or without.
+TEST(Fatigue, UnloadingIsElastic) {
+  Path path(bond_rule());
+  path.go({0.003, 0.003}, 7);
+  path.go({-0.003, -0.003}, 3);
+  EXPECT_NEAR(lost(path), 0, 1e-16);
+  path.go({0.01, 0.01}, 5);
+  const double before = lost(path), stored = path.rig.totals.stored;
+  path.go({-0.01, -0.01}, 1);
+  path.go({0.01, 0.01}, 4);
+  EXPECT_NEAR(lost(path), before, 1e-16);
+  EXPECT_NEAR(path.rig.totals.stored, stored, 1e-14);
+  EXPECT_GT(before, 1e-4);
+}
+
+// Sum of the records' weights that were bonded, m.
+double bonded_length(const ContactRig& rig) {
+  double length = 0;
+  for (const Patch& patch : rig.contact.patches())
+    for (int side = 0; side < 2; ++side) {
+      const int body = side == 0 ? patch.first : patch.second, n = rig.count(body);
+      for (int i = 0; i < patch.nodes[side].count; ++i) {
+        const int node = patch.nodes[side].begin + i;
+        if (rig.committed.damage[patch.record[side] + i] < 1)
+          length +=
+              0.5 * rig.model.outlines[rig.model.bodies[body].outline].tributary_length[node - turn_of(node, n) * n];
+      }
+    }
+  return length;
+}
+
+// EXACT: tearing costs strength x range / 2 a unit of length, in shear the same, in steps that end at the corners of the law. On the way the
+// traction falls in a straight line, and steps that are straight lose nothing.
+TEST(Fatigue, TearingTakesTheFractureEnergy) {
+  const double critical = strength / kn;
+  for (const bool shear : {false, true}) {
+    Path path(bond_rule());
+    const double length = bonded_length(path.rig);
+    EXPECT_GT(length, 1);
+    const Vec2 way = shear ? Vec2(ratio, 0) : Vec2(0, 1);
+    path.go(critical * way, 1);
+    EXPECT_NEAR(std::abs(path.rig.force(1).dot(way)) / length, strength, 1e-12);
+    path.go((range - critical) / 2 * way, 3);
+    EXPECT_NEAR(std::abs(path.rig.force(1).dot(way)) / length, strength / 2, 1e-12);
+    path.go((1 + 1e-9) * (range - critical) / 2 * way, 2);
+    EXPECT_EQ(bonded_length(path.rig), 0);
+    EXPECT_NEAR(lost(path) / (length * strength * range / 2), 1, 1e-8)
+        << "a little further, so that rounding decides nothing";
+    EXPECT_EQ(path.rig.force(1).norm(), 0);
+  }
+}
+
+// EXACT: a torn contact presses with kn, and pulls and slips like the cohesive law of the residual strength, and friction.
+TEST(Fatigue, LeavesTheResidualLaw) {
+  ContactRule rule = bond_rule();
+  rule.residual_strength = 0.2, rule.friction = 0.3;
+  Path path(rule);
+  const double length = bonded_length(path.rig);
+  path.go({0, 0.04}, 8);
+  EXPECT_NEAR(path.imbalance(), 0, 1e-4) << "RATE: steps across the corners of the residual law";
+  path.go({0, -0.038}, 8);
+  EXPECT_NEAR(path.rig.force(1).y() / length, -0.2, 1e-12) << "at its strength";
+  path.go({0, -0.007}, 8);
+  path.go({0.02, 0}, 50);
+  EXPECT_NEAR(path.rig.force(1).y() / length, kn * 0.005, 1e-12);
+  EXPECT_NEAR(path.rig.force(1).x() / length, -(0.2 / ratio + 0.3 * kn * 0.005), 1e-12);
+}
+
+// INDEPENDENT: dD = rate (p - threshold) / (strength - threshold) dp along p = (1 - D) kn g, in a million small steps. The engine's are fewer, and their
+// damage counts from the next one on: RATE, half of the damage of a step.
+TEST(Fatigue, EachLoadAddsItsDamage) {
+  ContactRule rule = bond_rule();
+  rule.fatigue_threshold = 0.1, rule.fatigue_rate = 0.5;
+  Path path(rule);
+  const double opening = 0.4 / kn, length = bonded_length(path.rig);
+  const auto damage = [&] { return 1 - path.rig.totals.stored * 2 / (kn * opening * opening * length); };
+  double expected = 0;
+  const auto load = [&] {
+    constexpr int steps = 1'000'000;
+    for (int i = 0; i < steps; ++i) {
+      const double p = (1 - expected) * kn * opening * (i + 0.5) / steps;
+      expected += 0.5 * std::max(p - 0.1, 0.0) / 0.4 * (1 - expected) * kn * opening / steps;
+    }
+  };
+  for (int loads = 0; loads < 4; ++loads) {
+    path.go({0, opening}, 400);
+    load();
+    EXPECT_NEAR(damage(), expected, 0.06 / 400 * (loads + 1)) << "load " << loads;
+    path.go({0, -opening}, 3);
+  }
+  EXPECT_GT(expected, 0.1);
+  EXPECT_NEAR(path.imbalance(), 0, 1e-13) << "EXACT: rounding of 1600 steps";
+}
+
+// EXACT: bonds are there where the gap is small at the start, and nowhere else; what meets later finds none. A refresh keeps them.
+TEST(Fatigue, BondsAreThereFromTheStart) {
+  Scene scene = block_on_bar(bond_rule(), 0.0005);
+  add_body(scene, outline_shape("far", rectangle(0.5, 0.3, 0.1)), BodyKind::rigid, {1.2, 0.402});
+  ContactRig rig(scene);
+  rig.step();
+  const auto damaged = [&](int body) {
+    const std::vector<double> damage = rig.contact.nodal_damage(rig.outlines, rig.committed);
+    double least = 1;
+    for (int k = 0; k < rig.count(body); ++k) least = std::min(least, damage[rig.outlines.offset[body] + k]);
+    return least;
+  };
+  EXPECT_EQ(damaged(0), 0);
+  EXPECT_EQ(damaged(1), 0);
+  EXPECT_EQ(damaged(2), 1);
+  rig.move(1, {0, 0.0145});
+  rig.move(2, {0, -0.003});
+  rig.step();
+  const double stretched = damaged(1);
+  EXPECT_NEAR(stretched, 0.03 * (0.015 - 0.005) / (0.015 * 0.025), 1e-12);
+  EXPECT_EQ(damaged(2), 1);
+  EXPECT_GT(rig.force(2).y(), 0) << "pressed";
+  const Vec2 force = rig.force(1);
+  rig.refresh();
+  rig.step();
+  EXPECT_EQ(damaged(1), stretched);
+  EXPECT_EQ(rig.force(1), force);
+  rig.move(2, {0, 0.003});
+  rig.step();
+  EXPECT_EQ(rig.force(2).norm(), 0) << "no bond, no pull";
+  rig.move(1, {0, 1});
+  rig.step();
+  EXPECT_EQ(damaged(1), 1);
+}
+
+// EXACT: scenes without the law keep no damage.
+TEST(Fatigue, OtherLawsKeepNoDamage) {
+  ContactRig rig(block_on_bar(cohesive(kn, strength, range, strength)));
+  rig.step();
+  EXPECT_TRUE(rig.committed.damage.empty());
+  EXPECT_TRUE(rig.committed.opening.empty());
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,130 @@
+// Options of contact: refresh at fixed times, present lengths, a smooth start of the pressure, law by law as the scene has them.
+#include <gtest/gtest.h>
+
+#include "support/bench.hpp"
+#include "support/contact_rig.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+/// EXACT: candidates are found every so many steps, or every so much time, and not for any motion between.
+TEST(FixedRefresh, keeps_its_period) {
+  const auto refreshes = [](int steps, double period) {
+    Scene scene = on_a_floor(1, 8, 0.25, {0, -1});
+    scene.shapes = {box_shape("block", 2, 1, 0.25)};
+    scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.495}}, moving({1, 0}))};
+    scene.contact.refresh_steps = steps, scene.contact.refresh_period = period;
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    advance(simulation, 1);
+    return std::pair(simulation.forces().contact().refreshes(), simulation.state().steps);
+  };
+  const auto [by_steps, steps] = refreshes(7, 0);
+  EXPECT_EQ(by_steps, 1 + (steps - 1) / 7);
+  EXPECT_EQ(refreshes(1, 0).first, refreshes(1, 0).second);
+  const long by_time = refreshes(0, 0.1).first;
+  EXPECT_GE(by_time, 9);
+  EXPECT_LE(by_time, 11);
+}
+
+/// EXACT: often enough, it sees all that the safe refresh sees. Equal steps, as the bound of the step is looked up at each refresh.
+TEST(FixedRefresh, often_enough_changes_nothing) {
+  const auto position = [](int refresh_steps) {
+    Scene scene = flight_and_impact(1e300);
+    scene.contacts = {rough(300, 0.3)};
+    scene.contact.refresh_steps = refresh_steps;
+    Bench bench(scene);
+    Verlet integrator(bench.forces, bench.state);
+    bench.state.next_dt = 1e9;
+    for (int i = 1; i <= 1500; ++i) integrator.step(bench.state, 0.004 * i);
+    EXPECT_EQ(bench.state.steps, 1500);
+    return mass_mean(bench.model, bench.model.bodies[0], bench.state.position);
+  };
+  EXPECT_LT((position(3) - position(0)).norm(), 1e-12) << "orders of sums may differ";
+}
+
+/// A too long period misses contacts, as is said: the block falls through.
+TEST(FixedRefresh, too_seldom_misses_contacts) {
+  Scene scene = on_a_floor(8, 8, 0.25, {0, 0});
+  scene.shapes = {box_shape("block", 2, 1, 0.25)};
+  scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 2.5}}, moving({0, -1}))};
+  scene.contact.refresh_period = 100;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  advance(simulation, 4);
+  EXPECT_NEAR(simulation.state().position.rigid[1], -1.5, 1e-12) << "EXACT: free flight";
+}
+
+/// EXACT: forces of stretched outlines go with their present length.
+TEST(CurrentLength, weighs_pressure_by_the_present_outline) {
+  const auto force = [](ContactLength length) {
+    Scene scene = testing::bare_scene();
+    scene.contacts = {testing::frictionless(100)};
+    scene.contact.length = length;
+    testing::add_body(scene, testing::outline_shape("plate", testing::rectangle(3, 0.5, 0.1)), BodyKind::rigid,
+                      {-1, -0.5});
+    testing::add_body(scene, testing::outline_shape("block", testing::rectangle(1, 0.5, 0.1), 60), BodyKind::compliant,
+                      {0.02, 0});
+    testing::ContactRig rig(scene);
+    const Batch& batch = rig.model.batches[0];
+    for (int i = 0; i < rig.model.shape_of(batch).nodes(); ++i) rig.q.compliant[batch.offset + 2 * i] *= 1.1;
+    rig.move(1, {0, -0.01});
+    rig.evaluate();
+    double slave = 0;  // of the block's own nodes: the plate's do not stretch
+    for (int k = 1; k < 10; ++k) slave += rig.force(1, k).y();
+    return std::pair(slave, rig.force(0).norm());
+  };
+  const auto [reference, reference_total] = force(ContactLength::reference);
+  const auto [current, current_total] = force(ContactLength::current);
+  // Of two passes of half weight the block's grows by a tenth. The plate has as many nodes below the stretched block either way.
+  EXPECT_NEAR(current_total - reference_total, 0.1 * 0.5 * 100 * 0.01 * 1.0, 0.1 * 0.5 * 100 * 0.01 * 0.11 + 1e-12);
+  EXPECT_GT(current, reference * 1.04);
+}
+
+/// RATE: what the present length costs in energy, METHOD's 0.05 to 0.3 %; the reference length keeps it to the integrator's error.
+TEST(CurrentLength, costs_energy) {
+  const auto error = [](ContactLength length) {
+    Scene scene = flight_and_impact(1e-2);
+    scene.time.safety = 0.2;
+    scene.contact.length = length;
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    advance(simulation, 6);
+    return simulation.balance_error(simulation.audit().energy);
+  };
+  const double reference = error(ContactLength::reference), current = error(ContactLength::current);
+  RecordProperty("reference", std::to_string(reference));
+  RecordProperty("current", std::to_string(current));
+  EXPECT_LT(reference, 3e-4);
+  EXPECT_GT(current, 3 * reference);
+  EXPECT_LT(current, 2e-2);
+}
+
+/// Velocity of a compliant disc after a bounce on a floor, in so many equal steps.
+Vec2 after_bounce(double smoothing, int steps) {
+  Scene scene = flight_and_impact(1e300);
+  scene.grains[0].packing.positions[0] = Vec2(4, 1.05);
+  scene.contacts[0].smoothing = smoothing;
+  Bench bench(scene);
+  Verlet integrator(bench.forces, bench.state);
+  bench.state.next_dt = 1e9;
+  for (int i = 1; i <= steps; ++i) integrator.step(bench.state, 4.0 * i / steps);
+  EXPECT_EQ(bench.state.steps, steps);
+  const Vec2 velocity = mass_mean(bench.model, bench.model.bodies[0], bench.state.velocity);
+  EXPECT_GT(velocity.y(), 0.1) << "it must have bounced";
+  return velocity;
+}
+
+/// RATE: Verlet's second order once the steps resolve the smooth start of the pressure. With a sudden one the errors of these steps fall by anything
+/// between 0.2 and 16 from halving to halving.
+TEST(SmoothStart, gives_second_order) {
+  const Vec2 exact = after_bounce(0.02, 12800);
+  const double coarse = (after_bounce(0.02, 800) - exact).norm(), middle = (after_bounce(0.02, 1600) - exact).norm(),
+               fine = (after_bounce(0.02, 3200) - exact).norm();
+  EXPECT_NEAR(observed_order(coarse, middle), 2, 0.2);
+  EXPECT_NEAR(observed_order(middle, fine), 2, 0.2) << "the reference's own error is a sixteenth of the last";
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

@@ -1,0 +1,180 @@
+// A simulation that is read back goes on with the same bits, from any step, with any number of threads (DESIGN 5). All
+// EXACT. A new feature that keeps something from step to step joins by a scene in `scenes`.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include "core/archive.hpp"
+#include "support/random.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+constexpr int last_step = 300;
+
+/// Compliant and rigid grains with cohesion between unlike ones and friction between like ones, sheared across the
+/// period.
+Scene friction_and_cohesion() {
+  Scene scene = small_third_body(1000);
+  scene.walls[1].x.history = {{0, 1}, {0.3, 0.6}};
+  scene.grains[0].velocity = moving({0.4, 0}, 0.1);
+  scene.contacts.push_back(scene.contacts[0]);
+  scene.contacts[1].first = "soft", scene.contacts[1].second = "hard";
+  scene.contacts[0].law = ContactLawKind::mohr_coulomb;
+  scene.contacts[0].friction = 0.4;
+  return scene;
+}
+
+/// The same with what else lives from step to step: bonds that wear between grains of one kind, a servo wall, viscosity, corrected mass, and
+/// candidates found anew at fixed times.
+Scene bonds_and_servo() {
+  Scene scene = friction_and_cohesion();
+  scene.grains[0].velocity.rotation = 0.02;
+  scene.grains[0].packing.row_pitch = 2.0;
+  scene.walls[1].level = 7.02;
+  scene.walls[1].y.damping = 0.5;
+  ContactRule bonds = scene.contacts[1];
+  bonds.first = bonds.second = "soft";
+  bonds.law = ContactLawKind::cohesive_fatigue;
+  bonds.strength = 0.5;
+  bonds.range = 0.3;
+  bonds.bond_gap = 0.02;
+  bonds.fatigue_rate = bonds.shear_fatigue_rate = 0.5;
+  bonds.fatigue_threshold = 1e-3;
+  scene.contacts.push_back(bonds);
+  scene.materials[0].viscosity = 0.01;
+  scene.discretisation.mass = Mass::corrected;
+  scene.contact.refresh_steps = 7;
+  return scene;
+}
+
+/// Rigid blocks that slide fast enough to use up the skin within few steps, so that trials are rejected and candidates
+/// rebuilt.
+Scene fast_blocks() {
+  Scene scene = on_a_floor(1000, 20, 0.1, {0.2, -1});
+  scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
+  scene.grains = {grains("fast", "block", BodyKind::rigid, {{10, 0.245}}, moving({3, 0})),
+                  grains("slow", "block", BodyKind::rigid, {{2, 0.245}}, moving({1, 0}))};
+  scene.contacts = {rough(100, 0.5)};
+  scene.time.tolerance = 1e-4;
+  scene.time.target = 1e-2;
+  return scene;
+}
+
+const std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
+    {"friction_and_cohesion", friction_and_cohesion},
+    {"bonds_and_servo", bonds_and_servo},
+    {"fast_blocks", fast_blocks}};
+
+std::string saved(Simulation& simulation) {
+  std::string bytes;
+  SaveLeaf save(bytes);
+  Walk{save}("simulation", simulation);
+  return bytes;
+}
+
+/// Everything of a simulation by name, in text, to tell what differs.
+struct Parts {
+  static constexpr bool loads = false;
+  std::vector<std::pair<std::string, std::uint64_t>> all;
+  void value(const std::string& path, const auto& value) { add(path, &value, sizeof value); }
+  void array(const std::string& path, const PlainArray auto& values) {
+    add(path, values.data(), values.size() * sizeof values[0]);
+  }
+  void add(const std::string& path, const void* data, std::size_t bytes) {
+    Fnv1a hash;
+    hash.add(data, bytes);
+    all.emplace_back(path, hash.value());
+  }
+};
+
+/// Names of the parts that differ.
+std::string difference(Simulation& a, Simulation& b) {
+  Parts parts[2];
+  Walk{parts[0]}("simulation", a);
+  Walk{parts[1]}("simulation", b);
+  std::string names;
+  for (std::size_t i = 0; i < parts[0].all.size(); ++i)
+    if (parts[0].all[i] != parts[1].all[i]) names += parts[0].all[i].first + " ";
+  return names;
+}
+
+class Restart : public ::testing::TestWithParam<std::tuple<std::size_t, Integrator>> {
+ protected:
+  Restart() : threads_(omp_get_max_threads()) {}
+  ~Restart() override { omp_set_num_threads(threads_); }
+  static Model model() {
+    Scene scene = scenes[std::get<0>(GetParam())].second();
+    scene.time.integrator = std::get<1>(GetParam());
+    return build_model(scene);
+  }
+
+ private:
+  int threads_;
+};
+
+TEST_P(Restart, same_bits_from_any_step_with_any_number_of_threads) {
+  const Model scene_model = model();
+  Simulation whole(scene_model), watched(scene_model);
+  testing::Random random(std::get<0>(GetParam()) + 7);
+  std::map<long, std::string> saves = {
+      {0, ""}, {49, ""}, {50, ""}};  // around the power iterations, and three at random
+  for (int i = 0; i < 3; ++i) saves[1 + random.below(last_step - 1)];
+  std::vector<std::uint64_t> hashes;
+  for (long step = 0; step <= last_step; ++step) {
+    if (const auto wanted = saves.find(step); wanted != saves.end()) wanted->second = saved(watched);
+    hashes.push_back(state_hash(whole.state()));
+    ASSERT_EQ(state_hash(watched.state()), hashes.back()) << "saving changed the run at step " << step;
+    whole.step(1000), watched.step(1000);
+  }
+  for (const auto& [first, bytes] : saves)
+    for (const int threads : {1, 2}) {
+      omp_set_num_threads(threads);
+      Simulation resumed(scene_model);
+      LoadLeaf load(bytes);
+      Walk{load}("simulation", resumed);
+      EXPECT_TRUE(load.empty());
+      for (long step = first; step <= last_step; ++step) {
+        ASSERT_EQ(state_hash(resumed.state()), hashes[step]) << "step " << step << ", saved at " << first;
+        resumed.step(1000);
+      }
+      EXPECT_EQ(difference(resumed, whole), "") << "saved at " << first << ", " << threads << " threads";
+      EXPECT_EQ(resumed.audit().energy.mechanical(), whole.audit().energy.mechanical());
+      EXPECT_EQ(resumed.balance_error(resumed.audit().energy), whole.balance_error(whole.audit().energy));
+    }
+}
+
+/// The scenes show what restarts may lose.
+TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
+  const Model scene_model = model();
+  Simulation simulation(scene_model);
+  for (long step = 0; step <= last_step; ++step) simulation.step(1000);
+  EXPECT_GT(simulation.forces().contact().refreshes(), 3) << "candidates were rebuilt";
+  const std::vector<double>& slip = simulation.state().history.slip;
+  EXPECT_GT(std::count_if(slip.begin(), slip.end(), [](double s) { return s != 0; }), 3) << "contacts have slip";
+  EXPECT_GT(simulation.state().dissipated, 0);
+  const std::vector<double>& damage = simulation.state().history.damage;
+  const bool worn = std::any_of(damage.begin(), damage.end(), [](double d) { return d > 0.01 && d < 0.99; });
+  EXPECT_EQ(worn, !damage.empty()) << "bonds are half worn";
+  const std::vector<Patch>& patches = simulation.forces().contact().patches();
+  EXPECT_TRUE(std::any_of(patches.begin(), patches.end(), [&](const Patch& p) {
+    return p.images != 0 || scene_model.bodies[p.first].wall || scene_model.bodies[p.second].wall;
+  })) << "bodies touch across the period";
+}
+
+std::string name_of(const ::testing::TestParamInfo<Restart::ParamType>& info) {
+  return scenes[std::get<0>(info.param)].first +
+         (std::get<1>(info.param) == Integrator::verlet ? "_verlet" : "_step_doubling");
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Restart,
+                         ::testing::Combine(::testing::Range(std::size_t{0}, scenes.size()),
+                                            ::testing::Values(Integrator::verlet, Integrator::step_doubling)),
+                         name_of);
+
+}  // namespace
+}  // namespace pliant::dynamics_tests

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "scene/scene_files.hpp"
+
+/// Scenes with one mistake, and what their refusal must say.
+namespace pliant::scene_tests {
+
+/// One change to the good scene; the error must stand at the first `at` of the changed text and contain all phrases.
+struct Bad {
+  std::string name;
+  std::string from, to;
+  std::string at;
+  std::vector<std::string> phrases;
+};
+
+/// What ctest lists beside the test's name.
+inline void PrintTo(const Bad& bad, std::ostream* out) { *out << '\'' << bad.to << "' for '" << bad.from << '\''; }
+
+inline std::string error_of(const std::string& text) {
+  const SceneFile file(text);
+  try {
+    read_scene(file.path());
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const std::string path = file.path().string() + ":";
+    EXPECT_TRUE(message.starts_with(path)) << message;
+    return message.substr(std::min(path.size(), message.size()));
+  }
+  return "no error";
+}
+
+inline std::string line_and_column(const std::string& text, std::size_t offset) {
+  int line = 1, column = 1;
+  for (std::size_t i = 0; i < offset; ++i) {
+    column = text[i] == '\n' ? 1 : column + 1;
+    line += text[i] == '\n' ? 1 : 0;
+  }
+  return std::to_string(line) + ":" + std::to_string(column) + ": ";
+}
+
+/// EXACT: place and words of the message.
+inline void expect_refused(const Bad& bad) {
+  std::string text = good_scene;
+  const auto at = text.find(bad.from);
+  ASSERT_NE(at, std::string::npos) << bad.from;
+  text.replace(at, bad.from.size(), bad.to);
+  const auto expected = text.find(bad.at);
+  ASSERT_NE(expected, std::string::npos) << bad.at;
+  const std::string message = error_of(text);
+  EXPECT_TRUE(message.starts_with(line_and_column(text, expected)))
+      << message << "\nexpected at " << line_and_column(text, expected);
+  for (const std::string& phrase : bad.phrases) EXPECT_NE(message.find(phrase), std::string::npos) << message;
+}
+
+inline std::string name_of(const ::testing::TestParamInfo<Bad>& info) { return info.param.name; }
+
+}  // namespace pliant::scene_tests

@@ -1,0 +1,116 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numbers>
+
+#include "scene/curves.hpp"
+#include "scene/polygon_rules.hpp"
+#include "scene_files.hpp"
+
+namespace pliant {
+namespace {
+
+using scene_tests::good_scene;
+using scene_tests::SceneFile;
+
+/// The good scene with some of its text replaced.
+Scene changed(std::vector<std::pair<std::string, std::string>> changes) {
+  std::string text = good_scene;
+  for (const auto& [from, to] : changes) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  }
+  return read_scene(SceneFile(text).path());
+}
+
+const std::string disc = "kind = \"disc\"\ndiameter = \"1 um\"";
+const std::string pebble = "kind = \"fourier\"\ndiameter = \"1 um\"\ndescriptors = [0.1, 0.05]\nseed = 7";
+const std::string lattice = "kind = \"hexagonal\", columns = 10, rows = 4, pitch = \"1 um\", row_pitch = \"1.1 um\"";
+
+// EXACT throughout.
+
+TEST(ReadPacking, VariantsAreShapesOfTheirOwn) {
+  const Scene scene = changed({{disc, pebble + "\nvariants = 3"}});
+  ASSERT_EQ(scene.shapes.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(scene.shapes[i].name, "disc." + std::to_string(i + 1));
+    EXPECT_EQ(scene.shapes[i].family, "disc");
+    EXPECT_EQ(scene.shapes[i].points, fourier_grain(1e-6, {0.1, 0.05}, 7 + static_cast<int>(i)));
+    EXPECT_EQ(scene.shapes[i].nodes, 168);
+  }
+  EXPECT_EQ(scene.shape("disc.2").points, scene.shapes[1].points);
+  const auto shares = scene.shape_shares(scene.grains[0]);
+  ASSERT_EQ(shares.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(shares[i].first, static_cast<int>(i));
+    EXPECT_DOUBLE_EQ(shares[i].second, 1.0 / 3);
+  }
+  EXPECT_EQ(changed({{disc, pebble}}).shapes[0].name, "disc") << "without variants it has no family";
+}
+
+TEST(ReadPacking, SeveralShapes) {
+  const Scene scene = changed(
+      {{disc, pebble + "\nvariants = 2"},
+       {"shape = \"disc\"\n", "shapes = [{ shape = \"box\", share = 0.4 }, { shape = \"disc\", share = 0.6 }]\n"}});
+  const auto shares = scene.shape_shares(scene.grains[0]);
+  const std::vector<std::pair<int, double>> expected{{2, 0.4}, {0, 0.3}, {1, 0.3}};
+  EXPECT_EQ(shares, expected);
+}
+
+TEST(ReadPacking, FittedShapesKeepTheirDescriptors) {
+  const Scene scene =
+      changed({{disc, pebble + "\nvariants = \"each\""},
+               {lattice, "kind = \"fourier-voronoi\", bottom = 0, top = \"7 um\", solid_fraction = 0.5"},
+               {"angle = \"random\"\n", ""}});
+  EXPECT_EQ(scene.shapes[0].descriptors, (std::vector<double>{0.1, 0.05}));
+  EXPECT_EQ(scene.grains[0].packing.count, std::lround(0.5 * 70 / (std::numbers::pi / 4)));
+  EXPECT_FALSE(scene.grains[0].angle);
+}
+
+TEST(ReadPacking, CountsFollowSolidFractionAndSizes) {
+  const std::string sizes = "seed = 7\nsize = { distribution = \"uniform\", low = 0.5, high = 1.5 }";
+  const Scene scene = changed(
+      {{lattice, "kind = \"random\", bottom = \"-2 um\", top = \"5 um\", solid_fraction = 0.6"}, {"seed = 7", sizes}});
+  const Packing& packing = scene.grains[0].packing;
+  EXPECT_EQ(packing.kind, PackingKind::random);
+  EXPECT_DOUBLE_EQ(packing.right, 10e-6);
+  EXPECT_DOUBLE_EQ(packing.bottom, -2e-6);
+  // Mean of size^2: 1 + 1/12.
+  EXPECT_EQ(packing.count, std::lround(0.6 * 70 / (std::numbers::pi / 4 * 13 / 12)));
+  EXPECT_EQ(packing.grain_count(), packing.count);
+  EXPECT_EQ(scene.grains[0].size.kind, SizeDistribution::Kind::uniform);
+  const Scene counted = changed({{lattice, "kind = \"random\", bottom = 0, top = \"5 um\", count = 12"}});
+  EXPECT_EQ(counted.grains[0].packing.grain_count(), 12);
+  EXPECT_FALSE(counted.grains[0].packing.solid_fraction);
+}
+
+TEST(ReadPacking, RoundedPolygonsAreCurves) {
+  const Scene scene = changed({{"[0, \"1 um\"]]", "[0, \"1 um\"]]\nrounding = \"0.2 um\""},
+                               {disc, "kind = \"regular\"\nsides = 4\ndiameter = \"1 um\"\nrounding = \"0.1 um\""}});
+  EXPECT_EQ(scene.shapes[0].kind, ShapeKind::curve);
+  EXPECT_EQ(scene.shapes[1].kind, ShapeKind::curve);
+  EXPECT_NEAR(signed_area(scene.shapes[1].points), (1 - (4 - std::numbers::pi) * 0.04) * 1e-12, 1e-24);
+  EXPECT_NEAR(signed_area(scene.shapes[0].points), (0.5 - (4 - std::numbers::pi) * 0.01) * 1e-12, 1e-24);
+}
+
+/// A file with the outline of a quarter of a square, beside the scenes of these tests.
+struct Quarter {
+  std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "quarter.csv";
+  Quarter() { std::ofstream(path) << "x,y\n0,0\n4,0\n4,4\n"; }
+  ~Quarter() { std::filesystem::remove(path); }
+};
+
+TEST(ReadPacking, OutlinesFromFiles) {
+  const Quarter quarter;
+  const std::string file = "kind = \"file\"\nfile = \"quarter.csv\"\n";
+  const Scene own = changed({{disc, file + "unit = \"um\""}});
+  EXPECT_EQ(own.shapes[0].kind, ShapeKind::polygon);
+  EXPECT_NEAR(signed_area(own.shapes[0].points), 8e-12, 1e-26);
+  const Scene scaled = changed({{disc, file + "diameter = \"1 um\"\noutline = \"curve\""}});
+  EXPECT_EQ(scaled.shapes[0].kind, ShapeKind::curve);
+  EXPECT_NEAR(signed_area(scaled.shapes[0].points), std::numbers::pi / 4 * 1e-12, 1e-26);
+}
+
+}  // namespace
+}  // namespace pliant
