@@ -75,6 +75,19 @@ stiffness = "2e17 Pa/m"
 """
 
 
+PAIR_RULES = """
+[[contacts]]
+between = ["soft", "hard"]
+law = "frictionless"
+stiffness = "2e17 Pa/m"
+
+[[contacts]]
+between = ["layer", "lower"]
+law = "frictionless"
+stiffness = "2e17 Pa/m"
+"""
+
+
 @dataclass
 class Feature:
     name: str
@@ -104,6 +117,18 @@ FEATURES = [
     Feature("plain scene", lambda scene: scene),
     Feature("friction", law('law = "mohr-coulomb"\nfriction = 0.3')),
     Feature("cohesion", law('law = "cohesive"\nstrength = "200 MPa"')),
+    Feature("cohesive fatigue", law('law = "cohesive-fatigue"\nstrength = "200 MPa"\nbond_gap = "2 nm"\nfatigue_rate = "1 GPa-1"\nfatigue_threshold = "50 MPa"')),
+    Feature("restitution of rigid pairs", law('law = "frictionless"\nrestitution = 0.9')),
+    Feature("smooth start of pressure", law('law = "frictionless"\nsmoothing = 0.02')),
+    Feature("rules for three pairs", appended(PAIR_RULES)),
+    Feature("present lengths", appended('\n[contact]\nlength = "current"\n')),
+    Feature("self-contact", appended("\n[contact]\nself_contact = true\n")),
+    Feature("refresh every 50 steps", appended("\n[contact]\nrefresh = 50\n")),
+    Feature("viscosity", replaced("poisson = 0.4", 'poisson = 0.4\nviscosity = "0.01 Pa s"')),
+    Feature("mass damping", replaced("poisson = 0.4", 'poisson = 0.4\nmass_damping = "1e6 s-1"')),
+    Feature("sizes from 0.96 to 1", replaced("seed = 1", 'seed = 1\nsize = { distribution = "uniform", low = 0.96, high = 1 }')),
+    Feature("servo wall", replaced('level = "7.979 um"', 'level = "7.979 um"\ny = { pressure = "0.1 GPa", damping = "1 MPa s/m" }')),
+    Feature("pressure on one grain", appended('\n[[boundary]]\nof = "layer 5"\npressure = "1 MPa"\npart = { side = "top" }\n')),
     Feature("gravity", replaced("[materials.soft]", 'gravity = ["0 m/s2", "-10 m/s2"]\n\n[materials.soft]')),
     Feature("random angles", replaced("seed = 1", 'angle = "random"\nseed = 1')),
     Feature("driven and pressed wall", replaced('level = "7.979 um"', 'level = "7.979 um"\nx = { velocity = "1 m/s" }\ny = { pressure = "0.1 GPa" }')),
