@@ -2,16 +2,28 @@
 
 #include <utility>
 
+#include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 
 namespace pliant {
 
+namespace {
+
+/// Of pressures and soft supports.
+double work_on_outlines(const Model& model, const State& state, const Trial& trial, double end_time) {
+  if (model.pressures.empty() && model.supports.empty()) return 0;
+  const Dofs before = material_velocity(model, state.velocity), after = material_velocity(model, trial.velocity);
+  return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time});
+}
+
+}  // namespace
+
 void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
                const StepReport& report) {
   state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
                                        state.force, trial.force, state.time, report.dt) +
-                         outline_work(model, state.motion(), {trial.position, trial.velocity, end_time});
+                         work_on_outlines(model, state, trial, end_time);
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;
   std::swap(state.position, trial.position);

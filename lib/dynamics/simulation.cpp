@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/mass_correction.hpp"
 #include "bodies/update_outlines.hpp"
 #include "contact/deepest_node.hpp"
 #include "dynamics/failure.hpp"
@@ -18,7 +19,8 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   update_outlines(model, state_.position, outlines);
   refuse_deep_overlap(model, outlines);
   ContactHistory trial;
-  const Evaluation start = forces_.evaluate(state_.motion(), state_.history, trial, state_.force);
+  const Evaluation start = forces_.evaluate({state_.position, material_velocity(model, state_.velocity), 0},
+                                            state_.history, trial, state_.force);
   check_start(start, state_, forces_);
   forces_.warn_of_depth(start, 0);
   std::swap(state_.history, trial);

@@ -83,7 +83,8 @@ void TimeStepBound::bound_conditions() {
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
     const Body& body = model_.bodies[b];
     damping_[b] = body.kind == BodyKind::rigid ? damping_rate(model_.rigid_bodies[body.rigid])
-                                               : model_.scene.materials[body.material].mass_damping;
+                                               : model_.scene.materials[body.material].mass_damping *
+                                                     model_.shape_of(body).space.correction_bound;
   }
   for (const OutlineSupport& support : model_.supports) {
     const Body& body = model_.bodies[support.body];
@@ -158,12 +159,15 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
     for (std::size_t i = 0; i < response.size(); ++i) v[i] /= scale;
     std::fill(response.begin(), response.end(), Lanes{});
     add_viscous_forces(model_, batch, position, v, response.data());
+    if (model_.corrected_mass) response = corrected(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
       const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.unit_mass, batch.slots));
       const Lanes after =
           sum_over_body(batch, weighted_dot(response.data(), response.data(), nodes.inverse_unit_mass, batch.slots));
-      viscous_[b] = sqrt(after / before) * batch.inverse_density;
-      for (std::size_t i = 0; i < response.size(); ++i) v[i] = -response[i] * nodes.inverse_unit_mass[i / 2];
+      const LaneBits damped = after > 0.0;  // a batch may hold bodies without viscosity
+      viscous_[b] = select(damped, sqrt(after / before) * batch.inverse_density, Lanes{});
+      for (std::size_t i = 0; i < response.size(); ++i)
+        v[i] = select(damped, -response[i] * nodes.inverse_unit_mass[i / 2], v[i]);
     });
   }
 }

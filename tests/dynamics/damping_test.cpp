@@ -245,8 +245,9 @@ TEST(Bound, follows_the_rates_of_a_deformed_viscous_disc) {
 }
 
 /// Energy left of a disc that starts with noise, after 2000 steps of a given share of the bound.
-double energy_after(double viscosity, double mass_damping, double safety) {
+double energy_after(double viscosity, double mass_damping, double safety, Mass mass = Mass::lumped) {
   Scene scene = damped_disc(40, viscosity, mass_damping, 0.4, stretching(1e-6));
+  scene.discretisation.mass = mass;
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -261,9 +262,30 @@ double energy_after(double viscosity, double mass_damping, double safety) {
 TEST(Bound, is_where_damped_motion_becomes_unstable) {
   for (const auto& [viscosity, mass_damping] : {std::pair(0.02, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 100.0)}) {
     EXPECT_LT(energy_after(viscosity, mass_damping, 1), 1e-12) << "EXACT: stable, " << viscosity;
+    EXPECT_LT(energy_after(viscosity, mass_damping, 1, Mass::corrected), 1e-12) << "EXACT: stable, " << viscosity;
     EXPECT_GT(energy_after(viscosity, mass_damping, 1.15), 1e-3)
         << "EXACT: 15 % above it grows until elements turn inside out, " << viscosity;
   }
+}
+
+/// Bodies of one shape share a batch whatever their viscosity: those without have none.
+TEST(Bound, mixed_batches_have_the_bounds_of_their_bodies) {
+  const auto largest_dt = [](double first, double second) {
+    Scene scene = damped_disc(40, first, 0, 0.4, stretching(1e-6));
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials.back().name = "other";
+    scene.materials.back().viscosity = second;
+    scene.grains.push_back(scene.grains[0]);
+    scene.grains.back().name = "other";
+    scene.grains.back().mix[0].material = "other";
+    scene.grains.back().packing.positions = {{5, 0}};
+    const Model model = build_model(scene);
+    return Simulation(model).largest_dt();
+  };
+  const double viscous = largest_dt(1, 1);
+  EXPECT_NEAR(largest_dt(1, 0) / viscous, 1, 0.05) << "EXACT but for power iterations, whose margin is 5 %";
+  EXPECT_NEAR(largest_dt(0, 1) / viscous, 1, 0.05) << "EXACT likewise";
+  EXPECT_GT(largest_dt(0, 0), 2 * viscous);
 }
 
 }  // namespace
