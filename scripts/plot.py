@@ -58,7 +58,7 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "grains.png": (lambda: maps.grains(run, chosen) if frames else None, "frames"),
         "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),
         "von_mises.png": (lambda: maps.von_mises(run, chosen) if frames else None, "frames with von_mises"),
-        "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with contact_damage"),
+        "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with contact_damage and bonds at the start"),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),

@@ -183,6 +183,12 @@ class Builder {
   void add_wall(const Wall& wall) {
     const double period = *model_.scene.period;
     const double spacing = wall.spacing > 0 ? wall.spacing : finest_spacing();
+    constexpr double most_nodes = 1e6;
+    if (period / spacing > most_nodes)
+      throw InputError(fmt::format(
+          "{}: wall '{}' has the finest outline spacing of the grains, {:.3g} m, and so {:.3g} nodes; allowed: at "
+          "most {:.0g}; give its spacing, or take fewer very small grains",
+          model_.scene.file.string(), wall.name, spacing, period / spacing, most_nodes));
     const bool below = wall.solid == Wall::Solid::below;
     Points points = wall_outline(wall, period, std::min(spacing, period / 8));
     for (Vec2& p : points) p.y() -= wall.level;

@@ -125,7 +125,7 @@ def von_mises(run: Run, indices: list[int]) -> Figure | None:
 
 
 def damage(run: Run, indices: list[int]) -> Figure | None:
-    """Bonds of the first frame, on the outlines that they join: from whole to torn."""
+    """Bonds of the first frame, on the outlines that they join: from whole to torn. Bonds never form later."""
     assert run.frames is not None
     fields = {index: run.frames.field("outlines", index, "contact_damage") for index in {0, *indices}}
     if any(field is None for field in fields.values()):

@@ -6,6 +6,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/model.hpp"
+#include "core/errors.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {
@@ -166,6 +167,8 @@ TEST(BuildModel, Walls) {
   EXPECT_NEAR(model.outlines[lid.outline].spacing, model.outlines[model.bodies[0].outline].spacing, 0.1 * 0.13);
   EXPECT_LE(model.outlines[lid.outline].spacing, model.outlines[model.bodies[0].outline].spacing);
   EXPECT_NEAR(model.outlines[lid.outline].spacing * model.outlines[lid.outline].count, 4, 1e-14);
+  // One grain a million times smaller than the others would ask for walls of 3e7 nodes.
+  EXPECT_THROW(build_model(scene, {.scales = {1e-6}}), InputError);
 }
 
 // EXACT: the initial velocity field of the scene at each node, v = uniform + rotation x r + gradient r, r from the
