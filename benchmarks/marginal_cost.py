@@ -5,7 +5,7 @@
     ./pliant bench --instructions --baseline DIR/pliant_engine     # the same scene with an earlier engine
 
 Counts are those of the steps alone, per force evaluation, of one thread: they hardly change from run to run, whatever else the machine
-does. Engines must be built without AVX-512, which valgrind does not know: preset `counting`. The scene is nearly at rest, so that features do
+does. Engines must be built without AVX, of which valgrind does not know all: preset `counting`. The scene is nearly at rest, so that features do
 not change what there is to do: as many nodes in contact, no search for new ones.
 """
 
@@ -180,7 +180,7 @@ def table(counts: dict[str, Count]) -> str:
 
 def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="pliant bench --instructions", description="Instructions that each feature adds to a force evaluation.")
-    parser.add_argument("--engine", type=Path, default=ROOT / "build/counting/pliant_engine", help="engine built without AVX-512")
+    parser.add_argument("--engine", type=Path, default=ROOT / "build/counting/pliant_engine", help="engine built without AVX")
     parser.add_argument("--baseline", type=Path, help="an earlier engine: compares the plain scene alone")
     parser.add_argument("--json", type=Path, help="writes the counts there as well")
     parser.add_argument("--only", nargs="+", metavar="NAME", help="features to count, by the beginning of their names")
