@@ -5,13 +5,14 @@
 #include <fmt/format.h>
 
 #include "bodies/apply_conditions.hpp"
+#include "bodies/make_batches.hpp"
 #include "bodies/model.hpp"
-#include "bodies/spread_shape.hpp"
+#include "bodies/relate_shapes.hpp"
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
+#include "geometry/outline.hpp"
 #include "geometry/placement.hpp"
-#include "materials/elastic_constants.hpp"
 
 namespace pliant {
 namespace {
@@ -22,10 +23,6 @@ int index_of_material(const Scene& scene, const std::string& name) {
   throw InputError(fmt::format("{}: unknown material '{}'", scene.file.string(), name));
 }
 
-/// Batches of at most so many bodies are spread: a spread body costs 0.6 of a batch of eight at 1,000 nodes and 0.5 at 4,000, and threads can share
-/// it.
-constexpr int sparse_bodies = 2;
-
 /// Shapes met so far, each discretised once as compliant and once as rigid at most.
 class ShapeStore {
  public:
@@ -33,8 +30,12 @@ class ShapeStore {
 
   int compliant(const std::string& name) {
     if (const auto found = compliant_.find(name); found != compliant_.end()) return found->second;
+    const auto related = related_.find(name);
+    const bool alone = related == related_.end();
     CompliantShape shape;
-    shape.space = discretise(make_field_mesh(model_.scene.shape(name)), model_.scene.discretisation);
+    shape.space = discretise(alone ? make_field_mesh(model_.scene.shape(name)) : related->second.mesh,
+                             model_.scene.discretisation);
+    if (!alone) shape.family = related->second.family;
     for (double m : shape.space.unit_mass) shape.inverse_unit_mass.push_back(1 / m);
     const FieldMesh& mesh = shape.space.mesh;
     shape.outline = add_outline(Points(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count), 0);
@@ -46,6 +47,9 @@ class ShapeStore {
     if (const auto found = rigid_.find(name); found != rigid_.end()) return found->second;
     return rigid_[name] = add_outline(make_outline(model_.scene.shape(name)), 0);
   }
+
+  /// Meshes to be used instead of the shapes' own.
+  void relate(std::map<std::string, RelatedMesh> meshes) { related_ = std::move(meshes); }
 
   /// The outline of that number for bodies of another size; bodies of one size share it.
   int scaled(int outline, double scale) {
@@ -59,13 +63,6 @@ class ShapeStore {
     return found->second;
   }
 
-  /// Index of the spread layout of a compliant shape.
-  int spread(int shape) {
-    const auto [found, is_new] = spread_.try_emplace(shape, static_cast<int>(model_.spread_shapes.size()));
-    if (is_new) model_.spread_shapes.push_back(make_spread_shape(model_.shapes[shape].space));
-    return found->second;
-  }
-
   int add_outline(const Points& points, double turn_shift) {
     model_.outlines.push_back(make_outline_shape(points, turn_shift));
     return static_cast<int>(model_.outlines.size()) - 1;
@@ -75,7 +72,7 @@ class ShapeStore {
   Model& model_;
   std::map<std::string, int> compliant_, rigid_;
   std::map<std::pair<int, double>, int> scaled_;
-  std::map<int, int> spread_;
+  std::map<std::string, RelatedMesh> related_;
 };
 
 /// Entry of the mix that each grain gets: exact shares (largest remainder), randomly placed.
@@ -112,8 +109,9 @@ class Builder {
 
   Model build() {
     for (std::size_t g = 0; g < model_.scene.grains.size(); ++g) add_grains(static_cast<int>(g));
+    build_compliant();
     for (const Wall& wall : model_.scene.walls) add_wall(wall);
-    make_batches();
+    make_batches(model_, options_.least_sparse_nodes);
     model_.corrected_mass = !model_.groups.empty() && model_.scene.discretisation.mass == Mass::corrected;
     apply_conditions(model_);
     model_.outline_rates |= depends_on_rates(model_.scene);
@@ -147,18 +145,43 @@ class Builder {
     }
   }
 
-  void add_compliant(Body body, const std::string& shape_name) {
-    const int shape = store_.compliant(shape_name);
-    const Material& material = model_.scene.materials[body.material];
-    body.outline = store_.scaled(model_.shapes[shape].outline, body.scale);
-    body.area = polygon_properties(model_.outlines[body.outline].points).area;
-    body.mass = body.area * material.density;
-    const auto group = std::find_if(model_.groups.begin(), model_.groups.end(),
-                                    [&](const CompliantGroup& g) { return g.shape == shape && g.law == material.law; });
-    CompliantGroup& target =
-        group != model_.groups.end() ? *group : model_.groups.emplace_back(CompliantGroup{shape, material.law, {}});
-    target.bodies.push_back(static_cast<int>(model_.bodies.size()));
+  /// Its shape is discretised later, when all bodies are known.
+  void add_compliant(Body body, const std::string& shape) {
+    compliant_.push_back({static_cast<int>(model_.bodies.size()), shape});
     model_.bodies.push_back(std::move(body));
+  }
+
+  void build_compliant() {
+    std::map<std::string, int> bodies;
+    for (const auto& [body, shape] : compliant_) ++bodies[shape];
+    if (options_.relate && sparse_nodes(bodies) >= options_.least_sparse_nodes)
+      store_.relate(relate_shapes(model_.scene, bodies));
+    for (const auto& [number, name] : compliant_) {
+      Body& body = model_.bodies[number];
+      const int shape = body.compliant_shape = store_.compliant(name);
+      const Material& material = model_.scene.materials[body.material];
+      body.outline = store_.scaled(model_.shapes[shape].outline, body.scale);
+      body.area = polygon_properties(model_.outlines[body.outline].points).area;
+      body.mass = body.area * material.density;
+      group_for(shape, material.law).bodies.push_back(number);
+    }
+  }
+
+  /// Field nodes of bodies whose shapes have few.
+  int sparse_nodes(const std::map<std::string, int>& bodies) const {
+    int nodes = 0;
+    for (const auto& [name, count] : bodies)
+      if (const ShapeSpec& shape = model_.scene.shape(name); count <= sparse_bodies)
+        nodes += count * field_node_count(shape, make_outline(shape));
+    return nodes;
+  }
+
+  CompliantGroup& group_for(int shape, MaterialLaw law) {
+    const int family = model_.shapes[shape].family;
+    for (CompliantGroup& group : model_.groups)
+      if (group.law == law && (group.shape == shape || (family >= 0 && model_.shapes[group.shape].family == family)))
+        return group;
+    return model_.groups.emplace_back(CompliantGroup{shape, law, {}});
   }
 
   void add_rigid(Body body, const std::string& shape_name) {
@@ -212,90 +235,9 @@ class Builder {
     model_.bodies.push_back(std::move(body));
   }
 
-  void make_batches() {
-    const bool spread = sparse_nodes() >= std::max(1, options_.least_sparse_nodes);
-    std::vector<std::pair<int, int>> alone;  // group and index in it of bodies to be spread
-    for (std::size_t g = 0; g < model_.groups.size(); ++g) {
-      const int count = static_cast<int>(model_.groups[g].bodies.size());
-      for (int first = 0; first < count; first += lane_count) {
-        const int bodies = std::min(lane_count, count - first);
-        if (!spread || bodies > sparse_bodies)
-          add_batch(static_cast<int>(g), first, bodies, Layout::shared);
-        else
-          for (int i = 0; i < bodies; ++i) alone.emplace_back(g, first + i);
-      }
-    }
-    model_.lane_batches = static_cast<int>(model_.batches.size());
-    for (const auto& [group, body] : alone) add_batch(group, body, 1, Layout::spread);
-  }
-
-  /// Nodes of bodies that would leave most of their lanes empty.
-  int sparse_nodes() const {
-    int nodes = 0;
-    for (const CompliantGroup& group : model_.groups)
-      if (const int rest = static_cast<int>(group.bodies.size()) % lane_count; rest <= sparse_bodies)
-        nodes += rest * model_.shapes[group.shape].nodes();
-    return nodes;
-  }
-
-  void add_batch(int group, int first, int count, Layout layout) {
-    const CompliantGroup& members = model_.groups[group];
-    Batch batch{};
-    batch.group = group, batch.first = first, batch.count = count;
-    batch.offset = model_.compliant_size;
-    batch.layout = layout;
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const bool used = lane < count;
-      Body& body = model_.bodies[members.bodies[first + std::min(lane, count - 1)]];
-      set_constants(batch, lane, body, used || layout == Layout::spread);
-      if (used) body.batch = static_cast<int>(model_.batches.size()), body.lane = lane;
-    }
-    batch.viscous = largest(batch.viscosity) > 0;
-    batch.mass_damped = largest(batch.mass_damping) > 0;
-    if (layout == Layout::spread) batch.tables = store_.spread(members.shape);
-    batch.slots =
-        layout == Layout::spread ? model_.spread_shape_of(batch).slots() : model_.shapes[members.shape].nodes();
-    model_.compliant_size += 2 * static_cast<std::size_t>(batch.slots);
-    add_regions(batch);
-    model_.batches.push_back(batch);
-  }
-
-  void set_constants(Batch& batch, int lane, const Body& body, bool counts) const {
-    const Material& material = model_.scene.materials[body.material];
-    const LameConstants lame = lame_constants(material.young, material.poisson);
-    batch.mu[lane] = lame.mu;
-    batch.lambda[lane] = lame.lambda;
-    batch.density[lane] = material.density * body.scale * body.scale;
-    batch.inverse_density[lane] = 1 / batch.density[lane];
-    batch.scale[lane] = body.scale;
-    batch.inverse_scale[lane] = 1 / body.scale;
-    batch.scaled |= body.scale != 1;
-    batch.weight[lane] = counts ? body.scale * body.scale : 0;
-    batch.viscosity[lane] = material.viscosity;
-    batch.mass_damping[lane] = material.mass_damping;
-    batch.centre_x[lane] = body.centre.x();
-    batch.centre_y[lane] = body.centre.y();
-  }
-
-  void add_regions(Batch& batch) {
-    const int number = static_cast<int>(model_.batches.size());
-    batch.first_region = static_cast<int>(model_.regions.size());
-    if (batch.layout != Layout::spread) return model_.regions.push_back({number, 0, 0, batch.slots});
-    const auto cut = [&](int total, int step, auto add) {
-      for (int first = 0; first < total; first += step) add(first, std::min(total, first + step));
-    };
-    cut(batch.slots, SpreadShape::region_slots, [&](int first, int last) {
-      model_.regions.push_back({number, first / SpreadShape::region_slots, first, last});
-    });
-    batch.regions = static_cast<int>(model_.regions.size()) - batch.first_region;
-    cut(model_.spread_shape_of(batch).points(), SpreadShape::chunk_points,
-        [&](int first, int last) { model_.point_chunks.push_back({number, first, last}); });
-    cut(model_.outlines[model_.shape_of(batch).outline].count, SpreadShape::chunk_nodes,
-        [&](int first, int last) { model_.outline_chunks.push_back({number, first, last}); });
-  }
-
   BuildOptions options_;
   Model model_;
+  std::vector<std::pair<int, std::string>> compliant_;  ///< bodies and their shapes
   ShapeStore store_;
 };
 

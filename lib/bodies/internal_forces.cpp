@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bodies/body_view.hpp"
+#include "bodies/node_arrays.hpp"
 #include "bodies/spread_forces.hpp"
 #include "materials/with_material.hpp"
 
@@ -10,24 +11,26 @@ namespace pliant {
 namespace {
 
 /// A table's arrays by their bare pointers: a store of Lanes may alias the vectors' own, which would be read anew each time.
+template <class Gradient, class Weight>
 struct Rows {
   const int *start, *node;
-  const Vec2* gradient;
-  const double* weight;
+  const Gradient* gradient;
+  const Weight* weight;
   int points;
-
-  explicit Rows(const IntegrationTable& table)
-      : start(table.start.data()),
-        node(table.node.data()),
-        gradient(table.gradient.data()),
-        weight(table.weight.data()),
-        points(static_cast<int>(table.weight.size())) {}
 };
 
-inline Tensor<Lanes> deformation_gradient(const Rows& rows, int point, const Lanes* q) {
+/// Of an IntegrationTable or a LaneTable.
+template <class Table>
+auto rows_of(const Table& table) {
+  return Rows{table.start.data(), table.node.data(), table.gradient.data(), table.weight.data(),
+              static_cast<int>(table.weight.size())};
+}
+
+template <class... T>
+inline Tensor<Lanes> deformation_gradient(const Rows<T...>& rows, int point, const Lanes* q) {
   Tensor<Lanes> F{};
   for (int e = rows.start[point]; e < rows.start[point + 1]; ++e) {
-    const double bx = rows.gradient[e].x(), by = rows.gradient[e].y();
+    const auto bx = rows.gradient[e].x(), by = rows.gradient[e].y();
     const Lanes x = q[2 * rows.node[e]], y = q[2 * rows.node[e] + 1];
     F.xx += x * bx;
     F.xy += x * by;
@@ -37,9 +40,10 @@ inline Tensor<Lanes> deformation_gradient(const Rows& rows, int point, const Lan
   return F;
 }
 
-inline void subtract_forces(const Rows& rows, int point, const Tensor<Lanes>& P, Lanes* f) {
+template <class... T>
+inline void subtract_forces(const Rows<T...>& rows, int point, const Tensor<Lanes>& P, Lanes* f) {
   for (int e = rows.start[point], end = rows.start[point + 1]; e < end; ++e) {
-    const double bx = rows.gradient[e].x(), by = rows.gradient[e].y();
+    const auto bx = rows.gradient[e].x(), by = rows.gradient[e].y();
     Lanes* node = f + 2 * rows.node[e];
     Lanes fx = node[0], fy = node[1];
     fx -= P.xx * bx;  // one statement a product: each becomes one fused operation
@@ -53,12 +57,12 @@ inline void subtract_forces(const Rows& rows, int point, const Tensor<Lanes>& P,
 
 /// Three points are under way at once, each at another stage, so that the processor need not wait for the long chain of
 /// operations of one point's stress.
-template <class Law>
-Lanes add_forces(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q, Lanes* f) {
+template <class Law, class... T>
+Lanes add_forces(Law, const Rows<T...>& rows, Lanes mu, Lanes lambda, const Lanes* q, Lanes* f) {
   Lanes least_J = broadcast(1e300);
   const int last = rows.points - 1;
   const auto weighted_stress = [&](int point, const Tensor<Lanes>& F) {
-    const double w = rows.weight[point];
+    const auto w = rows.weight[point];
     const Response<Lanes> response = Law::template stress<Lanes>(F, w * mu, w * lambda);  // P is linear in them
     least_J = min(response.J, least_J);
     return response.P;
@@ -74,8 +78,8 @@ Lanes add_forces(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q, 
   return least_J;
 }
 
-template <class Law>
-Lanes energy(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q) {
+template <class Law, class... T>
+Lanes energy(Law, const Rows<T...>& rows, Lanes mu, Lanes lambda, const Lanes* q) {
   Lanes total{};
   for (int point = 0; point < rows.points; ++point)
     total += rows.weight[point] * Law::template energy<Lanes>(deformation_gradient(rows, point, q), mu, lambda);
@@ -86,16 +90,20 @@ Lanes energy(Law, const Rows& rows, Lanes mu, Lanes lambda, const Lanes* q) {
 
 Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* positions, Lanes* forces) {
   if (batch.layout == Layout::spread) return add_spread_forces(model, batch, positions, forces);
-  const Rows rows(model.shape_of(batch).space.table);
-  return with_material(model.groups[batch.group].law,
-                       [&](auto law) { return add_forces(law, rows, batch.mu, batch.lambda, positions, forces); });
+  return with_tables(model, batch, [&](const auto& tables) {
+    return with_material(model.groups[batch.group].law, [&](auto law) {
+      return add_forces(law, rows_of(tables.table), batch.mu, batch.lambda, positions, forces);
+    });
+  });
 }
 
 Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
   if (batch.layout == Layout::spread) return spread_strain_energy(model, batch, positions);
-  const Rows rows(model.shape_of(batch).space.table);
-  return batch.weight * with_material(model.groups[batch.group].law,
-                                      [&](auto law) { return energy(law, rows, batch.mu, batch.lambda, positions); });
+  return batch.weight * with_tables(model, batch, [&](const auto& tables) {
+           return with_material(model.groups[batch.group].law, [&](auto law) {
+             return energy(law, rows_of(tables.table), batch.mu, batch.lambda, positions);
+           });
+         });
 }
 
 std::vector<Tensor<double>> deformation_gradients(const Model& model, const Body& body, const Dofs& position) {

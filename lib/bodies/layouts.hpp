@@ -10,8 +10,9 @@ namespace pliant {
 
 /// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y (DESIGN 4):
 /// shared: one body a lane, node i of each in slot i, all copies of one shape and so of one table;
+/// related: the same, of shapes with one mesh topology: one connectivity, values by lane;
 /// spread: one body alone, its nodes over slots and lanes: its cost is not that of eight, and threads share it.
-enum class Layout { shared, spread };
+enum class Layout { shared, related, spread };
 
 /// What the nodes of a batch have, slot by slot: one value for all lanes (double), or one a lane (Lanes).
 template <class T>
@@ -32,6 +33,36 @@ struct Region {
 struct Chunk {
   int batch = 0;
   int first = 0, last = 0;
+};
+
+/// As Vec2, of eight bodies.
+struct LaneVector {
+  Lanes components[2];
+  const Lanes& x() const { return components[0]; }
+  const Lanes& y() const { return components[1]; }
+};
+
+/// As IntegrationTable: the neighbours of a point are those of all lanes' shapes together, with gradient 0 where a shape has none.
+struct LaneTable {
+  std::vector<Lanes> weight;         ///< [points], m2
+  std::vector<int> start;            ///< [points + 1]
+  std::vector<int> node;             ///< [entries]
+  std::vector<LaneVector> gradient;  ///< [entries], 1/m
+};
+
+/// As ShapeRows, likewise.
+struct LaneRows {
+  std::vector<int> start;    ///< [rows + 1]
+  std::vector<int> node;     ///< [entries]
+  std::vector<Lanes> value;  ///< [entries]
+};
+
+/// The shapes of one batch of related bodies, members as Discretisation's; padding lanes repeat the last one.
+struct RelatedShapes {
+  std::vector<Lanes> unit_mass, inverse_unit_mass, nodal_distance;  ///< [nodes]
+  LaneTable table;
+  LaneRows outline_rows, node_rows, mass_correction;
+  Lanes correction_bound{};
 };
 
 /// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that slots, points and the

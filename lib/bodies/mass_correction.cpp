@@ -6,8 +6,9 @@ namespace pliant {
 
 namespace {
 
-/// [x, y] sums of eight bodies, one a lane.
-void correct_lanes(const ShapeRows& rows, int node, const Lanes* y, Lanes* v) {
+/// [x, y] sums of eight bodies, one a lane; Rows: ShapeRows or LaneRows.
+template <class Rows>
+void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
   Lanes x_sum{}, y_sum{};
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
     x_sum += rows.value[e] * y[2 * rows.node[e]];
@@ -32,11 +33,11 @@ void correct_spread(const ShapeRows& rows, int node, const int* place, const dou
 
 void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
   const CompliantShape& shape = model.shape_of(batch);
+  if (batch.layout != Layout::spread)
+    return with_tables(model, batch, [&](const auto& tables) {
+      for (int i = 0; i < shape.nodes(); ++i) correct_lanes(tables.mass_correction, i, y, v);
+    });
   const ShapeRows& rows = shape.space.mass_correction;
-  if (batch.layout == Layout::shared) {
-    for (int i = 0; i < shape.nodes(); ++i) correct_lanes(rows, i, y, v);
-    return;
-  }
   v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
   const int* place = model.spread_shape_of(batch).place.data();
   parallel_for(shape.nodes(), [&](int i) {

@@ -17,12 +17,13 @@ struct CompliantShape {
   Discretisation space;
   std::vector<double> inverse_unit_mass;  ///< [nodes], 1/m2
   int outline = 0;                        ///< index of its outline shape
+  int family = -1;                        ///< related shapes, of one mesh topology, have one number; -1: alone
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
-/// Compliant bodies of one shape and one form of law, stored eight bodies a batch, one a lane (DESIGN 4).
+/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a batch, one a lane (DESIGN 4).
 struct CompliantGroup {
-  int shape = 0;  ///< index of the compliant shape
+  int shape = 0;  ///< index of the compliant shape, or of the first of its family
   MaterialLaw law = MaterialLaw::neo_hookean;
   std::vector<int> bodies;  ///< [bodies], global index of the body in each lane; padding lanes are absent
 };
@@ -37,7 +38,8 @@ struct Batch {
   std::size_t offset = 0;  ///< of slot 0, x, in Dofs::compliant
   int slots = 0;           ///< [slots x 2] entries there
   Layout layout = Layout::shared;
-  int tables = -1;                    ///< spread: index in Model::spread_shapes
+  int shape = 0;                      ///< index of the compliant shape, of related ones that of lane 0
+  int tables = -1;                    ///< spread, related: index in Model::spread_shapes or related_shapes
   int first_region = 0, regions = 1;  ///< in Model::regions
   Lanes mu, lambda;                   ///< material constants a lane, Pa
   Lanes density, inverse_density;     ///< density x s^2, so that unit masses give the mass that belongs to f/s and q/s
@@ -78,6 +80,7 @@ struct Body {
   int grains = -1;            ///< index in Scene::grains; -1 for a wall
   int shape = -1;             ///< index in Scene::shapes; -1 for a wall
   int material = 0;           ///< index in Scene::materials
+  int compliant_shape = -1;   ///< compliant: index in Model::shapes
   int batch = -1, lane = -1;  ///< compliant; a spread body counts as lane 0
   int rigid = -1;             ///< rigid: index in Model::rigid_bodies
   int outline = 0;            ///< index of its outline shape
@@ -97,6 +100,7 @@ struct Model {
   std::vector<Batch> batches;  ///< those of several bodies first, then spread ones
   int lane_batches = 0;        ///< of several bodies: batches[0, lane_batches), each of them region of the same number
   std::vector<Region> regions;
+  std::vector<RelatedShapes> related_shapes;  ///< [batches of related bodies]
   std::vector<SpreadShape> spread_shapes;
   std::vector<Chunk> point_chunks, outline_chunks;  ///< of all spread bodies
   std::vector<RigidBody> rigid_bodies;
@@ -109,8 +113,8 @@ struct Model {
   std::vector<OutlineSupport> supports;
   std::vector<double> switch_times;  ///< growing, s: when a condition sets in or ends; steps end there
 
-  const CompliantShape& shape_of(const Batch& batch) const { return shapes[groups[batch.group].shape]; }
-  const CompliantShape& shape_of(const Body& body) const { return shape_of(batches[body.batch]); }
+  const CompliantShape& shape_of(const Batch& batch) const { return shapes[batch.shape]; }
+  const CompliantShape& shape_of(const Body& body) const { return shapes[body.compliant_shape]; }
   const SpreadShape& spread_shape_of(const Batch& batch) const { return spread_shapes[batch.tables]; }
   int dof_count() const;
   int node_count() const;  ///< field nodes of compliant bodies and outline nodes of rigid ones
@@ -118,9 +122,10 @@ struct Model {
 
 /// What a caller may want to choose himself; no part of a scene.
 struct BuildOptions {
-  /// Batches of at most `sparse_bodies` bodies are spread, body by body, when their shapes have so many nodes together: below, nobody waits for
-  /// the empty lanes. 0: always; a large number: never.
+  /// Bodies that would leave their batch's lanes empty are united with those of related shapes, or spread, when their shapes have so many nodes
+  /// together: below, nobody waits for the empty lanes. 0: always; a large number: never.
   int least_sparse_nodes = 1000;
+  bool relate = true;          ///< unite related shapes then, where they would be spread
   std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: as the scene says
 };
 

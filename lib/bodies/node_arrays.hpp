@@ -13,9 +13,21 @@ decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& actio
     return action(
         NodeArrays<Lanes>{shape.unit_mass.data(), shape.inverse_unit_mass.data(), shape.nodal_distance.data()});
   }
+  if (batch.layout == Layout::related) {
+    const RelatedShapes& shapes = model.related_shapes[batch.tables];
+    return action(
+        NodeArrays<Lanes>{shapes.unit_mass.data(), shapes.inverse_unit_mass.data(), shapes.nodal_distance.data()});
+  }
   const CompliantShape& shape = model.shape_of(batch);
   return action(NodeArrays<double>{shape.space.unit_mass.data(), shape.inverse_unit_mass.data(),
                                    shape.space.nodal_distance.data()});
+}
+
+/// Calls action(tables) with what bodies in lanes compute with: the Discretisation of their shape, or the RelatedShapes of their batch.
+template <class Action>
+decltype(auto) with_tables(const Model& model, const Batch& batch, Action&& action) {
+  return batch.layout == Layout::related ? action(model.related_shapes[batch.tables])
+                                         : action(model.shape_of(batch).space);
 }
 
 /// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: a spread body's lanes belong together.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bodies/body_view.hpp"
+#include "bodies/node_arrays.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -16,10 +17,9 @@ void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
   }
 }
 
-template <bool scaled>
-void update_batch(const Model& model, const Batch& batch, const Lanes* q, Outlines& outlines) {
+template <bool scaled, class Rows>
+void update_batch(const Model& model, const Batch& batch, const Rows& rows, const Lanes* q, Outlines& outlines) {
   const CompliantShape& shape = model.shape_of(batch);
-  const ShapeRows& rows = shape.space.outline_rows;
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
   const Lanes centre_x = batch.centre_x * batch.inverse_scale, centre_y = batch.centre_y * batch.inverse_scale;
@@ -89,10 +89,9 @@ void update_rigid(const Model& model, const RigidBody& rigid, const double* posi
   extend_cyclically(shape, x, y);
 }
 
-template <bool scaled>
-void add_to_lanes(const Model& model, const Batch& batch, const Outlines& outlines, Lanes* forces) {
+template <bool scaled, class Rows>
+void add_to_lanes(const Model& model, const Batch& batch, const Rows& rows, const Outlines& outlines, Lanes* forces) {
   const CompliantShape& shape = model.shape_of(batch);
-  const ShapeRows& rows = shape.space.outline_rows;
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
   for (int first = 0; first < count; first += lane_count) {
@@ -147,7 +146,10 @@ void update_outlines(const Model& model, const Dofs& positions, Outlines& outlin
   parallel_for(model.lane_batches, [&](int b) {
     const Batch& batch = model.batches[b];
     const Lanes* q = &positions.compliant[batch.offset];
-    batch.scaled ? update_batch<true>(model, batch, q, outlines) : update_batch<false>(model, batch, q, outlines);
+    with_tables(model, batch, [&](const auto& tables) {
+      batch.scaled ? update_batch<true>(model, batch, tables.outline_rows, q, outlines)
+                   : update_batch<false>(model, batch, tables.outline_rows, q, outlines);
+    });
   });
   if (!model.outline_chunks.empty()) update_spread(model, positions, outlines);
   parallel_for(static_cast<int>(model.rigid_bodies.size()),
@@ -157,8 +159,10 @@ void update_outlines(const Model& model, const Dofs& positions, Outlines& outlin
 void add_outline_forces(const Model& model, const Region& region, const Outlines& outlines, Lanes* forces) {
   const Batch& batch = model.batches[region.batch];
   if (batch.layout == Layout::spread) return add_to_region(model, region, outlines, forces);
-  batch.scaled ? add_to_lanes<true>(model, batch, outlines, forces)
-               : add_to_lanes<false>(model, batch, outlines, forces);
+  with_tables(model, batch, [&](const auto& tables) {
+    batch.scaled ? add_to_lanes<true>(model, batch, tables.outline_rows, outlines, forces)
+                 : add_to_lanes<false>(model, batch, tables.outline_rows, outlines, forces);
+  });
 }
 
 void outline_force_resultant(const Model& model, const RigidBody& rigid, const Outlines& outlines,

@@ -58,6 +58,16 @@ void print_bodies(const Model& model) {
   print_row("DOFs", std::to_string(model.dof_count()));
 }
 
+/// How compliant bodies share batches, where it is not one shape a batch.
+void print_layouts(const Model& model) {
+  int bodies[3] = {0, 0, 0};
+  for (const Batch& batch : model.batches) bodies[static_cast<int>(batch.layout)] += batch.count;
+  const auto [shared, related, spread] = bodies;
+  if (related + spread > 0)
+    print_row("lanes", fmt::format("of one shape: {} bodies; of related shapes: {}; spread, each over all lanes: {}",
+                                   shared, related, spread));
+}
+
 /// Solid fractions of what fills a region: of the outlines as they start.
 void print_packings(const Model& model) {
   for (std::size_t g = 0; g < model.scene.grains.size(); ++g) {
@@ -236,6 +246,7 @@ void print_check(const Scene& scene, int threads) {
   const Model model = build_model(scene);
   print_row("scene", scene.title.empty() ? scene.name : scene.title);
   print_bodies(model);
+  print_layouts(model);
   print_packings(model);
   print_masses(model);
   print_shapes(model);

@@ -20,11 +20,13 @@ constexpr double first_step = 1e-3;  ///< of the time a wave takes from node to 
 /// Least nodal distance over wave speed: a scale for the first step and the floor, not a limit.
 double wave_time(const Model& model) {
   double result = model.scene.time.end;
-  for (const Batch& batch : model.batches) {
-    const std::vector<double>& distance = model.shape_of(batch).space.nodal_distance;
-    const double least = *std::min_element(distance.begin(), distance.end());
-    // Density x s^2 makes it the time over the scaled distance; padding repeats a body.
-    result = std::min(result, least * -largest(-sqrt(batch.density / (batch.lambda + 2.0 * batch.mu))));
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    const std::vector<double>& distance = model.shape_of(body).space.nodal_distance;
+    const double least = body.scale * *std::min_element(distance.begin(), distance.end());
+    const Batch& batch = model.batches[body.batch];
+    const double modulus = batch.lambda[body.lane] + 2 * batch.mu[body.lane];
+    result = std::min(result, least * std::sqrt(model.scene.materials[body.material].density / modulus));
   }
   return result;
 }
@@ -33,8 +35,9 @@ struct LanePair {
   Lanes x{}, y{};
 };
 
-/// u = sum phi U at one field node of the bodies of a batch.
-LanePair displacement(const ShapeRows& rows, const Lanes* d, int node) {
+/// u = sum phi U at one field node of the bodies of a batch; Rows: ShapeRows or LaneRows.
+template <class Rows>
+LanePair displacement(const Rows& rows, const Lanes* d, int node) {
   LanePair u;
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
     u.x += rows.value[e] * d[2 * rows.node[e]];
@@ -161,7 +164,6 @@ void StepDoubling::correct_difference() {
 double StepDoubling::region_error(const Region& region) const {
   const Batch& batch = model_.batches[region.batch];
   const Lanes* d = &difference_[batch.offset];
-  const ShapeRows& rows = model_.shape_of(batch).space.node_rows;
   const auto largest_of = [&](const auto& displacement_at) {
     return with_nodes(model_, batch, [&](const auto& nodes) {
       Lanes worst{}, any_nan{};
@@ -173,7 +175,11 @@ double StepDoubling::region_error(const Region& region) const {
       return std::isfinite(sum(any_nan)) ? largest(worst) : std::numeric_limits<double>::infinity();
     });
   };
-  if (batch.layout == Layout::shared) return largest_of([&](int node) { return displacement(rows, d, node); });
+  if (batch.layout != Layout::spread)
+    return with_tables(model_, batch, [&](const auto& tables) {
+      return largest_of([&](int node) { return displacement(tables.node_rows, d, node); });
+    });
+  const ShapeRows& rows = model_.shape_of(batch).space.node_rows;
   const SpreadShape& shape = model_.spread_shape_of(batch);
   return largest_of([&](int slot) { return displacement(rows, shape, reinterpret_cast<const double*>(d), slot); });
 }

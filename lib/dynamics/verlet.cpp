@@ -129,7 +129,8 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Lanes *old_force = &state.force.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
   const Lanes* old_velocity = &state.velocity.compliant[batch.offset];
   Lanes* velocity = &trial_.velocity.compliant[batch.offset];
-  const double correction_bound = model_.shape_of(batch).space.correction_bound;
+  const Lanes upper_inverse_density =
+      with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
     Lanes worst{}, any_nan{};
     for (int i = 2 * region.first; i < 2 * region.last; ++i) {
@@ -140,7 +141,7 @@ void Verlet::finish_region(const State& state, double dt, int r) {
       worst = max(worst, change);
       any_nan += change;
     }
-    const double result = correction_bound * largest(worst * batch.inverse_density);
+    const double result = largest(worst * upper_inverse_density);
     change_[r] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
   });
 }

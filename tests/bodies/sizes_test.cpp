@@ -62,7 +62,8 @@ class Sizes : public ::testing::TestWithParam<std::tuple<Integrator, Recipe>> {}
 
 TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
   const auto [integrator, recipe] = GetParam();
-  Steered here(scene_of(true, integrator, recipe), sizes()), there(scene_of(false, integrator, recipe));
+  Steered here(build_model(scene_of(true, integrator, recipe), sizes()));
+  Steered there(build_model(scene_of(false, integrator, recipe)));
   const Model &model = here.bench.model, &twin = there.bench.model;
   ASSERT_EQ(model.batches.size(), 1U) << "one group, one batch";
   ASSERT_EQ(twin.batches.size(), 4U);

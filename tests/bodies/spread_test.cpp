@@ -19,8 +19,8 @@ using testing::Random;
 
 /// Of the pile's grains: all of a size of their own.
 const std::vector<double> sizes{1.01, 0.99, 1.02, 1, 0.97};
-const BuildOptions always_spread{.least_sparse_nodes = 0, .scales = sizes};
-const BuildOptions never_spread{.least_sparse_nodes = 1 << 30, .scales = sizes};
+const BuildOptions always_spread{.least_sparse_nodes = 0, .relate = true, .scales = sizes};
+const BuildOptions never_spread{.least_sparse_nodes = 1 << 30, .relate = true, .scales = sizes};
 
 /// Two discs of 603 nodes (two regions, with padding) and one of 60 of another law, on a floor under rigid grains.
 Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
@@ -54,7 +54,8 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
 
 TEST_P(Spread, bodies_move_as_those_in_lanes) {
   const auto [recipe, integrator] = GetParam();
-  Steered here(pile(recipe, integrator), always_spread), there(pile(recipe, integrator), never_spread);
+  Steered here(build_model(pile(recipe, integrator), always_spread));
+  Steered there(build_model(pile(recipe, integrator), never_spread));
   const Model &spread = here.bench.model, &lanes = there.bench.model;
   ASSERT_EQ(spread.lane_batches, 0);
   ASSERT_EQ(spread.batches.size(), 3U);
@@ -212,7 +213,7 @@ TEST(SpreadShape, keeps_neighbours_together) {
 
 /// EXACT: an inverted element is found and told with its node's place in the mesh, a NaN with its node.
 TEST(SpreadBodies, fail_by_name) {
-  Bench bench(pile(Recipe::mls), always_spread);
+  Bench bench(build_model(pile(Recipe::mls), always_spread));
   const Body& body = bench.model.bodies[1];
   const BodyPlaces places(bench.model, body);
   set_node(places, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
@@ -230,7 +231,7 @@ TEST(SpreadBodies, fail_by_name) {
 TEST(SpreadBodies, are_those_that_would_leave_lanes_empty) {
   const Model model = build_model(pile(Recipe::es_t3));  // 1266 sparse nodes
   EXPECT_EQ(model.lane_batches, 0);
-  const BuildOptions spread{.least_sparse_nodes = 0, .scales = {}};
+  const BuildOptions spread{.least_sparse_nodes = 0, .relate = true, .scales = {}};
   Scene many = pile(Recipe::es_t3);
   for (int i = 0; i < 7; ++i) many.grains[0].packing.positions.push_back({1.2, 4.0 + 3 * i});
   const Model mixed = build_model(many, spread);  // nine large discs: eight in lanes, one spread

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+from pathlib import Path
 
 import pytest
 from scenes import TWO_DISCS
@@ -113,3 +115,10 @@ def test_forecast_agrees_with_a_run(desk) -> None:
 def test_until_shortens_the_forecast(desk) -> None:
     rows = checked(desk, TWO_DISCS, "--until", "10 ns")
     assert "until 10 ns" in rows["evaluations"] and " 2 frames" in rows["output"]
+
+
+def test_lanes_of_different_shapes(desk) -> None:
+    case = Path(os.environ["PLIANT_SOURCE_DIR"], "cases", "related_grains.toml").read_text()
+    rows = checked(desk, case)
+    assert rows["lanes"].startswith("of one shape: 0 bodies; of related shapes: 48; spread, each over all lanes: 0")
+    assert "lanes" not in checked(desk, case.replace("variants = 48\n", ""))  # one shape

@@ -16,8 +16,8 @@ struct Bench {
   Forces forces;
   State state;
 
-  explicit Bench(const Scene& scene, const BuildOptions& options = {})
-      : model(build_model(scene, options)), forces(model) {
+  explicit Bench(const Scene& scene) : Bench(build_model(scene)) {}
+  explicit Bench(Model built) : model(std::move(built)), forces(model) {
     state.position = initial_positions(model);
     state.velocity = initial_velocities(model, state.position);
     state.force = zero_dofs(model);

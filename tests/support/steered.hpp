@@ -16,9 +16,8 @@ struct Steered {
   std::unique_ptr<Verlet> verlet;
   std::unique_ptr<StepDoubling> step_doubling;
 
-  explicit Steered(const Scene& scene, const BuildOptions& options = {})
-      : bench(scene, options), auditor(bench.forces, bench.state) {
-    if (scene.time.integrator == Integrator::verlet)
+  explicit Steered(Model model) : bench(std::move(model)), auditor(bench.forces, bench.state) {
+    if (bench.model.scene.time.integrator == Integrator::verlet)
       verlet = std::make_unique<Verlet>(bench.forces, bench.state);
     else
       step_doubling = std::make_unique<StepDoubling>(bench.forces, bench.state);

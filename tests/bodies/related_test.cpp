@@ -1,0 +1,156 @@
+// Bodies of related shapes in the lanes of one batch against the same bodies spread, each by the table of its own shape.
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "bodies/make_batches.hpp"
+#include "bodies/nodal.hpp"
+#include "scene/curves.hpp"
+#include "support/simulations.hpp"
+#include "support/steered.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+constexpr int grains_in_all = 11;
+
+enum class Extras { none, damping_and_corrected_mass };
+
+/// Fourier grains of eleven shapes and several sizes on a floor, pushed together, and a rigid disc.
+Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
+  Scene scene = on_a_floor(2, 9, 0.2, {0.01, -0.05});
+  scene.discretisation.recipe = recipe;
+  scene.time.integrator = integrator;
+  scene.time.tolerance = scene.time.target = 1;  // steps are given
+  scene.materials.push_back({"tough", MaterialLaw::neo_hookean, 1.7, 4, 0.3});
+  if (extras == Extras::damping_and_corrected_mass) {
+    scene.discretisation.mass = Mass::corrected;
+    for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
+  }
+  scene.contacts = {rough(60, 0.3)};
+  for (int i = 0; i < grains_in_all; ++i) {
+    ShapeSpec shape;
+    shape.name = "grain" + std::to_string(i);
+    shape.kind = ShapeKind::curve;
+    shape.points = fourier_grain(2, {0.08, 0.03}, i + 1);
+    shape.nodes = 80;
+    shape.outline_nodes = 30;
+    scene.shapes.push_back(shape);
+    InitialVelocity velocity = moving({0.02 * (i % 3), -0.05}, 0.03);
+    velocity.gradient << 0.01, 0.02, 0, -0.02;
+    const Vec2 centre(1.2 + 2.12 * (i % 4), 1.08 + 2.12 * (i / 4));
+    scene.grains.push_back(grains(shape.name, shape.name, BodyKind::compliant, {centre}, velocity));
+    scene.grains.back().angle = 0.3 * i;
+    if (i % 3 == 1) scene.grains.back().mix[0].material = "tough";
+  }
+  scene.shapes.push_back(disc_shape("disc", 1, 60));
+  scene.grains.push_back(grains("disc", "disc", BodyKind::rigid, {{4.3, 7.1}}, moving({0, -0.2})));
+  return scene;
+}
+
+BuildOptions always() {
+  BuildOptions options{.least_sparse_nodes = 0, .relate = true, .scales = {}};
+  for (int i = 0; i <= grains_in_all; ++i) options.scales.push_back(1 + 0.02 * (i % 4));
+  return options;
+}
+
+/// The same bodies, meshes and tables, each body spread.
+Model spread(Model model) {
+  model.groups.clear(), model.batches.clear(), model.regions.clear(), model.related_shapes.clear();
+  model.compliant_size = 0;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    if (const Body& body = model.bodies[b]; body.kind == BodyKind::compliant)
+      model.groups.push_back({body.compliant_shape, MaterialLaw::neo_hookean, {b}});
+  make_batches(model, 0);
+  return model;
+}
+
+/// Sums of some twenty terms in another order.
+constexpr double rounding = 1e-12;
+
+void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
+}
+
+class Related : public ::testing::TestWithParam<std::tuple<Recipe, Integrator, Extras>> {};
+
+TEST_P(Related, bodies_move_as_those_spread) {
+  const auto [recipe, integrator, extras] = GetParam();
+  Steered here(build_model(heap(recipe, integrator, extras), always()));
+  Steered there(spread(here.bench.model));
+  const Model &related = here.bench.model, &alone = there.bench.model;
+  ASSERT_EQ(related.batches.size(), 2U) << "eight bodies and three";
+  for (const Batch& batch : related.batches) ASSERT_EQ(batch.layout, Layout::related);
+  ASSERT_EQ(alone.batches.size(), 11U);
+  for (const Batch& batch : alone.batches) ASSERT_EQ(batch.layout, Layout::spread);
+  if (here.verlet)
+    EXPECT_NEAR(here.verlet->bound().largest_dt() / there.verlet->bound().largest_dt(), 1, 0.02)
+        << "INDEPENDENT: the power iterations start elsewhere";
+  int contacts = 0;
+  for (int step = 0; step < 300; ++step) {
+    const StepReport a = here.step(4e-3), b = there.step(4e-3);
+    ASSERT_NEAR(a.dt, 4e-3, 1e-12);
+    ASSERT_NEAR(b.dt, 4e-3, 1e-12);
+    ASSERT_NEAR(a.error, b.error, 1e-9 * (1e-6 + b.error)) << "EXACT: estimate, step " << step;
+    contacts = std::max(contacts, b.evaluation.contact.contacts);
+  }
+  EXPECT_GT(contacts, 20);
+  const State &x = here.bench.state, &y = there.bench.state;
+  for (std::size_t b = 0; b < alone.bodies.size(); ++b) {
+    const Body &body = related.bodies[b], &other = alone.bodies[b];
+    if (body.kind != BodyKind::compliant) continue;
+    expect_equal_points(nodal_values(related, body, x.position), nodal_values(alone, other, y.position), rounding,
+                        "node");
+    expect_equal_points(nodal_values(related, body, x.velocity), nodal_values(alone, other, y.velocity), 100 * rounding,
+                        "velocity");  // a frequency of 100
+  }
+  const Audit a = here.auditor.audit(x), b = there.auditor.audit(y);
+  EXPECT_NEAR(a.energy.kinetic / b.energy.kinetic, 1, 1e-10) << "EXACT";
+  EXPECT_NEAR(a.energy.strain / b.energy.strain, 1, 1e-9) << "EXACT";
+  EXPECT_NEAR(a.energy.contact / b.energy.contact, 1, 1e-9) << "EXACT";
+  EXPECT_NEAR(a.energy.external_work / b.energy.external_work, 1, 1e-9) << "EXACT";
+  EXPECT_LT(a.momentum_error, 1e-12) << "EXACT";
+  if (here.verlet) EXPECT_LT(here.auditor.balance_error(a.energy), 2e-3) << "FROZEN: with either";
+}
+
+INSTANTIATE_TEST_SUITE_P(Recipes, Related,
+                         ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
+                                            ::testing::Values(Integrator::verlet, Integrator::step_doubling),
+                                            ::testing::Values(Extras::none, Extras::damping_and_corrected_mass)));
+
+/// EXACT: the same bits with one, two and three threads.
+TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {
+  const Model model = build_model(heap(Recipe::mls, Integrator::verlet), always());
+  const int before = omp_get_max_threads();
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2, 3}) {
+    omp_set_num_threads(threads);
+    Simulation simulation(model);
+    for (int step = 0; step < 60; ++step) simulation.step(2);
+    hashes.push_back(state_hash(simulation.state()));
+  }
+  omp_set_num_threads(before);
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+}
+
+/// EXACT: the rule. Small scenes are left alone, as are shapes with many bodies, polygons and fewer than three relatives.
+TEST(RelatedBodies, are_few_of_many_smooth_shapes) {
+  Scene scene = heap(Recipe::es_t3, Integrator::verlet);
+  const Model small = build_model(scene);  // 880 nodes
+  EXPECT_EQ(small.batches.size(), 11U);
+  EXPECT_EQ(small.lane_batches, 11);
+  for (Batch batch : small.batches) EXPECT_EQ(batch.layout, Layout::shared);
+  for (ShapeSpec& shape : scene.shapes) shape.nodes = 100;
+  const Model large = build_model(scene);
+  EXPECT_EQ(large.batches.size(), 2U);
+  EXPECT_EQ(large.batches[0].layout, Layout::related);
+  EXPECT_EQ(build_model(scene, {.least_sparse_nodes = 0, .relate = false, .scales = {}}).batches[0].layout,
+            Layout::spread);
+  for (int i = 0; i < 9; ++i) scene.shapes[i].nodes = 101 + i;  // of eleven only two agree
+  for (const Batch& batch : build_model(scene).batches) EXPECT_EQ(batch.layout, Layout::spread);
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests
