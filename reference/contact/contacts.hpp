@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/vec2.hpp"
+#include "scene/scene.hpp"
+
+namespace pliant::reference {
+
+/// The outline of one body as contact sees it.
+struct ContactOutline {
+  int first = 0, count = 0;  ///< its nodes in the list of all outline nodes
+  double turn_shift = 0;     ///< x offset after one turn: 0 for closed outlines, +- period for walls
+  Points reference;          ///< [count], in its own size, m
+  std::string material, name;  ///< name: of the grains or the wall that the body belongs to
+  bool wall = false;
+  BodyKind kind = BodyKind::rigid;
+};
+
+/// What a slave node remembers of one other body, as of the last accepted state.
+struct ContactMemory {
+  bool beside = false;  ///< it stood beside the other body: then place is known
+  int segment = 0;      ///< of the other's outline
+  double xi = 0;        ///< in [0, 1] along it
+  double angle = 0;     ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
+  double slip = 0;      ///< elastic, m
+  double damage = 1;    ///< of a bond
+  double opening = 0;   ///< of a bond, m
+};
+
+/// One node against one segment: conservative and frictional part together.
+struct ContactElement {
+  std::array<int, 3> node;             ///< slave, first and second node of the segment in the list of all outline nodes
+  Eigen::Matrix<double, 6, 1> force;   ///< residual: minus the forces on the three nodes, N/m
+  Eigen::Matrix<double, 6, 6> tangent; ///< of `force`, unsymmetric where it slips
+  double gap = 0, pressure = 0, shear = 0;  ///< m, Pa, Pa (on the slave along the segment)
+  double depth = 0;                    ///< penetration over the master's longest segment
+};
+
+struct ContactResult {
+  std::vector<ContactElement> elements;
+  double stored = 0;      ///< J/m
+  double dissipated = 0;  ///< from the last accepted state to this one, J/m
+};
+
+/// All contacts of a scene by brute force: every node of every body against every segment of every other (METHOD 4).
+class Contacts {
+ public:
+  Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
+  ~Contacts();
+
+  /// At outline positions x [all outline nodes], m. Trial memories are kept beside the accepted ones.
+  ContactResult evaluate(const Points& x);
+  /// The trial memories of the last evaluation become the accepted ones.
+  void accept();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace pliant::reference
