@@ -1,27 +1,16 @@
 #include <algorithm>
 #include <map>
-#include <random>
-
-#include <fmt/format.h>
 
 #include "bodies/apply_conditions.hpp"
 #include "bodies/make_batches.hpp"
 #include "bodies/model.hpp"
 #include "bodies/relate_shapes.hpp"
-#include "core/errors.hpp"
-#include "core/random.hpp"
+#include "geometry/assembly.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/outline.hpp"
-#include "geometry/placement.hpp"
 
 namespace pliant {
 namespace {
-
-int index_of_material(const Scene& scene, const std::string& name) {
-  for (std::size_t i = 0; i < scene.materials.size(); ++i)
-    if (scene.materials[i].name == name) return static_cast<int>(i);
-  throw InputError(fmt::format("{}: unknown material '{}'", scene.file.string(), name));
-}
 
 /// Shapes met so far, each discretised once as compliant and once as rigid at most.
 class ShapeStore {
@@ -75,13 +64,6 @@ class ShapeStore {
   std::map<std::string, RelatedMesh> related_;
 };
 
-/// Entry of the mix that each grain gets: exact shares (largest remainder), randomly placed.
-std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
-  std::vector<double> shares;
-  for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);
-  return assign_shares(shares, count, random);
-}
-
 RigidBody make_rigid_body(int body, int outline, const OutlineShape& shape, double density) {
   const PolygonProperties properties = polygon_properties(shape.points);
   RigidBody rigid;
@@ -108,9 +90,12 @@ class Builder {
   Builder(const Scene& scene, const BuildOptions& options) : options_(options), store_(model_) { model_.scene = scene; }
 
   Model build() {
-    for (std::size_t g = 0; g < model_.scene.grains.size(); ++g) add_grains(static_cast<int>(g));
+    const std::vector<PlacedBody> placed = place_bodies(model_.scene);
+    for (const PlacedBody& body : placed)
+      if (!body.wall) add_grain(body);
     build_compliant();
-    for (const Wall& wall : model_.scene.walls) add_wall(wall);
+    for (const PlacedBody& body : placed)
+      if (body.wall) add_wall(body);
     make_batches(model_, options_.least_sparse_nodes);
     model_.corrected_mass = !model_.groups.empty() && model_.scene.discretisation.mass == Mass::corrected;
     apply_conditions(model_);
@@ -120,29 +105,11 @@ class Builder {
   }
 
  private:
-  void add_grains(int index) {
-    const Grains& grains = model_.scene.grains[index];
-    const int count = static_cast<int>(grains.packing.grain_count());
-    std::mt19937_64 random(grains.seed);
-    const std::vector<int> choice = assign_mix(grains, count, random);
-    Packed packed = place_grains(model_.scene, grains, random);
-    for (ShapeSpec& shape : packed.fitted) model_.scene.shapes.push_back(std::move(shape));
-    for (int i = 0; i < count; ++i) {
-      const MixEntry& entry = grains.mix[choice[i]];
-      const Placement& grain = packed.grains[i];
-      Body body;
-      body.name = count == 1 ? grains.name : fmt::format("{} {}", grains.name, i);
-      body.grains = index;
-      body.shape = grain.shape;
-      body.kind = entry.body;
-      body.material = index_of_material(model_.scene, entry.material);
-      body.centre = grain.centre;
-      body.angle = grain.angle;
-      body.scale = grain.scale;
-      if (!options_.scales.empty()) body.scale = options_.scales.at(model_.bodies.size());
-      const std::string& shape = model_.scene.shapes[grain.shape].name;
-      entry.body == BodyKind::compliant ? add_compliant(std::move(body), shape) : add_rigid(std::move(body), shape);
-    }
+  void add_grain(const PlacedBody& placed) {
+    Body body{placed};
+    if (!options_.scales.empty()) body.scale = options_.scales.at(model_.bodies.size());
+    const std::string& shape = model_.scene.shapes[body.shape].name;
+    body.kind == BodyKind::compliant ? add_compliant(std::move(body), shape) : add_rigid(std::move(body), shape);
   }
 
   /// Its shape is discretised later, when all bodies are known.
@@ -203,24 +170,12 @@ class Builder {
     return finest;
   }
 
-  void add_wall(const Wall& wall) {
+  void add_wall(const PlacedBody& placed) {
+    const Wall& wall = model_.scene.walls[placed.number_of_wall];
     const double period = *model_.scene.period;
-    const double spacing = wall.spacing > 0 ? wall.spacing : finest_spacing();
-    constexpr double most_nodes = 1e6;
-    if (period / spacing > most_nodes)
-      throw InputError(fmt::format(
-          "{}: wall '{}' has the finest outline spacing of the grains, {:.3g} m, and so {:.3g} nodes; allowed: at "
-          "most {:.0g}; give its spacing, or take fewer very small grains",
-          model_.scene.file.string(), wall.name, spacing, period / spacing, most_nodes));
     const bool below = wall.solid == Wall::Solid::below;
-    Points points = wall_outline(wall, period, std::min(spacing, period / 8));
-    for (Vec2& p : points) p.y() -= wall.level;
-    Body body;
-    body.name = wall.name;
-    body.wall = true;
-    body.material = index_of_material(model_.scene, wall.material);
-    body.centre = Vec2(0, wall.level);
-    body.outline = store_.add_outline(points, below ? -period : period);
+    Body body{placed};
+    body.outline = store_.add_outline(wall_points(model_.scene, wall, finest_spacing()), below ? -period : period);
     body.rigid = static_cast<int>(model_.rigid_bodies.size());
     body.area = period * wall.thickness;
     body.mass = body.area * model_.scene.materials[body.material].density;

@@ -8,6 +8,7 @@
 #include "bodies/outline_conditions.hpp"
 #include "core/lanes.hpp"
 #include "discretisation/table.hpp"
+#include "geometry/assembly.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
@@ -73,20 +74,11 @@ struct RigidBody {
   bool driven = false;  ///< some degree of freedom is imposed or loaded
 };
 
-struct Body {
-  std::string name;  ///< "grains 17", or the wall's name
-  BodyKind kind = BodyKind::rigid;
-  bool wall = false;
-  int grains = -1;            ///< index in Scene::grains; -1 for a wall
-  int shape = -1;             ///< index in Scene::shapes; -1 for a wall
-  int material = 0;           ///< index in Scene::materials
+struct Body : PlacedBody {
   int compliant_shape = -1;   ///< compliant: index in Model::shapes
   int batch = -1, lane = -1;  ///< compliant; a spread body counts as lane 0
   int rigid = -1;             ///< rigid: index in Model::rigid_bodies
   int outline = 0;            ///< index of its outline shape
-  Vec2 centre{0, 0};          ///< initial centre, m
-  double angle = 0;           ///< initial angle, rad
-  double scale = 1;           ///< size over that of its shape as the scene gives it
   double area = 0;            ///< m2
   double mass = 0;            ///< kg/m
 };

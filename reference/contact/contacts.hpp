@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,9 +16,9 @@ namespace pliant::reference {
 
 /// The outline of one body as contact sees it.
 struct ContactOutline {
-  int first = 0, count = 0;  ///< its nodes in the list of all outline nodes
-  double turn_shift = 0;     ///< x offset after one turn: 0 for closed outlines, +- period for walls
-  Points reference;          ///< [count], in its own size, m
+  int first = 0, count = 0;    ///< its nodes in the list of all outline nodes
+  double turn_shift = 0;       ///< x offset after one turn: 0 for closed outlines, +- period for walls
+  Points reference;            ///< [count], in its own size, m
   std::string material, name;  ///< name: of the grains or the wall that the body belongs to
   bool wall = false;
   BodyKind kind = BodyKind::rigid;
@@ -36,11 +37,15 @@ struct ContactMemory {
 
 /// One node against one segment: conservative and frictional part together.
 struct ContactElement {
-  std::array<int, 3> node;             ///< slave, first and second node of the segment in the list of all outline nodes
-  Eigen::Matrix<double, 6, 1> force;   ///< residual: minus the forces on the three nodes, N/m
-  Eigen::Matrix<double, 6, 6> tangent; ///< of `force`, unsymmetric where it slips
+  std::array<int, 3> node;            ///< slave, first and second node of the segment in the list of all outline nodes
+  Eigen::Matrix<double, 6, 1> force;  ///< residual: minus the forces on the three nodes, N/m
+  Eigen::Matrix<double, 6, 6> tangent;      ///< of `force`, unsymmetric where it slips
   double gap = 0, pressure = 0, shear = 0;  ///< m, Pa, Pa (on the slave along the segment)
-  double depth = 0;                    ///< penetration over the master's longest segment
+  double depth = 0;                         ///< penetration over the master's longest segment
+  std::array<int, 2> body{};                ///< whose node, whose segment: numbers of outlines
+  /// More columns of the tangent, for nodes of the outline that the slave passed since the last accepted state, as the way along it depends on
+  /// them too; empty while it stays on one segment. A node may occur more than once: columns add up.
+  std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
 struct ContactResult {
@@ -52,10 +57,13 @@ struct ContactResult {
 /// All contacts of a scene by brute force: every node of every body against every segment of every other (METHOD 4).
 class Contacts {
  public:
+  /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for a range within which the law
+  /// does not reach its strength, and for stiffness = "auto" between rigid bodies alone.
   Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Contacts();
 
-  /// At outline positions x [all outline nodes], m. Trial memories are kept beside the accepted ones.
+  /// At outline positions x [all outline nodes], m. Trial memories are kept beside the accepted ones. Every evaluation before the first accept() is of
+  /// the initial state: it finds which nodes are bonded, without slip.
   ContactResult evaluate(const Points& x);
   /// The trial memories of the last evaluation become the accepted ones.
   void accept();

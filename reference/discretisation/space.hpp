@@ -16,10 +16,10 @@ struct Row {
 
 /// An integration point: F = sum of q_i (x) gradient_i over its nodes.
 struct Point {
-  double weight = 0;            ///< m2
-  std::vector<int> node;        ///< [neighbours], ascending
-  Points gradient;              ///< [neighbours], 1/m
-  std::vector<int> triangles;   ///< background triangles that it stands for in pictures
+  double weight = 0;           ///< m2
+  std::vector<int> node;       ///< [neighbours], ascending
+  Points gradient;             ///< [neighbours], 1/m
+  std::vector<int> triangles;  ///< background triangles that it stands for in pictures
 };
 
 /// One shape, discretised: dense, slow, and without a line of the engine's mathematics (METHOD 2).

@@ -12,6 +12,7 @@ import pytest
 
 ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
+REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
 
 
 @dataclass
@@ -30,6 +31,10 @@ class Desk:
     def engine(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         return subprocess.run([ENGINE, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
                               stdin=subprocess.DEVNULL)
+
+    def reference(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([REFERENCE, self.scene, *arguments], cwd=self.folder, capture_output=True, text=True,
+                              timeout=300, stdin=subprocess.DEVNULL)
 
     def run(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         return self.engine("run", self.scene, *arguments)

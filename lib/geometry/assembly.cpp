@@ -1,0 +1,83 @@
+#include "geometry/assembly.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "geometry/mesh.hpp"
+#include "geometry/placement.hpp"
+
+namespace pliant {
+namespace {
+
+int index_of_material(const Scene& scene, const std::string& name) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i)
+    if (scene.materials[i].name == name) return static_cast<int>(i);
+  throw InputError(fmt::format("{}: unknown material '{}'", scene.file.string(), name));
+}
+
+/// Entry of the mix that each grain gets: exact shares (largest remainder), randomly placed.
+std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
+  std::vector<double> shares;
+  for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);
+  return assign_shares(shares, count, random);
+}
+
+void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {
+  const Grains& grains = scene.grains[index];
+  const int count = static_cast<int>(grains.packing.grain_count());
+  std::mt19937_64 random(grains.seed);
+  const std::vector<int> choice = assign_mix(grains, count, random);
+  Packed packed = place_grains(scene, grains, random);
+  for (ShapeSpec& shape : packed.fitted) scene.shapes.push_back(std::move(shape));
+  for (int i = 0; i < count; ++i) {
+    const MixEntry& entry = grains.mix[choice[i]];
+    const Placement& grain = packed.grains[i];
+    PlacedBody body;
+    body.name = count == 1 ? grains.name : fmt::format("{} {}", grains.name, i);
+    body.kind = entry.body;
+    body.grains = index;
+    body.shape = grain.shape;
+    body.material = index_of_material(scene, entry.material);
+    body.centre = grain.centre;
+    body.angle = grain.angle;
+    body.scale = grain.scale;
+    bodies.push_back(std::move(body));
+  }
+}
+
+}  // namespace
+
+std::vector<PlacedBody> place_bodies(Scene& scene) {
+  std::vector<PlacedBody> bodies;
+  for (std::size_t g = 0; g < scene.grains.size(); ++g) add_grains(scene, static_cast<int>(g), bodies);
+  for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+    const Wall& wall = scene.walls[w];
+    PlacedBody body;
+    body.name = wall.name;
+    body.wall = true;
+    body.number_of_wall = static_cast<int>(w);
+    body.material = index_of_material(scene, wall.material);
+    body.centre = Vec2(0, wall.level);
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+Points wall_points(const Scene& scene, const Wall& wall, double finest) {
+  const double period = *scene.period, spacing = wall.spacing > 0 ? wall.spacing : finest;
+  constexpr double most_nodes = 1e6;
+  if (period / spacing > most_nodes)
+    throw InputError(fmt::format(
+        "{}: wall '{}' has the finest outline spacing of the grains, {:.3g} m, and so {:.3g} nodes; allowed: at "
+        "most {:.0g}; give its spacing, or take fewer very small grains",
+        scene.file.string(), wall.name, spacing, period / spacing, most_nodes));
+  Points points = wall_outline(wall, period, std::min(spacing, period / 8));
+  for (Vec2& p : points) p.y() -= wall.level;
+  return points;
+}
+
+}  // namespace pliant

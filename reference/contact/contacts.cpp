@@ -1,0 +1,212 @@
+#include "reference/contact/contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <limits>
+#include <map>
+
+#include "core/errors.hpp"
+#include "reference/contact/law.hpp"
+#include "reference/contact/pair_laws.hpp"
+#include "reference/contact/projection.hpp"
+#include "reference/contact/slip.hpp"
+
+namespace pliant::reference {
+namespace {
+
+constexpr double deepest = 1.5;  ///< that contact sees, over the master's longest segment
+
+/// A node of one body and a periodic image of another.
+struct Encounter {
+  int slave = 0, node = 0;    ///< node: of the slave's own outline
+  int master = 0, image = 0;  ///< image: 0 for a wall, whose segments are counted on instead
+  auto operator<=>(const Encounter&) const = default;
+};
+using Memories = std::map<Encounter, ContactMemory>;
+
+struct Box {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vec2& point) { low = low.cwiseMin(point), high = high.cwiseMax(point); }
+  bool contains(const Vec2& point, double margin) const {
+    return (point - low).minCoeff() >= -margin && (high - point).minCoeff() >= -margin;
+  }
+};
+
+/// One body as it is now.
+struct PresentBody {
+  PresentOutline outline;
+  Box box;
+  double longest = 0;  ///< segment, m
+
+  PresentBody(const ContactOutline& of, const Points& x) : outline(of, x) {
+    for (int i = 0; i < of.count; ++i) {
+      box.add(outline.node(i));
+      longest = std::max(longest, outline.length(i));
+    }
+  }
+};
+
+void refuse_settings(const ContactSettings& settings) {
+  if (settings.length == ContactLength::current)
+    throw InputError("[contact] length = \"current\": the reference solver knows \"reference\" only");
+  if (settings.self_contact) throw InputError("[contact] self_contact = true: not in the reference solver");
+}
+
+}  // namespace
+
+struct Contacts::Implementation {
+  Implementation(const Scene& scene, std::vector<ContactOutline> given)
+      : outlines(std::move(given)), laws(scene, outlines), period(scene.period.value_or(0)) {
+    refuse_settings(scene.contact);
+    double finest = std::numeric_limits<double>::infinity();
+    for (const ContactOutline& outline : outlines) {
+      lengths.push_back(tributary_lengths(outline));
+      finest = std::min(finest, mean_spacing(outline));
+    }
+    skin = scene.skin * finest;
+  }
+
+  ContactResult evaluate(const Points& x) {
+    trial.clear();
+    result = {};
+    bodies.clear();
+    for (const ContactOutline& outline : outlines) bodies.emplace_back(outline, x);
+    const int count = static_cast<int>(outlines.size());
+    for (int slave = 0; slave < count; ++slave)
+      for (int master = 0; master < count; ++master)
+        if (const std::optional<Law>& law = laws.between(slave, master)) meet(slave, master, *law);
+    for (const auto& [encounter, memory] : accepted)
+      if (!trial.contains(encounter)) part(encounter, memory);
+    return std::move(result);
+  }
+
+  /// What a node remembers is lost when it is no longer beside the other body.
+  void part(const Encounter& encounter, const ContactMemory& memory) {
+    result.dissipated +=
+        weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory, std::nullopt);
+  }
+
+  /// Of a node in one of the two passes, m.
+  double weight(const Encounter& encounter) const { return lengths[encounter.slave][encounter.node] / 2; }
+
+  /// All nodes of one body against another and its periodic images.
+  void meet(int slave, int master, const Law& law) {
+    const Box &a = bodies[slave].box, &b = bodies[master].box;
+    const double outward = law.reach + (law.shears() ? skin : 0);
+    // Heights grow slower than distances beyond an end: of tips sharper than 29 degrees something may be missed beyond this, far from any contact.
+    const double margin = 4 * outward;
+    if (a.low.y() > b.high.y() + margin || b.low.y() > a.high.y() + margin) return;
+    if (period == 0) return meet_image(slave, master, 0, law, outward, margin);
+    if (outlines[master].wall) return meet_wall(slave, master, law, outward);
+    const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - margin) / period));
+    const int last = static_cast<int>(std::floor((a.high.x() - b.low.x() + margin) / period));
+    for (int image = first; image <= last; ++image) meet_image(slave, master, image, law, outward, margin);
+  }
+
+  void meet_image(int slave, int master, int image, const Law& law, double outward, double margin) {
+    const PresentBody& on = bodies[master];
+    const Vec2 shift(image * period, 0);
+    for (int i = 0; i < outlines[slave].count; ++i) {
+      const Vec2 point = bodies[slave].outline.node(i) - shift;
+      if (!on.box.contains(point, margin)) continue;
+      if (const auto nearest = nearest_segment(on.outline, 0, on.outline.count(), point))
+        stand_beside({slave, i, master, image}, *nearest, point, law, outward);
+    }
+  }
+
+  /// A wall goes on and on: its segments are counted so that each node sees one turn of it to either side.
+  void meet_wall(int slave, int master, const Law& law, double outward) {
+    const PresentBody& on = bodies[master];
+    const double middle = (on.box.low.x() + on.box.high.x()) / 2;
+    for (int i = 0; i < outlines[slave].count; ++i) {
+      const Vec2 point = bodies[slave].outline.node(i);
+      const int turn = static_cast<int>(std::lround((point.x() - middle) / on.outline.turn_shift())),
+                count = on.outline.count();
+      if (const auto nearest = nearest_segment(on.outline, (turn - 1) * count, 3 * count, point))
+        stand_beside({slave, i, master, 0}, *nearest, point, law, outward);
+    }
+  }
+
+  void stand_beside(const Encounter& encounter, const Nearest& nearest, const Vec2& point, const Law& law,
+                    double outward) {
+    const PresentBody& on = bodies[encounter.master];
+    if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
+    const Projection at = project(point, on.outline.node(nearest.segment), on.outline.node(nearest.segment + 1));
+    const auto found = accepted.find(encounter);
+    ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
+    if (initial && law.bonds() && at.gap.value <= law.bond_gap) before.damage = 0;
+    ContactMemory& memory = trial[encounter];
+    memory.beside = true;
+    memory.segment = nearest.segment;
+    memory.xi = at.xi.value;
+    memory.angle = at.angle.value;
+    if (at.gap.value < law.reach)
+      touch(encounter, nearest.segment, at, law, before, memory);
+    else
+      result.dissipated += weight(encounter) * parting_loss(law, before, at.gap.value);
+  }
+
+  void touch(const Encounter& encounter, int segment, const Projection& at, const Law& law, const ContactMemory& before,
+             ContactMemory& memory) {
+    const PresentBody& on = bodies[encounter.master];
+    Motion motion;
+    if (before.beside && law.shears()) motion = motion_along(on.outline, before, segment, at);
+    const Response response = respond(law, before, at.gap.value, motion.by_element.value, initial);
+    memory.slip = response.slip;
+    memory.damage = response.damage;
+    memory.opening = response.opening;
+    const double length = weight(encounter);
+    result.stored += length * response.stored;
+    result.dissipated += length * response.dissipated;
+    ContactElement element = make_element(on.outline, at, motion, response, length);
+    element.node = {outlines[encounter.slave].first + encounter.node, on.outline.index(segment),
+                    on.outline.index(segment + 1)};
+    element.body = {encounter.slave, encounter.master};
+    element.depth = std::max(0.0, -at.gap.value) / on.longest;
+    result.elements.push_back(std::move(element));
+  }
+
+  static ContactElement make_element(const PresentOutline& master, const Projection& at, const Motion& motion,
+                                     const Response& response, double length) {
+    const Jet<6>::Gradient by_gap = at.gap.gradient, by_motion = motion.by_element.gradient, rate = at.rate();
+    const double p = length * response.pressure, shear = length * response.shear;
+    const Response::Gradient dp = length * response.pressure_by, dshear = length * response.shear_by;
+    ContactElement element;
+    element.force = -p * by_gap + shear * rate;
+    element.tangent = -p * at.gap.hessian + shear * at.rate_derivative() -
+                      by_gap * (dp[0] * by_gap + dp[1] * by_motion).transpose() +
+                      rate * (dshear[0] * by_gap + dshear[1] * by_motion).transpose();
+    for (const auto& [node, derivative] : motion.others)
+      element.further.emplace_back(master.index(node), (dshear[1] * rate - dp[1] * by_gap) * derivative.transpose());
+    element.gap = at.gap.value;
+    element.pressure = response.pressure;
+    element.shear = -response.shear;
+    return element;
+  }
+
+  std::vector<ContactOutline> outlines;
+  PairLaws laws;
+  double period = 0, skin = 0;               ///< m
+  std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
+  Memories accepted, trial;
+  bool initial = true;  ///< nothing accepted yet
+
+  // Of the evaluation at hand.
+  std::vector<PresentBody> bodies;
+  ContactResult result;
+};
+
+Contacts::Contacts(const Scene& scene, std::vector<ContactOutline> outlines)
+    : implementation_(std::make_unique<Implementation>(scene, std::move(outlines))) {}
+
+Contacts::~Contacts() = default;
+
+ContactResult Contacts::evaluate(const Points& x) { return implementation_->evaluate(x); }
+
+void Contacts::accept() {
+  implementation_->accepted = implementation_->trial;
+  implementation_->initial = false;
+}
+
+}  // namespace pliant::reference

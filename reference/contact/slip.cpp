@@ -1,0 +1,86 @@
+#include "reference/contact/slip.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant::reference {
+namespace {
+
+/// Sums up the way from one segment to another, forward. Everything is of the present shape.
+class Way {
+ public:
+  Way(const PresentOutline& master, int segment) : master_(master), segment_(segment) {}
+
+  void add(const Jet<6>& part) { motion_.by_element += part; }
+
+  /// `share` of a segment.
+  void add_segment(int i, double share) {
+    const Vec2 t = master_.tangent(i);
+    add(share * master_.length(i));
+    depends(i, -share * t);
+    depends(i + 1, share * t);
+  }
+
+  /// A corner by a turn of the tangent: around it on its open side, at the distance of the gap; on the other side the ends of both faces are cut off.
+  void add_corner(int i, const Projection& now) {
+    const JetVector before = JetVector::point(master_.node(i - 1), 0), corner = JetVector::point(master_.node(i), 1),
+                    after = JetVector::point(master_.node(i + 1), 2);
+    const JetVector in = unit(corner - before), out = unit(after - corner);
+    const Jet<6> half_tangent = cross(in, out) / (1 + dot(in, out));
+    const bool around = now.height.value * half_tangent.value > 0;
+    const Jet<6> turn = around ? 2 * atan(half_tangent) : 2 * half_tangent, &distance = around ? now.gap : now.height;
+    add(distance * turn.value);
+    for (int k = 0; k < 3; ++k) depends(i - 1 + k, distance.value * turn.gradient.segment<2>(2 * k));
+  }
+
+  /// Back the way that was summed up.
+  void reverse() {
+    motion_.by_element = -motion_.by_element;
+    for (auto& [node, derivative] : motion_.others) derivative = -derivative;
+  }
+
+  const Motion& motion() const { return motion_; }
+
+ private:
+  /// Derivatives by the present segment's own nodes go to the element.
+  void depends(int node, const Vec2& derivative) {
+    const int own = node == segment_ ? 1 : node == segment_ + 1 ? 2 : 0;
+    if (own > 0)
+      motion_.by_element.gradient.segment<2>(2 * own) += derivative;
+    else
+      motion_.others.emplace_back(node, derivative);
+  }
+
+  const PresentOutline& master_;
+  int segment_;
+  Motion motion_;
+};
+
+/// The old segment, counted so that the way to the present one is the short one.
+int old_segment(const PresentOutline& master, int remembered, int segment) {
+  if (!master.closed()) return remembered;
+  const int turns = static_cast<int>(std::lround(static_cast<double>(segment - remembered) / master.count()));
+  return remembered + turns * master.count();
+}
+
+}  // namespace
+
+Motion motion_along(const PresentOutline& master, const ContactMemory& memory, int segment, const Projection& now) {
+  const int old = old_segment(master, memory.segment, segment);
+  Way way(master, segment);
+  if (old == segment) {
+    way.add(now.length * (now.xi - memory.xi) + now.gap * sin(now.angle - memory.angle));
+    return way.motion();
+  }
+  const bool forward = old < segment;
+  const int low = std::min(old, segment), high = std::max(old, segment);
+  way.add_segment(old, forward ? 1 - memory.xi : memory.xi);
+  for (int i = low + 1; i < high; ++i) way.add_segment(i, 1);
+  for (int i = low + 1; i <= high; ++i) way.add_corner(i, now);
+  way.add(now.length * (forward ? now.xi : 1 - now.xi));
+  if (!forward) way.reverse();
+  way.add(now.gap * (now.angle - memory.angle));
+  return way.motion();
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,84 @@
+#include "reference/linear_solver.hpp"
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/UmfPackSupport>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/errors.hpp"
+
+namespace pliant::reference {
+namespace {
+
+/// Where a matrix has entries.
+struct Pattern {
+  std::vector<int> outer, inner;
+  explicit Pattern(const SparseMatrix& matrix)
+      : outer(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.outerSize() + 1),
+        inner(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros()) {}
+  bool operator==(const Pattern&) const = default;
+};
+
+/// Factors that tell how near to singular their matrix is: reciprocal condition number, roughly, of a matrix with ones on its diagonal.
+struct Cholesky : Eigen::CholmodSupernodalLLT<SparseMatrix> {
+  double reciprocal_condition() { return cholmod_rcond(m_cholmodFactor, &cholmod()); }
+};
+struct Lu : Eigen::UmfPackLU<SparseMatrix> {
+  double reciprocal_condition() const { return m_umfpackInfo[UMFPACK_RCOND]; }
+};
+
+/// Under this, rounding decides the solution.
+constexpr double singular = 1e-13;
+
+/// One way to factorise, with the pattern that it has analysed.
+template <class Method>
+struct Factorisation {
+  Method method;
+  Pattern pattern{SparseMatrix()};
+
+  /// Returns whether it succeeded.
+  bool factorise(const SparseMatrix& matrix, LinearSolver::Counts& counts) {
+    if (const Pattern now(matrix); !(now == pattern)) {
+      method.analyzePattern(matrix);
+      pattern = now;
+      ++counts.analyses;
+    }
+    method.factorize(matrix);
+    ++counts.factorisations;
+    return method.info() == Eigen::Success && method.reciprocal_condition() > singular;
+  }
+};
+
+/// Brings the diagonal of a matrix to one: degrees of freedom have different units.
+Vector scales_of(const SparseMatrix& matrix) {
+  return matrix.diagonal().unaryExpr([](double d) { return d == 0 ? 1.0 : 1 / std::sqrt(std::abs(d)); });
+}
+
+}  // namespace
+
+struct LinearSolver::Factors {
+  Factorisation<Cholesky> symmetric;
+  Factorisation<Lu> general;
+};
+
+LinearSolver::LinearSolver() : factors_(std::make_unique<Factors>()) { factors_->symmetric.method.cholmod().print = 0; }
+LinearSolver::~LinearSolver() = default;
+
+Vector LinearSolver::solve(const SparseMatrix& matrix, const Vector& right_side, bool symmetric) {
+  const auto start = std::chrono::steady_clock::now();
+  const Vector scales = scales_of(matrix), right = scales.cwiseProduct(right_side);
+  const SparseMatrix scaled = scales.asDiagonal() * matrix * scales.asDiagonal();
+  Vector x;
+  if (symmetric && factors_->symmetric.factorise(scaled, counts_)) {
+    x = factors_->symmetric.method.solve(right);
+  } else if (factors_->general.factorise(scaled, counts_)) {
+    x = factors_->general.method.solve(right);
+  }
+  counts_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (x.size() == right.size() && x.allFinite()) return scales.cwiseProduct(x);
+  throw PhysicsError(
+      "the tangent is singular: some body is free to move without any force; static runs need --pseudo-inertia then");
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+
+#include "reference/bodies.hpp"
+
+namespace pliant::reference {
+
+/// Solves sparse systems by SuiteSparse: CHOLMOD where the matrix is symmetric and positive definite, UMFPACK elsewhere. The symbolic
+/// factorisation is kept for as long as the pattern stands.
+class LinearSolver {
+ public:
+  LinearSolver();
+  ~LinearSolver();
+
+  /// Throws PhysicsError for a singular matrix.
+  Vector solve(const SparseMatrix& matrix, const Vector& right_side, bool symmetric);
+
+  struct Counts {
+    long analyses = 0, factorisations = 0;
+    double seconds = 0;     ///< in analyses, factorisations and solutions
+    long largest_size = 0;  ///< entries of the largest factor
+  };
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct Factors;
+  std::unique_ptr<Factors> factors_;
+  Counts counts_;
+};
+
+}  // namespace pliant::reference

@@ -1,0 +1,265 @@
+#include "reference/loads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/errors.hpp"
+
+namespace pliant::reference {
+namespace {
+
+using Kind = BoundaryCondition::Kind;
+using Mode = Drive::Mode;
+
+Vec2 outward(const Vec2& from, const Vec2& to) { return {(to - from).y(), -(to - from).x()}; }
+
+bool in_part(const OutlinePart& part, const Vec2& a, const Vec2& b, const Vec2& centre) {
+  const Vec2 middle = 0.5 * (a + b), arm = middle - centre;
+  const double turn = 2 * std::numbers::pi, direction = std::atan2(arm.y(), arm.x());
+  switch (part.kind) {
+    case OutlinePart::Kind::all:
+      return true;
+    case OutlinePart::Kind::angles: {
+      const double range = part.second - part.first, from_first = direction - part.first;
+      return range >= turn ||
+             from_first - turn * std::floor(from_first / turn) <= range - turn * std::floor(range / turn);
+    }
+    case OutlinePart::Kind::box:
+      return middle.x() >= part.low.x() && middle.x() <= part.high.x() && middle.y() >= part.low.y() &&
+             middle.y() <= part.high.y();
+    case OutlinePart::Kind::side:
+      return outward(a, b).dot(part.side) > (b - a).norm() / std::numbers::sqrt2;
+  }
+  return true;
+}
+
+/// Displacement of a support's target along one axis, or its velocity. What began before the window began to act does not count.
+double target(const Drive& drive, double time, double from) {
+  if (drive.mode == Mode::displacement) return drive.history.at(time);
+  return drive.mode == Mode::velocity ? drive.history.integral(from, time) : 0.0;
+}
+
+double target_velocity(const Drive& drive, double time) {
+  if (drive.mode == Mode::displacement) return drive.history.slope(time);
+  return drive.mode == Mode::velocity ? drive.history.at(time) : 0.0;
+}
+
+bool acts(const OutlineLoad& load, double time) { return load.condition.window.contains(time); }
+const Drive& drive_of(const OutlineLoad& support, int axis) {
+  return axis == 0 ? support.condition.x : support.condition.y;
+}
+bool holds(const OutlineLoad& support, int axis) { return drive_of(support, axis).mode != Mode::free; }
+
+Vec2 moved(const OutlineLoad& support, double time) {
+  const double from = std::max(0.0, support.condition.window.from);
+  return {target(support.condition.x, time, from), target(support.condition.y, time, from)};
+}
+
+/// Force per pressure on a node, m.
+Vec2 pressed(const OutlineLoad& load, const LoadedNode& node, const Points& x) {
+  const BoundaryCondition& condition = load.condition;
+  if (!condition.following) return condition.direction ? Vec2(node.length * *condition.direction) : Vec2(-node.normal);
+  Vec2 normal(0, 0);
+  if (node.before >= 0) normal += 0.5 * outward(x[node.before], x[node.node]);
+  if (node.after >= 0) normal += 0.5 * outward(x[node.node], x[node.after]);
+  return -normal;
+}
+
+Vec2 stretch(const OutlineLoad& support, const LoadedNode& node, const Points& x, double time) {
+  Vec2 result = x[node.node] - node.start - moved(support, time);
+  for (int c = 0; c < 2; ++c)
+    if (!holds(support, c)) result[c] = 0;
+  return result;
+}
+
+/// Of minus p/2 (outward(before, node) + outward(node, after)): the node's own place drops out when both segments count.
+void add_following_tangent(const LoadedNode& node, double pressure, Triplets& tangent) {
+  const auto add = [&](int by, double sign) {  // residual = +p/2 outward(...): outward of e is (e_y, -e_x)
+    tangent.emplace_back(2 * node.node, 2 * by + 1, sign * 0.5 * pressure);
+    tangent.emplace_back(2 * node.node + 1, 2 * by, -sign * 0.5 * pressure);
+  };
+  if (node.before >= 0) add(node.node, 1), add(node.before, -1);
+  if (node.after >= 0) add(node.after, 1), add(node.node, -1);
+}
+
+}  // namespace
+
+Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
+  const Scene& scene = bodies.scene();
+  const Vector mass = bodies.lumped_mass();
+  gravity_ = mass_damping_ = Vector::Zero(bodies.dofs());
+  for (const Body& body : bodies.all())
+    for (int i = 0; i < body.dofs; ++i) {
+      const int dof = body.first_dof + i;
+      if (body.compliant() || i < 2) gravity_[dof] = mass[dof] * scene.gravity[i % 2];
+      if (!body.placed.wall) mass_damping_[dof] = mass[dof] * bodies.material_of(body).mass_damping;
+    }
+  add_walls();
+  for (const BoundaryCondition& condition : scene.boundary) {
+    int number = 0;
+    for (const Body& body : bodies.all()) {
+      if (body.placed.wall || scene.grains[body.placed.grains].name != condition.grains) continue;
+      if (condition.number.value_or(number) == number) add_condition(condition, body);
+      ++number;
+    }
+  }
+}
+
+void Loads::add_walls() {
+  for (const Body& body : bodies_.all()) {
+    if (!body.placed.wall) continue;
+    const Wall& wall = bodies_.scene().walls[body.placed.number_of_wall];
+    rigid_.push_back({body.first_dof, wall.x, 1});
+    rigid_.push_back({body.first_dof + 1, wall.y, wall.y.mode == Mode::pressure ? -body.turn_shift : 1});
+    rigid_.push_back({body.first_dof + 2, Drive{}, 1});
+  }
+}
+
+void Loads::add_condition(const BoundaryCondition& condition, const Body& body) {
+  if (condition.kind != Kind::drive) {
+    outline_.push_back(outline_load(condition, body));
+    return;
+  }
+  const Drive* drives[3] = {&condition.x, &condition.y, &condition.angle};
+  for (int c = 0; c < 3; ++c)
+    if (drives[c]->mode != Mode::free) rigid_.push_back({body.first_dof + c, *drives[c], 1});
+}
+
+OutlineLoad Loads::outline_load(const BoundaryCondition& condition, const Body& body) const {
+  const Points x = bodies_.outline_positions(bodies_.initial_positions());
+  const int n = static_cast<int>(body.outline.size());
+  const auto at = [&](int k) { return body.first_outline + (k + n) % n; };
+  const auto chosen = [&](int k) { return in_part(condition.part, x[at(k)], x[at(k + 1)], body.placed.centre); };
+  OutlineLoad load{.condition = condition, .nodes = {}};
+  for (int k = 0; k < n; ++k) {
+    LoadedNode node{.node = at(k), .start = x[at(k)]};
+    const auto count = [&](int a, int b) {
+      node.normal += 0.5 * outward(x[a], x[b]);
+      node.length += 0.5 * (x[b] - x[a]).norm();
+    };
+    if (chosen(k - 1)) node.before = at(k - 1), count(node.before, node.node);
+    if (chosen(k)) node.after = at(k + 1), count(node.node, node.after);
+    if (node.length > 0) load.nodes.push_back(node);
+  }
+  if (load.nodes.empty())
+    throw InputError(fmt::format("{}: no segment of the outline of '{}' lies in the part that [[boundary]] names",
+                                 bodies_.scene().file.string(), body.placed.name));
+  load.stiffness = condition.stiffness.value_or(8 * bodies_.material_of(body).young / mean_spacing(body.outline, 0));
+  return load;
+}
+
+const RigidLoad* Loads::of(int dof) const {
+  for (const RigidLoad& load : rigid_)
+    if (load.dof == dof) return &load;
+  return nullptr;
+}
+
+Vector Loads::applied(double time) const {
+  Vector force = gravity_;
+  for (const RigidLoad& load : rigid_)
+    if (load.loaded(time)) force[load.dof] += load.factor * load.drive.history.at(time);
+  return force;
+}
+
+OutlineResidual Loads::outlines(const Points& x, double time) const {
+  OutlineResidual result{.residual = Vector::Zero(2 * static_cast<int>(x.size())), .tangent = {}};
+  for (const OutlineLoad& load : outline_) {
+    if (!acts(load, time)) continue;
+    for (const LoadedNode& node : load.nodes) {
+      auto residual = result.residual.segment<2>(2 * node.node);
+      if (load.condition.kind == Kind::pressure) {
+        const double pressure = load.condition.pressure.at(time);
+        residual -= pressure * pressed(load, node, x);
+        if (load.condition.following) add_following_tangent(node, pressure, result.tangent), result.symmetric = false;
+        continue;
+      }
+      const Vec2 spring = stretch(load, node, x, time);
+      const double stiffness = load.stiffness * node.length;
+      residual += stiffness * spring;
+      result.stored += 0.5 * stiffness * spring.squaredNorm();
+      for (int c = 0; c < 2; ++c)
+        if (holds(load, c)) result.tangent.emplace_back(2 * node.node + c, 2 * node.node + c, stiffness);
+    }
+  }
+  return result;
+}
+
+double Loads::outline_work(const Points& x0, double t0, const Points& x1, double t1) const {
+  double work = 0;
+  for (const OutlineLoad& load : outline_) {
+    const bool before = acts(load, t0), after = acts(load, t1);
+    for (const LoadedNode& node : load.nodes) {
+      if (load.condition.kind == Kind::pressure) {
+        Vec2 force(0, 0);
+        if (before) force += load.condition.pressure.at(t0) * pressed(load, node, x0);
+        if (after) force += load.condition.pressure.at(t1) * pressed(load, node, x1);
+        work += 0.5 * force.dot(x1[node.node] - x0[node.node]);
+        continue;
+      }
+      const double stiffness = load.stiffness * node.length;
+      const Vec2 first = stretch(load, node, x0, t0), last = stretch(load, node, x1, t1);
+      // A moving target stretches its spring; one that sets in or ends brings or takes the spring's energy.
+      if (before) work -= 0.5 * stiffness * (first + last).dot(moved(load, t1) - moved(load, t0));
+      if (before != after) work += (after ? 0.5 : -0.5) * stiffness * last.squaredNorm();
+    }
+  }
+  return work;
+}
+
+Vector Loads::dof_damping(double time) const {
+  Vector damping = mass_damping_;
+  for (const RigidLoad& load : rigid_)
+    if (load.loaded(time)) damping[load.dof] += load.drive.damping * std::abs(load.factor);
+  return damping;
+}
+
+Vector Loads::outline_damping(double time) const {
+  Vector damping = Vector::Zero(2 * bodies_.outline_nodes());
+  for (const OutlineLoad& load : outline_)
+    if (load.condition.kind == Kind::support && acts(load, time))
+      for (const LoadedNode& node : load.nodes)
+        for (int c = 0; c < 2; ++c)
+          if (holds(load, c)) damping[2 * node.node + c] += load.condition.damping * node.length;
+  return damping;
+}
+
+Vector Loads::outline_target_velocity(double time) const {
+  Vector velocity = Vector::Zero(2 * bodies_.outline_nodes());
+  for (const OutlineLoad& load : outline_)
+    if (load.condition.kind == Kind::support && acts(load, time))
+      for (const LoadedNode& node : load.nodes)
+        for (int c = 0; c < 2; ++c) velocity[2 * node.node + c] = target_velocity(drive_of(load, c), time);
+  return velocity;
+}
+
+bool Loads::imposed(int dof, double time) const {
+  const RigidLoad* load = of(dof);
+  return load && load->imposed(time);
+}
+
+double Loads::imposed_position(int dof, double q0, double t0, double t1) const {
+  const Drive& drive = of(dof)->drive;
+  return drive.mode == Mode::velocity ? q0 + drive.history.integral(t0, t1) : q0;
+}
+
+double Loads::imposed_velocity(int dof, double time) const {
+  const Drive& drive = of(dof)->drive;
+  return drive.mode == Mode::velocity ? drive.history.at(time) : 0.0;
+}
+
+std::vector<double> Loads::switch_times() const {
+  std::vector<double> times;
+  const auto add = [&](const Window& window) {
+    for (const double t : {window.from, window.until})
+      if (std::isfinite(t) && t > 0) times.push_back(t);
+  };
+  for (const RigidLoad& load : rigid_) add(load.drive.window);
+  for (const OutlineLoad& load : outline_) add(load.condition.window);
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <vector>
+
+#include "reference/bodies.hpp"
+
+namespace pliant::reference {
+
+/// What acts on one rigid degree of freedom (METHOD 5).
+struct RigidLoad {
+  int dof = 0;
+  Drive drive;
+  double factor = 1;  ///< load = factor x history: signed period for a wall's pressure
+  bool imposed(double time) const {
+    return (drive.mode == Drive::Mode::fixed || drive.mode == Drive::Mode::velocity) && drive.window.contains(time);
+  }
+  bool loaded(double time) const {
+    return (drive.mode == Drive::Mode::force || drive.mode == Drive::Mode::pressure) && drive.window.contains(time);
+  }
+};
+
+/// A node of an outline with the two neighbours that its chosen segments lead to; -1: that segment is not chosen.
+struct LoadedNode {
+  int node = 0, before = -1, after = -1;  ///< in the list of all outline nodes
+  Vec2 start{0, 0};                       ///< m
+  Vec2 normal{0, 0};                      ///< half the sum of the chosen segments' outward normals at the start, m
+  double length = 0;                      ///< half the sum of their lengths, m
+};
+
+/// A pressure or a soft support on a part of one body's outline.
+struct OutlineLoad {
+  BoundaryCondition condition;
+  std::vector<LoadedNode> nodes;
+  double stiffness = 0;  ///< of a support, Pa/m
+};
+
+/// Forces on the outlines as residuals (minus the force), with their tangent.
+struct OutlineResidual {
+  Vector residual;    ///< [2 outline nodes], N/m
+  Triplets tangent;   ///< of it by the outline's positions
+  double stored = 0;  ///< in the supports' springs, J/m
+  bool symmetric = true;
+};
+
+/// Everything that acts on bodies from outside.
+class Loads {
+ public:
+  explicit Loads(const Bodies& bodies);
+
+  /// Forces of histories, and gravity, on the degrees of freedom: [dofs], N/m.
+  Vector applied(double time) const;
+  const Vector& gravity() const { return gravity_; }
+  /// Pressures and supports.
+  OutlineResidual outlines(const Points& x, double time) const;
+  /// Work of pressures, and of supports whose targets move, between two times, by the mean of the forces, J/m.
+  double outline_work(const Points& x0, double t0, const Points& x1, double t1) const;
+  /// Damping forces are minus this matrix times the velocities less those of moving supports: on degrees of freedom, and on outlines.
+  Vector dof_damping(double time) const;
+  Vector outline_damping(double time) const;
+  Vector outline_target_velocity(double time) const;
+
+  bool imposed(int dof, double time) const;
+  /// Position at t1 of a degree of freedom that is imposed from t0 on and was at q0 then.
+  double imposed_position(int dof, double q0, double t0, double t1) const;
+  double imposed_velocity(int dof, double time) const;
+  std::vector<double> switch_times() const;
+
+ private:
+  void add_walls();
+  void add_condition(const BoundaryCondition& condition, const Body& body);
+  OutlineLoad outline_load(const BoundaryCondition& condition, const Body& body) const;
+  const RigidLoad* of(int dof) const;
+
+  const Bodies& bodies_;
+  Vector gravity_, mass_damping_;
+  std::vector<RigidLoad> rigid_;
+  std::vector<OutlineLoad> outline_;
+};
+
+}  // namespace pliant::reference

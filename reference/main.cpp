@@ -1,0 +1,85 @@
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+
+#include "core/errors.hpp"
+#include "reference/run.hpp"
+#include "scene/units.hpp"
+
+namespace pliant::reference {
+namespace {
+
+/// A time such as "0.02 us"; a plain number means seconds, as in scene files.
+double parse_time(const char* option, const std::string& text) {
+  double time = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
+  try {
+    if (error != std::errc() || end != text.data() + text.size()) time = parse_quantity(text, "s");
+  } catch (const UnitError& failure) {
+    throw InputError(fmt::format("{} {}: {}", option, text, failure.what()));
+  }
+  if (std::isfinite(time) && time > 0) return time;
+  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
+}
+
+int main_program(int argc, char** argv) {
+  CLI::App app{"Pliant's reference solver: implicit, slow, independent of the engine"};
+  std::string file, until, dt;
+  RunOptions options;
+  std::optional<MassMatrix> mass;
+  const std::map<std::string, MassMatrix> masses{
+      {"lumped", MassMatrix::lumped}, {"corrected", MassMatrix::corrected}, {"consistent", MassMatrix::consistent}};
+  app.add_option("scene", file, "Scene file (TOML)")->required();
+  app.add_option("--out", options.out, "Output folder; default results/<scene name>_reference");
+  app.add_option("--until", until, "End time instead of the scene's, as in \"0.02 us\"");
+  app.add_option("--dt", dt, "Time step; default: the fastest wave over a segment");
+  app.add_option("--mass", mass, "lumped, corrected or consistent; default the scene's")
+      ->transform(CLI::CheckedTransformer(masses));
+  app.add_option("--hht", options.solver.hht, "alpha of Hilber, Hughes and Taylor; 0: Newmark")
+      ->check(CLI::Range(-1.0 / 3, 0.0));
+  app.add_flag("--static", options.solver.statics, "Equilibrium at each time, without inertia");
+  app.add_option("--pseudo-inertia", options.solver.pseudo_inertia,
+                 "Static: holds floating bodies while they settle, a share of the largest stiffness")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--tolerance", options.solver.newton.tolerance, "Newton: residual over the forces")
+      ->check(CLI::Range(1e-14, 1e-2));
+  app.add_flag("--force", options.force, "Overwrite results in the output folder");
+  app.add_flag("--quiet", options.quiet, "Print errors only");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
+  }
+  if (options.quiet) spdlog::set_level(spdlog::level::err);
+  Scene scene = read_scene(file);
+  if (!until.empty()) scene.time.end = parse_time("--until", until);
+  if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
+  options.solver.mass =
+      mass.value_or(scene.discretisation.mass == Mass::corrected ? MassMatrix::corrected : MassMatrix::lumped);
+  if (options.out.empty()) options.out = std::filesystem::path("results") / (scene.name + "_reference");
+  run_scene(scene, options);
+  return 0;
+}
+
+}  // namespace
+}  // namespace pliant::reference
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("pliant reference"));
+  spdlog::set_pattern("%l: %v");
+  try {
+    return pliant::reference::main_program(argc, argv);
+  } catch (const pliant::Error& error) {
+    fmt::print(stderr, "error: {}\n", error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "error: out of memory\n");
+    return static_cast<int>(pliant::ExitCode::physics_failure);
+  }
+}

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cmath>
+
+#include "scene/scene.hpp"
+
+namespace pliant::reference {
+
+/// Deformation gradient of plane strain, of numbers or of anything that is calculated with like numbers. zz is 1 in
+/// every solution: as a variable it gives the stress out of the plane.
+template <class Scalar>
+struct Deformation {
+  Scalar xx{}, xy{}, yx{}, yy{}, zz{1.0};
+};
+
+/// Lame constants and bulk modulus, 3D, of young and poisson, Pa.
+struct Moduli {
+  double mu, lambda, bulk;
+};
+inline Moduli moduli(const Material& material) {
+  const double E = material.young, nu = material.poisson;
+  return {E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu)), E / (3 * (1 - 2 * nu))};
+}
+
+template <class Scalar>
+Scalar jacobian(const Deformation<Scalar>& F) {
+  return (F.xx * F.yy - F.xy * F.yx) * F.zz;
+}
+
+/// First invariant of F^T F.
+template <class Scalar>
+Scalar first_invariant(const Deformation<Scalar>& F) {
+  return F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy + F.zz * F.zz;
+}
+
+/// Small strain energy of the symmetric part of F - I: F measured from an unrotated start.
+template <class Scalar>
+Scalar linear_elastic_energy(const Moduli& m, const Deformation<Scalar>& F) {
+  const Scalar xx = F.xx - 1.0, yy = F.yy - 1.0, zz = F.zz - 1.0, xy = 0.5 * (F.xy + F.yx);
+  const Scalar trace = xx + yy + zz;
+  return m.mu * (xx * xx + yy * yy + zz * zz + 2.0 * xy * xy) + 0.5 * m.lambda * trace * trace;
+}
+
+/// Strain energy per reference volume, Pa (METHOD 3). Not a number where J <= 0, but for `linear_elastic`.
+template <class Scalar>
+Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
+  using std::log, std::pow;
+  const Moduli m = moduli(material);
+  if (material.law == MaterialLaw::linear_elastic) return linear_elastic_energy(m, F);
+  const Scalar J = jacobian(F), I1 = first_invariant(F), volume = J - 1.0;
+  if (material.law == MaterialLaw::melody)
+    return 0.5 * m.bulk * volume * volume + 0.5 * m.mu * (pow(J, -2.0 / 3) * I1 - 3.0);
+  const Scalar shear = 0.5 * m.mu * (I1 - 3.0 - 2.0 * log(J));
+  if (material.law == MaterialLaw::neo_hookean_quadratic) return shear + 0.5 * m.lambda * volume * volume;
+  return shear + 0.5 * m.lambda * log(J) * log(J);
+}
+
+/// Kelvin-Voigt by implicit steps: eta |E - E_before|^2 / dt, whose derivative by F is F S with the second Piola stress
+/// S = 2 eta (E - E_before)/dt. Twice its value is the work that the step dissipates. E: Green-Lagrange strain.
+template <class Scalar>
+Scalar viscous_potential(double viscosity, double dt, const Deformation<Scalar>& F, const Deformation<double>& before) {
+  // 2 (E - E_before) = F^T F - F0^T F0, the symmetric part of (F - F0)^T (F + F0): exact for small steps as well.
+  const Deformation<Scalar> d{F.xx - before.xx, F.xy - before.xy, F.yx - before.yx, F.yy - before.yy};
+  const Deformation<Scalar> s{F.xx + before.xx, F.xy + before.xy, F.yx + before.yx, F.yy + before.yy};
+  const Scalar xx = 0.5 * (d.xx * s.xx + d.yx * s.yx), yy = 0.5 * (d.xy * s.xy + d.yy * s.yy);
+  const Scalar xy = 0.25 * (d.xx * s.xy + d.yx * s.yy + d.xy * s.xx + d.yy * s.yx);
+  return viscosity / dt * (xx * xx + yy * yy + 2.0 * xy * xy);
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,101 @@
+#include "reference/materials/internal.hpp"
+
+#include <cmath>
+
+#include "reference/jet.hpp"
+
+namespace pliant::reference {
+namespace {
+
+/// F at a point, from the list of all points' entries.
+Deformation<double> entries_at(const Eigen::VectorXd& F, Eigen::Index point) {
+  return {F[4 * point], F[4 * point + 1], F[4 * point + 2], F[4 * point + 3]};
+}
+
+/// F with its entries as variables 0 to 3; with five variables zz as variable 4.
+template <int N>
+Deformation<Jet<N>> as_variables(const Deformation<double>& F) {
+  Deformation<Jet<N>> result{Jet<N>(F.xx, 0), Jet<N>(F.xy, 1), Jet<N>(F.yx, 2), Jet<N>(F.yy, 3)};
+  if constexpr (N > 4) result.zz = Jet<N>(F.zz, 4);
+  return result;
+}
+
+}  // namespace
+
+InternalForces::InternalForces(const Space& space, const Material& material, double size, double angle)
+    : material_(material), cos_(std::cos(angle)), sin_(std::sin(angle)), weight_(space.points.size()) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t g = 0; g < space.points.size(); ++g) {
+    const Point& point = space.points[g];
+    weight_[Eigen::Index(g)] = point.weight * size * size;
+    for (std::size_t i = 0; i < point.node.size(); ++i)
+      for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 2; ++column)
+          entries.emplace_back(4 * int(g) + 2 * row + column, 2 * point.node[i] + row,
+                               point.gradient[i][column] / size);
+  }
+  gradient_.resize(4 * weight_.size(), 2 * Eigen::Index(space.mesh.nodes.size()));
+  gradient_.setFromTriplets(entries.begin(), entries.end());
+}
+
+template <class Scalar>
+Deformation<Scalar> InternalForces::measured(const Deformation<Scalar>& F) const {
+  if (material_.law != MaterialLaw::linear_elastic) return F;
+  return {F.xx * cos_ - F.xy * sin_, F.xx * sin_ + F.xy * cos_, F.yx * cos_ - F.yy * sin_, F.yx * sin_ + F.yy * cos_,
+          F.zz};  // F R^T
+}
+
+InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent,
+                                       const std::optional<Increment>& increment) const {
+  const Eigen::VectorXd F = gradient_ * q;
+  const bool viscous = increment && material_.viscosity > 0;
+  const Eigen::VectorXd F_before = viscous ? Eigen::VectorXd(gradient_ * increment->before) : Eigen::VectorXd();
+  InternalState state;
+  Eigen::VectorXd stress(F.size());
+  std::vector<Eigen::Triplet<double>> stiffness;
+  for (Eigen::Index g = 0; g < weight_.size(); ++g) {
+    const auto variables = as_variables<4>(entries_at(F, g));
+    Jet<4> energy = strain_energy(material_, measured(variables));
+    state.energy += weight_[g] * energy.value;
+    if (viscous) {
+      const Jet<4> lost =
+          viscous_potential(material_.viscosity, increment->duration, variables, entries_at(F_before, g));
+      state.dissipated += weight_[g] * 2 * lost.value;
+      energy += lost;
+    }
+    stress.segment<4>(4 * g) = weight_[g] * energy.gradient;
+    for (int i = 0; tangent && i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        stiffness.emplace_back(4 * int(g) + i, 4 * int(g) + j, weight_[g] * energy.hessian(i, j));
+    const double J = jacobian(entries_at(F, g));
+    if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
+  }
+  state.residual = gradient_.transpose() * stress;
+  if (tangent) {
+    Eigen::SparseMatrix<double> of_points(F.size(), F.size());
+    of_points.setFromTriplets(stiffness.begin(), stiffness.end());
+    const Eigen::SparseMatrix<double> columns = of_points * gradient_;
+    state.tangent = Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
+  }
+  return state;
+}
+
+std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) const {
+  const Eigen::VectorXd all = gradient_ * q;
+  std::vector<PointStress> result;
+  for (Eigen::Index g = 0; g < weight_.size(); ++g) {
+    // Differentiated by the F that the law sees, which for small strains is also that of the stress.
+    const Deformation<double> F = measured(entries_at(all, g));
+    const Jet<5> energy = strain_energy(material_, as_variables<5>(F));
+    const auto& P = energy.gradient;
+    const double J = jacobian(F);
+    if (material_.law == MaterialLaw::linear_elastic)
+      result.push_back({P[0], P[3], P[1], P[4], J, energy.value});
+    else  // P F^T / J
+      result.push_back({(P[0] * F.xx + P[1] * F.xy) / J, (P[2] * F.yx + P[3] * F.yy) / J,
+                        (P[0] * F.yx + P[1] * F.yy) / J, P[4] / J, J, energy.value});
+  }
+  return result;
+}
+
+}  // namespace pliant::reference

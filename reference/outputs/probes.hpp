@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "files/text_files.hpp"
+#include "reference/outputs/view.hpp"
+
+namespace pliant::reference {
+
+/// probes.csv with the columns of the engine's, for the quantities that this solver measures.
+class ProbeFile {
+ public:
+  ProbeFile(const Bodies& bodies, const std::filesystem::path& folder);
+
+  double next_time() const;
+  void record_due(const View& view);
+  /// Names of the scene's probes whose quantities are not measured here.
+  const std::vector<std::string>& left_out() const { return left_out_; }
+
+ private:
+  struct Entry {
+    Probe probe;
+    std::vector<int> bodies;  ///< that `of` names
+    std::size_t columns = 0;
+    long count = 0;  ///< rows so far
+  };
+  std::vector<std::string> choose(const Bodies& bodies);
+
+  std::vector<Entry> entries_;
+  std::vector<std::string> left_out_;
+  CsvFile file_;
+};
+
+}  // namespace pliant::reference

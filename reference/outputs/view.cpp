@@ -1,0 +1,106 @@
+#include "reference/outputs/view.hpp"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace pliant::reference {
+namespace {
+
+Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
+
+/// Nodes of a rigid body at an angle about its centre.
+Points turned(const Body& body, const Vec2& centre, double angle) {
+  Points points;
+  for (const Vec2& p : body.outline) points.push_back(centre + Eigen::Rotation2Dd(angle) * p);
+  return points;
+}
+
+}  // namespace
+
+Vec2 View::mean(const Body& body, const Vector& values) const {
+  if (!body.compliant()) return values.segment<2>(body.first_dof);
+  const Vector& mass = bodies().space_of(body).lumped;
+  Vec2 sum(0, 0);
+  for (int i = 0; i < mass.size(); ++i) sum += mass[i] * values.segment<2>(body.first_dof + 2 * i);
+  return sum / mass.sum();
+}
+
+Points View::at_nodes(const Body& body, const Vector& values) const {
+  Points points;
+  for (const Row& row : bodies().space_of(body).nodes) {
+    Vec2 at(0, 0);
+    for (std::size_t e = 0; e < row.node.size(); ++e)
+      at += row.value[e] * values.segment<2>(body.first_dof + 2 * row.node[e]);
+    points.push_back(at);
+  }
+  return points;
+}
+
+Points View::positions_of(const Body& body) const {
+  if (body.compliant()) return at_nodes(body, positions());
+  return turned(body, positions().segment<2>(body.first_dof), positions()[body.first_dof + 2]);
+}
+
+Points View::start_of(const Body& body) const {
+  if (!body.compliant()) return turned(body, body.placed.centre, body.placed.angle);
+  Points points;
+  for (const Vec2& node : bodies().space_of(body).mesh.nodes)
+    points.push_back(body.placed.centre + Eigen::Rotation2Dd(body.placed.angle) * (body.placed.scale * node));
+  return points;
+}
+
+Points View::velocities_of(const Body& body) const {
+  if (body.compliant()) return at_nodes(body, velocities());
+  const Eigen::Vector3d v = velocities().segment<3>(body.first_dof);
+  Points points = positions_of(body);
+  for (Vec2& p : points) p = v.head<2>() + v[2] * turned_left(p - positions().segment<2>(body.first_dof));
+  return points;
+}
+
+Points View::accelerations_of(const Body& body) const {
+  if (body.compliant()) return at_nodes(body, accelerations());
+  const Eigen::Vector3d a = accelerations().segment<3>(body.first_dof);
+  const double spin = velocities()[body.first_dof + 2];
+  Points points = positions_of(body);
+  for (Vec2& p : points) {
+    const Vec2 arm = p - positions().segment<2>(body.first_dof);
+    p = a.head<2>() + a[2] * turned_left(arm) - spin * spin * arm;
+  }
+  return points;
+}
+
+const InternalForces& View::internal_of(const Body& body) const {
+  std::size_t number = 0;
+  for (const Body& other : bodies().all()) {
+    if (&other == &body) break;
+    number += other.compliant();
+  }
+  return system_.internal()[number];
+}
+
+std::vector<PointStress> View::stresses_of(const Body& body) const {
+  return internal_of(body).stresses(positions().segment(body.first_dof, body.dofs));
+}
+
+const Vector& View::weights_of(const Body& body) const { return internal_of(body).weights(); }
+
+Points View::contact_forces() const {
+  Points forces(static_cast<std::size_t>(bodies().outline_nodes()), Vec2(0, 0));
+  for (const ContactElement& element : this->forces().contacts.elements)
+    for (int i = 0; i < 3; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
+  return forces;
+}
+
+double View::kinetic_energy(const Body& body) const {
+  Vector own = Vector::Zero(bodies().dofs());
+  own.segment(body.first_dof, body.dofs) = velocities().segment(body.first_dof, body.dofs);
+  return 0.5 * own.dot(run_.mass() * own);
+}
+
+double von_mises(const PointStress& s) {
+  return std::sqrt(0.5 * (std::pow(s.xx - s.yy, 2) + std::pow(s.yy - s.zz, 2) + std::pow(s.zz - s.xx, 2)) +
+                   3 * s.xy * s.xy);
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "reference/time_stepping.hpp"
+
+namespace pliant::reference {
+
+/// A run at one accepted motion, as outputs see it.
+class View {
+ public:
+  View(const System& system, const TimeStepping& run) : system_(system), run_(run), acceleration_(run.acceleration()) {}
+
+  const Bodies& bodies() const { return system_.bodies(); }
+  const System& system() const { return system_; }
+  const TimeStepping& run() const { return run_; }
+  const Forces& forces() const { return run_.forces(); }
+  const Vector& positions() const { return run_.motion().q; }
+  const Vector& velocities() const { return run_.motion().v; }
+  const Vector& accelerations() const { return acceleration_; }
+
+  /// Mean over mass of a vector of degrees of freedom: of positions the centre of mass.
+  Vec2 mean(const Body& body, const Vector& values) const;
+  /// At all nodes that probes and pictures name: field nodes of a compliant body, outline nodes of a rigid one.
+  Points positions_of(const Body& body) const;
+  Points start_of(const Body& body) const;
+  Points velocities_of(const Body& body) const;
+  Points accelerations_of(const Body& body) const;
+  /// Elastic stresses at the points of a compliant body, and the points' weights.
+  std::vector<PointStress> stresses_of(const Body& body) const;
+  const Vector& weights_of(const Body& body) const;
+  Points contact_forces() const;  ///< [outline nodes], N/m
+  double kinetic_energy(const Body& body) const;
+
+ private:
+  Points at_nodes(const Body& body, const Vector& values) const;
+  const InternalForces& internal_of(const Body& body) const;
+
+  const System& system_;
+  const TimeStepping& run_;
+  const Vector& acceleration_;
+};
+
+/// Mean-free part of a plane stress with its part out of the plane, Pa.
+double von_mises(const PointStress& stress);
+
+}  // namespace pliant::reference

@@ -1,0 +1,121 @@
+#include "reference/system.hpp"
+
+namespace pliant::reference {
+namespace {
+
+/// Entries of a sparse matrix, to be added up with others from row and column `first` on.
+void append(const SparseMatrix& matrix, int first, Triplets& entries) {
+  for (int column = 0; column < matrix.outerSize(); ++column)
+    for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry)
+      entries.emplace_back(first + static_cast<int>(entry.row()), first + column, entry.value());
+}
+
+SparseMatrix assembled(const Triplets& entries, int size) {
+  SparseMatrix matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+}  // namespace
+
+System::System(const Scene& scene)
+    : bodies_(scene), loads_(bodies_), contacts_(bodies_.scene(), bodies_.contact_outlines()) {
+  for (const Body& body : bodies_.all())
+    if (body.compliant())
+      internal_.emplace_back(bodies_.space_of(body), bodies_.material_of(body), body.placed.scale, body.placed.angle);
+}
+
+void System::accept(const Motion& motion) {
+  contacts_.accept();
+  accepted_ = motion;
+}
+
+Forces System::evaluate(const Motion& motion, bool tangent) {
+  Forces forces;
+  forces.residual = forces.magnitude = forces.damping = Vector::Zero(bodies_.dofs());
+  Triplets entries;
+  add_internal(motion, tangent, forces, entries);
+  if (!(forces.least_jacobian > 0)) return forces;
+  add_outlines(motion, tangent, forces, entries);
+  add_applied(motion, forces);
+  add_damping(motion, forces);
+  if (tangent) forces.stiffness = assembled(entries, bodies_.dofs());
+  return forces;
+}
+
+void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) const {
+  std::size_t number = 0;
+  for (std::size_t b = 0; b < bodies_.all().size(); ++b) {
+    const Body& body = bodies_.all()[b];
+    if (!body.compliant()) continue;
+    const int first = body.first_dof;
+    std::optional<Increment> increment;
+    if (bodies_.material_of(body).viscosity > 0 && motion.time > accepted_.time)
+      increment = {accepted_.q.segment(first, body.dofs), motion.time - accepted_.time};
+    const InternalState internal = internal_[number++].evaluate(motion.q.segment(first, body.dofs), tangent, increment);
+    if (internal.least_jacobian < forces.least_jacobian) {
+      forces.least_jacobian = internal.least_jacobian;
+      forces.worst_body = static_cast<int>(b);
+    }
+    if (!(internal.least_jacobian > 0)) return;
+    forces.strain += internal.energy;
+    forces.dissipated_by_viscosity += internal.dissipated;
+    forces.residual.segment(first, body.dofs) += internal.residual;
+    forces.magnitude.segment(first, body.dofs) += internal.residual.cwiseAbs();
+    if (tangent) append(internal.tangent, first, entries);
+  }
+}
+
+/// Contacts, pressures and supports act on outlines, and through them on the bodies.
+void System::add_outlines(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) {
+  const Points x = bodies_.outline_positions(motion.q);
+  OutlineResidual outlines = loads_.outlines(x, motion.time);
+  forces.boundary = outlines.stored;
+  forces.contacts = contacts_.evaluate(x);
+  forces.contact = forces.contacts.stored;
+  forces.dissipated = forces.contacts.dissipated;
+  Vector magnitude = outlines.residual.cwiseAbs();
+  for (const ContactElement& element : forces.contacts.elements) {
+    forces.deepest = std::max(forces.deepest, element.depth);
+    for (int i = 0; i < 6; ++i) {
+      const int row = 2 * element.node[i / 2] + i % 2;
+      outlines.residual[row] += element.force[i];
+      magnitude[row] += std::abs(element.force[i]);
+      for (int j = 0; tangent && j < 6; ++j)
+        outlines.tangent.emplace_back(row, 2 * element.node[j / 2] + j % 2, element.tangent(i, j));
+    }
+    forces.symmetric &= element.tangent.isApprox(element.tangent.transpose(), 1e-13);
+  }
+  forces.symmetric &= outlines.symmetric;
+  const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();
+  forces.residual += back * outlines.residual;
+  forces.magnitude += back.cwiseAbs() * magnitude;
+  if (!tangent) return;
+  append(back * assembled(outlines.tangent, 2 * bodies_.outline_nodes()) * jacobian, 0, entries);
+  bodies_.add_turning(motion.q, outlines.residual, entries);
+}
+
+void System::add_applied(const Motion& motion, Forces& forces) const {
+  const Vector applied = loads_.applied(motion.time);
+  forces.residual -= applied;
+  forces.magnitude += applied.cwiseAbs();
+}
+
+void System::add_damping(const Motion& motion, Forces& forces) const {
+  const Vector own = loads_.dof_damping(motion.time), outline = loads_.outline_damping(motion.time);
+  Triplets entries;
+  for (int i = 0; i < bodies_.dofs(); ++i)
+    if (own[i] != 0) entries.emplace_back(i, i, own[i]);
+  forces.viscosity = assembled(entries, bodies_.dofs());
+  forces.damping = forces.viscosity * motion.v;
+  if (!outline.isZero(0)) {
+    const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();
+    const Vector slip = jacobian * motion.v - loads_.outline_target_velocity(motion.time);
+    forces.damping += back * outline.cwiseProduct(slip);
+    forces.viscosity += SparseMatrix(back * outline.asDiagonal() * jacobian);
+  }
+  forces.residual += forces.damping;
+  forces.magnitude += forces.damping.cwiseAbs();
+}
+
+}  // namespace pliant::reference

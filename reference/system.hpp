@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+
+#include "reference/bodies.hpp"
+#include "reference/loads.hpp"
+#include "reference/materials/internal.hpp"
+
+namespace pliant::reference {
+
+/// Positions and velocities of all degrees of freedom at a time.
+struct Motion {
+  Vector q, v;
+  double time = 0;
+};
+
+/// All forces at one motion, as residuals: mass x acceleration + residual = 0.
+struct Forces {
+  Vector residual;         ///< [dofs]
+  Vector magnitude;        ///< [dofs], sum of the absolute values of what cancels in it
+  Vector damping;          ///< [dofs], the part that depends on velocities
+  SparseMatrix stiffness;  ///< of the residual by positions; empty unless asked for
+  SparseMatrix viscosity;  ///< of the residual by velocities
+  bool symmetric = true;
+  double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
+  double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
+  double dissipated_by_viscosity = 0;            ///< since then, J/m
+  double least_jacobian = 1e300;
+  int worst_body = -1;  ///< the one with it
+  double deepest = 0;   ///< penetration over the segment's length
+  ContactResult contacts;
+};
+
+/// A scene as a system of equations.
+class System {
+ public:
+  explicit System(const Scene& scene);
+
+  const Bodies& bodies() const { return bodies_; }
+  const Loads& loads() const { return loads_; }
+  /// With the tangent when asked to. Contacts remember what accept() has accepted.
+  Forces evaluate(const Motion& motion, bool tangent);
+  /// Histories go on from this motion, the last one evaluated.
+  void accept(const Motion& motion);
+  /// [compliant bodies] in their order.
+  const std::vector<InternalForces>& internal() const { return internal_; }
+
+ private:
+  void add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) const;
+  void add_outlines(const Motion& motion, bool tangent, Forces& forces, Triplets& entries);
+  void add_applied(const Motion& motion, Forces& forces) const;
+  void add_damping(const Motion& motion, Forces& forces) const;
+
+  Bodies bodies_;
+  Loads loads_;
+  std::vector<InternalForces> internal_;  ///< [compliant bodies]
+  Contacts contacts_;
+  Motion accepted_;
+};
+
+}  // namespace pliant::reference

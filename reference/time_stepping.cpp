@@ -1,0 +1,248 @@
+#include "reference/time_stepping.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+
+namespace pliant::reference {
+namespace {
+
+constexpr int most_bisections = 10;        ///< of a step: to a thousandth of it
+constexpr int most_settling_steps = 200;   ///< of a static step with floating bodies
+constexpr double settled_residual = 1e-9;  ///< over the largest force: what pseudo-inertia may still hold
+constexpr double lost_penetration = 1;     ///< over a segment's length: deeper ones cannot be told from the far side
+
+/// Picks the free degrees of freedom: [dofs x free].
+SparseMatrix selection(const std::vector<int>& free, int dofs) {
+  Triplets entries;
+  for (std::size_t i = 0; i < free.size(); ++i) entries.emplace_back(free[i], static_cast<int>(i), 1.0);
+  SparseMatrix matrix(dofs, static_cast<int>(free.size()));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+SparseMatrix restricted(const SparseMatrix& matrix, const SparseMatrix& select) {
+  return SparseMatrix(select.transpose()) * matrix * select;
+}
+
+std::string trouble_of(const Forces& forces, const Bodies& bodies) {
+  if (!(forces.least_jacobian > 0))
+    return fmt::format("J = {:.3g} in '{}'", forces.least_jacobian,
+                       bodies.all()[static_cast<std::size_t>(forces.worst_body)].placed.name);
+  if (forces.deepest > lost_penetration)
+    return fmt::format("a penetration of {:.2g} of a segment, allowed: {}", forces.deepest, lost_penetration);
+  return {};
+}
+
+/// The body whose degree of freedom has the largest residual.
+std::string worst_body(const Forces& forces, const Bodies& bodies) {
+  Eigen::Index worst = 0;
+  if (forces.residual.size() > 0) forces.residual.cwiseAbs().maxCoeff(&worst);
+  for (const Body& body : bodies.all())
+    if (worst < body.first_dof + body.dofs) return body.placed.name;
+  return {};
+}
+
+}  // namespace
+
+double Books::balance_error() const {
+  const double missing = mechanical() - at_start - external_work() + dissipated();
+  const double whole = std::max({std::abs(external_work()), std::abs(at_start), dissipated()});
+  return whole > 0 ? std::abs(missing) / whole : 0.0;
+}
+
+struct TimeStepping::Trial {
+  Motion motion;
+  Vector acceleration;
+  Forces forces;
+};
+
+TimeStepping::TimeStepping(System& system, const SolverOptions& options)
+    : system_(system),
+      options_(options),
+      beta_(0.25 * (1 - options.hht) * (1 - options.hht)),
+      gamma_(0.5 - options.hht),
+      mass_(system.bodies().mass(options.mass)) {
+  const Bodies& bodies = system.bodies();
+  motion_ = {bodies.initial_positions(), bodies.initial_velocities(), 0};
+  if (options.statics) motion_.v.setZero();
+  for (int i = 0; i < bodies.dofs(); ++i)
+    if (system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
+  acceleration_ = Vector::Zero(bodies.dofs());
+  forces_ = system.evaluate(motion_, true);
+  if (const std::string trouble = trouble_of(forces_, bodies); !trouble.empty())
+    throw PhysicsError(fmt::format("at the start: {}", trouble));
+  system.accept(motion_);
+  if (options.statics) {
+    const Vector mass = bodies.lumped_mass();
+    inertia_ = options.pseudo_inertia * forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff();
+  } else {
+    find_acceleration();
+  }
+  books_.kinetic = 0.5 * motion_.v.dot(mass_ * motion_.v);
+  books_.strain = forces_.strain, books_.contact = forces_.contact, books_.boundary = forces_.boundary;
+  books_.at_start = books_.mechanical();
+}
+
+std::vector<int> TimeStepping::free_dofs(double time) const {
+  std::vector<int> free;
+  for (int i = 0; i < system_.bodies().dofs(); ++i)
+    if (!system_.loads().imposed(i, time)) free.push_back(i);
+  return free;
+}
+
+void TimeStepping::find_acceleration() {
+  const std::vector<int> free = free_dofs(motion_.time);
+  const SparseMatrix select = selection(free, system_.bodies().dofs());
+  LinearSolver solver;
+  acceleration_ =
+      select * solver.solve(restricted(mass_, select), -Vector(select.transpose() * forces_.residual), true);
+}
+
+StepRecord TimeStepping::step(double until) {
+  StepRecord record;
+  record.dt = until - motion_.time;
+  step(until, 0, record);
+  return record;
+}
+
+void TimeStepping::step(double until, int depth, StepRecord& record) {
+  Trial trial;
+  if (try_step(until, trial, record)) return accept(trial);
+  if (depth == most_bisections)
+    throw PhysicsError(fmt::format(
+        "t = {:.6g} s: no solution for a step of {:.3g} s, a thousandth of the one asked for: {}; last good state: t = "
+        "{:.6g} s, least J there {:.3g}",
+        until, until - motion_.time, record.trouble, motion_.time, forces_.least_jacobian));
+  ++record.bisections;
+  step(0.5 * (motion_.time + until), depth + 1, record);
+  step(until, depth + 1, record);
+}
+
+Vector TimeStepping::acceleration_at(double dt, const Vector& q) const {
+  return (q - motion_.q - dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_) / (beta_ * dt * dt);
+}
+
+Motion TimeStepping::motion_at(double until, const Vector& q) const {
+  const double dt = until - motion_.time;
+  if (options_.statics) return {q, Vector::Zero(q.size()), until};
+  Vector v = motion_.v + dt * ((1 - gamma_) * acceleration_ + gamma_ * acceleration_at(dt, q));
+  for (int i = 0; i < v.size(); ++i)
+    if (system_.loads().imposed(i, motion_.time)) v[i] = system_.loads().imposed_velocity(i, until);
+  return {q, std::move(v), until};
+}
+
+/// `anchor`: static runs: where pseudo-inertia holds the bodies.
+Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor,
+                                      bool tangent) {
+  const double dt = until - motion_.time;
+  const Forces forces = system_.evaluate(motion_at(until, q), tangent);
+  Linearisation result;
+  result.trouble = trouble_of(forces, system_.bodies());
+  result.admissible = result.trouble.empty();
+  if (!result.admissible) return result;
+  const SparseMatrix pick = select.transpose();
+  Vector residual = forces.residual, magnitude = forces.magnitude;
+  SparseMatrix matrix = forces.stiffness;
+  if (options_.statics) {
+    const Vector held = inertia_ * system_.bodies().lumped_mass();
+    residual += held.cwiseProduct(q - anchor);
+    if (tangent && inertia_ > 0) matrix += SparseMatrix(held.asDiagonal());
+  } else {
+    const Vector inertia = mass_ * acceleration_at(dt, q);
+    residual = inertia + (1 + options_.hht) * residual - options_.hht * forces_.residual;
+    magnitude += inertia.cwiseAbs();
+    if (tangent)
+      matrix = mass_ / (beta_ * dt * dt) + (1 + options_.hht) * (matrix + gamma_ / (beta_ * dt) * forces.viscosity);
+  }
+  result.residual = pick * residual;
+  result.magnitude = pick * magnitude;
+  result.symmetric = forces.symmetric;
+  if (tangent) result.matrix = restricted(matrix, select);
+  worst_ = worst_body(forces, system_.bodies());
+  return result;
+}
+
+bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
+  Vector q = motion_.q;
+  for (int i = 0; i < q.size(); ++i)
+    if (system_.loads().imposed(i, motion_.time)) q[i] = system_.loads().imposed_position(i, q[i], motion_.time, until);
+  const SparseMatrix select = selection(free_dofs(motion_.time), system_.bodies().dofs());
+  const SparseMatrix pick = select.transpose();
+  record.dt = std::min(record.dt, until - motion_.time);
+  for (int settling = 0; settling < most_settling_steps; ++settling) {
+    const Vector anchor = q;
+    Vector free = pick * q;
+    const Vector imposed = q - select * free;
+    const NewtonResult result = solve_newton(
+        [&](const Vector& x, bool tangent) { return equations(until, select, imposed + select * x, anchor, tangent); },
+        options_.newton, solver_, free);
+    record.iterations += result.iterations;
+    if (!result.residuals.empty()) record.residual = result.residuals.back(), record.residuals = result.residuals;
+    record.trouble = fmt::format("{} (largest residual in '{}')", result.trouble, worst_);
+    if (!result.converged) return false;
+    q = imposed + select * free;
+    trial.motion = motion_at(until, q);
+    trial.forces = system_.evaluate(trial.motion, true);
+    if (double moved = largest_motion(trial.motion); moved > system_.bodies().finest_spacing()) {
+      record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
+      return false;
+    }
+    if (inertia_ == 0 || settled(trial.forces, pick)) {
+      trial.acceleration = options_.statics ? Vector::Zero(q.size()) : acceleration_at(until - motion_.time, q);
+      return true;
+    }
+  }
+  record.trouble = fmt::format("no equilibrium after {} steps of settling", most_settling_steps);
+  return false;
+}
+
+/// Of the outlines, from the present motion; 0 where there is nothing to touch.
+double TimeStepping::largest_motion(const Motion& next) const {
+  const Bodies& bodies = system_.bodies();
+  if (bodies.all().size() < 2 || bodies.scene().contacts.empty()) return 0;
+  const Points before = bodies.outline_positions(motion_.q), after = bodies.outline_positions(next.q);
+  double largest = 0;
+  for (std::size_t k = 0; k < before.size(); ++k) largest = std::max(largest, (after[k] - before[k]).norm());
+  return largest;
+}
+
+/// Whether forces balance without the pseudo-inertia.
+bool TimeStepping::settled(const Forces& forces, const SparseMatrix& pick) const {
+  const double scale = forces.magnitude.size() > 0 ? forces.magnitude.maxCoeff() : 0.0;
+  return (pick * forces.residual).lpNorm<Eigen::Infinity>() <= settled_residual * scale;
+}
+
+void TimeStepping::book(const Trial& trial) {
+  const Loads& loads = system_.loads();
+  const Motion &before = motion_, &after = trial.motion;
+  const Vector moved = after.q - before.q;
+  const Vector applied = 0.5 * (loads.applied(before.time) + loads.applied(after.time)) - loads.gravity();
+  books_.work_of_gravity += loads.gravity().dot(moved);
+  books_.work_of_loads +=
+      applied.dot(moved) + loads.outline_work(system_.bodies().outline_positions(before.q), before.time,
+                                              system_.bodies().outline_positions(after.q), after.time);
+  // What holds an imposed motion gives it its kinetic energy and works against the other forces.
+  for (int i = 0; i < moved.size(); ++i)
+    if (loads.imposed(i, before.time))
+      books_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
+                              0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
+  books_.dissipated_by_contact += trial.forces.dissipated;
+  books_.dissipated_by_damping +=
+      0.5 * (forces_.damping + trial.forces.damping).dot(moved) + trial.forces.dissipated_by_viscosity;
+  books_.kinetic = 0.5 * after.v.dot(mass_ * after.v);
+  books_.strain = trial.forces.strain, books_.contact = trial.forces.contact, books_.boundary = trial.forces.boundary;
+}
+
+void TimeStepping::accept(const Trial& trial) {
+  book(trial);
+  system_.accept(trial.motion);
+  motion_ = trial.motion;
+  acceleration_ = trial.acceleration;
+  forces_ = trial.forces;
+}
+
+}  // namespace pliant::reference

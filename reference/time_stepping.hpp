@@ -1,0 +1,89 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "reference/newton.hpp"
+#include "reference/system.hpp"
+
+namespace pliant::reference {
+
+struct SolverOptions {
+  bool statics = false;  ///< equilibrium at each time, without inertia
+  MassMatrix mass = MassMatrix::lumped;
+  double dt = 0;   ///< s
+  double hht = 0;  ///< alpha of Hilber, Hughes and Taylor, in [-1/3, 0]; 0: Newmark's average acceleration
+  double pseudo_inertia =
+      0;  ///< static runs: share of the largest stiffness that holds floating bodies while they settle
+  NewtonOptions newton;
+};
+
+/// Energies of a run, J/m; as the engine's books (METHOD 6).
+struct Books {
+  double kinetic = 0, strain = 0, contact = 0, boundary = 0;
+  double dissipated_by_contact = 0, dissipated_by_damping = 0;
+  double work_of_loads = 0, work_of_gravity = 0;
+  double at_start = 0;  ///< kinetic, strain, contact and boundary energy
+
+  double mechanical() const { return kinetic + strain + contact + boundary; }
+  double dissipated() const { return dissipated_by_contact + dissipated_by_damping; }
+  double external_work() const { return work_of_loads + work_of_gravity; }
+  /// What is missing, over the largest of external work, the start's energy and dissipation.
+  double balance_error() const;
+};
+
+/// What became of one step that was asked for.
+struct StepRecord {
+  double dt = 0;       ///< of the shortest part, s
+  int iterations = 0;  ///< of all parts
+  int bisections = 0;
+  double residual = 0;            ///< the last one, relative
+  std::vector<double> residuals;  ///< of the last part's iterations
+  std::string trouble;            ///< of the last part that did not converge
+};
+
+/// The motion of a scene, step by step (DESIGN 6).
+class TimeStepping {
+ public:
+  TimeStepping(System& system, const SolverOptions& options);
+
+  /// To a later time; halves the step where it does not converge. Throws PhysicsError with the worst body, the residual and the last good time
+  /// when even a thousandth of it does not.
+  StepRecord step(double until);
+
+  const Motion& motion() const { return motion_; }
+  const Forces& forces() const { return forces_; }  ///< at the present motion
+  const Vector& acceleration() const { return acceleration_; }
+  const SparseMatrix& mass() const { return mass_; }
+  const Books& books() const { return books_; }
+  const LinearSolver::Counts& solver_counts() const { return solver_.counts(); }
+
+ private:
+  struct Trial;
+  void step(double until, int depth, StepRecord& record);
+  bool try_step(double until, Trial& trial, StepRecord& record);
+  void accept(const Trial& trial);
+  void book(const Trial& trial);
+  Motion motion_at(double until, const Vector& q) const;
+  Vector acceleration_at(double dt, const Vector& q) const;
+  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor,
+                          bool tangent);
+  double largest_motion(const Motion& next) const;
+  bool settled(const Forces& forces, const SparseMatrix& pick) const;
+  void find_acceleration();
+  std::vector<int> free_dofs(double time) const;
+
+  System& system_;
+  SolverOptions options_;
+  double beta_, gamma_;
+  SparseMatrix mass_;
+  double inertia_ = 0;  ///< static runs: factor of the lumped mass that holds floating bodies, 1/s2
+  LinearSolver solver_;
+  Motion motion_;
+  Vector acceleration_;
+  Forces forces_;
+  Books books_;
+  std::string worst_;  ///< the body with the largest residual of the last evaluation
+};
+
+}  // namespace pliant::reference

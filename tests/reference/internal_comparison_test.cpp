@@ -1,0 +1,158 @@
+// VERIFICATION 3a: internal and viscous forces, energies and stresses of the reference solver against the engine's, on
+// random deformed states. INDEPENDENT: they share the mesh and the scene.
+#include <gtest/gtest.h>
+
+#include "bodies/body_view.hpp"
+#include "bodies/damping_forces.hpp"
+#include "bodies/initial_state.hpp"
+#include "bodies/internal_forces.hpp"
+#include "bodies/nodal.hpp"
+#include "reference/materials/internal.hpp"
+#include "reference/shapes.hpp"
+#include "results/point_states.hpp"
+#include "support/scenes.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+constexpr double tolerance = 1e-11;  ///< of the largest force, energy or stress
+
+/// Grains of three shapes, of different sizes, angles and stiffnesses, each in a state of its own. Grains of small
+/// strains start unturned: the scene allows no other.
+Scene some_grains(MaterialLaw law, const DiscretisationSettings& settings, int count = 20) {
+  Scene scene = bare_scene();
+  scene.discretisation = settings;
+  scene.contacts = {frictionless(1)};
+  scene.materials[0].law = law;
+  scene.materials[0].viscosity = 0.2;
+  scene.materials.push_back({"stiff", law, 3, 5, 0.3});
+  scene.shapes = {disc(60, 1), curve("rounded", rounded_polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.2), 168),
+                  curve("fourier", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 120)};
+  for (int i = 0; i < count; ++i) {
+    add_grain(scene, scene.shapes[static_cast<std::size_t>(i % 3)].name, BodyKind::compliant, {2.0 * i, 0.3 * i},
+              law == MaterialLaw::linear_elastic ? 0 : 0.4 * i, i % 4 == 1 ? "stiff" : "soft");
+    scene.grains.back().size.factors = {0.7 + 0.05 * i};
+  }
+  return scene;
+}
+
+/// Smooth large strains and a little noise, in units of the body's size.
+void deform(const Model& model, const Body& body, Random& random, Dofs& q) {
+  const BodyPlaces places(model, body);
+  const BodyView view(model, body, q);
+  const double a = random.uniform(-0.15, 0.15), b = random.uniform(-0.15, 0.15), c = random.uniform(-0.15, 0.15);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.shape_of(body).nodes()); ++i) {
+    const Vec2 x = view[i], noise(random.uniform(-1, 1), random.uniform(-1, 1));
+    set_node(places, i, x + Vec2(a * x.x() + b * x.y() * x.y(), c * x.x() - a * x.x() * x.y()) + 0.003 * noise, q);
+  }
+}
+
+Eigen::VectorXd of_body(const Model& model, const Body& body, const Dofs& dofs) {
+  const Points points = dof_values(model, body, dofs);
+  Eigen::VectorXd result(2 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) result.segment<2>(2 * static_cast<Eigen::Index>(i)) = points[i];
+  return result;
+}
+
+struct Both {
+  Model model;
+  Dofs q, rate;
+
+  explicit Both(const Scene& scene, const BuildOptions& options = {})
+      : model(build_model(scene, options)), q(initial_positions(model)), rate(zero_dofs(model)) {
+    Random random(5);
+    for (const Body& body : model.bodies) deform(model, body, random, q);
+    Dofs moved = q;
+    for (const Body& body : model.bodies) deform(model, body, random, moved);
+    for (std::size_t i = 0; i < q.compliant.size(); ++i) rate.compliant[i] = moved.compliant[i] - q.compliant[i];
+  }
+  reference::InternalForces reference_of(const Body& body) const {
+    const Scene& scene = model.scene;
+    const auto shape = static_cast<std::size_t>(body.shape);
+    const reference::Space space = reference::make_space(make_field_mesh(scene.shapes[shape]), scene.discretisation);
+    return {space, scene.materials[static_cast<std::size_t>(body.material)], body.scale, body.angle};
+  }
+};
+
+void compare_forces(const Both& both) {
+  Dofs f = zero_dofs(both.model), viscous = f;
+  std::vector<Lanes> energy;
+  for (const Batch& batch : both.model.batches) {
+    const std::size_t at = batch.offset;
+    add_internal_forces(both.model, batch, &both.q.compliant[at], &f.compliant[at]);
+    add_viscous_forces(both.model, batch, &both.q.compliant[at], &both.rate.compliant[at], &viscous.compliant[at]);
+    energy.push_back(strain_energy(both.model, batch, &both.q.compliant[at]));
+  }
+  double worst = 0;
+  for (const Body& body : both.model.bodies) {
+    const reference::InternalForces own = both.reference_of(body);
+    const Eigen::VectorXd q = of_body(both.model, body, both.q), v = of_body(both.model, body, both.rate);
+    const reference::InternalState state = own.evaluate(q, false);
+    const Eigen::VectorXd engine = of_body(both.model, body, f);
+    const double scale = engine.cwiseAbs().maxCoeff(), error = (state.residual + engine).cwiseAbs().maxCoeff() / scale;
+    EXPECT_GT(scale, 1e-3);
+    EXPECT_LT(error, tolerance) << body.name;
+    EXPECT_NEAR(state.energy, energy[static_cast<std::size_t>(body.batch)][body.lane], tolerance * state.energy);
+    worst = std::max(worst, error);
+    // Over steps of dt and -dt the mean of E_dot is that of the velocity: E is quadratic in positions.
+    const double dt = 0.01;
+    const Eigen::VectorXd both_ways = own.evaluate(q, false, reference::Increment{q - dt * v, dt}).residual +
+                                      own.evaluate(q, false, reference::Increment{q + dt * v, -dt}).residual;
+    const Eigen::VectorXd damping = of_body(both.model, body, viscous);
+    EXPECT_LT((both_ways / 2 - state.residual + damping).cwiseAbs().maxCoeff(),
+              tolerance * (scale / dt + damping.cwiseAbs().maxCoeff()))
+        << body.name;
+  }
+  if (std::getenv("PLIANT_FIGURES")) std::printf("largest difference of forces %.1e\n", worst);
+}
+
+/// In the plane the stress of small strains is P itself; the engine turns it to P F^T/J, the share of a strain away.
+void compare_stresses(const Both& both, const Body& body) {
+  const std::vector<reference::PointStress> own = both.reference_of(body).stresses(of_body(both.model, body, both.q));
+  const std::vector<PointState> engine = point_states(both.model, body, both.q);
+  ASSERT_EQ(own.size(), engine.size());
+  const bool small =
+      both.model.scene.materials[static_cast<std::size_t>(body.material)].law == MaterialLaw::linear_elastic;
+  double scale = 0, error = 0;
+  for (std::size_t g = 0; g < own.size(); ++g) {
+    const reference::PointStress& a = own[g];
+    const PointState& b = engine[g];
+    scale = std::max({scale, std::abs(b.stress.xx), std::abs(b.stress.yy)});
+    error = std::max({error, std::abs(a.zz - b.stress.zz), std::abs(a.energy - b.energy)});
+    EXPECT_NEAR(a.jacobian, b.jacobian, tolerance);
+    if (small) continue;
+    error = std::max({error, std::abs(a.xx - b.stress.xx), std::abs(a.yy - b.stress.yy), std::abs(a.xy - b.stress.xy)});
+  }
+  EXPECT_LT(error, tolerance * scale);
+}
+
+const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
+                                MaterialLaw::linear_elastic};
+
+TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
+  for (const DiscretisationSettings& settings : reference_recipes())
+    for (const MaterialLaw law : all_laws) {
+      SCOPED_TRACE(described(disc(60), settings) + ", law " + std::to_string(static_cast<int>(law)));
+      compare_forces(Both(some_grains(law, settings)));
+    }
+}
+
+TEST(ReferenceAgainstEngine, spread_bodies_agree) {
+  const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(Recipe::mls), 3), BuildOptions{0, false, {}});
+  ASSERT_TRUE(std::any_of(both.model.batches.begin(), both.model.batches.end(),
+                          [](const Batch& batch) { return batch.layout == Layout::spread; }));
+  compare_forces(both);
+}
+
+/// Points in the order of the background triangles on both sides.
+TEST(ReferenceAgainstEngine, stresses_agree) {
+  for (const MaterialLaw law : all_laws) {
+    const Both both(some_grains(law, settings_of(Recipe::mls)));
+    for (std::size_t b = 0; b < both.model.bodies.size(); b += 7) compare_stresses(both, both.model.bodies[b]);
+  }
+}
+
+}  // namespace
+}  // namespace pliant

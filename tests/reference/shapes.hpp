@@ -1,0 +1,40 @@
+#pragma once
+
+#include "geometry/shapes.hpp"
+
+/// Shapes and recipes on which the tests of the reference solver look at its discretisation.
+namespace pliant::testing {
+
+inline std::vector<ShapeSpec> reference_shapes() {
+  const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  return {disc(60), disc(168), disc(700), curve("rounded", rounded_polygon(square, 0.3), 150),
+          curve("fourier", fourier_grain(1e-3, {0.15, 0.1, 0.05}, 3), 168)};
+}
+
+inline DiscretisationSettings settings_of(Recipe recipe, int gauss_points = 3, int support = 8) {
+  DiscretisationSettings settings;
+  settings.recipe = recipe;
+  settings.gauss_points = gauss_points;
+  settings.support = support;
+  return settings;
+}
+
+inline std::vector<DiscretisationSettings> reference_recipes() {
+  return {settings_of(Recipe::mls),          settings_of(Recipe::mls, 1, 10),       settings_of(Recipe::mls_gauss, 1),
+          settings_of(Recipe::mls_gauss, 3), settings_of(Recipe::mls_gauss, 6, 12), settings_of(Recipe::t3),
+          settings_of(Recipe::es_t3)};
+}
+
+inline double mean_node_distance(const FieldMesh& mesh) {
+  double area = 0;
+  for (const Triangle& t : mesh.triangles) area += triangle_area(mesh, t);
+  return std::sqrt(area / static_cast<double>(mesh.nodes.size()));
+}
+
+inline std::string described(const ShapeSpec& shape, const DiscretisationSettings& settings) {
+  return shape.name + " of " + std::to_string(*shape.nodes) + " nodes, recipe " +
+         std::to_string(static_cast<int>(settings.recipe)) + ", " + std::to_string(settings.gauss_points) +
+         " Gauss points, support " + std::to_string(settings.support);
+}
+
+}  // namespace pliant::testing

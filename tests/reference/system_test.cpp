@@ -1,0 +1,138 @@
+#include "reference/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/random.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::reference_tests {
+namespace {
+
+using namespace dynamics_tests;
+using reference::Forces;
+using reference::MassMatrix;
+using reference::Motion;
+using reference::System;
+using reference::Vector;
+
+/// Everything at once: compliant and rigid discs between walls, touching, with friction, gravity, a pressure that follows, a soft support with a
+/// dashpot, mass damping, viscosity and a servo wall.
+Scene everything() {
+  Scene scene = small_third_body(1);
+  scene.gravity = {0.01, -0.02};
+  scene.contacts = {rough(40, 0.4)};
+  scene.materials[0].mass_damping = 0.3;
+  scene.materials[0].viscosity = 0.2;
+  scene.materials[1].mass_damping = 0.1;
+  scene.walls[1].y.damping = 0.7;
+  BoundaryCondition pressure;
+  pressure.kind = BoundaryCondition::Kind::pressure;
+  pressure.grains = "layer";
+  pressure.number = 1;
+  pressure.pressure = {{0, 1}, {0.02, 0.05}};
+  scene.boundary.push_back(pressure);
+  BoundaryCondition support;
+  support.kind = BoundaryCondition::Kind::support;
+  support.grains = "layer";
+  support.stiffness = 3;
+  support.damping = 0.5;
+  support.x.mode = Drive::Mode::velocity;
+  support.x.history = {{0}, {0.1}};
+  support.part = {.kind = OutlinePart::Kind::side, .side = {0, 1}};
+  // On compliant grains only.
+  for (int number = 0; number < 12; ++number) {
+    support.number = number;
+    pressure.number = number;
+    scene.boundary.push_back(support);
+  }
+  return scene;
+}
+
+/// Without the conditions on rigid grains, which have no supports.
+Scene on_compliant_grains(Scene scene) {
+  const reference::Bodies bodies([&] {
+    Scene bare = scene;
+    bare.boundary.clear();
+    return bare;
+  }());
+  std::erase_if(scene.boundary, [&](const BoundaryCondition& condition) {
+    return !bodies.all()[static_cast<std::size_t>(*condition.number)].compliant();
+  });
+  return scene;
+}
+
+/// Pressed together, sheared and shaken a little.
+Motion shaken(const System& system, std::uint64_t seed, double amount) {
+  testing::Random random(seed);
+  Motion motion{system.bodies().initial_positions(), system.bodies().initial_velocities(), 0.3};
+  for (int i = 0; i < motion.q.size(); ++i) {
+    motion.q[i] += random.uniform(-amount, amount);
+    motion.v[i] += random.uniform(-1, 1);
+  }
+  for (const reference::Body& body : system.bodies().all())
+    for (int i = 1; i < body.dofs && !body.placed.wall; i += body.compliant() ? 2 : 3)
+      motion.q[body.first_dof + i] *= 0.99;
+  return motion;
+}
+
+/// Largest difference of matrix columns from central differences of the residual, over the largest entry.
+double tangent_error(System& system, const Motion& motion, bool by_positions, double step) {
+  const Forces at = system.evaluate(motion, true);
+  const Eigen::MatrixXd exact = by_positions ? at.stiffness : at.viscosity;
+  double worst = 0;
+  for (int j = 0; j < exact.cols(); ++j) {
+    Motion up = motion, down = motion;
+    (by_positions ? up.q : up.v)[j] += step;
+    (by_positions ? down.q : down.v)[j] -= step;
+    const Vector difference =
+        (system.evaluate(up, false).residual - system.evaluate(down, false).residual) / (2 * step);
+    worst = std::max(worst, (difference - exact.col(j)).cwiseAbs().maxCoeff());
+  }
+  return worst / exact.cwiseAbs().maxCoeff();
+}
+
+TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
+  System system(on_compliant_grains(everything()));
+  system.evaluate(Motion{system.bodies().initial_positions(), system.bodies().initial_velocities(), 0}, false);
+  system.accept(Motion{system.bodies().initial_positions(), system.bodies().initial_velocities(), 0});
+  const Motion motion = shaken(system, 5, 0.004);
+  const Forces forces = system.evaluate(motion, true);
+  ASSERT_GT(forces.contacts.elements.size(), 20U);
+  // INDEPENDENT: the remainder of central differences, third derivative x step^2 / 6, is of that size; contacts that close within the step would
+  // be seen as more.
+  EXPECT_LT(tangent_error(system, motion, true, 1e-6), 1e-6);
+  EXPECT_LT(tangent_error(system, motion, false, 1e-3), 1e-9);
+}
+
+TEST(ReferenceSystem, sums_of_masses) {
+  Scene scene = small_third_body(1);
+  scene.grains[0].size = {.kind = SizeDistribution::Kind::uniform, .low = 0.8, .high = 1};
+  const System system(scene);
+  for (const MassMatrix kind : {MassMatrix::lumped, MassMatrix::consistent, MassMatrix::corrected}) {
+    const reference::SparseMatrix mass = system.bodies().mass(kind);
+    for (const reference::Body& body : system.bodies().all()) {
+      Vector along = Vector::Zero(system.bodies().dofs());
+      for (int i = 0; i < (body.compliant() ? body.dofs : 2); i += 2) along[body.first_dof + i] = 1;
+      // EXACT: shape functions sum to one, and D^-1 M keeps constants.
+      EXPECT_NEAR(along.dot(mass * along), body.mass, 1e-12 * body.mass) << body.placed.name;
+    }
+  }
+}
+
+TEST(ReferenceSystem, corrected_mass_is_the_inverse_of_the_engines) {
+  const System system(free_disc(60, 1));
+  const reference::Space& space = system.bodies().space_of(system.bodies().all()[0]);
+  const Eigen::MatrixXd inverse = space.lumped.cwiseInverse().asDiagonal(), consistent = space.consistent;
+  const Eigen::MatrixXd engine = 2 * inverse - inverse * consistent * inverse;
+  const Eigen::MatrixXd mass = system.bodies().mass(MassMatrix::corrected);
+  // EXACT: METHOD 2.
+  for (int i = 0; i < engine.rows(); ++i)
+    for (int j = 0; j < engine.cols(); ++j) {
+      double product = 0;
+      for (int k = 0; k < engine.rows(); ++k) product += engine(i, k) * mass(2 * k, 2 * j);
+      EXPECT_NEAR(product, i == j ? 1 : 0, 1e-11);
+    }
+}
+
+}  // namespace
+}  // namespace pliant::reference_tests
