@@ -92,6 +92,7 @@ bool ContactSystem::moved_by_the_skin(const Outlines& outlines) {
 
 void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   warn_of_missed_contacts(outlines);
+  const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
   const int bodies = static_cast<int>(model_.bodies.size());
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
@@ -100,7 +101,6 @@ void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const R
   find_patches(outlines, boxes);
   if (model_.scene.contact.self_contact) add_self_patches(outlines);
   lay_out_patches();
-  const bool start = history.place.empty();
   carry_history(old, history);
   if (start) refuse_self_overlap(outlines);
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {

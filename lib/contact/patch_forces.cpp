@@ -132,29 +132,39 @@ void look_up_velocities(const Outlines& outlines, const Patch& patch, int slave_
   pass.master_vx = &outlines.velocity_x[master], pass.master_vy = &outlines.velocity_y[master];
 }
 
+/// Both passes of a patch. What a law does not need is neither kept nor added up.
+template <class Law>
+PatchTotals compute_passes(const Law& law, const Model& model, const Outlines& outlines, const Patch& patch,
+                           double skin, const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
+                           MasterWindow& scratch) {
+  LaneTotals totals;
+  double damping = 0;
+  if constexpr (has_dashpot<Law>)
+    if (const double length = touching_length(model, outlines, patch, skin, scratch); length > 0)
+      damping = law.root_damping / std::sqrt(length);
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
+    Pass pass = make_pass(model, outlines, patch, slave_side);
+    if constexpr (has_dashpot<Law>) look_up_velocities(outlines, patch, slave_side, pass), pass.damping = damping;
+    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
+    compute_pass(law, pass, scratch, skin, committed, trial, forces, totals);
+  }
+  double damping_power = 0;
+  if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
+  return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
+}
+
 }  // namespace
 
 PatchTotals compute_patch(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
                           const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
                           MasterWindow& scratch) {
-  LaneTotals totals;
   clear_forces(patch, forces);
-  const auto compute = [&]<class Law>(const Law& law) {
-    double damping = 0;
-    if constexpr (has_dashpot<Law>)
-      if (const double length = touching_length(model, outlines, patch, skin, scratch); length > 0)
-        damping = law.root_damping / std::sqrt(length);
-    for (int slave_side = 0; slave_side < 2; ++slave_side) {
-      if (patch.nodes[slave_side].count == 0) continue;
-      Pass pass = make_pass(model, outlines, patch, slave_side);
-      if constexpr (has_dashpot<Law>) look_up_velocities(outlines, patch, slave_side, pass), pass.damping = damping;
-      fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-      compute_pass(law, pass, scratch, skin, committed, trial, forces, totals);
-    }
-  };
-  std::visit(compute, patch.law);
-  return {sum(totals.stored), sum(totals.dissipated), sum(totals.damping_power), largest(totals.deepest),
-          totals.contacts};
+  return std::visit(
+      [&](const auto& law) {
+        return compute_passes(law, model, outlines, patch, skin, committed, trial, forces, scratch);
+      },
+      patch.law);
 }
 
 }  // namespace pliant

@@ -1,15 +1,27 @@
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <vector>
 
 namespace pliant {
 
+/// In a parallel region: body(i) for this thread's share of [0, count), contiguous and equal to others' but for one. By
+/// hand, because libomp formats strings whenever an `omp for` begins: 7 to 15 % of the instructions of a small scene.
+template <class Body>
+void for_own_share(int count, Body&& body) {
+  const int threads = omp_get_num_threads(), thread = omp_get_thread_num();
+  const int share = count / threads, larger = count % threads;
+  const int begin = thread * share + std::min(thread, larger), end = begin + share + (thread < larger ? 1 : 0);
+  for (int i = begin; i < end; ++i) body(i);
+}
+
 /// Runs body(i) for i in [0, count) on all threads, in contiguous equal shares. Iterations must write disjoint data.
 template <class Body>
 void parallel_for(int count, Body&& body) {
-#pragma omp parallel for schedule(static)
-  for (int i = 0; i < count; ++i) body(i);
+#pragma omp parallel
+  for_own_share(count, body);
 }
 
 /// As parallel_for, in chunks handed out as threads become free: for work of uneven cost.
@@ -23,8 +35,8 @@ void parallel_for_uneven(int count, int chunk, Body&& body) {
 template <class Value>
 double parallel_max(int count, double start, Value&& value) {
   double result = start;
-#pragma omp parallel for schedule(static) reduction(max : result)
-  for (int i = 0; i < count; ++i) result = std::max(result, value(i));
+#pragma omp parallel reduction(max : result)
+  for_own_share(count, [&](int i) { result = std::max(result, value(i)); });
   return result;
 }
 

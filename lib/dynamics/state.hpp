@@ -21,8 +21,6 @@ struct State {
   Dofs position, velocity, force;
   ContactHistory history;
 
-  Motion motion() const { return {position, velocity, time}; }
-
   /// visitor(name, value) for every member; arrays come as vectors.
   template <class Visitor>
   void visit(Visitor&& visitor) {

@@ -71,6 +71,7 @@ TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : mode
     compliance_.push_back(contact_frequency(body, model.outlines[body.outline].tributary_length.data()));
   contact_floor_.assign(model.bodies.size(), 0.0);
   bound_conditions();
+  limit_ = limit(1);
   if (model.bodies.size() < 2 && !model.scene.contact.self_contact) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     contact_floor_[b] = compliance_[b] * laws.largest_stiffness(static_cast<int>(b));
@@ -179,6 +180,7 @@ void TimeStepBound::update_internal(const Dofs& position, int iterations) {
     if (model_.batches[b].viscous)
       iterate_viscous(b, &position.compliant[model_.batches[b].offset], first ? start_iterations : iterations);
   });
+  limit_ = limit(1);
 }
 
 void TimeStepBound::update_contact(Forces& forces) {
@@ -190,6 +192,7 @@ void TimeStepBound::update_contact(Forces& forces) {
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + z^2) - z of it (METHOD 6).
     if (const double z = damping[b]; z > 0) contact_[b] *= std::pow(std::sqrt(1 + z * z) + z, 2);
   });
+  limit_ = limit(1);
 }
 
 double TimeStepBound::total(std::size_t b, double contact_factor) const {
@@ -211,20 +214,16 @@ double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const 
   return model_.scene.time.safety * 4 / (c + std::sqrt(c * c + 4 * w2));
 }
 
-std::size_t TimeStepBound::limiting_body(double contact_factor) const {
-  std::size_t worst = 0;
-  for (std::size_t b = 1; b < model_.bodies.size(); ++b)
-    if (largest_dt_of(b, contact_factor) < largest_dt_of(worst, contact_factor)) worst = b;
-  return worst;
-}
-
-double TimeStepBound::largest_dt(double contact_factor) const {
-  return largest_dt_of(limiting_body(contact_factor), contact_factor);
+TimeStepBound::Limit TimeStepBound::limit(double contact_factor) const {
+  Limit least{0, std::numeric_limits<double>::infinity()};
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+    if (const double dt = largest_dt_of(b, contact_factor); dt < least.dt) least = {b, dt};
+  return least;
 }
 
 std::string TimeStepBound::governing() const {
-  const std::size_t b = limiting_body();
-  const double w2 = total(b), c = damping(b);
+  const std::size_t b = limit_.body;
+  const double w2 = total(b, 1), c = damping(b);
   const std::string damped = c > 0 ? fmt::format(", damping {:.3g} /s", c) : "";
   return fmt::format("{} (contact {:.0f} % of w^2{})", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0,
                      damped);

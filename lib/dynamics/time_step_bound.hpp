@@ -19,7 +19,8 @@ class TimeStepBound {
   void update_contact(Forces& forces);
 
   /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much stiffer.
-  double largest_dt(double contact_factor = 1) const;
+  double largest_dt() const { return limit_.dt; }
+  double largest_dt(double contact_factor) const { return limit(contact_factor).dt; }
   /// Name of the limiting body and share of contact in its w^2, for messages.
   std::string governing() const;
 
@@ -31,16 +32,22 @@ class TimeStepBound {
     visitor("viscous_direction", viscous_direction_);
     visitor("viscous", viscous_);
   }
+  void loaded() { limit_ = limit(1); }
 
  private:
+  struct Limit {
+    std::size_t body;  ///< that limits the step
+    double dt;         ///< s
+  };
+
   void bound_conditions();
   void iterate_viscous(int b, const Lanes* position, int iterations);
   void iterate_batch(int b, const Lanes* position, int iterations);
   double contact_frequency(const Body& body, const double* stiffness) const;
-  std::size_t limiting_body(double contact_factor = 1) const;
-  double total(std::size_t body, double contact_factor = 1) const;
+  Limit limit(double contact_factor) const;
+  double total(std::size_t body, double contact_factor) const;
   double damping(std::size_t body) const;
-  double largest_dt_of(std::size_t body, double contact_factor = 1) const;
+  double largest_dt_of(std::size_t body, double contact_factor) const;
 
   const Model& model_;
   std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant
@@ -52,6 +59,7 @@ class TimeStepBound {
   std::vector<double> support_;     ///< [bodies] w^2 of soft supports, 1/s2
   std::vector<double> damping_;     ///< [bodies] largest rate of dashpots and mass-proportional damping, 1/s
   std::vector<Lanes> viscous_direction_, viscous_;  ///< as direction_ and internal_, for Kelvin-Voigt: rates, 1/s
+  Limit limit_;                                     ///< of all of the above, found when they change: each step asks
 };
 
 }  // namespace pliant

@@ -77,8 +77,10 @@ void Verlet::try_step(State& state, double end_time, StepReport& report) {
 
 /// Positions at the end of the step. Forces that depend on velocities see those of the half step, by which the positions move.
 void Verlet::predict(const State& state, double dt) {
-  if (model_.rates || model_.corrected_mass) predict_half_step_velocity(state, dt);
-  if (model_.corrected_mass) return predict_with_corrected_mass(state, dt);
+  if (model_.rates || model_.corrected_mass) {
+    predict_half_step_velocity(state, dt);
+    return move_by_half_step_velocity(state, dt);
+  }
   const double half = 0.5 * dt * dt;
   for_each_dof(
       model_,
@@ -94,20 +96,6 @@ void Verlet::predict(const State& state, double dt) {
       });
 }
 
-void Verlet::predict_with_corrected_mass(const State& state, double dt) {
-  half_step_velocity_ = material_velocity(model_, trial_.velocity);
-  for_each_dof(
-      model_,
-      [&](std::size_t i, Lanes) {
-        trial_.position.compliant[i] = state.position.compliant[i] + dt * half_step_velocity_.compliant[i];
-      },
-      [&](std::size_t i, const RigidDof& dof) {
-        const double x = state.position.rigid[i];
-        trial_.position.rigid[i] =
-            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * half_step_velocity_.rigid[i];
-      });
-}
-
 void Verlet::predict_half_step_velocity(const State& state, double dt) {
   for_each_dof(
       model_,
@@ -118,6 +106,21 @@ void Verlet::predict_half_step_velocity(const State& state, double dt) {
         trial_.velocity.rigid[i] = dof.imposed(state.time)
                                        ? imposed_velocity(dof, state.time + 0.5 * dt)
                                        : state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * state.force.rigid[i];
+      });
+  if (model_.corrected_mass) half_step_velocity_ = material_velocity(model_, trial_.velocity);
+}
+
+void Verlet::move_by_half_step_velocity(const State& state, double dt) {
+  const Dofs& velocity = half_step_velocity();
+  for_each_dof(
+      model_,
+      [&](std::size_t i, Lanes) {
+        trial_.position.compliant[i] = state.position.compliant[i] + dt * velocity.compliant[i];
+      },
+      [&](std::size_t i, const RigidDof& dof) {
+        const double x = state.position.rigid[i];
+        trial_.position.rigid[i] =
+            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * velocity.rigid[i];
       });
 }
 

@@ -21,7 +21,7 @@ class Verlet {
  private:
   void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
-  void predict_with_corrected_mass(const State& state, double dt);
+  void move_by_half_step_velocity(const State& state, double dt);
   void predict_half_step_velocity(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
   double error(const State& state, double dt) const;

@@ -84,17 +84,8 @@ TEST_P(Related, bodies_move_as_those_spread) {
   for (const Batch& batch : related.batches) ASSERT_EQ(batch.layout, Layout::related);
   ASSERT_EQ(alone.batches.size(), 11U);
   for (const Batch& batch : alone.batches) ASSERT_EQ(batch.layout, Layout::spread);
-  if (here.verlet)
-    EXPECT_NEAR(here.verlet->bound().largest_dt() / there.verlet->bound().largest_dt(), 1, 0.02)
-        << "INDEPENDENT: the power iterations start elsewhere";
-  int contacts = 0;
-  for (int step = 0; step < 300; ++step) {
-    const StepReport a = here.step(4e-3), b = there.step(4e-3);
-    ASSERT_NEAR(a.dt, 4e-3, 1e-12);
-    ASSERT_NEAR(b.dt, 4e-3, 1e-12);
-    ASSERT_NEAR(a.error, b.error, 1e-9 * (1e-6 + b.error)) << "EXACT: estimate, step " << step;
-    contacts = std::max(contacts, b.evaluation.contact.contacts);
-  }
+  expect_same_bound(here, there, 0.02);
+  const int contacts = step_side_by_side(here, there, 4e-3, 300, 1e-6);
   EXPECT_GT(contacts, 20);
   const State &x = here.bench.state, &y = there.bench.state;
   for (std::size_t b = 0; b < alone.bodies.size(); ++b) {

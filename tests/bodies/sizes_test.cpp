@@ -67,18 +67,8 @@ TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
   const Model &model = here.bench.model, &twin = there.bench.model;
   ASSERT_EQ(model.batches.size(), 1U) << "one group, one batch";
   ASSERT_EQ(twin.batches.size(), 4U);
-  if (here.verlet)
-    EXPECT_NEAR(here.verlet->bound().largest_dt() / there.verlet->bound().largest_dt(), 1, 0.02)
-        << "INDEPENDENT: the power iterations start elsewhere";
-  int contacts = 0;
-  for (int step = 0; step < 500; ++step) {
-    const StepReport a = here.step(0.003), b = there.step(0.003);
-    ASSERT_EQ(a.rejections + b.rejections, 0);
-    ASSERT_NEAR(a.dt, 0.003, 1e-12);
-    ASSERT_NEAR(b.dt, 0.003, 1e-12);
-    ASSERT_NEAR(a.error, b.error, rounding * std::max(1e-4, b.error)) << "EXACT: error estimate, step " << step;
-    contacts = std::max(contacts, a.evaluation.contact.contacts);
-  }
+  expect_same_bound(here, there, 0.02);
+  const int contacts = step_side_by_side(here, there, 0.003, 500, 1e-4);
   EXPECT_GT(contacts, 20) << "all kinds of pairs must touch";
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body &body = model.bodies[b], &other = twin.bodies[b];

@@ -27,18 +27,6 @@ BoundaryCondition pressure_on(const std::string& grains, double pressure, bool f
 
 OutlinePart side(const Vec2& outward) { return {.kind = OutlinePart::Kind::side, .side = outward}; }
 
-/// Moves body 0 to F X.
-void deform(Bench& bench, const Eigen::Matrix2d& F) {
-  const Body& body = bench.model.bodies[0];
-  const Batch& batch = bench.model.batches[body.batch];
-  for (int i = 0; i < bench.model.shape_of(batch).nodes(); ++i) {
-    const std::size_t at = batch.offset + 2 * static_cast<std::size_t>(i);
-    const Vec2 x = F * node_value(bench.model, body, bench.state.position, i);
-    bench.state.position.compliant[at][body.lane] = x.x();
-    bench.state.position.compliant[at + 1][body.lane] = x.y();
-  }
-}
-
 Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
   return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
 }
@@ -60,13 +48,11 @@ TEST(Pressure, holds_a_shrunken_disc_in_equilibrium) {
     const double pressure = -nominal_stress(a) / (following ? a : 1);
     Scene scene = free_disc(60, 1);
     Bench unloaded(scene);
-    deform(unloaded, a * Eigen::Matrix2d::Identity());
-    unloaded.evaluate_here();
+    unloaded.deform(a * Eigen::Matrix2d::Identity());
     EXPECT_GT(largest_force(unloaded), 0.1);
     scene.boundary = {pressure_on("disc", pressure, following)};
     Bench bench(scene);
-    deform(bench, a * Eigen::Matrix2d::Identity());
-    bench.evaluate_here();
+    bench.deform(a * Eigen::Matrix2d::Identity());
     EXPECT_LT(largest_force(bench), 1e-12) << "EXACT: patch test, following " << following;
   }
 }
@@ -110,8 +96,7 @@ TEST(Pressure, follows_the_present_outline_or_the_first) {
   for (const bool following : {true, false}) {
     top.following = following;
     Bench bench(square(top));
-    deform(bench, F);
-    bench.evaluate_here();
+    bench.deform(F);
     const Vec2 along = following ? Vec2(F * Vec2(2, 0)) : Vec2(2, 0);
     EXPECT_LT((total_force(bench) - 0.3 * Vec2(along.y(), -along.x())).norm(), 1e-13)
         << "EXACT: internal forces sum to nothing";

@@ -190,6 +190,20 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
   EXPECT_EQ(damaged(1), 1);
 }
 
+// EXACT: bodies that are out of each other's sight at the start, so that there is no record at all, find no bond when they meet.
+TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
+  ContactRig rig(block_on_bar(bond_rule(), 2));
+  rig.step();
+  ASSERT_TRUE(rig.committed.damage.empty());
+  rig.move(1, {0, -2 + 0.0005});
+  rig.step();
+  ASSERT_FALSE(rig.committed.damage.empty());
+  EXPECT_EQ(bonded_length(rig), 0);
+  rig.move(1, {0, 0.005});
+  rig.step();
+  EXPECT_EQ(rig.force(1).norm(), 0) << "no bond, no pull";
+}
+
 // EXACT: scenes without the law keep no damage.
 TEST(Fatigue, OtherLawsKeepNoDamage) {
   ContactRig rig(block_on_bar(cohesive(kn, strength, range, strength)));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
+#include "support/contact_rig.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {
@@ -93,6 +94,23 @@ TEST(SelfContact, refuses_thin_limbs) {
   scene.shapes[0].spacing = 0.1;
   const Model model = build_model(scene);
   EXPECT_THROW(Simulation{model}, InputError);
+}
+
+/// EXACT: jaws that were out of each other's sight at the start and overlap later press; the scene is not to blame.
+TEST(SelfContact, an_overlap_later_is_a_contact) {
+  testing::ContactRig rig(clamp(true));
+  rig.step();
+  ASSERT_TRUE(rig.contact.patches().empty());
+  const Body& body = rig.model.bodies[0];
+  for (int i = 0; i < rig.model.shape_of(body).nodes(); ++i) {
+    const std::size_t at = rig.model.batches[body.batch].offset + 2 * i;
+    const double x = rig.q.compliant[at][body.lane];
+    const double y = rig.q.compliant[at + 1][body.lane];
+    // 0.2 at the mouth, whose jaws are 0.15 from the middle.
+    rig.q.compliant[at + 1][body.lane] -= std::copysign(0.14 * std::max(0.0, x + 0.4), y);
+  }
+  rig.step();
+  EXPECT_GT(rig.totals.contacts, 0);
 }
 
 }  // namespace

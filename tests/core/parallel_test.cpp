@@ -32,25 +32,40 @@ TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
   }
 }
 
-// EXACT.
+// EXACT, with fewer and more indices than threads.
 TEST(Parallel, VisitsEveryIndexOnce) {
-  for (const int threads : {1, 3}) {
-    const auto visited = with_threads(threads, [] {
-      std::vector<int> count(1000, 0);
-      parallel_for(1000, [&](int i) { ++count[i]; });
-      parallel_for_uneven(1000, 7, [&](int i) { ++count[i]; });
-      return count;
-    });
-    for (int c : visited) EXPECT_EQ(c, 2);
-  }
+  for (const int threads : {1, 3, 7})
+    for (const int size : {0, 1, 2, 7, 8, 1000}) {
+      const auto visited = with_threads(threads, [&] {
+        std::vector<int> count(static_cast<std::size_t>(size), 0);
+        parallel_for(size, [&](int i) { ++count[i]; });
+        parallel_for_uneven(size, 7, [&](int i) { ++count[i]; });
+        return count;
+      });
+      for (int c : visited) EXPECT_EQ(c, 2) << size << " indices, " << threads << " threads";
+    }
+}
+
+// EXACT: one share after the other, as equal as can be.
+TEST(Parallel, SharesAreContiguousAndEqual) {
+  const auto owner = with_threads(3, [] {
+    std::vector<int> owner(8);
+    parallel_for(8, [&](int i) { owner[i] = omp_get_thread_num(); });
+    return owner;
+  });
+  EXPECT_EQ(owner, (std::vector<int>{0, 0, 0, 1, 1, 1, 2, 2}));
 }
 
 // EXACT.
 TEST(Parallel, MaximumStartsFromItsFloor) {
-  const auto value = [](int i) { return 1.0 * i; };
-  EXPECT_EQ(parallel_max(10, 3, value), 9);
-  EXPECT_EQ(parallel_max(10, 30, value), 30);
-  EXPECT_EQ(parallel_max(0, -2, value), -2);
+  for (const int threads : {1, 3, 20}) {
+    const auto largest = [&](int size, double start) {
+      return with_threads(threads, [&] { return parallel_max(size, start, [](int i) { return 1.0 * i; }); });
+    };
+    EXPECT_EQ(largest(10, 3), 9);
+    EXPECT_EQ(largest(10, 30), 30);
+    EXPECT_EQ(largest(0, -2), -2);
+  }
 }
 
 }  // namespace

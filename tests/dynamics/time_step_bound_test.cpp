@@ -23,19 +23,6 @@ double bound_of(Bench& bench) {
   return square_frequency(bound, bench.model.scene);
 }
 
-/// Turns the reference shape of body 0 into F X.
-void deform(Bench& bench, const Eigen::Matrix2d& F) {
-  const Body& body = bench.model.bodies[0];
-  const Batch& batch = bench.model.batches[body.batch];
-  for (int i = 0; i < bench.model.shape_of(batch).nodes(); ++i) {
-    const std::size_t at = batch.offset + 2 * static_cast<std::size_t>(i);
-    const Vec2 x = F * node_value(bench.model, body, bench.state.position, i);
-    bench.state.position.compliant[at][body.lane] = x.x();
-    bench.state.position.compliant[at + 1][body.lane] = x.y();
-  }
-  bench.evaluate_here();
-}
-
 class InternalBound : public ::testing::TestWithParam<std::pair<int, Eigen::Matrix2d>> {};
 
 /// The margin of 1.05 must cover what 60 power iterations miss, and the estimate itself never exceeds the largest
@@ -43,7 +30,7 @@ class InternalBound : public ::testing::TestWithParam<std::pair<int, Eigen::Matr
 TEST_P(InternalBound, lies_within_its_margin_above_the_true_eigenvalue) {
   const auto& [nodes, F] = GetParam();
   Bench bench(free_disc(nodes, 1));
-  deform(bench, F);
+  bench.deform(F);
   const double truth = largest_square_frequency(bench), bound = bound_of(bench);
   EXPECT_GE(bound, truth) << "INDEPENDENT: dense eigenvalues; a smaller bound is unstable at safety 1";
   EXPECT_LE(bound, 1.05 * truth * (1 + 1e-4))

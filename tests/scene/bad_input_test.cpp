@@ -11,6 +11,7 @@ namespace {
 using scene_tests::Bad;
 using scene_tests::error_of;
 using scene_tests::good_scene;
+using scene_tests::stones;
 
 class BadInput : public ::testing::TestWithParam<Bad> {};
 
@@ -298,20 +299,7 @@ TEST(BadInputPlaces, AreThoseOfTheFile) {
 
 TEST(BadInputPlaces, AutomaticStiffnessNeedsACompliantBody) {
   // EXACT
-  const std::string message = error_of(R"([time]
-end = 1
-[materials.stone]
-law = "rigid"
-density = 1
-[shapes.disc]
-kind = "disc"
-diameter = 1
-nodes = 100
-[[grains]]
-shape = "disc"
-body = "rigid"
-material = "stone"
-packing = { kind = "grid", columns = 2, rows = 1, pitch = 2 }
+  const std::string message = error_of(stones + R"(packing = { kind = "grid", columns = 2, rows = 1, pitch = 2 }
 [[contacts]]
 between = "all"
 law = "frictionless"

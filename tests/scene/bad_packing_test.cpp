@@ -134,20 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Packings, BadPacking, ::testing::ValuesIn(bad_packings)
 
 TEST(BadPackingPlaces, VoronoiCellsNeedAPeriod) {
   // EXACT
-  const std::string message = error_of(R"([time]
-end = 1
-[materials.stone]
-law = "rigid"
-density = 1
-[shapes.disc]
-kind = "disc"
-diameter = 1
-nodes = 100
-[[grains]]
-shape = "disc"
-body = "rigid"
-material = "stone"
-seed = 1
+  const std::string message = error_of(stones + R"(seed = 1
 packing = { kind = "fourier-voronoi", bottom = 0, top = 9, solid_fraction = 0.5 }
 [[contacts]]
 between = "all"

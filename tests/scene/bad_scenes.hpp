@@ -18,6 +18,22 @@ struct Bad {
   std::vector<std::string> phrases;
 };
 
+/// A scene of rigid discs, up to what else their table says.
+inline const std::string stones = R"([time]
+end = 1
+[materials.stone]
+law = "rigid"
+density = 1
+[shapes.disc]
+kind = "disc"
+diameter = 1
+nodes = 100
+[[grains]]
+shape = "disc"
+body = "rigid"
+material = "stone"
+)";
+
 /// What ctest lists beside the test's name.
 inline void PrintTo(const Bad& bad, std::ostream* out) { *out << '\'' << bad.to << "' for '" << bad.from << '\''; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/mass_correction.hpp"
 #include "dynamics/forces.hpp"
 #include "dynamics/state.hpp"
 
@@ -29,8 +30,20 @@ struct Bench {
   /// Forces at the state's own positions, for states set by hand.
   void evaluate_here() {
     ContactHistory trial;
-    forces.evaluate(state.motion(), state.history, trial, state.force);
+    forces.evaluate({state.position, material_velocity(model, state.velocity), state.time}, state.history, trial,
+                    state.force);
     std::swap(state.history, trial);
+  }
+
+  /// Turns the present shape of body 0 into F X.
+  void deform(const Eigen::Matrix2d& F) {
+    const Body& body = model.bodies[0];
+    Lanes* q = &state.position.compliant[model.batches[body.batch].offset];
+    for (int i = 0; i < 2 * model.shape_of(body).nodes(); i += 2) {
+      const Vec2 x = F * Vec2(q[i][body.lane], q[i + 1][body.lane]);
+      q[i][body.lane] = x.x(), q[i + 1][body.lane] = x.y();
+    }
+    evaluate_here();
   }
 };
 

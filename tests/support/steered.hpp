@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <memory>
 
 #include "dynamics/energy.hpp"
@@ -30,5 +33,25 @@ struct Steered {
     return verlet ? verlet->step(bench.state, until) : step_doubling->step(bench.state, until);
   }
 };
+
+/// INDEPENDENT: the stability bounds agree to a share that power iterations from elsewhere may differ by.
+inline void expect_same_bound(const Steered& here, const Steered& there, double share) {
+  if (here.verlet) EXPECT_NEAR(here.verlet->bound().largest_dt() / there.verlet->bound().largest_dt(), 1, share);
+}
+
+/// Both take the same steps of dt. Returns the largest number of contacts. EXACT: error estimates agree to 1e-9, the
+/// rounding of some hundred steps, of themselves, or of `floor`.
+inline int step_side_by_side(Steered& here, Steered& there, double dt, int steps, double floor) {
+  int contacts = 0;
+  for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
+    const StepReport a = here.step(dt), b = there.step(dt);
+    EXPECT_EQ(a.rejections + b.rejections, 0);
+    EXPECT_NEAR(a.dt, dt, 1e-12);
+    EXPECT_NEAR(b.dt, dt, 1e-12);
+    EXPECT_NEAR(a.error, b.error, 1e-9 * std::max(floor, b.error)) << "step " << step;
+    contacts = std::max(contacts, b.evaluation.contact.contacts);
+  }
+  return contacts;
+}
 
 }  // namespace pliant::dynamics_tests
