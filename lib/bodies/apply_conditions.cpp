@@ -9,6 +9,7 @@
 #include "bodies/initial_state.hpp"
 #include "bodies/update_outlines.hpp"
 #include "core/errors.hpp"
+#include "core/located.hpp"
 
 namespace pliant {
 namespace {
@@ -66,10 +67,9 @@ class Target {
     }
     if (nodes_.empty())
       throw InputError(
-          fmt::format("{}: no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where "
+          fmt::format("no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where "
                       "its outline stands at the start, centre ({}, {}) m",
-                      model.scene.file.string(), model.bodies[body].name, model.bodies[body].centre.x(),
-                      model.bodies[body].centre.y()));
+                      model.bodies[body].name, model.bodies[body].centre.x(), model.bodies[body].centre.y()));
   }
 
   OutlinePressure pressure(const BoundaryCondition& condition) const {
@@ -143,7 +143,8 @@ void apply_scene_conditions(Model& model) {
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       const Body& body = model.bodies[b];
       if (body.wall || model.scene.grains[body.grains].name != condition.grains) continue;
-      if (condition.number.value_or(number) == number) apply(model, outlines, condition, static_cast<int>(b));
+      if (condition.number.value_or(number) == number)
+        located(condition.where, [&] { apply(model, outlines, condition, static_cast<int>(b)); });
       ++number;
     }
   }

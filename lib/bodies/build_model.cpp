@@ -5,6 +5,7 @@
 #include "bodies/make_batches.hpp"
 #include "bodies/model.hpp"
 #include "bodies/relate_shapes.hpp"
+#include "core/located.hpp"
 #include "geometry/assembly.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/outline.hpp"
@@ -22,8 +23,10 @@ class ShapeStore {
     const auto related = related_.find(name);
     const bool alone = related == related_.end();
     CompliantShape shape;
-    shape.space = discretise(alone ? make_field_mesh(model_.scene.shape(name)) : related->second.mesh,
-                             model_.scene.discretisation);
+    const ShapeSpec& spec = model_.scene.shape(name);
+    shape.space = located(spec.where, [&] {
+      return discretise(alone ? make_field_mesh(spec) : related->second.mesh, model_.scene.discretisation);
+    });
     if (!alone) shape.family = related->second.family;
     for (double m : shape.space.unit_mass) shape.inverse_unit_mass.push_back(1 / m);
     const FieldMesh& mesh = shape.space.mesh;
@@ -34,7 +37,8 @@ class ShapeStore {
 
   int rigid(const std::string& name) {
     if (const auto found = rigid_.find(name); found != rigid_.end()) return found->second;
-    return rigid_[name] = add_outline(make_outline(model_.scene.shape(name)), 0);
+    const ShapeSpec& spec = model_.scene.shape(name);
+    return rigid_[name] = add_outline(located(spec.where, [&] { return make_outline(spec); }), 0);
   }
 
   /// Meshes to be used instead of the shapes' own.
@@ -139,7 +143,7 @@ class Builder {
     int nodes = 0;
     for (const auto& [name, count] : bodies)
       if (const ShapeSpec& shape = model_.scene.shape(name); count <= sparse_bodies)
-        nodes += count * field_node_count(shape, make_outline(shape));
+        nodes += count * located(shape.where, [&] { return field_node_count(shape, make_outline(shape)); });
     return nodes;
   }
 

@@ -10,11 +10,11 @@ double applied_load(const RigidDof& dof, double time) {
   return loaded && dof.window.contains(time) ? dof.force_scale * dof.history.at(time) : 0.0;
 }
 
-void add_gravity(const Model& model, const Region& region, Lanes* forces) {
-  const Vec2& g = model.scene.gravity;
+void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces) {
   if (g.x() == 0 && g.y() == 0) return;
   const Batch& batch = model.batches[region.batch];
-  const Lanes density = batch.density * batch.inverse_scale;
+  // Padding lanes would fall for ever: nothing holds them.
+  const Lanes density = select(batch.weight > 0.0, batch.density * batch.inverse_scale, Lanes{});
   with_nodes(model, batch, [&](const auto& nodes) {
     for (int i = region.first; i < region.last; ++i) {
       forces[2 * i] += density * (nodes.unit_mass[i] * g.x());
@@ -23,9 +23,9 @@ void add_gravity(const Model& model, const Region& region, Lanes* forces) {
   });
 }
 
-void add_rigid_loads(const Model& model, const RigidBody& rigid, double time, double* force) {
-  force[0] += rigid.dof[0].mass * model.scene.gravity.x();
-  force[1] += rigid.dof[1].mass * model.scene.gravity.y();
+void add_rigid_loads(const RigidBody& rigid, const Vec2& g, double time, double* force) {
+  force[0] += rigid.dof[0].mass * g.x();
+  force[1] += rigid.dof[1].mass * g.y();
   if (!rigid.driven) return;
   for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], time);
 }
@@ -39,7 +39,8 @@ double imposed_velocity(const RigidDof& dof, double time) {
 }
 
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
-                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time, double dt) {
+                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
+                     double end_time) {
   double work = 0;
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const RigidBody& rigid = model.rigid_bodies[r];
@@ -52,15 +53,14 @@ double external_work(const Model& model, const Dofs& position, const Dofs& next_
         const double v0 = velocity.rigid[i], v1 = next_velocity.rigid[i];
         work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
       } else {
-        work += 0.5 * (applied_load(dof, time) + applied_load(dof, time + dt)) * moved;
+        work += 0.5 * (applied_load(dof, time) + applied_load(dof, end_time)) * moved;
       }
     }
   }
   return work;
 }
 
-double gravity_moment(const Model& model, const Dofs& position) {
-  const Vec2& g = model.scene.gravity;
+double gravity_moment(const Model& model, const Vec2& g, const Dofs& position) {
   if (g.x() == 0 && g.y() == 0) return 0;
   double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
     const Region& region = model.regions[r];
@@ -77,6 +77,12 @@ double gravity_moment(const Model& model, const Dofs& position) {
     for (int c = 0; c < 2; ++c)
       total += model.rigid_bodies[r].dof[c].mass * g[c] * position.rigid[3 * r + static_cast<std::size_t>(c)];
   return total;
+}
+
+double gravity_work(const Model& model, const Motion& before, const Motion& after) {
+  if (model.scene.gravity_history.empty()) return 0;
+  const Vec2 mean = 0.5 * (model.scene.gravity_at(before.time) + model.scene.gravity_at(after.time));
+  return gravity_moment(model, mean, after.position) - gravity_moment(model, mean, before.position);
 }
 
 }  // namespace pliant

@@ -8,22 +8,26 @@ namespace pliant {
 /// Force that a history applies to one rigid degree of freedom at time t, N/m (0 for imposed and free ones).
 double applied_load(const RigidDof& dof, double time);
 
-/// Adds gravity at the nodes of one region to its batch's forces: [slots x 2].
-void add_gravity(const Model& model, const Region& region, Lanes* forces);
+/// Adds gravity g, m/s2, at the nodes of one region to its batch's forces: [slots x 2].
+void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces);
 
-/// Adds applied loads and gravity to a rigid body's force [x, y, moment].
-void add_rigid_loads(const Model& model, const RigidBody& rigid, double time, double* force);
+/// Adds applied loads and gravity g to a rigid body's force [x, y, moment].
+void add_rigid_loads(const RigidBody& rigid, const Vec2& g, double time, double* force);
 
 /// Where an imposed degree of freedom stands after [t, t + dt], from its position at t: the exact integral of its velocity history.
 double imposed_position(const RigidDof& dof, double position, double time, double dt);
 double imposed_velocity(const RigidDof& dof, double time);
 
 /// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion does the change of
-/// kinetic energy less the work of the other forces. Gravity is booked apart.
+/// kinetic energy less the work of the other forces. `end_time`: to the bit that of the new forces, as a load may end there. Gravity is booked apart.
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
-                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time, double dt);
+                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
+                     double end_time);
 
-/// sum of m g . x over all bodies, J/m: the work of gravity is its growth.
-double gravity_moment(const Model& model, const Dofs& position);
+/// sum of m g . x over all bodies, J/m: the work of a constant gravity is its growth.
+double gravity_moment(const Model& model, const Vec2& g, const Dofs& position);
+
+/// Work of a gravity that has a history from one motion to a later one, J/m: trapezoidal rule. 0 for a constant one.
+double gravity_work(const Model& model, const Motion& before, const Motion& after);
 
 }  // namespace pliant

@@ -117,15 +117,37 @@ double pressure_work(const Model& model, const OutlinePressure& load, const Moti
   return work;
 }
 
+/// Work of a support's springs at one end of a step over half of it, as the integrator does it.
+double half_work(const Model& model, const OutlineSupport& support, const Motion& at, const Motion& before,
+                 const Motion& after) {
+  const Body& body = model.bodies[support.body];
+  const Points start = outline_values(model, body, before.position), end = outline_values(model, body, after.position),
+               position = outline_values(model, body, at.position);
+  const TargetMotion target(support, at.time);
+  double work = 0;
+  for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+    const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
+    const Vec2 pull = support.stiffness * stretch(support, i, target, body.centre + position[k]);
+    work -= 0.5 * support.length[i] * pull.dot(end[k] - start[k]);
+  }
+  return work;
+}
+
+/// A support that sets in or ends acts at one end of the step only: what it does there, and the energy that its springs have then.
+double switch_work(const Model& model, const OutlineSupport& support, const Motion& before, const Motion& after) {
+  const bool ends = support.window.contains(before.time);
+  const Motion& at = ends ? before : after;
+  const double energy = spring_energy(model, support, at.position, at.time);
+  return half_work(model, support, at, before, after) + (ends ? -energy : energy);
+}
+
 double support_work(const Model& model, const OutlineSupport& support, const Motion& before, const Motion& after) {
   const bool active = support.window.contains(before.time);
-  double work = 0;
-  if (active != support.window.contains(after.time))
-    work += (active ? -1 : 1) * spring_energy(model, support, after.position, after.time);
+  if (active != support.window.contains(after.time)) return switch_work(model, support, before, after);
   const Vec2 moved = TargetMotion(support, after.time).moved - TargetMotion(support, before.time).moved;
-  if (!active || moved.isZero(0)) return work;
+  if (!active || moved.isZero(0)) return 0;
   const Vec2 pull = support_resultant(model, support, before) + support_resultant(model, support, after);
-  return work + 0.5 * pull.dot(moved);
+  return 0.5 * pull.dot(moved);
 }
 
 }  // namespace

@@ -38,7 +38,8 @@ Vec2 outline_load(const Model& model, int body, const Motion& motion);
 double support_energy(const Model& model, const Dofs& position, double time);
 
 /// Work that pressures do and that supports' histories do on their springs and dashpots, from one motion to a later
-/// one, J/m: trapezoidal rule. A support that sets in or ends brings or takes the energy of its springs, as work.
+/// one, J/m: trapezoidal rule. A support that sets in or ends brings or takes the energy of its springs, as work,
+/// with what its force at the end of the step that it still or already acts at does.
 double outline_work(const Model& model, const Motion& before, const Motion& after);
 
 }  // namespace pliant

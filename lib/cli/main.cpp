@@ -11,6 +11,7 @@
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
 #include "results/run.hpp"
+#include "scene/late_conditions.hpp"
 #include "scene/schema.hpp"
 #include "scene/units.hpp"
 
@@ -45,6 +46,7 @@ Scene load(const Arguments& arguments) {
     scene.checkpoint_period.reset();
   else if (!arguments.checkpoint_every.empty())
     scene.checkpoint_period = parse_time("--checkpoint-every", arguments.checkpoint_every);
+  for (const std::string& text : late_conditions(scene)) spdlog::warn(text);
   return scene;
 }
 

@@ -58,7 +58,7 @@ ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(model) {
 }
 
 bool ContactSystem::refresh_needed(const Outlines& outlines, const RunClock& clock) {
-  if (!fresh_) return true;
+  if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return true;
   return has_fixed_refresh(model_.scene.contact) ? period_is_over(clock) : moved_by_the_skin(outlines);
 }
 
@@ -93,6 +93,7 @@ bool ContactSystem::moved_by_the_skin(const Outlines& outlines) {
 void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   warn_of_missed_contacts(outlines);
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
+  refreshed_ = clock;
   const int bodies = static_cast<int>(model_.bodies.size());
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
@@ -110,7 +111,6 @@ void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const R
   outlines.x_refresh = outlines.x;
   outlines.y_refresh = outlines.y;
   fresh_ = true;
-  refreshed_ = clock;
   ++refreshes_;
 }
 
@@ -120,7 +120,7 @@ void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box
     const BodyPair& pair = pairs_[p];
     Patch& patch = found[p];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
-    patch.law = laws_.between(pair.first, pair.second);
+    patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     find_arcs(model_, outlines, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
   });
   patches_.clear();
@@ -207,7 +207,7 @@ void ContactSystem::add_self_patches(const Outlines& outlines) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     pairs_.push_back({b, b, 0});  // watched as any pair: the body's parts may move by the skin against each other
-    const ContactLaw law = laws_.between(b, b);
+    const ContactLaw law = laws_.between(b, b, refreshed_.time);
     find_self_patches(model_, outlines, b, law, reach_of(law) + skin_, skin_, patches_, thread_scratch());
   }
   if (pairs_.size() > pairs)

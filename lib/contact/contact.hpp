@@ -25,7 +25,7 @@ class ContactSystem {
   explicit ContactSystem(const Model& model);
 
   /// True when some close pair may have moved by the skin since the last refresh, or always before the first. With a fixed period: when
-  /// it is over; contacts that come earlier are missed.
+  /// it is over; contacts that come earlier are missed. Also when laws change: see ContactLaws::era.
   bool refresh_needed(const Outlines& outlines, const RunClock& clock = {});
   /// Rebuilds the patches and carries the history, that of the outlines' positions, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
@@ -60,7 +60,7 @@ class ContactSystem {
     visitor("refreshes", refreshes_);
   }
   void loaded() {
-    for (Patch& patch : patches_) patch.law = laws_.between(patch.first, patch.second);
+    for (Patch& patch : patches_) patch.law = laws_.between(patch.first, patch.second, refreshed_.time);
     lay_out_patches();
   }
 

@@ -30,6 +30,16 @@ double inverse_mass(const Model& model, const Body& body) {
   return std::max(rigid.dof[0].inverse_mass, rigid.dof[1].inverse_mass);
 }
 
+/// The same at a time, when a drive may have set in or ended.
+double inverse_mass(const Model& model, const Body& body, double time) {
+  double largest = 0;
+  if (body.kind == BodyKind::rigid)
+    for (int c = 0; c < 2; ++c)
+      if (const RigidDof& dof = model.rigid_bodies[body.rigid].dof[c]; !dof.imposed(time))
+        largest = std::max(largest, dof.inverse_mass);
+  return largest;
+}
+
 std::string pair_text(const ContactRule& rule) {
   return fmt::format("[[contacts]] between '{}' and '{}'", rule.first, rule.second);
 }
@@ -62,6 +72,7 @@ ContactLaws::ContactLaws(const Model& model) : file_(model.scene.file.string()),
     for (int b = 0; b < static_cast<int>(parties_.size()); ++b)
       largest_auto_ = std::max(largest_auto_, auto_stiffness(extreme(a, true), extreme(b, true)));
   look_at_extremes();
+  if (damps_) find_eras(model);
 }
 
 void ContactLaws::add_body(const Model& model, const Body& body) {
@@ -118,7 +129,34 @@ ContactLaws::Side ContactLaws::extreme(int party, bool finest) const {
   return {party, finest ? p.least_h : p.largest_h, p.largest_inverse_mass};
 }
 
-ContactLaw ContactLaws::between(int first, int second) const { return make_law(bodies_[first], bodies_[second]); }
+void ContactLaws::find_eras(const Model& model) {
+  for (const RigidBody& rigid : model.rigid_bodies)
+    for (int c = 0; c < 2; ++c)
+      if (const RigidDof& dof = rigid.dof[c]; dof.imposed())
+        for (const double time : {dof.window.from, dof.window.until})
+          if (time > 0 && std::isfinite(time)) era_starts_.push_back(time);
+  if (era_starts_.empty()) return;
+  std::sort(era_starts_.begin(), era_starts_.end());
+  era_starts_.erase(std::unique(era_starts_.begin(), era_starts_.end()), era_starts_.end());
+  for (std::size_t era = 0; era <= era_starts_.size(); ++era) {
+    std::vector<double>& masses = era_inverse_masses_.emplace_back();
+    for (const Body& body : model.bodies)
+      masses.push_back(inverse_mass(model, body, era == 0 ? 0 : era_starts_[era - 1]));
+  }
+}
+
+int ContactLaws::era(double time) const {
+  return static_cast<int>(std::upper_bound(era_starts_.begin(), era_starts_.end(), time) - era_starts_.begin());
+}
+
+ContactLaw ContactLaws::between(int first, int second, double time) const {
+  Side a = bodies_[first], b = bodies_[second];
+  if (!era_inverse_masses_.empty()) {
+    const std::vector<double>& masses = era_inverse_masses_[era(time)];
+    a.inverse_mass = masses[first], b.inverse_mass = masses[second];
+  }
+  return make_law(a, b);
+}
 
 bool ContactLaws::automatic_stiffness(int first, int second) const {
   return !rule(bodies_[first], bodies_[second])->stiffness;

@@ -16,7 +16,10 @@ class ContactLaws {
   /// times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
   explicit ContactLaws(const Model& model);
 
-  ContactLaw between(int first, int second) const;
+  /// At a time: a body that a drive moves then counts as infinitely heavy for dashpots.
+  ContactLaw between(int first, int second, double time = 0) const;
+  /// Laws hold for one such span of time, counted from 0; all the time unless dashpots meet drives with `from` or `until`.
+  int era(double time) const;
   bool automatic_stiffness(int first, int second) const;
 
   double max_reach() const { return max_reach_; }             ///< of any pair, m
@@ -45,6 +48,7 @@ class ContactLaws {
   void add_body(const Model& model, const Body& body);
   void find_rules(const Scene& scene);
   void look_at_extremes();
+  void find_eras(const Model& model);
   const ContactRule* rule(const Side& a, const Side& b) const {
     const int index = pair_rule_[static_cast<std::size_t>(a.party) * parties_.size() + b.party];
     return index < 0 ? nullptr : &rules_[index];
@@ -59,7 +63,9 @@ class ContactLaws {
   std::string file_;
   std::vector<ContactRule> rules_;
   std::vector<Party> parties_;
-  std::vector<Side> bodies_;
+  std::vector<Side> bodies_;                             ///< inverse masses: the largest at any time
+  std::vector<double> era_starts_;                       ///< growing, s, of all eras but the first
+  std::vector<std::vector<double>> era_inverse_masses_;  ///< [eras][bodies]; empty: one era, those of bodies_
   std::vector<int> pair_rule_;  ///< [parties x parties], index in rules_; -1: the pair never meets
   double largest_auto_ = 0, max_reach_ = 0;
   bool damages_ = false, damps_ = false;

@@ -46,8 +46,14 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
 }
 
 Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(zero_dofs(forces.model())) {
-  gravity_start_ = gravity_moment(forces.model(), start.position);
+  gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
+}
+
+/// 0 with a history: its work is booked step by step.
+double Auditor::constant_gravity_moment(const Dofs& position) const {
+  const Scene& scene = forces_.model().scene;
+  return scene.gravity_history.empty() ? gravity_moment(forces_.model(), scene.gravity, position) : 0;
 }
 
 void Auditor::warn_of_strain(const State& state) {
@@ -67,8 +73,8 @@ Audit Auditor::audit(const State& state) {
   Audit result;
   // The same forces once more: the history stands still at an accepted state, so nothing slips.
   ContactHistory history = state.history;
-  const Evaluation evaluation = forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time},
-                                                 history, scratch_, force_);
+  const Evaluation evaluation = forces_.evaluate_again(
+      {state.position, material_velocity(model, state.velocity), state.time}, history, scratch_, force_);
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);
@@ -79,7 +85,8 @@ Audit Auditor::audit(const State& state) {
   result.energy.strain = ordered_sum(static_cast<int>(strain.size()), [&](int b) { return strain[b]; });
   result.energy.boundary = support_energy(model, state.position, state.time);
   result.energy.dissipated = state.dissipated;
-  result.energy.external_work = state.external_work + gravity_moment(model, state.position) - gravity_start_;
+  result.energy.external_work =
+      state.external_work + state.gravity_work + constant_gravity_moment(state.position) - gravity_start_;
   result.momentum_error = std::max(contact_imbalance(), internal_imbalance(state.position));
   return result;
 }

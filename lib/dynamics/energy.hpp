@@ -41,10 +41,12 @@ class Auditor {
   void visit(Visitor&& visitor) {
     visitor("gravity_start", gravity_start_);
     visitor("energy_start", energy_start_);
+    visitor("warned_of_strain", warned_of_strain_);
   }
 
  private:
   void warn_of_strain(const State& state);
+  double constant_gravity_moment(const Dofs& position) const;
   double internal_imbalance(const Dofs& position) const;
   double contact_imbalance() const;
 

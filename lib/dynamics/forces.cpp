@@ -56,10 +56,11 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
   result.damping_power = result.contact.damping_power + loads.damping_power();
   lane_forces(motion, force, afterwards);
   if (!stresses_.empty()) spread_forces(motion, force, afterwards);
+  const Vec2 gravity = model_.scene.gravity_at(motion.time);
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
     outline_force_resultant(model_, rigid, outlines_, &position.rigid[3 * r], &force.rigid[3 * r]);
-    add_rigid_loads(model_, rigid, motion.time, &force.rigid[3 * r]);
+    add_rigid_loads(rigid, gravity, motion.time, &force.rigid[3 * r]);
     if (model_.rates)
       damping_power_[model_.regions.size() + model_.point_chunks.size() + static_cast<std::size_t>(r)] =
           add_rigid_damping(rigid, motion.time, &motion.velocity.rigid[3 * r], &force.rigid[3 * r]);
@@ -67,6 +68,14 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.sound &= result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
+  return result;
+}
+
+Evaluation Forces::evaluate_again(const Motion& motion, ContactHistory& history, ContactHistory& scratch, Dofs& force) {
+  std::vector<double> x = outlines_.force_x, y = outlines_.force_y;
+  const Evaluation result = evaluate(motion, history, scratch, force);
+  outlines_.force_x = std::move(x);
+  outlines_.force_y = std::move(y);
   return result;
 }
 
@@ -78,7 +87,7 @@ void Forces::lane_forces(const Motion& motion, Dofs& force, const RegionWork& af
     Lanes* f = &force.compliant[batch.offset];
     std::fill_n(f, 2 * batch.slots, Lanes{});
     add_outline_forces(model_, region, outlines_, f);
-    add_gravity(model_, region, f);
+    add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     const Lanes *q = &motion.position.compliant[batch.offset], *v = &motion.velocity.compliant[batch.offset];
     least_jacobian_[b] = least_of(add_internal_forces(model_, batch, q, f));
     if (model_.rates)
@@ -105,7 +114,7 @@ void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& 
     Lanes* f = &force.compliant[model_.batches[region.batch].offset];
     std::fill(f + 2 * region.first, f + 2 * region.last, Lanes{});
     add_outline_forces(model_, region, outlines_, f);
-    add_gravity(model_, region, f);
+    add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_spread_forces(model_, region, stresses_of(region.batch), f);
     if (model_.rates)
       damping_power_[r] =
@@ -128,9 +137,11 @@ std::vector<double> Forces::stiffness_bound(const std::vector<double>& complianc
     std::swap(outlines_.x, outlines_.x_refresh);
     std::swap(outlines_.y, outlines_.y_refresh);
   };
+  std::vector<double> present_lengths = outlines_.tributary_length;
   swap_places();
   std::vector<double> result = contact_.stiffness_bound(outlines_, compliance);
   swap_places();
+  outlines_.tributary_length = std::move(present_lengths);
   return result;
 }
 

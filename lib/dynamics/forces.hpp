@@ -36,6 +36,9 @@ class Forces {
   Evaluation evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
                       State* accepted = nullptr, const RegionWork& afterwards = {});
 
+  /// Once more at an accepted state. Outlines keep the contact forces of the step that led there: dashpots saw its half step's velocities.
+  Evaluation evaluate_again(const Motion& motion, ContactHistory& history, ContactHistory& scratch, Dofs& force);
+
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 

@@ -22,8 +22,10 @@ double work_on_outlines(const Model& model, const State& state, const Trial& tri
 void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
                const StepReport& report) {
   state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
-                                       state.force, trial.force, state.time, report.dt) +
+                                       state.force, trial.force, state.time, end_time) +
                          work_on_outlines(model, state, trial, end_time);
+  state.gravity_work +=
+      gravity_work(model, {state.position, state.velocity, state.time}, {trial.position, trial.velocity, end_time});
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;
   std::swap(state.position, trial.position);

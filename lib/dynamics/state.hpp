@@ -15,6 +15,7 @@ struct State {
   double next_dt = 0;        ///< what the controller proposes, s
   double jerk = 0;           ///< verlet: error over dt^3, the largest of late, 1/s3
   double external_work = 0;  ///< of loads and imposed motions, J/m
+  double gravity_work = 0;   ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;     ///< by contact laws and by damping, J/m
   double damped = 0;         ///< of that, by forces that depend on velocities, J/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
@@ -28,6 +29,7 @@ struct State {
     visitor("next_dt", next_dt);
     visitor("jerk", jerk);
     visitor("external_work", external_work);
+    visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);
     visitor("damped", damped);
     visitor("steps", steps);

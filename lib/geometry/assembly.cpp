@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/errors.hpp"
+#include "core/located.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/placement.hpp"
@@ -74,8 +75,8 @@ Points wall_points(const Scene& scene, const Wall& wall, double finest) {
     throw InputError(fmt::format(
         "{}: wall '{}' has the finest outline spacing of the grains, {:.3g} m, and so {:.3g} nodes; allowed: at "
         "most {:.0g}; give its spacing, or take fewer very small grains",
-        scene.file.string(), wall.name, spacing, period / spacing, most_nodes));
-  Points points = wall_outline(wall, period, std::min(spacing, period / 8));
+        wall.where.empty() ? scene.file.string() : wall.where, wall.name, spacing, period / spacing, most_nodes));
+  Points points = located(wall.where, [&] { return wall_outline(wall, period, std::min(spacing, period / 8)); });
   for (Vec2& p : points) p.y() -= wall.level;
   return points;
 }

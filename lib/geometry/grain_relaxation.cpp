@@ -40,11 +40,11 @@ struct GrainRelaxation::Fire {
 };
 
 GrainRelaxation::Shape GrainRelaxation::make_shape(const Points& outline) {
-  Shape shape{outline, {}, DistanceField(outline), 0, 0};
+  Shape shape{outline, {}, DistanceField(outline), perimeter(outline), 0, 0};
   const std::size_t n = outline.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double length = (outline[(i + 1) % n] - outline[(i + n - 1) % n]).norm() / 2;
-    shape.weight.push_back(length / perimeter(outline));
+    shape.weight.push_back(length / shape.length);
     shape.radius = std::max(shape.radius, outline[i].norm());
   }
   const PolygonProperties properties = polygon_properties(outline);
@@ -59,9 +59,10 @@ void GrainRelaxation::Push::add(const Push& other) {
 }
 
 GrainRelaxation::GrainRelaxation(std::vector<Placement>& grains, const std::vector<Points>& outlines,
-                                 const Strip& region, bool turn)
+                                 const Strip& region, const std::vector<WallProfile>& walls, bool turn)
     : grains_(grains),
       region_(region),
+      walls_(walls),
       turn_(turn),
       index_(outlines.size(), -1),
       nodes_(grains.size()),
@@ -178,7 +179,37 @@ GrainRelaxation::Push GrainRelaxation::push_of_edges(int i) const {
     touch(x.x() - region_.left, Vec2(1, 0), k);
     touch(region_.right - x.x(), Vec2(-1, 0), k);
   }
+  for (const WallProfile& wall : walls_) push_of_wall(i, wall, result);
   return result;
+}
+
+/// Nodes of the grain against the wall's line, and points of the line against the grain.
+void GrainRelaxation::push_of_wall(int i, const WallProfile& wall, Push& result) const {
+  const Placement& grain = grains_[i];
+  const double outer = radius(grain) + clearance * unit_;
+  if (wall.clear_of(grain.centre, outer)) return;
+  const Shape& shape = shape_of(grain);
+  const auto touch = [&](double depth, double weight, const Vec2& normal, const Vec2& arm) {
+    if (depth <= 0) return;
+    result.add(weight * depth * normal, arm / unit_);
+    result.deepest = std::max(result.deepest, depth);
+  };
+  for (std::size_t k = 0; k < nodes_[i].size(); ++k) {
+    const DistanceField::Sample sample = wall.at(grain.centre + nodes_[i][k]);
+    touch(clearance - sample.distance / unit_, shape.weight[k], sample.gradient, nodes_[i][k]);
+  }
+  const double c = std::cos(grain.angle), s = std::sin(grain.angle);
+  const Points line = wall.between(grain.centre.x() - outer, grain.centre.x() + outer);
+  for (std::size_t k = 1; k < line.size(); ++k) {
+    const Vec2 r = line[k] - grain.centre;
+    if (r.squaredNorm() > outer * outer) continue;
+    const DistanceField::Sample sample =
+        shape.distance.at(Vec2(c * r.x() + s * r.y(), c * r.y() - s * r.x()) / grain.scale);
+    const Vec2 outward(c * sample.gradient.x() - s * sample.gradient.y(),
+                       s * sample.gradient.x() + c * sample.gradient.y());
+    const double share = (line[k] - line[k - 1]).norm() / (grain.scale * shape.length);
+    touch(clearance - sample.distance * grain.scale / unit_, share, -outward, r);
+  }
 }
 
 void GrainRelaxation::place_nodes() {
@@ -251,7 +282,7 @@ void GrainRelaxation::move(double dt) {
   }
 }
 
-/// The true outlines of all pairs.
+/// The true outlines of all pairs, and of grains and walls.
 bool GrainRelaxation::overlapping() const {
   std::vector<char> overlap(pairs_.size(), 0);
   parallel_for(static_cast<int>(pairs_.size()), [&](int p) {
@@ -262,7 +293,15 @@ bool GrainRelaxation::overlapping() const {
     for (Vec2& x : other) x += to_b;
     overlap[p] = polygons_overlap(nodes_[a], other);
   });
-  return std::any_of(overlap.begin(), overlap.end(), [](char one) { return one != 0; });
+  if (std::any_of(overlap.begin(), overlap.end(), [](char one) { return one != 0; })) return true;
+  for (const WallProfile& wall : walls_)
+    for (std::size_t i = 0; i < grains_.size(); ++i) {
+      if (wall.clear_of(grains_[i].centre, radius(grains_[i]))) continue;
+      Points outline = nodes_[i];
+      for (Vec2& x : outline) x += grains_[i].centre;
+      if (wall.overlaps(outline)) return true;
+    }
+  return false;
 }
 
 }  // namespace pliant

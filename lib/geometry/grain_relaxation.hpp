@@ -4,6 +4,7 @@
 
 #include "geometry/distance_field.hpp"
 #include "geometry/placement.hpp"
+#include "geometry/wall_profile.hpp"
 
 namespace pliant {
 
@@ -14,7 +15,9 @@ namespace pliant {
 class GrainRelaxation {
  public:
   /// `grains`: at their full size, wherever they are; outlines of their shapes by index. Both outlive the relaxation.
-  GrainRelaxation(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn);
+  /// `walls`: those that reach into the region.
+  GrainRelaxation(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
+                  const std::vector<WallProfile>& walls, bool turn);
 
   /// Moves (and turns) the grains, at the size that they have now; whether they come free of each other: true outlines.
   bool relax(int sweeps);
@@ -29,6 +32,7 @@ class GrainRelaxation {
     Points outline;
     std::vector<double> weight;  // of each node: its share of the outline
     DistanceField distance;
+    double length = 0;    // of the outline
     double radius = 0;    // of the circle around it
     double gyration = 0;  // radius of gyration
   };
@@ -56,6 +60,7 @@ class GrainRelaxation {
   void place_nodes();
   void push(int slave, int master, const Vec2& to_slave, Push& on_slave, Push& on_master) const;
   Push push_of_edges(int i) const;
+  void push_of_wall(int i, const WallProfile& wall, Push& result) const;
   double push_all();
   void step(Fire& fire);
   void move(double dt);
@@ -63,6 +68,7 @@ class GrainRelaxation {
 
   std::vector<Placement>& grains_;
   Strip region_;
+  std::vector<WallProfile> walls_;
   bool turn_;
   std::vector<Shape> shapes_;
   std::vector<int> index_;  // in shapes_, by index of the scene's shapes

@@ -1,9 +1,14 @@
 #include "geometry/placement.hpp"
 
+#include <algorithm>
 #include <numbers>
 
+#include <fmt/format.h>
+
+#include "core/located.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
+#include "geometry/wall_profile.hpp"
 #include "scene/sizes.hpp"
 
 namespace pliant {
@@ -39,8 +44,37 @@ void place_on_lattice(const Scene& scene, const Grains& grains, std::mt19937_64&
 std::vector<Points> outlines_of(const Scene& scene, const std::vector<Placement>& placements) {
   std::vector<Points> outlines(scene.shapes.size());
   for (const Placement& grain : placements)
-    if (outlines[grain.shape].empty()) outlines[grain.shape] = make_outline(scene.shapes[grain.shape]);
+    if (outlines[grain.shape].empty()) {
+      const ShapeSpec& shape = scene.shapes[grain.shape];
+      outlines[grain.shape] = located(shape.where, [&] { return make_outline(shape); });
+    }
   return outlines;
+}
+
+/// The walls whose caps, or levels, reach into the region that grains fill.
+std::vector<WallProfile> walls_in(const Scene& scene, const Strip& region) {
+  std::vector<WallProfile> profiles;
+  for (const Wall& wall : scene.walls) {
+    // Points on caps: what lies between them is off by 1e-3 of a cap's radius.
+    const double spacing = std::min(*scene.period / 8, wall.caps ? wall.caps->diameter / 20 : *scene.period / 8);
+    WallProfile profile = located(wall.where, [&] { return WallProfile(wall, *scene.period, spacing); });
+    if (profile.reaches_into(region)) profiles.push_back(std::move(profile));
+  }
+  return profiles;
+}
+
+/// For packings that know nothing of walls.
+void refuse_overlap(const Scene& scene, const Packed& packed, const std::vector<WallProfile>& walls) {
+  for (const WallProfile& wall : walls)
+    for (std::size_t i = 0; i < packed.grains.size(); ++i) {
+      const Placement& grain = packed.grains[i];
+      const int scenes = static_cast<int>(scene.shapes.size());
+      const ShapeSpec& shape = grain.shape < scenes ? scene.shapes[grain.shape] : packed.fitted[grain.shape - scenes];
+      if (wall.overlaps(placed_outline(make_outline(shape), grain)))
+        throw InputError(fmt::format(
+            "packing: grain {} overlaps the wall '{}', which goes to y = {:.6g} m; let the region end there", i,
+            wall.name(), wall.extreme()));
+    }
 }
 
 }  // namespace
@@ -58,17 +92,24 @@ Packed place_grains(const Scene& scene, const Grains& grains, std::mt19937_64& r
   const Packing& packing = grains.packing;
   const Strip region{packing.left, packing.right, packing.bottom, packing.top, scene.period.has_value()};
   Packed packed{draw_grains(scene, grains), {}};
-  switch (packing.kind) {
-    case PackingKind::random:
-      for (Placement& grain : packed.grains) grain.angle = grains.angle.value_or(0);
-      pack_randomly(packed.grains, outlines_of(scene, packed.grains), region, !grains.angle, grains.seed);
-      break;
-    case PackingKind::fourier_voronoi:
-      packed.fitted = pack_voronoi(packed.grains, scene.shapes, region, *packing.solid_fraction, grains.seed);
-      break;
-    default:
-      place_on_lattice(scene, grains, random, packed.grains);
-  }
+  const bool fills = packing.kind == PackingKind::random || packing.kind == PackingKind::fourier_voronoi;
+  const std::vector<WallProfile> walls = fills ? walls_in(scene, region) : std::vector<WallProfile>{};
+  std::vector<Points> outlines;
+  if (packing.kind == PackingKind::random) outlines = outlines_of(scene, packed.grains);
+  located(grains.where, [&] {
+    switch (packing.kind) {
+      case PackingKind::random:
+        for (Placement& grain : packed.grains) grain.angle = grains.angle.value_or(0);
+        pack_randomly(packed.grains, outlines, region, walls, !grains.angle, grains.seed);
+        break;
+      case PackingKind::fourier_voronoi:
+        packed.fitted = pack_voronoi(packed.grains, scene.shapes, region, *packing.solid_fraction, grains.seed);
+        refuse_overlap(scene, packed, walls);
+        break;
+      default:
+        place_on_lattice(scene, grains, random, packed.grains);
+    }
+  });
   return packed;
 }
 

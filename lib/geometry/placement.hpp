@@ -34,14 +34,17 @@ struct Strip {
   double area() const { return width() * height(); }
 };
 
+class WallProfile;
+
 /// Outline of a placed grain, m.
 Points placed_outline(const Points& outline, const Placement& grain);
 
 /// Random packing without overlap: grains at random places grow to their size, pushing each other away. Sizes and
-/// shapes are given; centres and, unless `angle` is given, angles are found. `outlines`: of the shapes by index.
+/// shapes are given; centres and, with `turn`, angles are found. `outlines`: of the shapes by index; `walls`: those that
+/// reach into the region.
 /// Throws InputError with the solid fraction that was reached when they do not come free of each other.
-void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn,
-                   std::uint64_t seed);
+void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
+                   const std::vector<WallProfile>& walls, bool turn, std::uint64_t seed);
 
 /// Grains in the cells of a Voronoi diagram of a periodic strip, after G. Mollon and J. Zhao, Granular Matter 14 (2012) 621,
 /// doi 10.1007/s10035-012-0356-x: cells of areas in proportion to scale^2 x area, each filled by its grain, turned and moved

@@ -42,12 +42,13 @@ Vec2 random_place(double rim, const Strip& region, std::mt19937_64& random) {
 
 class Growth {
  public:
-  Growth(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn)
+  Growth(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
+         const std::vector<WallProfile>& walls, bool turn)
       : grains_(grains),
         outlines_(outlines),
         region_(region),
         turn_(turn),
-        relaxation_(grains, outlines, region, turn) {
+        relaxation_(grains, outlines, region, walls, turn) {
     double largest = 0;
     for (const Placement& grain : grains) {
       full_.push_back(grain.scale);
@@ -107,9 +108,9 @@ class Growth {
 
 }  // namespace
 
-void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region, bool turn,
-                   std::uint64_t seed) {
-  Growth growth(grains, outlines, region, turn);
+void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
+                   const std::vector<WallProfile>& walls, bool turn, std::uint64_t seed) {
+  Growth growth(grains, outlines, region, walls, turn);
   double reached = 0;
   for (double share = growth.scatter(seed);;) {
     const bool free = growth.relax(share);

@@ -29,7 +29,7 @@ Vec2 internal_force(const Snapshot& snapshot, int b) {
 
 /// An imposed degree of freedom has a mass where its wall has a thickness.
 Vec2 body_force(const Snapshot& snapshot, int b) {
-  return snapshot.model().bodies[b].mass * snapshot.model().scene.gravity;
+  return snapshot.model().bodies[b].mass * snapshot.model().scene.gravity_at(snapshot.state().time);
 }
 
 Vec2 applied_force(const Snapshot& snapshot, int b) {

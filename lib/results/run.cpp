@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -13,6 +11,7 @@
 #include "files/folder_lock.hpp"
 #include "results/checkpoint.hpp"
 #include "results/recorder.hpp"
+#include "results/scene_files.hpp"
 #include "results/stop_signals.hpp"
 
 namespace pliant {
@@ -22,13 +21,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-std::string read_text(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
 
 /// A run under way: its simulation, its outputs and its checkpoints.
 struct Run {
@@ -108,13 +100,13 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   make_samplers(model);  // refuses nodes that no body has, before anything is written
   Simulation simulation(model);
   // Read before the folder is emptied: the scene may lie in it.
-  const std::string scene_text = read_text(scene.file);
+  const SceneFiles files(scene.file);
   FolderLock::refuse_taken(options.out);
   if (!checkpoint) prepare_output_folder(options.out, options.force);
   const FolderLock lock(options.out);
   Recorder recorder(model, options.out, options.quiet, checkpoint ? Opening::resume : Opening::create);
   if (checkpoint) checkpoint->restore(simulation, recorder);
-  write_file_atomically(options.out / "scene.toml", scene_text);
+  files.write(options.out);
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
   if (checkpoint) recorder.figures.checkpoint_time = simulation.state().time;
@@ -122,7 +114,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
     fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s{}\n", scene.name, model.bodies.size(),
                model.node_count(), model.dof_count(), recorder.figures.preparation_seconds,
                checkpoint ? fmt::format(", going on from t = {:.6g} s", simulation.state().time) : "");
-  Run run{options, scene_text, simulation, recorder};
+  Run run{options, files.text(), simulation, recorder};
   try {
     advance(run);
   } catch (const PhysicsError& error) {
@@ -140,12 +132,14 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   if (options.threads > 0) omp_set_num_threads(options.threads);
   if (!options.resume) return simulate(scene, options, nullptr, start);
   const Checkpoint checkpoint(options.out);
-  const std::string difference = scene_difference(checkpoint.scene_text(), read_text(scene.file));
+  const SceneFiles files(scene.file);
+  const std::string difference = scene_difference(checkpoint.scene_text(), files.text());
   if (!difference.empty())
     throw InputError(
         fmt::format("{}: not the scene of the checkpoint in {}: {}; only the end, the title and "
                     "[checkpoint] may change",
                     scene.file.string(), options.out.string(), difference));
+  files.compare(options.out);
   if (checkpoint.time() >= scene.time.end) {
     if (!options.quiet)
       fmt::print("{}: has reached t = {:.6g} s already; nothing to do (a later --until goes on)\n",

@@ -151,6 +151,7 @@ Material read_material(TableReader table, const std::string& name) {
 
 Grains read_grains(TableReader table, const Scene& scene) {
   Grains grains;
+  grains.where = table.place();
   const std::size_t number = scene.grains.size() + 1;
   grains.name = number == 1 ? "grains" : fmt::format("grains{}", number);
   table.optional("name", grains.name, Identifier{});

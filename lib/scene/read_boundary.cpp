@@ -126,6 +126,7 @@ void read_motion(TableReader& table, Condition& condition, const Scene& scene) {
 
 BoundaryCondition read_condition(TableReader table, const Scene& scene) {
   Condition condition;
+  condition.where = table.place();
   read_target(table, condition, scene);
   const bool moves = table.has("x") || table.has("y") || table.has("angle");
   if (!moves && !table.has("pressure")) table.fail_missing("pressure", "'pressure', or what moves 'x', 'y' or 'angle'");

@@ -7,6 +7,9 @@ namespace pliant {
 
 namespace {
 
+/// Spacings: beyond, contact sees into bodies further than outlines resolve them, and the stable step only shrinks.
+constexpr double most_skin = 4;
+
 std::string name_of(const ContactParty& party) {
   return party.name.empty() ? fmt::format("'{}'", party.material)
                             : fmt::format("'{}' of '{}'", party.name, party.material);
@@ -70,7 +73,7 @@ void read_refresh(TableReader& table, ContactSettings& contact) {
 }
 
 void read_settings(TableReader settings, Scene& scene) {
-  settings.optional("skin", scene.skin, Quantity{"1", positive});
+  settings.optional("skin", scene.skin, Quantity{"1", Range{.low = 0, .high = most_skin, .low_open = true}});
   settings.optional(
       "length", scene.contact.length,
       Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});

@@ -45,6 +45,7 @@ struct Target {
 
   std::string allowed() const { return OneOf{"wall or grains", target_names(of, scene)}.allowed(); }
 
+  /// Bodies bear the names that it returns.
   std::string operator()(const Value& value) const {
     const std::vector<std::string> names = target_names(of, scene);
     if (const auto text = value.node.value<std::string>()) {
@@ -55,21 +56,21 @@ struct Target {
           std::find_if(scene.grains.begin(), scene.grains.end(), [&](const Grains& one) { return one.name == group; });
       if (space != std::string::npos && known && grains != scene.grains.end()) {
         check_number(value, *grains, text->substr(space + 1));
-        return *text;
+        return grains->packing.grain_count() == 1 ? group : *text;
       }
     }
     return OneOf{"wall or grains", names}(value);
   }
 
  private:
-  /// Bodies count from 0; the only one of a set has its name alone.
+  /// Bodies count from 0.
   static void check_number(const Value& value, const Grains& grains, const std::string& text) {
     std::int64_t number = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     const std::int64_t count = grains.packing.grain_count();
     const bool whole = error == std::errc() && end == text.data() + text.size() && !text.starts_with('0');
-    if (count > 1 && (whole || text == "0") && number >= 0 && number < count) return;
-    value.reject(count == 1 ? fmt::format("\"{0}\": {0} has one body", grains.name)
+    if ((whole || text == "0") && number >= 0 && number < count) return;
+    value.reject(count == 1 ? fmt::format("\"{0}\" or \"{0} 0\": {0} has one body", grains.name)
                             : fmt::format("\"{0} 0\" to \"{0} {1}\"", grains.name, count - 1));
   }
 };

@@ -2,9 +2,26 @@
 
 namespace pliant {
 
+namespace {
+
+/// A vector, or a history of it, whose rows hold vectors.
+void read_gravity(TableReader& table, Scene& scene) {
+  const toml::array* rows = table.has("gravity") ? table.value("gravity").node.as_array() : nullptr;
+  if (!rows || rows->empty() || !rows->get(0)->is_array()) {
+    table.optional("gravity", scene.gravity, Vector{"m/s2"});
+    return;
+  }
+  std::vector<History> histories(2);
+  table.optional("gravity", histories, VectorHistory{"m/s2"});
+  scene.gravity_history = histories;
+  scene.gravity = scene.gravity_at(0);
+}
+
+}  // namespace
+
 void read_domain(TableReader table, Scene& scene) {
   table.optional("period", scene.period, Quantity{"m", positive});
-  table.optional("gravity", scene.gravity, Vector{"m/s2"});
+  read_gravity(table, scene);
   table.finish();
 }
 

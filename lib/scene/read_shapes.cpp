@@ -173,6 +173,7 @@ double area_of(const ShapeSpec& shape) {
 std::vector<ShapeSpec> read_shape(TableReader table, const std::string& name) {
   ShapeSpec shape;
   shape.name = name;
+  shape.where = table.place();
   std::vector<ShapeSpec> shapes = read_outline(table, shape);
   for (ShapeSpec& one : shapes) read_nodes(table, one);
   table.finish();

@@ -63,6 +63,7 @@ void check_levels(const TableReader& table, const Wall& wall, const std::vector<
 
 Wall read_wall(TableReader table, const Scene& scene) {
   Wall wall;
+  wall.where = table.place();
   table.required("name", wall.name, Identifier{});
   if (!scene.period)
     table.fail(fmt::format("wall '{}' spans the period, and the scene has none; add [domain] period", wall.name));

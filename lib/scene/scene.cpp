@@ -51,6 +51,10 @@ double History::slope(double t) const {
   return (value[i] - value[i - 1]) / (time[i] - time[i - 1]);
 }
 
+Vec2 Scene::gravity_at(double time) const {
+  return gravity_history.empty() ? gravity : Vec2(gravity_history[0].at(time), gravity_history[1].at(time));
+}
+
 const Material& Scene::material(const std::string& name) const { return find_named(materials, name, "material"); }
 
 const ShapeSpec& Scene::shape(const std::string& name) const { return find_named(shapes, name, "shape"); }

@@ -63,6 +63,7 @@ struct ShapeSpec {
   std::optional<int> outline_nodes;  ///< overrides the number of outline nodes
   std::string family;                ///< what all variants of a shape are called; empty: it has none
   std::vector<double> descriptors;   ///< of a Fourier grain that each cell of a packing fits to itself; else empty
+  std::string where{};               ///< file, line and column of its table, for messages
 };
 
 /// Sizes of grains, relative to their shape as it is defined, between `low` and `high`.
@@ -120,6 +121,7 @@ struct Grains {
   std::uint64_t seed = 0;
   std::optional<double> angle = 0.0;  ///< rad; nullopt: each grain turned by a random angle
   InitialVelocity velocity;
+  std::string where{};  ///< file, line and column of its table, for messages
 };
 
 /// What moves one degree of freedom of a wall or a rigid grain, or what the soft support of an outline follows.
@@ -154,7 +156,8 @@ struct Wall {
   double spacing = 0;                                      ///< outline spacing; 0: the finest outline of the grains
   double thickness = 0;                                    ///< mass = density x period x thickness; m
   std::optional<Caps> caps;
-  Drive x, y;  ///< rotation is blocked
+  Drive x, y;           ///< rotation is blocked
+  std::string where{};  ///< file, line and column of its table, for messages
 };
 
 /// Part of an outline: the segments whose middle lies there at the start.
@@ -178,6 +181,7 @@ struct BoundaryCondition {
   std::optional<Vec2> direction;    ///< not following: unit vector of the traction; nullopt: against the first normal
   std::optional<double> stiffness;  ///< support: Pa/m; nullopt: 8 E/h as in contacts
   double damping = 0;               ///< support: Pa s/m
+  std::string where{};              ///< file, line and column of its table, for messages
 };
 
 /// What holds between two sorts of bodies (METHOD 4). Which rule a pair gets: scene/contact_rules.hpp.
@@ -256,9 +260,10 @@ struct Scene {
   std::string name;  ///< file name without folder and extension
   std::string title;
   std::filesystem::path file;
-  std::optional<double> period;  ///< m
-  Vec2 gravity{0, 0};            ///< m/s2
-  double skin = 0.5;             ///< contact skin over the finest outline spacing
+  std::optional<double> period;            ///< m
+  Vec2 gravity{0, 0};                      ///< m/s2; with a history that of t = 0
+  std::vector<History> gravity_history{};  ///< its x and y; empty: constant
+  double skin = 0.5;                       ///< contact skin over the finest outline spacing
   ContactSettings contact;
   TimeSettings time;
   DiscretisationSettings discretisation;
@@ -272,6 +277,7 @@ struct Scene {
   Frames frames;
   std::optional<double> checkpoint_period = 600.0;  ///< wall time between checkpoints, s; nullopt: "never"
 
+  Vec2 gravity_at(double time) const;
   const Material& material(const std::string& name) const;  ///< throws InputError for an unknown name
   const ShapeSpec& shape(const std::string& name) const;
   /// Shapes that a set of grains is made of, as indices in `shapes` with their shares; families as their variants.

@@ -90,6 +90,10 @@ std::string TableReader::child_title(const std::string& key) const {
   return nested() ? fmt::format("{} of {}", key, title_) : fmt::format("[{}]", key);
 }
 
+std::string TableReader::place() const {
+  return fmt::format("{}:{}:{}", *file_, table_->source().begin.line, table_->source().begin.column);
+}
+
 void TableReader::fail(const std::string& message) const { fail_at(*file_, table_->source().begin, message); }
 
 void TableReader::fail(const std::string& key, const std::string& message) const {

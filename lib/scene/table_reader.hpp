@@ -57,6 +57,7 @@ class TableReader {
 
   const std::string& title() const { return title_; }
   const std::string& file() const { return *file_; }
+  std::string place() const;  ///< "file:line:column", for messages
   /// Throws InputError at the table.
   [[noreturn]] void fail(const std::string& message) const;
   /// Throws InputError at the value of a key that is there.

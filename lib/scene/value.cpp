@@ -148,20 +148,24 @@ History HistoryOf::operator()(const Value& value) const {
     if (!value.node.is_string() && !value.node.is_number()) value.reject(allowed());
     return {{0.0}, {quantity(value)}};
   }
-  const std::vector<Value> rows = value.elements(allowed());
-  if (rows.empty()) value.reject(allowed());
   History history;
-  for (const Value& row : rows) {
-    const std::vector<Value> entry = row.elements("[time, value]");
-    if (entry.size() != 2) row.reject("[time, value]");
-    const double time = Quantity{"s"}(entry[0]);
-    if (!history.time.empty() && time <= history.time.back()) {
-      entry[0].reject(fmt::format("a time after the one before it, {} s", history.time.back()));
-    }
+  for_each_history_entry(value, allowed(), [&](double time, const Value& entry) {
     history.time.push_back(time);
-    history.value.push_back(quantity(entry[1]));
-  }
+    history.value.push_back(quantity(entry));
+  });
   return history;
+}
+
+std::vector<History> VectorHistory::operator()(const Value& value) const {
+  std::vector<History> histories(2);
+  for_each_history_entry(value, allowed(), [&](double time, const Value& entry) {
+    const Vec2 vector = Vector{unit}(entry);
+    for (int c = 0; c < 2; ++c) {
+      histories[c].time.push_back(time);
+      histories[c].value.push_back(vector[c]);
+    }
+  });
+  return histories;
 }
 
 }  // namespace pliant

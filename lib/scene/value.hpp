@@ -153,11 +153,33 @@ struct Matrix {
   Eigen::Matrix2d operator()(const Value& value) const;
 };
 
+/// Rows [time, value] of an array, the times growing; take(time, value) gets them one after another.
+template <class Take>
+void for_each_history_entry(const Value& value, const std::string& allowed, Take&& take) {
+  const std::vector<Value> rows = value.elements(allowed);
+  if (rows.empty()) value.reject(allowed);
+  double last = -std::numeric_limits<double>::infinity();
+  for (const Value& row : rows) {
+    const std::vector<Value> entry = row.elements("[time, value]");
+    if (entry.size() != 2) row.reject("[time, value]");
+    const double time = Quantity{"s"}(entry[0]);
+    if (time <= last) entry[0].reject(fmt::format("a time after the one before it, {} s", last));
+    take(last = time, entry[1]);
+  }
+}
+
 /// A constant or a table [[time, value], ...] with growing times.
 struct HistoryOf {
   Quantity quantity;
   std::string allowed() const { return fmt::format("{}, or a table [[time, value], ...] of them", quantity.allowed()); }
   History operator()(const Value& value) const;
+};
+
+/// A table [[time, [x, y]], ...] with growing times: the histories of x and y.
+struct VectorHistory {
+  std::string unit;
+  std::string allowed() const { return fmt::format("a table [[time, [x, y]], ...], x and y in {}", unit); }
+  std::vector<History> operator()(const Value& value) const;
 };
 
 }  // namespace pliant

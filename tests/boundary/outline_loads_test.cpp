@@ -258,6 +258,38 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
   EXPECT_GT(observed_order(coarse, fine, 8), 0.8) << "RATE: the half step of a dashpot";
 }
 
+/// A pulled square is let go at one side while the other holds on: what the books lose over the step of the release, over the energy in the
+/// springs that end. RATE: the square of the step, as a force that ends within one; with the energy of the springs alone it is the first order.
+TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
+  const auto loss = [](double safety) {
+    BoundaryCondition bottom = support_of("square", 5, 0), top = bottom;
+    bottom.part = side({0, -1});
+    top.part = side({0, 1});
+    top.y = {Drive::Mode::displacement, {{0, 2}, {0, 0.4}}};
+    top.window.until = 2;
+    Scene scene = square(bottom);
+    scene.boundary.push_back(top);
+    scene.time.end = 4;
+    without_error_control(scene, safety);
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    const auto imbalance = [&] {
+      const Energies e = simulation.audit().energy;
+      return e.mechanical() - e.external_work + e.dissipated;
+    };
+    double before = 0, stored = 0;
+    while (simulation.state().time < 2) {
+      before = imbalance();
+      stored = simulation.audit().energy.boundary;
+      simulation.step(4);
+    }
+    return std::abs(imbalance() - before) / stored;
+  };
+  const double coarse = loss(0.8), middle = loss(0.2), fine = loss(0.05);
+  EXPECT_NEAR(observed_order(middle, fine, 4), 2, 0.3);
+  EXPECT_LT(coarse, 0.05) << "0.16 with the energy of the springs alone";
+}
+
 /// The bound counts the springs: at safety 1 the motion stays bounded, well above it grows.
 TEST(Support, enters_the_stability_bound) {
   const auto energy_after = [](double safety) {

@@ -47,6 +47,82 @@ TEST(RandomPacking, IsFreeOfOverlap) {
   }
 }
 
+Wall capped_wall(const std::string& name, Wall::Solid solid, double level) {
+  Wall wall;
+  wall.name = name;
+  wall.solid = solid;
+  wall.level = level;
+  wall.caps = Caps{0.9, 7, 0.3, {0.1, -0.1, 0.2}, {0.8, 1.2}};
+  return wall;
+}
+
+/// A wall's solid over three periods, to a depth of 2, with points on caps ten times finer than the packing's.
+Points solid_of(const Wall& wall, double period) {
+  Points line = wall_outline(wall, period, wall.caps->diameter / 200), solid;
+  const bool below = wall.solid == Wall::Solid::below;
+  if (below) std::reverse(line.begin(), line.end());
+  for (const double turn : {-1.0, 0.0, 1.0})
+    for (const Vec2& p : line) solid.emplace_back(p.x() + turn * period, p.y());
+  const double depth = wall.level + (below ? -2 : 2);
+  solid.emplace_back(solid.back().x(), depth);
+  solid.emplace_back(solid.front().x(), depth);
+  return solid;
+}
+
+int overlaps_with_walls(const Scene& scene, const std::vector<Points>& outlines, const std::vector<Wall>& walls) {
+  int count = 0;
+  for (const Wall& wall : walls)
+    for (const Points& outline : outlines) count += polygons_overlap(outline, solid_of(wall, *scene.period));
+  return count;
+}
+
+// EXACT: caps that stand in the region meet no grain, by a test that the packing does not use; without the walls they would.
+TEST(RandomPacking, SeesTheCapsOfWalls) {
+  Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.6, 60);
+  const std::vector<Wall> walls{capped_wall("lower", Wall::Solid::below, -3),
+                                capped_wall("upper", Wall::Solid::above, 5)};
+  EXPECT_GT(overlaps_with_walls(scene, outlines_of(scene, pack(scene)), walls), 3) << "else this test says nothing";
+  scene.walls = walls;
+  const std::vector<Points> outlines = outlines_of(scene, pack(scene));
+  EXPECT_EQ(overlaps_with_walls(scene, outlines, walls), 0);
+  EXPECT_EQ(overlapping_pairs(outlines, scene.period), 0);
+}
+
+// EXACT: grains come as near to caps as the clearance lets them: a lone grain between two walls a little further apart than it.
+TEST(RandomPacking, FillsTheRoomBetweenCaps) {
+  Scene scene = packing_scene(PackingKind::random, {disc(80, 1)}, 0.5, 8);
+  scene.grains[0].size = {};
+  Wall wall = capped_wall("lower", Wall::Solid::below, 0);
+  wall.caps = Caps{1, 10, 0.5, {0}, {1.2}};
+  scene.walls = {wall};
+  scene.grains[0].packing.bottom = -0.5;
+  scene.grains[0].packing.top = 1.55;
+  const std::vector<Points> outlines = outlines_of(scene, pack(scene));
+  EXPECT_EQ(overlaps_with_walls(scene, outlines, scene.walls), 0);
+  for (const Points& outline : outlines)
+    for (const Vec2& p : outline) EXPECT_LT(p.y(), 1.55);
+}
+
+// EXACT: walls that end at the region's edge, as flat ones do, change no bit.
+TEST(RandomPacking, DoesNotSeeWallsOutside) {
+  Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.5, 20);
+  const Packed alone = pack(scene);
+  scene.walls = {capped_wall("lower", Wall::Solid::below, -3)};
+  scene.walls[0].caps.reset();
+  const Packed beside = pack(scene);
+  for (std::size_t i = 0; i < alone.grains.size(); ++i) EXPECT_EQ(alone.grains[i].centre, beside.grains[i].centre);
+}
+
+// EXACT: grains in cells do not know of walls, and are refused where they meet one.
+TEST(VoronoiPacking, IsRefusedWhereItMeetsCaps) {
+  Scene scene = packing_scene(PackingKind::fourier_voronoi, mixed_shapes(), 0.5, 40);
+  scene.grains[0].where = "scene.toml:7:1";
+  scene.walls = {capped_wall("lower", Wall::Solid::below, -3)};
+  const std::string message = error_of([&] { pack(scene); });
+  EXPECT_EQ(message.find("scene.toml:7:1: packing: grain "), 0U) << message;
+  EXPECT_NE(message.find("overlaps the wall 'lower', which goes to y = -2.35"), std::string::npos) << message;
+}
+
 // EXACT: bit by bit the same for a seed, on one thread and two; another for another seed.
 TEST(RandomPacking, IsDeterministic) {
   Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.7, 40);

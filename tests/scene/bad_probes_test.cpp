@@ -75,5 +75,25 @@ const std::vector<Bad> bad_probes{
 };
 INSTANTIATE_TEST_SUITE_P(Outputs, BadProbes, ::testing::ValuesIn(bad_probes), scene_tests::name_of);
 
+/// The good scene with a single box, and a probe of it.
+std::string single_box(const std::string& of) {
+  std::string text = scene_tests::good_scene;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace(", [\"5 um\", \"8 um\"]]", "]");
+  replace("\"friction_factor\"\nof = \"floor\"", "\"position\"\nnode = 1\nof = \"" + of + "\"");
+  return text;
+}
+
+// EXACT: the only grain of a set is number 0 as well.
+TEST(OnlyGrain, HasTheNumber0) {
+  for (const char* of : {"boxes", "boxes 0"}) {
+    const scene_tests::SceneFile file(single_box(of));
+    EXPECT_EQ(read_scene(file.path()).probes[0].of, "boxes") << "what the body is called";
+  }
+  EXPECT_NE(scene_tests::error_of(single_box("boxes 1")).find("\"boxes\" or \"boxes 0\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pliant

@@ -52,7 +52,7 @@ TEST(Schema, rows_say_what_is_allowed_and_what_holds_without) {
            "| `density` | a quantity in kg/m3, > 0 | required |  |\n",
            "| `integrator` | one of \"verlet\", \"step-doubling\" | \"verlet\" |  |\n",
            "| `tolerance` | a number, > 0 and <= 1 | 0.01 |  |\n",
-           "| `skin` | a number, > 0 | 0.5 |  |\n",
+           "| `skin` | a number, > 0 and <= 4 | 0.5 |  |\n",
            "| `stiffness` | \"auto\" or a quantity in Pa/m, > 0 | \"auto\" |  |\n",
            "| `period` | \"never\" or a quantity in s, > 0 | 600 s |  |\n",
            "| `gravity` | [x, y], each a quantity in m/s2 | zero |  |\n",

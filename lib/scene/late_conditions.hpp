@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace pliant {
+
+/// A text for each drive, pressure or support that sets in only when the run is over, with its place in the file.
+std::vector<std::string> late_conditions(const Scene& scene);
+
+}  // namespace pliant

@@ -1,0 +1,36 @@
+// What is kept of a scene file beside its results. All EXACT.
+#include "scene/portable_scene.hpp"
+
+#include <gtest/gtest.h>
+
+namespace pliant {
+namespace {
+
+TEST(PortableScene, names_the_copies_of_its_outlines_and_changes_nothing_else) {
+  const std::string text =
+      "title = \"\xc3\xa4\" # [shapes.a] file = \"x\"\n"
+      "[shapes.a]\nkind = \"file\"\nunit = 'mm' \nfile = \"../some where/\\\"a\\\".csv\" # here\nspacing = 1\n"
+      "[shapes]\nb = { kind = \"file\", title = \"\xc3\xa4\xe2\x82\xac\", file = '''C:\\b.msh''', spacing = 1 }\n"
+      "c = { kind = \"disc\" }\n";
+  const PortableScene scene = portable_scene(text);
+  EXPECT_EQ(
+      scene.text,
+      "title = \"\xc3\xa4\" # [shapes.a] file = \"x\"\n"
+      "[shapes.a]\nkind = \"file\"\nunit = 'mm' \nfile = \"outline_a.csv\" # here\nspacing = 1\n"
+      "[shapes]\nb = { kind = \"file\", title = \"\xc3\xa4\xe2\x82\xac\", file = \"outline_b.msh\", spacing = 1 }\n"
+      "c = { kind = \"disc\" }\n");
+  ASSERT_EQ(scene.outlines.size(), 2U);
+  EXPECT_EQ(scene.outlines[0].file, "../some where/\"a\".csv");
+  EXPECT_EQ(scene.outlines[0].copy, "outline_a.csv");
+  EXPECT_EQ(scene.outlines[1].file, "C:\\b.msh");
+  EXPECT_EQ(portable_scene(scene.text).text, scene.text) << "once more changes nothing";
+}
+
+TEST(PortableScene, without_outlines_is_as_it_was) {
+  const std::string text = "[shapes.disc]\nkind = \"disc\"\n";
+  EXPECT_EQ(portable_scene(text).text, text);
+  EXPECT_TRUE(portable_scene(text).outlines.empty());
+}
+
+}  // namespace
+}  // namespace pliant
