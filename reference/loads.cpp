@@ -90,11 +90,11 @@ void add_following_tangent(const LoadedNode& node, double pressure, Triplets& ta
 Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
   const Scene& scene = bodies.scene();
   const Vector mass = bodies.lumped_mass();
-  gravity_ = mass_damping_ = Vector::Zero(bodies.dofs());
+  heavy_mass_ = mass_damping_ = Vector::Zero(bodies.dofs());
   for (const Body& body : bodies.all())
     for (int i = 0; i < body.dofs; ++i) {
       const int dof = body.first_dof + i;
-      if (body.compliant() || i < 2) gravity_[dof] = mass[dof] * scene.gravity[i % 2];
+      if (body.compliant() || i < 2) heavy_mass_[dof] = mass[dof];
       if (!body.placed.wall) mass_damping_[dof] = mass[dof] * bodies.material_of(body).mass_damping;
     }
   add_walls();
@@ -157,8 +157,16 @@ const RigidLoad* Loads::of(int dof) const {
   return nullptr;
 }
 
+Vector Loads::gravity(double time) const {
+  const Vec2 g = bodies_.scene().gravity_at(time);
+  Vector force = heavy_mass_;
+  for (const Body& body : bodies_.all())
+    for (int i = 0; i < body.dofs; ++i) force[body.first_dof + i] *= g[i % 2];
+  return force;
+}
+
 Vector Loads::applied(double time) const {
-  Vector force = gravity_;
+  Vector force = Vector::Zero(bodies_.dofs());
   for (const RigidLoad& load : rigid_)
     if (load.loaded(time)) force[load.dof] += load.factor * load.drive.history.at(time);
   return force;

@@ -47,9 +47,9 @@ class Loads {
  public:
   explicit Loads(const Bodies& bodies);
 
-  /// Forces of histories, and gravity, on the degrees of freedom: [dofs], N/m.
+  /// Forces of histories on the degrees of freedom: [dofs], N/m.
   Vector applied(double time) const;
-  const Vector& gravity() const { return gravity_; }
+  Vector gravity(double time) const;  ///< [dofs], N/m
   /// Pressures and supports.
   OutlineResidual outlines(const Points& x, double time) const;
   /// Work of pressures, and of supports whose targets move, between two times, by the mean of the forces, J/m.
@@ -72,7 +72,7 @@ class Loads {
   const RigidLoad* of(int dof) const;
 
   const Bodies& bodies_;
-  Vector gravity_, mass_damping_;
+  Vector heavy_mass_, mass_damping_;  ///< [dofs]; heavy: what gravity acts on
   std::vector<RigidLoad> rigid_;
   std::vector<OutlineLoad> outline_;
 };

@@ -96,7 +96,7 @@ void System::add_outlines(const Motion& motion, bool tangent, Forces& forces, Tr
 }
 
 void System::add_applied(const Motion& motion, Forces& forces) const {
-  const Vector applied = loads_.applied(motion.time);
+  const Vector applied = loads_.applied(motion.time) + loads_.gravity(motion.time);
   forces.residual -= applied;
   forces.magnitude += applied.cwiseAbs();
 }

@@ -220,11 +220,11 @@ void TimeStepping::book(const Trial& trial) {
   const Loads& loads = system_.loads();
   const Motion &before = motion_, &after = trial.motion;
   const Vector moved = after.q - before.q;
-  const Vector applied = 0.5 * (loads.applied(before.time) + loads.applied(after.time)) - loads.gravity();
-  books_.work_of_gravity += loads.gravity().dot(moved);
-  books_.work_of_loads +=
-      applied.dot(moved) + loads.outline_work(system_.bodies().outline_positions(before.q), before.time,
-                                              system_.bodies().outline_positions(after.q), after.time);
+  const Bodies& bodies = system_.bodies();
+  books_.work_of_gravity += 0.5 * (loads.gravity(before.time) + loads.gravity(after.time)).dot(moved);
+  books_.work_of_loads += 0.5 * (loads.applied(before.time) + loads.applied(after.time)).dot(moved) +
+                          loads.outline_work(bodies.outline_positions(before.q), before.time,
+                                             bodies.outline_positions(after.q), after.time);
   // What holds an imposed motion gives it its kinetic energy and works against the other forces.
   for (int i = 0; i < moved.size(); ++i)
     if (loads.imposed(i, before.time))
