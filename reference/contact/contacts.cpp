@@ -94,7 +94,8 @@ struct Contacts::Implementation {
   void meet(int slave, int master, const Law& law) {
     const Box &a = bodies[slave].box, &b = bodies[master].box;
     const double outward = law.reach + (law.shears() ? skin : 0);
-    // Heights grow slower than distances beyond an end: of tips sharper than 29 degrees something may be missed beyond this, far from any contact.
+    // Heights grow slower than distances beyond an end: of tips sharper than 29 degrees something may be missed beyond
+    // this, far from any contact.
     const double margin = 4 * outward;
     if (a.low.y() > b.high.y() + margin || b.low.y() > a.high.y() + margin) return;
     if (period == 0) return meet_image(slave, master, 0, law, outward, margin);

@@ -43,8 +43,9 @@ struct ContactElement {
   double gap = 0, pressure = 0, shear = 0;  ///< m, Pa, Pa (on the slave along the segment)
   double depth = 0;                         ///< penetration over the master's longest segment
   std::array<int, 2> body{};                ///< whose node, whose segment: numbers of outlines
-  /// More columns of the tangent, for nodes of the outline that the slave passed since the last accepted state, as the way along it depends on
-  /// them too; empty while it stays on one segment. A node may occur more than once: columns add up.
+  /// More columns of the tangent, for nodes of the outline that the slave passed since the last accepted state, as the
+  /// way along it depends on them too; empty while it stays on one segment. A node may occur more than once: columns
+  /// add up.
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
@@ -57,13 +58,13 @@ struct ContactResult {
 /// All contacts of a scene by brute force: every node of every body against every segment of every other (METHOD 4).
 class Contacts {
  public:
-  /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for a range within which the law
-  /// does not reach its strength, and for stiffness = "auto" between rigid bodies alone.
+  /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for
+  /// a range within which the law does not reach its strength, and for stiffness = "auto" between rigid bodies alone.
   Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Contacts();
 
-  /// At outline positions x [all outline nodes], m. Trial memories are kept beside the accepted ones. Every evaluation before the first accept() is of
-  /// the initial state: it finds which nodes are bonded, without slip.
+  /// At outline positions x [all outline nodes], m. Trial memories are kept beside the accepted ones. Every evaluation
+  /// before the first accept() is of the initial state: it finds which nodes are bonded, without slip.
   ContactResult evaluate(const Points& x);
   /// The trial memories of the last evaluation become the accepted ones.
   void accept();

@@ -107,7 +107,8 @@ Variable static_damage(const Law& law, const Variable& opening, const Variable& 
   return law.reach / (law.reach - critical) * (1 - critical / together);
 }
 
-/// Integral of rate (p - threshold) / (strength - threshold) dp over the part of the way from p_old to p on which p grows above the threshold.
+/// Integral of rate (p - threshold) / (strength - threshold) dp over the part of the way from p_old to p on which p
+/// grows above the threshold.
 Variable wear(const Law& law, double rate, double p_old, const Variable& p) {
   const double from = std::max(p_old, law.threshold);
   if (rate == 0 || p.value <= from) return 0;

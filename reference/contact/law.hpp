@@ -37,12 +37,12 @@ struct Response {
   double slip = 0, damage = 1, opening = 0;                              ///< to remember
 };
 
-/// Of a node in touch (gap < reach) that has moved by `motion` along the outline since the memory was accepted. `initial`: of the first state, in
-/// which bonds are as they are and nothing has moved.
+/// Of a node in touch (gap < reach) that has moved by `motion` along the outline since the memory was accepted.
+/// `initial`: of the first state, in which bonds are as they are and nothing has moved.
 Response respond(const Law& law, const ContactMemory& memory, double gap, double motion, bool initial);
 
-/// Of a node that gets out of touch: what it loses of the energy in shear and in its bond, J/m2. `gap`: of a node that is still beside the other body;
-/// its bond is stretched that far when it tears.
+/// Of a node that gets out of touch: what it loses of the energy in shear and in its bond, J/m2. `gap`: of a node that
+/// is still beside the other body; its bond is stretched that far when it tears.
 double parting_loss(const Law& law, const ContactMemory& memory, std::optional<double> gap);
 
 }  // namespace pliant::reference

