@@ -47,7 +47,7 @@ double way_between_segments(const MasterWindow& window, const Projection& p, int
   double rows = old_number - p.number[lane];
   rows -= window.outline_count() * std::round(rows / window.outline_count());
   const Place now{static_cast<int>(p.row[lane]), p.xi[lane], angle_of(p.fan[lane])};
-  const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(4 * (old_u - old_xi))};
+  const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(fan_of(broadcast(old_u - old_xi))[0])};
   const double height = p.height[lane], gap = p.gap[lane];
   return old.row < now.row ? way_onward(window, old, now, height, gap) : -way_onward(window, now, old, height, gap);
 }

@@ -4,9 +4,21 @@
 
 namespace pliant {
 
-/// Place of a node on the master's outline as one number, for the history: twice the segment's number, plus xi beside the segment or, beyond an
-/// end, fan/4 more or less: at most 1/4 off [0, 1], so that every place belongs to one segment.
-inline Lanes place_of(const Projection& p) { return 2.0 * p.number + p.xi + 0.25 * p.fan; }
+/// Place of a node on the master's outline as one number, for the history: twice the segment's number, plus xi beside the segment. Beyond an end:
+/// |fan|/4 off [0, 1] outside, 0.3 + 0.15 |fan| off it inside a re-entrant corner, where the normal turns against the way. Always less than 1/2, so
+/// that every place belongs to one segment.
+inline Lanes place_of(const Projection& p) {
+  const Lanes turn = abs(p.fan);
+  const Lanes off = select(p.gap < 0.0, 0.3 + 0.15 * turn, 0.25 * turn);
+  const Lanes onward = select(p.xi > 0.5, off, -off);
+  return 2.0 * p.number + p.xi + select(p.fan != 0.0, onward, Lanes{});
+}
+
+/// The fan of a place that lies `off` [0, 1].
+inline Lanes fan_of(Lanes off) {
+  const Lanes size = abs(off), inside = (size - 0.3) * (1 / 0.15);
+  return select(size > 0.275, select(off > 0.0, -inside, inside), 4.0 * off);
+}
 
 /// Way along the outline from an old place on another segment to the projection in one lane, at its present gap and shape: faces count by their
 /// length, corners by the turn of the normal. Signed, m.
@@ -20,9 +32,9 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
   const Lanes u = place - 2.0 * p.number, old_u = old_place - 2.0 * p.number;
   const Lanes xi = min(max(u, Lanes{}), broadcast(1)), old_xi = min(max(old_u, Lanes{}), broadcast(1));
   Lanes moved = p.length * (xi - old_xi);
-  const LaneBits same = abs(old_u - 0.5) < 0.9;
+  const LaneBits same = abs(old_u - 0.5) < 1.0;
   if (any(counted & same & ((u != xi) | (old_u != old_xi)))) {
-    const Lanes fan = 4.0 * (u - xi), old_fan = 4.0 * (old_u - old_xi);
+    const Lanes fan = fan_of(u - xi), old_fan = fan_of(old_u - old_xi);
     const Lanes cosine = sqrt(max(1.0 - fan * fan, Lanes{})), old_cosine = sqrt(max(1.0 - old_fan * old_fan, Lanes{}));
     moved += p.gap * (fan * old_cosine - cosine * old_fan);
   }

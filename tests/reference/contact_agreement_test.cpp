@@ -204,5 +204,29 @@ TEST(ReferenceContact, EngineAgreesOnRandomOutlines) {
   EXPECT_GT(compared, 200);
 }
 
+// A tip in a re-entrant corner, most of the time behind its end node: nothing else stands beyond an end inside a body.
+TEST(ReferenceContact, EngineAgreesInANotch) {
+  int beyond = 0;
+  for (int sample = 0; sample < 220 && !HasFailure(); ++sample) {
+    SCOPED_TRACE(sample);
+    Random random(sample + 9000);
+    Scene scene = bare_scene();
+    scene.skin = 0.1;
+    scene.contacts = cases()[sample % 11].rules;
+    scene.contacts[0].stiffness = 100;
+    Points notched = regular(6, 1), needle{{0, 0}, {3, 4}, {-3, 4}};
+    notched[1] *= random.uniform(0.1, 0.3);
+    add_body(scene, outline_shape("notched", notched), BodyKind::rigid, {0, 0}, M_PI / 6);
+    add_body(scene, outline_shape("needle", needle), BodyKind::rigid, {0, 0}, random.uniform(-0.2, 0.2));
+    Sides sides(scene);
+    const double direction = random.uniform(-0.4, 0.4), depth = random.uniform(-0.01, 0.05);
+    sides.rig.move(
+        1, sides.rig.node(0, 1) - sides.rig.node(1, 0) - depth * Vec2(std::sin(direction), std::cos(direction)));
+    compare_states(sides, random, 0.003);
+    beyond += std::abs(direction) < 0.2 && depth > 0.01;
+  }
+  EXPECT_GT(beyond, 50);
+}
+
 }  // namespace
 }  // namespace pliant
