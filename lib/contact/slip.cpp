@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vec2.hpp"
+
 namespace pliant {
 namespace {
 
@@ -11,6 +13,9 @@ struct Place {
   int row;
   double xi, angle;
 };
+
+/// Faces whose tangents have a lesser cosine, turned by more than 120 degrees, are flanks of a fold.
+constexpr double folded = -0.5;
 
 double angle_of(double fan) { return std::asin(std::clamp(fan, -1.0, 1.0)); }
 
@@ -39,6 +44,30 @@ double way_onward(const MasterWindow& window, const Place& from, const Place& to
   return way;
 }
 
+/// Where a node stands, and the tangent that its shear acts along there.
+struct Stand {
+  Vec2 position, tangent;
+};
+
+Stand stand(const MasterSegment& segment, const Place& place, double gap) {
+  const Vec2 along(segment.tangent_x, segment.tangent_y), out(segment.tangent_y, -segment.tangent_x);
+  const Vec2 normal = std::cos(place.angle) * out + std::sin(place.angle) * along;
+  return {Vec2(segment.x, segment.y) + place.xi * segment.length * along + gap * normal, Vec2(-normal.y(), normal.x())};
+}
+
+/// Displacement, the old gap taken as the present one, along the mean of the tangents at its ends: what shears of one
+/// size do work on. From flank to flank of a fold a node does not go around its bottom.
+double across_fold(const MasterWindow& window, const Place& from, const Place& to, double gap) {
+  const Stand old = stand(at(window, from.row), from, gap), now = stand(at(window, to.row), to, gap);
+  const int n = window.count(), turn = n == window.outline_count() ? turn_of(from.row, n) : 0;
+  const Vec2 period(window[n].x - window[0].x, window[n].y - window[0].y);  // 0 around a closed outline
+  return 0.5 * (now.tangent + old.tangent).dot(now.position - old.position - turn * period);
+}
+
+bool are_folded(const MasterSegment& a, const MasterSegment& b) {
+  return a.tangent_x * b.tangent_x + a.tangent_y * b.tangent_y < folded;
+}
+
 }  // namespace
 
 double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place) {
@@ -49,6 +78,7 @@ double way_between_segments(const MasterWindow& window, const Projection& p, int
   const Place now{static_cast<int>(p.row[lane]), p.xi[lane], angle_of(p.fan[lane])};
   const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(fan_of(broadcast(old_u - old_xi))[0])};
   const double height = p.height[lane], gap = p.gap[lane];
+  if (are_folded(at(window, old.row), at(window, now.row))) return across_fold(window, old, now, gap);
   return old.row < now.row ? way_onward(window, old, now, height, gap) : -way_onward(window, now, old, height, gap);
 }
 

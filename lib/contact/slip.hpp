@@ -21,7 +21,7 @@ inline Lanes fan_of(Lanes off) {
 }
 
 /// Way along the outline from an old place on another segment to the projection in one lane, at its present gap and shape: faces count by their
-/// length, corners by the turn of the normal. Signed, m.
+/// length, corners by the turn of the normal. Between flanks of a fold the displacement along them instead. Signed, m.
 double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
 
 /// Tangential motion of eight nodes past the master since the last accepted step, m: rates in the present shape (beside a segment l d(xi), beyond

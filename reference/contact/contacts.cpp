@@ -111,7 +111,7 @@ struct Contacts::Implementation {
     for (int i = 0; i < outlines[slave].count; ++i) {
       const Vec2 point = bodies[slave].outline.node(i) - shift;
       if (!on.box.contains(point, margin)) continue;
-      if (const auto nearest = nearest_segment(on.outline, 0, on.outline.count(), point))
+      if (const auto nearest = nearest_segment(on.outline, 0, on.outline.count(), point, outward))
         stand_beside({slave, i, master, image}, *nearest, point, law, outward);
     }
   }
@@ -124,7 +124,7 @@ struct Contacts::Implementation {
       const Vec2 point = bodies[slave].outline.node(i);
       const int turn = static_cast<int>(std::lround((point.x() - middle) / on.outline.turn_shift())),
                 count = on.outline.count();
-      if (const auto nearest = nearest_segment(on.outline, (turn - 1) * count, 3 * count, point))
+      if (const auto nearest = nearest_segment(on.outline, (turn - 1) * count, 3 * count, point, outward))
         stand_beside({slave, i, master, 0}, *nearest, point, law, outward);
     }
   }

@@ -1,6 +1,7 @@
 #include "reference/contact/projection.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace pliant::reference {
 namespace {
@@ -15,15 +16,43 @@ double height_over(const PresentOutline& master, int segment, const Vec2& point)
   return (point - master.node(segment)).dot(Vec2(t.y(), -t.x()));
 }
 
+/// The segment whose points come nearest, wedges or not; of two that meet at the nearest point that which is seen more steeply.
+Nearest truly_nearest(const PresentOutline& master, int first, int count, const Vec2& point) {
+  Nearest nearest{first, 0};
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = first; i < first + count; ++i) {
+    const Vec2 a = master.node(i), b = master.node(i + 1);
+    const double along = (point - a).dot(master.tangent(i)), height = height_over(master, i, point);
+    const double distance = along < 0                  ? (point - a).norm()
+                            : along > master.length(i) ? (point - b).norm()
+                                                       : std::abs(height);
+    if (distance < least || (distance == least && std::abs(height) > std::abs(nearest.height)))
+      nearest = {i, height}, least = distance;
+  }
+  return nearest;
+}
+
+/// Sine of the angle between a segment's normal and the direction of a point beyond its ends; 0 beside it.
+double sine_beyond(const PresentOutline& master, int segment, const Vec2& point) {
+  const double along = (point - master.node(segment)).dot(master.tangent(segment));
+  if (along >= 0 && along <= master.length(segment)) return 0;
+  const double over = along < 0 ? along : along - master.length(segment);
+  return over / std::hypot(over, height_over(master, segment, point));
+}
+
 }  // namespace
 
-std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point) {
+std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point,
+                                       double outward) {
   std::optional<Nearest> nearest;
   for (int i = first; i < first + count; ++i) {
     if (!wedge_holds(master, i, point)) continue;
     const double height = height_over(master, i, point);
     if (!nearest || std::abs(height) < std::abs(nearest->height)) nearest = Nearest{i, height};
   }
+  // Where a face ends before the bisector beside it does, as in a fold, wedges mislead: steeper than 8 degrees beyond an end they do not count.
+  if (nearest && nearest->height <= outward && std::abs(sine_beyond(master, nearest->segment, point)) > 0.14)
+    return truly_nearest(master, first, count, point);
   return nearest;
 }
 

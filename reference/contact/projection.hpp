@@ -44,12 +44,14 @@ inline JetVector unit(const JetVector& a) {
   return {a.x / length, a.y / length};
 }
 
-/// The segments [first, first + count) whose wedge between the bisectors holds a point: the one with the least height.
+/// Of the segments [first, first + count) whose wedge between the bisectors holds a point the one with the least height; for points steeply beyond
+/// an end, and not higher than `outward`, the one that is truly nearest.
 struct Nearest {
   int segment = 0;
   double height = 0;  ///< outside positive, m
 };
-std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point);
+std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point,
+                                       double outward);
 
 /// A point against a segment, by the coordinates of the point and of the segment's first and second node (METHOD 4).
 struct Projection {

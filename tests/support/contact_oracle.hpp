@@ -276,6 +276,7 @@ class ContactOracle {
 
   /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the normal
   /// at the corners passed. A node under a convex corner, or over a re-entrant one, jumps from face to face.
+  /// Between the flanks of a fold: the displacement along the mean of the tangents.
   double way(int master, const Memory& from, const OraclePoint& to) const {
     const int n = rig_.count(master);
     int steps = (((to.segment - from.segment) % n) + n) % n;
@@ -283,6 +284,13 @@ class ContactOracle {
     if (steps == 0) return to.length * (to.xi - from.xi) + to.gap * std::sin(to.angle() - from.angle);
     double sum = to.gap * (to.angle() - from.angle);
     const int first = to.segment - steps;
+    const Vec2 start = node(master, first), face = node(master, first + 1) - start;
+    if (face.normalized().dot(to.segment_tangent) < -0.5) {
+      const double direction = std::atan2(face.y(), face.x()) + from.angle;
+      const Vec2 tangent(std::cos(direction), std::sin(direction)), normal(tangent.y(), -tangent.x());
+      const Vec2 here = node(master, to.segment) + to.xi * to.length * to.segment_tangent + to.gap * to.normal;
+      return (tangent + to.tangent()).dot(here - start - from.xi * face - to.gap * normal) / 2;
+    }
     const auto length = [&](int k) { return (node(master, k + 1) - node(master, k)).norm(); };
     sum += steps > 0 ? (1 - from.xi) * length(first) + to.xi * to.length
                      : -(from.xi * length(first) + (1 - to.xi) * to.length);
