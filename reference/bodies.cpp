@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <map>
 
+#include "core/located.hpp"
+
 namespace pliant::reference {
 namespace {
 
@@ -33,8 +35,9 @@ double mean_spacing(const Points& outline, double turn_shift) {
 }
 
 Bodies::Bodies(const Scene& scene) : scene_(scene) {
-  std::map<std::string, int> known;
   const std::vector<PlacedBody> placed = place_bodies(scene_);
+  meshes_ = related_meshes(scene_, placed);
+  std::map<std::string, int> known;
   for (const PlacedBody& one : placed)
     if (!one.wall) {
       Body body{.placed = one, .outline = {}};
@@ -55,7 +58,12 @@ void Bodies::place(Body body, int dofs) {
 void Bodies::add_compliant(Body body, std::map<std::string, int>& known) {
   const ShapeSpec& shape = scene_.shapes[body.placed.shape];
   const auto [found, is_new] = known.try_emplace(shape.name, static_cast<int>(spaces_.size()));
-  if (is_new) spaces_.push_back(make_space(make_field_mesh(shape), scene_.discretisation));
+  const auto related = meshes_.find(shape.name);
+  if (is_new)
+    spaces_.push_back(located(shape.where, [&] {
+      return make_space(related == meshes_.end() ? make_field_mesh(shape) : related->second.mesh,
+                        scene_.discretisation);
+    }));
   body.space = found->second;
   const FieldMesh& mesh = space_of(body).mesh;
   for (int k = 0; k < mesh.outline_count; ++k) body.outline.push_back(body.placed.scale * mesh.nodes[k]);

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "geometry/assembly.hpp"
+#include "geometry/shape_families.hpp"
 #include "reference/contact/contacts.hpp"
 #include "reference/discretisation/space.hpp"
 #include "scene/scene.hpp"
@@ -66,6 +69,7 @@ class Bodies {
   void place(Body body, int dofs);
 
   Scene scene_;
+  std::map<std::string, RelatedMesh> meshes_;  ///< of shapes that have not their own
   std::vector<Space> spaces_;
   std::vector<Body> bodies_;
   int dofs_ = 0, outline_nodes_ = 0;

@@ -4,11 +4,10 @@
 #include "bodies/apply_conditions.hpp"
 #include "bodies/make_batches.hpp"
 #include "bodies/model.hpp"
-#include "bodies/relate_shapes.hpp"
 #include "core/located.hpp"
 #include "geometry/assembly.hpp"
 #include "geometry/mesh.hpp"
-#include "geometry/outline.hpp"
+#include "geometry/shape_families.hpp"
 
 namespace pliant {
 namespace {
@@ -97,6 +96,7 @@ class Builder {
     const std::vector<PlacedBody> placed = place_bodies(model_.scene);
     for (const PlacedBody& body : placed)
       if (!body.wall) add_grain(body);
+    if (options_.relate) store_.relate(related_meshes(model_.scene, placed, options_.least_sparse_nodes));
     build_compliant();
     for (const PlacedBody& body : placed)
       if (body.wall) add_wall(body);
@@ -123,10 +123,6 @@ class Builder {
   }
 
   void build_compliant() {
-    std::map<std::string, int> bodies;
-    for (const auto& [body, shape] : compliant_) ++bodies[shape];
-    if (options_.relate && sparse_nodes(bodies) >= options_.least_sparse_nodes)
-      store_.relate(relate_shapes(model_.scene, bodies));
     for (const auto& [number, name] : compliant_) {
       Body& body = model_.bodies[number];
       const int shape = body.compliant_shape = store_.compliant(name);
@@ -136,15 +132,6 @@ class Builder {
       body.mass = body.area * material.density;
       group_for(shape, material.law).bodies.push_back(number);
     }
-  }
-
-  /// Field nodes of bodies whose shapes have few.
-  int sparse_nodes(const std::map<std::string, int>& bodies) const {
-    int nodes = 0;
-    for (const auto& [name, count] : bodies)
-      if (const ShapeSpec& shape = model_.scene.shape(name); count <= sparse_bodies)
-        nodes += count * located(shape.where, [&] { return field_node_count(shape, make_outline(shape)); });
-    return nodes;
   }
 
   CompliantGroup& group_for(int shape, MaterialLaw law) {
@@ -167,10 +154,11 @@ class Builder {
     model_.bodies.push_back(std::move(body));
   }
 
+  /// Of all grains, m.
   double finest_spacing() const {
     double finest = 1e300;
-    for (const OutlineShape& outline : model_.outlines)
-      if (outline.turn_shift == 0) finest = std::min(finest, outline.spacing);
+    for (const Body& body : model_.bodies)
+      if (!body.wall) finest = std::min(finest, model_.outlines[body.outline].spacing);
     return finest;
   }
 

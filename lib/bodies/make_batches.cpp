@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include "bodies/relate_shapes.hpp"
 #include "bodies/related_shapes.hpp"
 #include "bodies/spread_shape.hpp"
 #include "materials/elastic_constants.hpp"

@@ -9,6 +9,7 @@
 #include "core/lanes.hpp"
 #include "discretisation/table.hpp"
 #include "geometry/assembly.hpp"
+#include "geometry/shape_families.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
@@ -116,7 +117,7 @@ struct Model {
 struct BuildOptions {
   /// Bodies that would leave their batch's lanes empty are united with those of related shapes, or spread, when their shapes have so many nodes
   /// together: below, nobody waits for the empty lanes. 0: always; a large number: never.
-  int least_sparse_nodes = 1000;
+  int least_sparse_nodes = pliant::least_sparse_nodes;
   bool relate = true;          ///< unite related shapes then, where they would be spread
   std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: as the scene says
 };

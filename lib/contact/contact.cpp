@@ -51,7 +51,7 @@ int padded(int count) { return (count + lane_count - 1) / lane_count * lane_coun
 
 ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(model) {
   double finest = 1e300;
-  for (const OutlineShape& outline : model.outlines) finest = std::min(finest, outline.spacing);
+  for (const Body& body : model.bodies) finest = std::min(finest, model.outlines[body.outline].spacing);
   skin_ = model.scene.skin * finest;
   broad_margin_ = laws_.max_reach() + (1 + extra_skins) * skin_;
   motion_.resize(model.bodies.size());

@@ -18,6 +18,10 @@ CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
 MAX_LINES = 400
 SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
 
+# All of lib/ that the reference solver may share: no mechanics (DESIGN 6). Of core only these.
+SHARED_FOLDERS = ["files", "geometry", "scene"]
+SHARED_CORE = {"errors.hpp", "located.hpp", "vec2.hpp"}
+
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 
 # Not allowed in lib/: pattern, and why.
@@ -90,6 +94,36 @@ def check_cycles(root: Path) -> list[str]:
     return problems
 
 
+def check_independence(root: Path) -> list[str]:
+    """Includes of reference/, and what it and the library that it shares are made of."""
+    lib, problems = root / "lib", []
+    for file in files_of(root, {".hpp", ".cpp"}, ["reference"]):
+        for included in included_files(lib, file):
+            target = included.relative_to(lib)
+            if target.parts[0] not in SHARED_FOLDERS and not (target.parts[0] == "core" and target.name in SHARED_CORE):
+                problems.append(f"{file.relative_to(root)}: includes {target}: the reference solver shares no mechanics "
+                                "with the engine")
+    for file in files_of(root, {".hpp", ".cpp"}, ["lib"]):
+        problems += [f"{file.relative_to(root)}: includes {name}: the engine uses nothing of the reference solver"
+                     for name in INCLUDE.findall(read(file)) if name.startswith("reference/")]
+    return problems + check_link_lines(root)
+
+
+def check_link_lines(root: Path) -> list[str]:
+    """CMakeLists.txt links the reference solver with the shared folders alone."""
+    cmake = root / "CMakeLists.txt"
+    if not (root / "reference").is_dir() or not cmake.is_file():
+        return []
+    text, problems = read(cmake), []
+    shared = re.search(r"set\(PLIANT_SHARED_FOLDERS ([^)]*)\)", text)
+    if shared is None or not set(shared[1].split()) <= {"core", *SHARED_FOLDERS}:
+        problems.append(f"CMakeLists.txt: PLIANT_SHARED_FOLDERS may be core {' '.join(SHARED_FOLDERS)} and nothing else")
+    for target, libraries in re.findall(r"target_link_libraries\((pliant_reference\w*|pliant_scene)\s([^)]*)\)", text):
+        if "pliant_lib" in libraries.split():
+            problems.append(f"CMakeLists.txt: {target} links the engine")
+    return problems
+
+
 def check_lengths(root: Path) -> list[str]:
     lengths = {file: len(read(file).splitlines()) for file in files_of(root, CODE_SUFFIXES, SOURCE_FOLDERS)}
     return [f"{file.relative_to(root)}: {lines} lines, at most {MAX_LINES}: split it"
@@ -112,7 +146,7 @@ def check_pragma_once(root: Path) -> list[str]:
 
 def check_tree(root: Path) -> list[str]:
     texts = [file for file in files_of(root, TEXT_SUFFIXES) if file.name != "LICENSE"]
-    return [*check_arrows(root), *check_cycles(root), *check_lengths(root), *check_pragma_once(root),
+    return [*check_arrows(root), *check_cycles(root), *check_independence(root), *check_lengths(root), *check_pragma_once(root),
             *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB),
             *check_words(root, texts, FORBIDDEN)]
 

@@ -10,12 +10,23 @@ from pathlib import Path
 import pytest
 
 CHECK = Path(__file__).with_name("check_structure.py")
+CMAKE = """\
+set(PLIANT_SHARED_FOLDERS core files geometry scene)
+target_link_libraries(pliant_lib PUBLIC pliant_scene)
+target_link_libraries(pliant_reference PUBLIC pliant_scene
+  umfpack)
+target_link_libraries(pliant_reference_solver PRIVATE pliant_reference)
+"""
 GOOD = {
     "lib/core/sums.hpp": '#pragma once\n#include <vector>\n',
     "lib/scene/scene.hpp": '#pragma once\n#include "core/sums.hpp"\n',
     "lib/contact/laws/cohesive.hpp": '#pragma once\n#include "scene/scene.hpp"\n',
     "lib/cli/options.hpp": "#pragma once\n",
+    "lib/contact/pairs.hpp": "#pragma once\n",
     "lib/contact/pairs.cpp": '#include "contact/laws/cohesive.hpp"\n',
+    "reference/bodies.cpp": '#include "scene/scene.hpp"\n#include "reference/jet.hpp"\n',
+    "reference/jet.hpp": "#pragma once\n",
+    "CMakeLists.txt": CMAKE,
     "tests/core/sums_test.cpp": '#include "core/sums.hpp"\n',
 }
 BAD = {
@@ -32,7 +43,14 @@ BAD = {
     "atomic": ("lib/core/atomic.cpp", "\n#pragma omp atomic\n", "atomic.cpp:2"),
     "unordered sum": ("lib/core/sum.cpp", "#pragma omp parallel for reduction(+ : s)\n", "fixed blocks"),
     "path of a machine": ("scripts/plot.py", 'OUT = "/home/' 'me/out"\n', "path of one machine"),
-    "fast math": ("CMakeLists.txt", "add_compile_options(-f" "fast-math)\n", "same bits"),
+    "engine in the reference": ("reference/x.cpp", '#include "contact/pairs.hpp"\n', "shares no mechanics"),
+    "core's mathematics in the reference": ("reference/x.hpp", '#pragma once\n#include "core/sums.hpp"\n', "no mechanics"),
+    "reference in the engine": ("lib/cli/x.cpp", '#include "reference/jet.hpp"\n', "nothing of the reference"),
+    "more than the scene is shared": ("CMakeLists.txt", CMAKE.replace("core files", "core bodies files"),
+                                      "PLIANT_SHARED_FOLDERS"),
+    "the engine is linked": ("CMakeLists.txt", CMAKE.replace("PUBLIC pliant_scene\n", "PUBLIC pliant_scene pliant_lib\n"),
+                             "links the engine"),
+    "fast math": ("cmake/options.cmake", "add_compile_options(-f" "fast-math)\n", "same bits"),
     "postponed": ("lib/core/later.cpp", "// TO" "DO\n", "later.cpp:1"),
 }
 

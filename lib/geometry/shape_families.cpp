@@ -1,0 +1,61 @@
+#include "geometry/shape_families.hpp"
+
+#include "core/located.hpp"
+#include "geometry/outline.hpp"
+#include "geometry/related_mesh.hpp"
+
+namespace pliant {
+namespace {
+
+/// United, so many shapes cost less than one by one.
+constexpr std::size_t least_family = 3;
+
+/// A shape of few bodies.
+struct Relative {
+  const ShapeSpec* shape;
+  Points outline;
+  int nodes;   ///< of its field
+  int bodies;  ///< that have it
+};
+
+std::vector<Relative> sparse_shapes(const Scene& scene, const std::vector<PlacedBody>& bodies) {
+  std::map<std::string, int> count;
+  for (const PlacedBody& body : bodies)
+    if (!body.wall && body.kind == BodyKind::compliant) ++count[scene.shapes[body.shape].name];
+  std::vector<Relative> result;
+  for (const auto& [name, number] : count) {
+    if (number > sparse_bodies) continue;
+    const ShapeSpec& shape = scene.shape(name);
+    located(shape.where, [&] {
+      const Points outline = make_outline(shape);
+      result.push_back({&shape, outline, field_node_count(shape, outline), number});
+    });
+  }
+  return result;
+}
+
+}  // namespace
+
+std::map<std::string, RelatedMesh> related_meshes(const Scene& scene, const std::vector<PlacedBody>& bodies,
+                                                  int least_nodes) {
+  int nodes = 0;
+  std::map<std::pair<int, int>, std::vector<Relative>> relatives;  // by numbers of nodes and outline nodes
+  for (const Relative& one : sparse_shapes(scene, bodies)) {
+    nodes += one.bodies * one.nodes;
+    if (one.shape->kind != ShapeKind::polygon)
+      relatives[{one.nodes, static_cast<int>(one.outline.size())}].push_back(one);
+  }
+  std::map<std::string, RelatedMesh> result;
+  if (nodes < least_nodes) return result;
+  int family = 0;
+  for (const auto& [numbers, shapes] : relatives) {
+    if (shapes.size() < least_family) continue;
+    const MeshTemplate of_family(numbers.first, numbers.second);
+    for (const Relative& relative : shapes)
+      if (const auto mesh = of_family.mapped(relative.outline)) result[relative.shape->name] = {family, *mesh};
+    ++family;
+  }
+  return result;
+}
+
+}  // namespace pliant

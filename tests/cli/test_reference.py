@@ -1,0 +1,97 @@
+"""The reference solver on the command line."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+
+import h5py
+import pytest
+from conftest import ROOT, Desk
+from scenes import TWO_DISCS
+
+SHORT = TWO_DISCS.replace('end = "20 ns"', 'end = "2 ns"').replace('period = "2 ns"', 'period = "0.5 ns"').replace(
+    'period = "10 ns"', 'period = "1 ns"')
+
+
+def rows(desk: Desk, name: str) -> list[dict[str, str]]:
+    with (desk.folder / name).open() as file:
+        return list(csv.DictReader(file))
+
+
+def test_writes_what_compare_reads(desk) -> None:
+    desk.write(SHORT)
+    assert desk.run("--out", "engine", "--quiet", "--threads", "1").returncode == 0
+    result = desk.reference("--out", "reference", "--dt", "0.02 ns")
+    assert result.returncode == 0, result.stderr
+    summary = desk.summary("reference")
+    assert summary["status"] == "finished" and summary["solver"] == "reference, Newmark"
+    assert len(rows(desk, "reference/probes.csv")) == 5 and len(rows(desk, "reference/steps.csv")) == 100
+    with h5py.File(desk.folder / "reference/frames.h5") as frames:
+        assert frames["times"][()].tolist() == pytest.approx([0, 1e-9, 2e-9])
+    command = [sys.executable, "-B", ROOT / "scripts/compare.py", "engine", "reference"]
+    compared = subprocess.run(command, cwd=desk.folder, capture_output=True, text=True)
+    assert compared.returncode == 1 and "frames bodies/position" in compared.stdout, compared.stdout
+    # INDEPENDENT: the discs fly freely and then touch; both solvers are of order two, and a step is 1/50 of the way.
+    ours, theirs = (float(rows(desk, f"{folder}/probes.csv")[-1]["energies.strain [J/m]"])
+                    for folder in ("reference", "engine"))
+    assert ours == pytest.approx(theirs, rel=0.05)
+
+
+def test_draws(desk, tmp_path) -> None:
+    desk.write(SHORT)
+    assert desk.reference("--out", "out", "--quiet", "--dt", "0.1 ns").returncode == 0
+    command = [sys.executable, "-B", ROOT / "scripts/plot.py", "out"]
+    drawn = subprocess.run(command, cwd=desk.folder, capture_output=True, text=True)
+    assert drawn.returncode == 0, drawn.stderr
+    assert {"grains.png", "energy.png"} <= {file.name for file in (desk.folder / "out").glob("*.png")}
+
+
+def test_progress_tells_iterations_residual_and_least_jacobian(desk) -> None:
+    desk.write(SHORT)
+    result = desk.reference("--out", "out", "--dt", "0.5 ns")
+    assert "Newton iterations, residual" in result.stderr and "least J" in result.stderr
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (["--dt", "2 m"], "--dt 2 m"), (["--hht", "0.3"], "--hht"), (["--mass", "heavy"], "--mass"),
+    (["--tolerance", "1"], "--tolerance"), (["--until", "-1 s"], "--until")])
+def test_bad_options(desk, arguments: list[str], message: str) -> None:
+    desk.write(SHORT)
+    before = desk.content()
+    result = desk.reference("--out", "out", *arguments)
+    assert result.returncode == 2 and message in result.stderr, result.stderr
+    assert desk.content() == before
+
+
+@pytest.mark.parametrize("old, new, message", [
+    ('law = "frictionless"', 'law = "frictionless"\nrestitution = 0.5', "restitution"),
+    ("[frames]", '[discretisation]\nrecipe = "rpim"\n\n[frames]', "rpim"),
+    ("[frames]", "[contact]\nself_contact = true\n\n[frames]", "self_contact")])
+def test_what_it_has_not_is_refused(desk, old: str, new: str, message: str) -> None:
+    desk.write(SHORT.replace(old, new))
+    before = desk.content()
+    result = desk.reference("--out", "out")
+    assert result.returncode == 2 and message in result.stderr, result.stderr
+    assert desk.content() == before
+
+
+def test_existing_results_are_kept(desk) -> None:
+    desk.write(SHORT)
+    assert desk.reference("--out", "out", "--quiet", "--dt", "1 ns").returncode == 0
+    assert desk.reference("--out", "out", "--quiet", "--dt", "1 ns").returncode == 4
+    assert desk.reference("--out", "out", "--quiet", "--dt", "1 ns", "--force").returncode == 0
+
+
+def test_a_quantity_that_it_does_not_measure_is_left_out_with_a_warning(desk) -> None:
+    desk.write(SHORT + '\n[[probes]]\nname = "pairs"\nquantity = "coordination"\nof = "all"\nperiod = "1 ns"\n')
+    result = desk.reference("--out", "out", "--dt", "1 ns")
+    assert result.returncode == 0 and "probe 'pairs'" in result.stderr
+    assert "pairs.coordination [-]" not in rows(desk, "out/probes.csv")[0]
+
+
+def test_failure_is_told_with_exit_code_3(desk) -> None:
+    desk.write(SHORT.replace('[["3.02 um", "0.1 um"]]', '[["2.1 um", "0.1 um"]]'))
+    result = desk.reference("--out", "out", "--dt", "1 ns")
+    assert result.returncode == 3 and "penetration" in result.stderr, result.stderr
