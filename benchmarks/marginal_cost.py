@@ -5,8 +5,9 @@
     ./pliant bench --instructions --baseline DIR/pliant_engine     # the same scene with an earlier engine
 
 Counts are those of the steps alone, per force evaluation, of one thread: they hardly change from run to run, whatever else the machine
-does. Engines must be built without AVX, of which valgrind does not know all: preset `counting`. The scene is nearly at rest, so that features do
-not change what there is to do: as many nodes in contact, no search for new ones.
+does. Engines must be built without AVX, of which valgrind does not know all: preset `counting`. The scene is nearly at rest, so that there is no search
+for new contacts. Where a feature brings other contacts with it (friction, cohesion, sizes, loaded walls) its row counts their work too: the table shows
+their number.
 """
 
 import argparse

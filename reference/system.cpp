@@ -83,8 +83,10 @@ void System::add_outlines(const Motion& motion, bool tangent, Forces& forces, Tr
       magnitude[row] += std::abs(element.force[i]);
       for (int j = 0; tangent && j < 6; ++j)
         outlines.tangent.emplace_back(row, 2 * element.node[j / 2] + j % 2, element.tangent(i, j));
+      for (const auto& [passed, columns] : element.further)
+        for (int j = 0; tangent && j < 2; ++j) outlines.tangent.emplace_back(row, 2 * passed + j, columns(i, j));
     }
-    forces.symmetric &= element.tangent.isApprox(element.tangent.transpose(), 1e-13);
+    forces.symmetric &= element.further.empty() && element.tangent.isApprox(element.tangent.transpose(), 1e-13);
   }
   forces.symmetric &= outlines.symmetric;
   const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();

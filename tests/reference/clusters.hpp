@@ -18,9 +18,10 @@ inline Points hexagonal_cluster(int rings) {
   return centres;
 }
 
-/// The outermost grains move by a share of their distance towards the centre, slowly, until t = 20: compliant ones by a support of
+/// The outermost grains move by a share of their distance towards the centre, until t = `ramp`: compliant ones by a support of
 /// their outer half, rigid ones as a whole. `mixed`: every other grain is rigid, the one at the centre compliant.
-inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule& rule, double share, double end) {
+inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule& rule, double share, double end,
+                            double ramp = 20) {
   using namespace dynamics_tests;
   Scene scene = empty_scene(end);
   scene.shapes = {disc_shape("disc", 2, nodes)};
@@ -44,8 +45,8 @@ inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule&
     Drive* drives[2] = {&push.x, &push.y};
     for (int c = 0; c < 2; ++c) {
       drives[c]->mode = rigid ? Drive::Mode::velocity : Drive::Mode::displacement;
-      drives[c]->history =
-          rigid ? History{{0, 20, 20.001}, {inward[c] / 20, inward[c] / 20, 0}} : History{{0, 20}, {0, inward[c]}};
+      drives[c]->history = rigid ? History{{0, ramp, ramp + 0.001}, {inward[c] / ramp, inward[c] / ramp, 0}}
+                                 : History{{0, ramp}, {0, inward[c]}};
     }
     const double direction = std::atan2(centre.y(), centre.x());
     push.part = {.kind = OutlinePart::Kind::angles, .first = direction - 1.6, .second = direction + 1.6};

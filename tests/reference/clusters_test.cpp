@@ -83,25 +83,31 @@ TEST_P(ReferenceClusters, frictionless_equilibrium_agrees_with_the_damped_engine
   EXPECT_LT(difference.forces, 1e-4);
 }
 
-/// Moves all grains towards the centre.
-void overlap(Scene& scene, double share) {
-  for (Grains& grains : scene.grains)
-    for (Vec2& centre : grains.packing.positions) centre *= 1 - share;
+/// Bonds that hold whatever comes: what sticks does so from the start.
+ContactRule glue() {
+  ContactRule rule;
+  rule.first = rule.second = "all";
+  rule.law = ContactLawKind::cohesive_fatigue;
+  rule.stiffness = 60;
+  rule.strength = 60;  // critical opening 1
+  rule.range = 2;
+  rule.bond_gap = 0.02;
+  rule.fatigue_threshold = 50;
+  return rule;
 }
 
-// INDEPENDENT: grains that overlap at the start and stick push each other apart until they rest. Contacts only open on the way, so that where nodes
-// stick is the same for both solvers, and so is the equilibrium, of all positions.
-TEST(ReferenceClusters, sticking_equilibrium_agrees_with_the_damped_engine) {
+// INDEPENDENT: grains that stick together, and may not turn on each other, so that all positions can be compared. Slip is the sum of l d(xi) over the way,
+// which depends on the way to second order, strain times slip: the bonds are open by up to a hundredth at the start, the engine relaxes from there with a
+// few damped oscillations and the static solver in one step. Neither slower loads nor more load steps change the difference. Friction alone could not be
+// compared: where a node first stuck depends on the way to first order.
+TEST(ReferenceClusters, sticking_equilibrium_agrees_with_the_damped_engine_but_for_the_way_there) {
   for (const bool mixed : {false, true}) {
-    Scene scene = pushed_cluster(1, 60, mixed, rough(60, 20), 0, 40);
-    overlap(scene, 0.03);
-    for (Material& material : scene.materials) material.mass_damping = 12;
-    const Differences difference = compare_at_rest(scene, 1);
-    std::printf("7 sticking, %s: centres %.2e, positions %.2e of the diameter, forces %.2e, kinetic/strain %.1e\n",
-                mixed ? "mixed" : "compliant", difference.centres, difference.positions, difference.forces,
-                difference.kinetic);
-    EXPECT_LT(difference.positions, 1e-6);
-    EXPECT_LT(difference.forces, 1e-4);
+    const Differences difference = compare_at_rest(pushed_cluster(1, 60, mixed, glue(), 0.02, 40), 20);
+    std::printf("7 sticking, %s: centres %.2e, positions %.2e of the diameter, forces %.2e\n",
+                mixed ? "mixed" : "compliant", difference.centres, difference.positions, difference.forces);
+    EXPECT_LT(difference.centres, 1e-6);
+    EXPECT_LT(difference.positions, 2e-5);
+    EXPECT_LT(difference.forces, 1e-3);
   }
 }
 

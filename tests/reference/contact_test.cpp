@@ -28,6 +28,7 @@ struct Branch {
   double along, gap, angle;
   Books books;
   bool notch = false;  ///< node 1 of the polygon lies in a re-entrant corner
+  int sides = 6;       ///< more where faces turned by 120 degrees would count as a fold
 };
 
 ContactRule worn(double threshold, double residual) {
@@ -60,7 +61,7 @@ const Branch branches[] = {
     {"around a corner outside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, 0.02, 1, 0.03, 0.03, 0, Books::none},
     {"around a corner inside, stick", mohr_coulomb(kn, 0.5, 900), 0, 0.95, -0.02, 1, 0.06, -0.03, 0, Books::none},
     {"around a corner backward, slip", mohr_coulomb(kn, 0.5), 0, 0.06, -0.02, 5, 0.95, -0.03, 0, Books::loses},
-    {"around two corners, stick", cohesive(kn, 0.5, 0.05, 999), 4, 0.9, 0.02, 0, 0, 0.03, -0.3, Books::none},
+    {"around two corners, stick", cohesive(kn, 0.5, 0.05, 999), 5, 0.9, 0.02, 0, 0, 0.03, -0.3, Books::none, false, 7},
     {"stick beyond an end inside", cohesive(kn, 0.5, 0.05, 9), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Books::none, true},
     {"slip beyond an end inside", mohr_coulomb(kn, 0.1), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Books::loses, true},
     {"slip before an end inside", mohr_coulomb(kn, 0.1), 1, 0.03, -0.02, 1, 0, -0.03, 0.2, Books::loses, true},
@@ -82,7 +83,7 @@ const Branch branches[] = {
 // The branch with all nodes shaken, the first state accepted and, on the same segment, one half way.
 Needle on_branch(const Branch& branch, int sample) {
   Random random(sample);
-  Needle needle(branch.rule);
+  Needle needle(branch.rule, branch.sides);
   if (branch.notch) needle.x[1] *= 0.2;
   shake(needle.x, random, 0.05);
   needle.point_at(needle.place(branch.first_segment, branch.first_along, branch.first_gap));
