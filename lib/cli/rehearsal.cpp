@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "results/probes.hpp"
+#include "results/probes/probes.hpp"
 
 namespace pliant {
 namespace {

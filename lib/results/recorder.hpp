@@ -5,7 +5,7 @@
 
 #include "files/checkpoint_file.hpp"
 #include "results/frames.hpp"
-#include "results/probes.hpp"
+#include "results/probes/probes.hpp"
 #include "results/progress.hpp"
 #include "results/step_log.hpp"
 #include "results/summary.hpp"

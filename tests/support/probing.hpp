@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/probes.hpp"
+#include "results/probes/probes.hpp"
 #include "support/simulations.hpp"
 
 /// One probe's values, without a file.

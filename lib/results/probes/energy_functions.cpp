@@ -1,7 +1,7 @@
 #include "bodies/nodal.hpp"
 #include "results/body_motion.hpp"
 #include "results/point_states.hpp"
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 namespace pliant {
 namespace {

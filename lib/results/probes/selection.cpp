@@ -1,4 +1,4 @@
-#include "results/selection.hpp"
+#include "results/probes/selection.hpp"
 
 #include <algorithm>
 

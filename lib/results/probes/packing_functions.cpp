@@ -1,5 +1,5 @@
-#include "results/probe_functions.hpp"
-#include "results/regions.hpp"
+#include "results/probes/probe_functions.hpp"
+#include "results/probes/regions.hpp"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 #include "results/body_motion.hpp"
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 namespace pliant {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "results/body_motion.hpp"
 #include "results/point_states.hpp"
-#include "results/probe_functions.hpp"
-#include "results/regions.hpp"
+#include "results/probes/probe_functions.hpp"
+#include "results/probes/regions.hpp"
 
 namespace pliant {
 namespace {

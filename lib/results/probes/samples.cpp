@@ -1,4 +1,4 @@
-#include "results/samples.hpp"
+#include "results/probes/samples.hpp"
 
 #include <cmath>
 #include <limits>

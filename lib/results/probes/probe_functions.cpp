@@ -1,4 +1,4 @@
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 #include <algorithm>
 #include <stdexcept>

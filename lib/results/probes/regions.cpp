@@ -1,4 +1,4 @@
-#include "results/regions.hpp"
+#include "results/probes/regions.hpp"
 
 #include <cmath>
 

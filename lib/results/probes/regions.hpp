@@ -1,6 +1,6 @@
 #pragma once
 
-#include "results/selection.hpp"
+#include "results/probes/selection.hpp"
 #include "results/snapshot.hpp"
 
 namespace pliant {

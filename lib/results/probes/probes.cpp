@@ -1,4 +1,4 @@
-#include "results/probes.hpp"
+#include "results/probes/probes.hpp"
 
 #include <algorithm>
 #include <limits>

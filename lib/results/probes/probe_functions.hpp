@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "results/samples.hpp"
-#include "results/selection.hpp"
+#include "results/probes/samples.hpp"
+#include "results/probes/selection.hpp"
 #include "results/snapshot.hpp"
 
 namespace pliant {

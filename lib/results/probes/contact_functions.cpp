@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 namespace pliant {
 namespace {

@@ -4,7 +4,7 @@
 #include "bodies/nodal.hpp"
 #include "contact/broad_phase.hpp"
 #include "results/body_motion.hpp"
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 namespace pliant {
 namespace {

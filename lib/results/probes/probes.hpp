@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "files/text_files.hpp"
-#include "results/probe_functions.hpp"
+#include "results/probes/probe_functions.hpp"
 
 namespace pliant {
 
