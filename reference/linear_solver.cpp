@@ -66,6 +66,7 @@ LinearSolver::LinearSolver() : factors_(std::make_unique<Factors>()) { factors_-
 LinearSolver::~LinearSolver() = default;
 
 Vector LinearSolver::solve(const SparseMatrix& matrix, const Vector& right_side, bool symmetric) {
+  if (right_side.size() == 0) return {};
   const auto start = std::chrono::steady_clock::now();
   const Vector scales = scales_of(matrix), right = scales.cwiseProduct(right_side);
   const SparseMatrix scaled = scales.asDiagonal() * matrix * scales.asDiagonal();

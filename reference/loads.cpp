@@ -243,6 +243,14 @@ Vector Loads::outline_target_velocity(double time) const {
   return velocity;
 }
 
+Vector Loads::outline_target_motion(double t0, double t1) const {
+  Vector motion = Vector::Zero(2 * bodies_.outline_nodes());
+  for (const OutlineLoad& load : outline_)
+    if (load.condition.kind == Kind::support && acts(load, t0))
+      for (const LoadedNode& node : load.nodes) motion.segment<2>(2 * node.node) = moved(load, t1) - moved(load, t0);
+  return motion;
+}
+
 bool Loads::imposed(int dof, double time) const {
   const RigidLoad* load = of(dof);
   return load && load->imposed(time);

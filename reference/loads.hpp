@@ -58,6 +58,7 @@ class Loads {
   Vector dof_damping(double time) const;
   Vector outline_damping(double time) const;
   Vector outline_target_velocity(double time) const;
+  Vector outline_target_motion(double t0, double t1) const;  ///< of supports that act at t0, [2 outline nodes], m
 
   bool imposed(int dof, double time) const;
   /// Position at t1 of a degree of freedom that is imposed from t0 on and was at q0 then.

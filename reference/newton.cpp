@@ -59,6 +59,10 @@ NewtonResult solve_newton(const Equations& equations, const NewtonOptions& optio
     result.trouble = at.trouble;
     return result;
   }
+  if (x.size() == 0) {  // everything is imposed
+    result.converged = true;
+    return result;
+  }
   const Measure measure(at);
   std::vector<double> sizes;
   for (;; ++result.iterations) {

@@ -110,10 +110,12 @@ void System::add_damping(const Motion& motion, Forces& forces) const {
     if (own[i] != 0) entries.emplace_back(i, i, own[i]);
   forces.viscosity = assembled(entries, bodies_.dofs());
   forces.damping = forces.viscosity * motion.v;
+  forces.dashpots = Vector::Zero(outline.size());
   if (!outline.isZero(0)) {
     const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();
     const Vector slip = jacobian * motion.v - loads_.outline_target_velocity(motion.time);
-    forces.damping += back * outline.cwiseProduct(slip);
+    forces.dashpots = outline.cwiseProduct(slip);
+    forces.damping += back * forces.dashpots;
     forces.viscosity += SparseMatrix(back * outline.asDiagonal() * jacobian);
   }
   forces.residual += forces.damping;

@@ -19,6 +19,7 @@ struct Forces {
   Vector residual;         ///< [dofs]
   Vector magnitude;        ///< [dofs], sum of the absolute values of what cancels in it
   Vector damping;          ///< [dofs], the part that depends on velocities
+  Vector dashpots;         ///< [2 x outline nodes], minus what those of soft supports pull with
   SparseMatrix stiffness;  ///< of the residual by positions; empty unless asked for
   SparseMatrix viscosity;  ///< of the residual by velocities
   bool symmetric = true;

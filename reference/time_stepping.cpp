@@ -225,6 +225,11 @@ void TimeStepping::book(const Trial& trial) {
   books_.work_of_loads += 0.5 * (loads.applied(before.time) + loads.applied(after.time)).dot(moved) +
                           loads.outline_work(bodies.outline_positions(before.q), before.time,
                                              bodies.outline_positions(after.q), after.time);
+  // A dashpot between a node and a moving target takes what both put in.
+  const double by_targets =
+      -0.5 * (forces_.dashpots + trial.forces.dashpots).dot(loads.outline_target_motion(before.time, after.time));
+  books_.work_of_loads += by_targets;
+  books_.dissipated_by_damping += by_targets;
   // What holds an imposed motion gives it its kinetic energy and works against the other forces.
   for (int i = 0; i < moved.size(); ++i)
     if (loads.imposed(i, before.time))
