@@ -1,7 +1,14 @@
 #include "contact/projection.hpp"
 
 namespace pliant {
+namespace {
 
+/// Distances to an end node that two segments share differ by rounding: the compiler may contract them in two ways.
+constexpr double tie = 1e-12;
+
+/// Row of the nearest segment, at most `reach` off; -1: none. Wedges do not count: they mislead where a face ends
+/// before the bisector between it and its neighbour does. Of the two segments at an end node that which is seen more
+/// steeply: it tells in from out. Past the ends of the window nothing is near.
 Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, double reach) {
   Lanes nearest = broadcast(reach * reach), steepest{}, found = broadcast(-1);
   const int last = window.count() - 1;
@@ -11,10 +18,10 @@ Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, doub
     const Lanes along = rx * segment.tangent_x + ry * segment.tangent_y,
                 height = rx * segment.tangent_y - ry * segment.tangent_x;
     const Lanes square = height * height;
-    // By the end nodes' own coordinates, so that the two segments at a node are exactly as near.
     const Lanes distance =
         select(along < 0.0, rx * rx + ry * ry, select(along > segment.length, qx * qx + qy * qy, square));
-    LaneBits nearer = (distance < nearest) | ((distance == nearest) & (square > steepest));
+    LaneBits nearer =
+        (distance < (1 - tie) * nearest) | ((distance <= (1 + tie) * nearest) & (found >= 0.0) & (square > steepest));
     if (row == 0) nearer = nearer & (rx * segment.bisector_x + ry * segment.bisector_y >= 0.0);
     if (row == last) nearer = nearer & (qx * next.bisector_x + qy * next.bisector_y < 0.0);
     nearest = select(nearer, distance, nearest);
@@ -22,6 +29,14 @@ Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, doub
     found = select(nearer, broadcast(row), found);
   }
   return found;
+}
+
+}  // namespace
+
+void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits misled, double reach, double outward,
+                        Projection& projection) {
+  const Lanes row = select(misled, find_nearest_segments(window, px, py, reach), projection.row);
+  projection = beside(window, px, py, row, outward);
 }
 
 }  // namespace pliant

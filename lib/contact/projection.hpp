@@ -41,16 +41,12 @@ inline Lanes find_segments(const MasterWindow& window, Lanes px, Lanes py, doubl
   return found;
 }
 
-/// Row of the nearest segment, at most `reach` off; -1: none. Wedges do not count: they mislead where a face ends
-/// before the bisector between it and its neighbour does. Of the two segments at an end node that which is seen more
-/// steeply: it tells in from out. Past the ends of the window nothing is near.
-Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, double reach);
-
 /// Where nodes stand beside the segments of the rows given, at most `outward` off.
 inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes row_of_node, double outward) {
   Projection p;
   p.row = row_of_node;
   p.hit = p.row >= 0.0;
+  p.fan = Lanes{};  // read even where nothing is hit
   if (!any(p.hit)) return p;
   Lanes rows[8], columns[8];
   for (int lane = 0; lane < lane_count; ++lane)
@@ -66,7 +62,6 @@ inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes r
   p.xi = min(max(along * p.inverse_length, Lanes{}), broadcast(1));
   p.gap = p.height;
   p.normal_x = p.tangent_y, p.normal_y = -p.tangent_x;
-  p.fan = Lanes{};
   if (const LaneBits beyond = p.hit & ((along < 0.0) | (along > p.length)); any(beyond)) {
     const Lanes over = along - p.xi * p.length;
     const Lanes distance = sqrt(over * over + p.height * p.height);
@@ -81,16 +76,20 @@ inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes r
   return p;
 }
 
+/// Projects nodes for which wedges mislead once more, each to its truly nearest segment, at most `reach` off.
+void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits misled, double reach, double outward,
+                        Projection& projection);
+
 /// Nodes count from the window's depth inward to `outward` outward. The near side of a thin or pointed body competes as
 /// far as its far side does: else nodes outside would be caught from behind.
 inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double outward) {
   const double reach = std::max(outward, window.depth());
-  const Projection p = beside(window, px, py, find_segments(window, px, py, reach), outward);
+  Projection p = beside(window, px, py, find_segments(window, px, py, reach), outward);
   // Up to here a node is at most 1 % nearer to the line than to the segment.
   constexpr double steep = 0.14;
-  const LaneBits doubtful = p.hit & (abs(p.fan) > steep);
-  if (!any(doubtful)) return p;
-  return beside(window, px, py, select(doubtful, find_nearest_segments(window, px, py, reach), p.row), outward);
+  if (const LaneBits misled = p.hit & (abs(p.fan) > steep); any(misled)) [[unlikely]]
+    project_to_nearest(window, px, py, misled, reach, outward, p);
+  return p;
 }
 
 }  // namespace pliant

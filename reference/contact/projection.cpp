@@ -26,7 +26,9 @@ Nearest truly_nearest(const PresentOutline& master, int first, int count, const 
     const double distance = along < 0                  ? (point - a).norm()
                             : along > master.length(i) ? (point - b).norm()
                                                        : std::abs(height);
-    if (distance < least || (distance == least && std::abs(height) > std::abs(nearest.height)))
+    // Distances to a shared end node differ by rounding at most.
+    if (distance < (1 - 1e-12) * least ||
+        (distance <= (1 + 1e-12) * least && std::abs(height) > std::abs(nearest.height)))
       nearest = {i, height}, least = distance;
   }
   return nearest;
