@@ -218,8 +218,8 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
     assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "info", "compare", "schema", "shape-functions", "export", "test", "build",
-                                     "bench", "lint", "format"])
+@pytest.mark.parametrize("command", ["run", "reference", "check", "plot", "info", "compare", "schema", "shape-functions", "export", "test",
+                                     "verify", "build", "bench", "lint", "format"])
 def test_every_command_has_help_with_an_example(launcher: Launcher, command: str) -> None:
     result = launcher(command, "--help")
     assert result.returncode == 0
@@ -240,12 +240,12 @@ def test_readme_names_every_command(launcher: Launcher) -> None:
     assert set(readme_commands()) == set(listed)
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "compare", "export", "test", "build"])
+@pytest.mark.parametrize("command", ["run", "check", "plot", "compare", "export", "test", "verify", "build"])
 def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
     usage = re.match(r".*(\n +.*)*", launcher(command, "--help").stdout)[0]
     readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
     assert readme <= set(re.findall(r"--[a-z-]+", usage))
-    if command in {"run", "check", "plot", "compare", "export"}:
+    if command in {"run", "check", "plot", "compare", "export", "verify"}:
         assert readme == set(re.findall(r"--[a-z-]+", usage))
 
 
@@ -255,6 +255,15 @@ def test_presets_are_the_same_everywhere(launcher: Launcher) -> None:
     assert all(re.search(rf"\b{name}\b", launcher("build", "--help").stdout) for name in names)
     row = next(line for line in (ROOT / "README.md").read_text().splitlines() if line.startswith("| `./pliant build"))
     assert names == set(re.findall(r"`([a-z-]+)`", row))
+
+
+@pytest.mark.parametrize("arguments", [["no_such_case"], ["--ful"], ["../verify/orders_free"], [""]])
+def test_unknown_cases_of_verify_are_refused(launcher: Launcher, arguments: list[str]) -> None:
+    shutil.copytree(ROOT / "verify", launcher.root / "verify")
+    result = launcher("verify", *arguments)
+    assert result.returncode == 2
+    assert "orders_free" in result.stderr or "--help" in result.stderr
+    assert not launcher.log.exists(), "nothing is built for them"
 
 
 @pytest.mark.parametrize("preset", ["relase", "base", "", "../x", "-x"])

@@ -1,0 +1,63 @@
+"""Two compliant blocks that cohere fly apart: energy of the bond, both solvers through tension, slip, detachment."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from order_study import Quantity, Study, check_differences, run_study
+from pictures import draw_both, draw_differences, legend, panels, save
+from verification import Case, Label
+
+CASE = Case(__file__)
+STEPS = [0.01, 0.005, 0.0025]
+FINEST = 0.00125
+TIMES = 0.04 * np.arange(1, 31)
+STRENGTH, RANGE = 0.03, 0.02
+# Six nodes of the left face and, of the right one's eight, the six that lie opposite; 0.2 each.
+LENGTH = 6 * 0.2
+POSITIONS = Quantity("positions", ["left.position_x", "corner.position_x", "corner.position_y"])
+FORCE = Quantity("force", ["force.force_x"])
+DISSIPATION = Quantity("dissipation", ["energy.dissipated"])
+SHEAR = {"apart": 0.0, "apart and along": 0.02}
+
+
+@pytest.fixture(scope="module", params=list(SHEAR))
+def way(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def study(way: str) -> Study:
+    return run_study(CASE, way.replace(" ", "_"), STEPS, FINEST, TIMES, shear=SHEAR[way])
+
+
+@pytest.mark.parametrize("quantity", [POSITIONS, FORCE, DISSIPATION], ids=lambda q: q.name)
+def test_solvers_converge_to_each_other(way: str, study: Study, quantity: Quantity) -> None:
+    check_differences(CASE, way, study, quantity, 1.5, 0.7,
+                      "slip and kinks of the law within steps: between first and second order; 0.2 for their scatter")
+
+
+def test_energy_of_the_bond(way: str, study: Study) -> None:
+    """Reversible: strength x range / 2 an area, from closed to torn."""
+    for name, run in study.finest_runs().items():
+        energy = run.probe("energy.contact")
+        stored = (energy[-1] - energy[0]) / (0.5 * STRENGTH * RANGE * LENGTH)
+        CASE.check(Label.EXACT, f"{way}, {name}: energy of the bond", stored, 1, 1e-12,
+                   "strength x range / 2; rounding")
+
+
+def test_picture(way: str, study: Study) -> None:
+    figure, axes = panels(3, f"Cohesive pair: {way}", across=True)
+    runs = study.finest_runs()
+    draw_both(axes[0], runs, "force.force_x", 1e3)
+    draw_both(axes[1], runs, "energy.contact", 1e6, "stored, ")
+    draw_both(axes[1], runs, "energy.dissipated", 1e6, "dissipated, ", 2)
+    axes[0].set_ylabel("pull on the left block [mN/m]")
+    axes[1].set_ylabel("energy of the contact [uJ/m]")
+    for panel in axes[:2]:
+        panel.set_xlabel("time [s]")
+        panel.set_xlim(0, 0.6)
+        legend(panel)
+    draw_differences(axes[2], study, [POSITIONS, FORCE, DISSIPATION])
+    save(CASE, figure, way.replace(" ", "_"))

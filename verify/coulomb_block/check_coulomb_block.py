@@ -1,0 +1,110 @@
+"""Coulomb friction through stick, slip and back: a driven block against closed forms, a pulled one by both solvers."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from order_study import Quantity, Study, check_differences, run_study
+from pictures import COLOURS, draw_both, draw_differences, legend, panels, save
+from verification import Case, Label, Run
+
+CASE = Case(__file__)
+
+WEIGHT, FRICTION, STIFFNESS = 1.0, 0.3, 1000.0
+SETTLED = 1.0  # s, when the drive sets in
+# Eleven nodes of the block and ten of the floor are in touch, of 0.1 each; a pass counts half.
+LENGTH = 0.5 * (11 + 10) * 0.1
+RESIDUE = np.exp(-30 * SETTLED)  # of the first oscillation: damping 60 /s, frequency 32.4 /s, so it decays by 30 /s
+ROUNDING = 1e-9  # positions near 1 with 2e-16 of rounding, stiffness 1000, forces of 0.3; Newton stops at 1e-10
+
+STEPS = [0.01, 0.005, 0.0025]
+FINEST = 0.00125
+TIMES = 0.08 * np.arange(1, 101)
+POSITIONS = Quantity("positions", ["block.position_x", "corner.position_x"])
+DISSIPATION = Quantity("dissipation", ["energy.dissipated"])
+FORCE = Quantity("force on the floor", ["force.force_x"])
+
+
+def friction_force(x: np.ndarray) -> np.ndarray:
+    """On the floor: a spring that slips at friction times weight, moved through x (the play operator)."""
+    limit, force = FRICTION * WEIGHT, np.zeros_like(x)
+    for i in range(1, len(x)):
+        force[i] = np.clip(force[i - 1] + STIFFNESS * LENGTH * (x[i] - x[i - 1]), -limit, limit)
+    return force
+
+
+def friction_work(x: np.ndarray, force: np.ndarray) -> float:
+    """Of a step's mean force along what its spring did not follow, as the energy balance asks for."""
+    slipped = np.diff(x) - np.diff(force) / (STIFFNESS * LENGTH)
+    return float((0.5 * (force[1:] + force[:-1]) * slipped).sum())
+
+
+@pytest.fixture(scope="module")
+def driven() -> dict[str, Run]:
+    scene = CASE.scene("driven.toml", dt=0.01)
+    reference = CASE.reference("driven_reference", scene, "--dt", "0.01")
+    return {"engine": CASE.engine("driven_engine", scene), "reference": reference}
+
+
+@pytest.mark.parametrize("solver", ["engine", "reference"])
+def test_driven_block_follows_the_closed_form(driven: dict[str, Run], solver: str) -> None:
+    run = driven[solver]
+    after = run.times("clock.force_x") >= SETTLED
+    x, force = run.probe("drive.position_x")[after], run.probe("clock.force_x")[after]
+    expected = friction_force(x)
+    error = np.abs(force - expected).max() / (FRICTION * WEIGHT)
+    CASE.check(Label.EXACT, f"driven, {solver}: friction force", error, 0, RESIDUE + ROUNDING,
+               "play operator; what is left of the first oscillation, and rounding")
+    CASE.check(Label.EXACT, f"driven, {solver}: slip force over weight", force.max() / WEIGHT, FRICTION,
+               RESIDUE + ROUNDING, "Coulomb")
+    lost = run.probe("energy.dissipated")[-1] - run.at("energy.dissipated", np.array([SETTLED]))[0]
+    damped = run.probe("works.dissipated_by_damping")
+    damped = damped[-1] - run.at("works.dissipated_by_damping", np.array([SETTLED]))[0]
+    CASE.check(Label.EXACT, f"driven, {solver}: friction work", (lost - damped) / friction_work(x, expected), 1,
+               RESIDUE + ROUNDING, "mean friction force times slipped way, step by step")
+
+
+@pytest.fixture(scope="module")
+def pulled() -> Study:
+    return run_study(CASE, "pulled", STEPS, FINEST, TIMES, template="pulled.toml")
+
+
+@pytest.mark.parametrize("quantity", [POSITIONS, DISSIPATION, FORCE], ids=lambda q: q.name)
+def test_pulled_block_converges(pulled: Study, quantity: Quantity) -> None:
+    check_differences(CASE, "pulled", pulled, quantity, 1.5, 0.8,
+                      "stick and slip begin within steps: between first and second order; 0.3 for their scatter")
+
+
+def test_pulled_block_slips_at_the_friction_angle(pulled: Study) -> None:
+    """Over the time of slip in one direction. Normals of the deformed block turn by some 1e-4 of their own."""
+    for name, run in pulled.finest_runs().items():
+        times = run.times("force.force_x")
+        slips = (times > 4.0) & (times < 5.5)
+        ratio = np.abs(run.probe("force.force_x")[slips] / run.probe("force.force_y")[slips])
+        CASE.check(Label.EXACT, f"pulled, {name}: friction factor in slip", ratio.mean(), FRICTION, 1e-3 * FRICTION,
+                   "Coulomb; normals turn by a slope of the face of 1e-3 at most")
+
+
+def test_picture(driven: dict[str, Run], pulled: Study) -> None:
+    figure, axes = panels(3, "Block with Coulomb friction", across=True)
+    for (name, run), colour, style in zip(driven.items(), COLOURS, ("-", "--")):
+        after = run.times("clock.force_x") >= SETTLED
+        x = run.probe("drive.position_x")[after]
+        force = run.probe("clock.force_x")[after]
+        axes[0].plot((x - x[0]) * 1e3, force, style, color=colour, linewidth=1.1, label=name)
+    axes[0].set_title("driven rigid block, weight 1 N/m", fontsize=10, loc="left")
+    axes[0].set_xlabel("position [mm]")
+    axes[0].set_ylabel("force on the floor [N/m]")
+    draw_both(axes[1], pulled.finest_runs(), "force.force_x", 1e3)
+    limit = FRICTION * np.abs(pulled.engine[FINEST].probe("force.force_y")) * 1e3
+    times = pulled.engine[FINEST].times("force.force_y")
+    axes[1].plot(times, limit, ":", color=COLOURS[6], linewidth=1.0, label="friction x normal force")
+    axes[1].plot(times, -limit, ":", color=COLOURS[6], linewidth=1.0)
+    axes[1].set_title("pulled compliant block", fontsize=10, loc="left")
+    axes[1].set_xlabel("time [s]")
+    axes[1].set_ylabel("force on the floor [mN/m]")
+    for panel in axes[:2]:
+        legend(panel)
+    draw_differences(axes[2], pulled, [POSITIONS, DISSIPATION, FORCE])
+    save(CASE, figure, "coulomb_block")

@@ -1,0 +1,75 @@
+"""Pictures of cases, in the colours and sizes of scripts/plots."""
+
+from __future__ import annotations
+
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from order_study import Quantity, Study
+from verification import ROOT, Case, Run, observed_order
+
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from plots.curves import COLOURS
+
+DOTS_PER_INCH = 200
+MARKERS = ["o", "s", "^", "D", "v", "P"]
+Curve = tuple[str, list[float], list[float]]  # name, steps, errors
+
+
+def panels(count: int, title: str, across: bool = False) -> tuple[Figure, list[Axes]]:
+    """Above one another with a common axis of x, or side by side."""
+    size = (4.6 * count, 4.4) if across else (9, 1.2 + 2.4 * count)
+    figure, axes = plt.subplots(1 if across else count, count if across else 1, figsize=size, sharex=not across,
+                                squeeze=False, layout="constrained")
+    figure.suptitle(title)
+    for panel in axes.flat:
+        panel.grid(alpha=0.3)
+    return figure, list(axes.flat)
+
+
+def legend(axes: Axes) -> None:
+    axes.legend(fontsize=9, frameon=False, borderpad=0.1, handlelength=1.6)
+
+
+def draw_both(axes: Axes, runs: dict[str, Run], probe: str, factor: float = 1, what: str = "", first: int = 0) -> None:
+    """The engine's curve and the reference's, dashed upon it."""
+    for (name, run), colour, style in zip(runs.items(), COLOURS[first:], ("-", "--")):
+        axes.plot(run.times(probe), factor * run.probe(probe), style, color=colour, linewidth=1.1, label=what + name)
+
+
+def draw_differences(axes: Axes, study: Study, quantities: list[Quantity]) -> None:
+    curves = [(quantity.name, study.all_steps(), study.all_differences(quantity)) for quantity in quantities]
+    draw_orders(axes, "engine - reference", curves, [1, 2])
+
+
+def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]) -> None:
+    """Errors over steps with their slopes, and lines of the orders that theory gives."""
+    for (name, steps, errors), colour, marker in zip(curves, COLOURS, MARKERS):
+        label = f"{name}: {observed_order(steps, errors):.2f}"
+        axes.loglog(steps, errors, marker=marker, markersize=4, linewidth=1.1, color=colour, label=label)
+    ends = np.array([min(min(steps) for _, steps, _ in curves), max(max(steps) for _, steps, _ in curves)])
+    lowest = min(min(errors) for _, _, errors in curves)
+    for order, style in zip(orders, ("--", ":")):
+        axes.loglog(ends, 0.5 * lowest * (ends / ends[0]) ** order, style, color=COLOURS[6], linewidth=1.0,
+                    label=f"slope {order:g}")
+    ticks = sorted({step for _, steps, _ in curves for step in steps})
+    axes.set_xticks(ticks, [f"{1e3 * step:g}" for step in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.set_xlabel("time step [ms]")
+    axes.set_ylabel("relative error")
+    legend(axes)
+
+
+def save(case: Case, figure: Figure, name: str) -> None:
+    figure.savefig(case.out / f"{name}.png", dpi=DOTS_PER_INCH)
+    plt.close(figure)

@@ -1,0 +1,168 @@
+"""What every case of verify/ uses: runs of both solvers on scenes, their probes, and checks that are written down.
+
+A case is a folder with a README.md, scenes and one check_*.py that says `CASE = Case(__file__)`. Results, pictures
+and the rows of the checks go to results/verify/<case>/, or below PLIANT_VERIFY_OUT.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import subprocess
+from dataclasses import asdict, dataclass
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
+REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
+OUT = Path(os.environ.get("PLIANT_VERIFY_OUT", ROOT / "results/verify"))
+FULL = os.environ.get("PLIANT_VERIFY_FULL", "") not in ("", "0")
+LONGEST_RUN = 1200  # s
+
+
+class Label(str, Enum):
+    """Where an expected value comes from."""
+
+    EXACT = "EXACT"  # a closed form, or rounding
+    RATE = "RATE"  # an observed order against theory
+    INDEPENDENT = "INDEPENDENT"  # another solver or the literature, with its error
+    FROZEN = "FROZEN"  # an earlier value of our own
+
+
+@dataclass
+class Row:
+    """A check as results/verify/checks.json has it. Green: |value - expected| <= tolerance."""
+
+    label: str
+    case: str
+    name: str
+    value: float
+    expected: float
+    tolerance: float
+    source: str  # of the expected value and of the tolerance
+    green: bool
+
+
+class Run:
+    """The folder of a finished run."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.summary = json.loads((folder / "summary.json").read_text())
+        self._columns, self._values = read_table(folder / "probes.csv")
+
+    def columns(self) -> list[str]:
+        return self._columns[1:]
+
+    def probe(self, name: str) -> np.ndarray:
+        """A column such as "energy.strain", where it was measured."""
+        values = self._values[:, self._columns.index(name)]
+        return values[np.isfinite(values)]
+
+    def times(self, name: str) -> np.ndarray:
+        """When the column was measured, s."""
+        return self._values[np.isfinite(self._values[:, self._columns.index(name)]), 0]
+
+    def at(self, name: str, times: np.ndarray) -> np.ndarray:
+        """A column at times at which it was measured; others are an error."""
+        measured = self.times(name)
+        index = np.abs(measured[:, None] - np.atleast_1d(times)).argmin(axis=0)
+        if not np.allclose(measured[index], times, rtol=1e-9, atol=1e-9 * measured[-1]):
+            raise KeyError(f"{self.folder}: {name} was not measured at all of these times")
+        return self.probe(name)[index]
+
+    def steps(self, name: str) -> np.ndarray:
+        """A column of steps.csv such as "dt"."""
+        columns, values = read_table(self.folder / "steps.csv")
+        return values[:, columns.index(name)]
+
+    @property
+    def balance_error(self) -> float:
+        return self.summary["energy"]["balance_error"]
+
+
+class Case:
+    """A folder of verify/: its scenes, its results, its checks."""
+
+    def __init__(self, file: str) -> None:
+        self.folder = Path(file).resolve().parent
+        self.name = self.folder.name
+        self.out = OUT / self.name
+        self.out.mkdir(parents=True, exist_ok=True)
+
+    def scene(self, template: str = "scene.toml", **values: object) -> str:
+        """A scene file's text; @name@ stands for a value. All must be used, and none left open."""
+        text = (self.folder / template).read_text()
+        for name, value in values.items():
+            if f"@{name}@" not in text:
+                raise KeyError(f"{template}: no @{name}@")
+            text = text.replace(f"@{name}@", repr(value) if isinstance(value, float) else str(value))
+        return text
+
+    def engine(self, run: str, scene: str, *options: str) -> Run:
+        """Runs the engine on a scene's text, on one thread: several cases may run at once."""
+        return self._run(run, scene, [str(ENGINE), "run"], ["--threads", "1", *options])
+
+    def reference(self, run: str, scene: str, *options: str) -> Run:
+        """Solves a scene's text by the reference solver."""
+        return self._run(run, scene, [str(REFERENCE)], [*options])
+
+    def _run(self, run: str, scene: str, program: list[str], options: list[str]) -> Run:
+        file, folder = self.out / f"{run}.toml", self.out / run
+        file.write_text(scene)
+        command = [*program, str(file), "--out", str(folder), "--force", "--quiet", *options]
+        result = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=LONGEST_RUN)
+        if result.returncode != 0:
+            raise RuntimeError(f"{' '.join(command)}\nexit code {result.returncode}\n{result.stdout}{result.stderr}")
+        return Run(folder)
+
+    def check(self, label: Label | str, name: str, value: float, expected: float, tolerance: float,
+              source: str) -> None:
+        """|value - expected| <= tolerance, which `source` derives. Red ones are written down as well, then fail."""
+        value, expected, tolerance = float(value), float(expected), float(tolerance)
+        if not (tolerance >= 0 and np.isfinite(expected)) or not source:
+            raise ValueError(f"{name}: expected {expected}, tolerance {tolerance}, source '{source}'")
+        green = bool(abs(value - expected) <= tolerance)
+        self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green))
+        assert green, f"{Label(label).value} {name}: {value:.6g}, expected {expected:.6g} +- {tolerance:.2g} ({source})"
+
+    def check_rate(self, name: str, steps: list[float], errors: list[float], order: float, tolerance: float,
+                   source: str) -> float:
+        """The slope of errors over steps in logarithms, of at least three."""
+        if len(steps) < 3:
+            raise ValueError(f"{name}: a rate needs three resolutions, not {len(steps)}")
+        slope = observed_order(steps, errors)
+        self.check(Label.RATE, name, slope, order, tolerance, source)
+        return slope
+
+    def _write_down(self, row: Row) -> None:
+        file = self.out / "checks.json"
+        others = [r for r in read_rows(file) if r["name"] != row.name]
+        file.write_text(json.dumps([*others, asdict(row)], indent=1) + "\n")
+
+
+def read_table(file: Path) -> tuple[list[str], np.ndarray]:
+    """Names without units, and values [rows x columns]; NaN where a cell is empty."""
+    with file.open() as stream:
+        header, *rows = csv.reader(stream)
+    values = [[float(cell) if cell else np.nan for cell in row] for row in rows]
+    return [name.split(" [")[0] for name in header], np.array(values)
+
+
+def read_rows(file: Path) -> list[dict]:
+    return json.loads(file.read_text()) if file.exists() else []
+
+
+def observed_order(steps: list[float], errors: list[float]) -> float:
+    """Of a straight line through the logarithms, by least squares."""
+    return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
+
+
+def largest_difference(a: Run, b: Run, names: list[str], times: np.ndarray) -> float:
+    """Of columns of one unit, over their largest magnitude in b."""
+    first, second = (np.array([run.at(name, times) for name in names]) for run in (a, b))
+    return float(np.abs(first - second).max() / np.abs(second).max())
