@@ -34,6 +34,9 @@ body = "compliant"
 material = "soft"
 packing = {{ kind = "positions", positions = [["0 m", "0 m"]] }}
 velocity = {{ gradient = [["1e8 s-1", "0 s-1"], ["0 s-1", "-1e8 s-1"]] }}
+[[contacts]]
+between = ["soft", "soft"]
+law = "frictionless"
 """
 
 

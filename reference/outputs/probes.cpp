@@ -106,7 +106,7 @@ Rows friction_factor(const View& view, const Probe&, const std::vector<const Bod
   Rows rows;
   for (const Body* body : bodies) {
     const Vec2 f = contact_force(view, *body);
-    rows.add({f.y() == 0 ? none : std::abs(f.x() / f.y())});
+    rows.add({f.y() == 0 ? none : f.x() / std::abs(f.y())});
   }
   return rows;
 }

@@ -41,6 +41,43 @@ def test_writes_what_compare_reads(desk) -> None:
     assert ours == pytest.approx(theirs, rel=0.02)
 
 
+def test_friction_factors_have_the_same_sign(desk) -> None:
+    text = SHORT.replace('law = "frictionless"', 'law = "mohr-coulomb"\nfriction = 0.3').replace(
+        '["20 m/s", "0 m/s"]', '["20 m/s", "20 m/s"]').replace("[frames]", """\
+[materials.hard]
+law = "rigid"
+density = "1200 kg/m3"
+
+[[walls]]
+name = "upper"
+material = "hard"
+solid = "above"
+level = "0.51 um"
+thickness = "1 um"
+x = "fixed"
+y = "fixed"
+
+[[contacts]]
+between = "all"
+law = "mohr-coulomb"
+friction = 0.3
+
+[[probes]]
+name = "upper"
+quantity = "friction_factor"
+of = "upper"
+period = "0.5 ns"
+
+[frames]""").replace("[time]", "[time]\nsafety = 0.1")
+    desk.write(text)
+    assert desk.run("--out", "engine", "--quiet", "--threads", "1").returncode == 0
+    assert desk.reference("--out", "reference", "--quiet", "--dt", "0.01 ns").returncode == 0
+    ours, theirs = (float(rows(desk, f"{folder}/probes.csv")[-1]["upper.friction_factor [-]"])
+                    for folder in ("reference", "engine"))
+    assert theirs > 0.01  # the disc pulls the wall along
+    assert ours == pytest.approx(theirs, rel=0.05)  # INDEPENDENT: as above
+
+
 def test_draws(desk, tmp_path) -> None:
     desk.write(SHORT)
     assert desk.reference("--out", "out", "--quiet", "--dt", "0.1 ns").returncode == 0
