@@ -34,6 +34,12 @@ double mean_spacing(const Points& outline, double turn_shift) {
   return total / static_cast<double>(outline.size());
 }
 
+Vec2 interpolated(const Row& row, const Vector& values, int first) {
+  Vec2 at(0, 0);
+  for (std::size_t e = 0; e < row.node.size(); ++e) at += row.value[e] * values.segment<2>(first + 2 * row.node[e]);
+  return at;
+}
+
 Bodies::Bodies(const Scene& scene) : scene_(scene) {
   const std::vector<PlacedBody> placed = place_bodies(scene_);
   meshes_ = related_meshes(scene_, placed);
@@ -155,12 +161,7 @@ Points Bodies::outline_positions(const Vector& q) const {
       for (const Vec2& p : body.outline) x.push_back(centre + turn * p);
       continue;
     }
-    for (const Row& row : space_of(body).outline) {
-      Vec2 at(0, 0);
-      for (std::size_t e = 0; e < row.node.size(); ++e)
-        at += row.value[e] * q.segment<2>(body.first_dof + 2 * row.node[e]);
-      x.push_back(at);
-    }
+    for (const Row& row : space_of(body).outline) x.push_back(interpolated(row, q, body.first_dof));
   }
   return x;
 }

@@ -76,6 +76,9 @@ class Bodies {
   double finest_spacing_ = 1e300;
 };
 
+/// Sum of a row's values times the vectors of its nodes; `first`: where those of node 0 stand in `values`.
+Vec2 interpolated(const Row& row, const Vector& values, int first);
+
 /// Mean segment length of an outline, m.
 double mean_spacing(const Points& outline, double turn_shift);
 

@@ -106,6 +106,9 @@ Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
       ++number;
     }
   }
+  load_of_dof_.assign(static_cast<std::size_t>(bodies.dofs()), -1);
+  for (std::size_t i = rigid_.size(); i-- > 0;)  // of several the first
+    load_of_dof_[static_cast<std::size_t>(rigid_[i].dof)] = static_cast<int>(i);
 }
 
 void Loads::add_walls() {
@@ -152,9 +155,8 @@ OutlineLoad Loads::outline_load(const BoundaryCondition& condition, const Body& 
 }
 
 const RigidLoad* Loads::of(int dof) const {
-  for (const RigidLoad& load : rigid_)
-    if (load.dof == dof) return &load;
-  return nullptr;
+  const int load = load_of_dof_[static_cast<std::size_t>(dof)];
+  return load < 0 ? nullptr : &rigid_[static_cast<std::size_t>(load)];
 }
 
 Vector Loads::gravity(double time) const {

@@ -75,6 +75,7 @@ class Loads {
   const Bodies& bodies_;
   Vector heavy_mass_, mass_damping_;  ///< [dofs]; heavy: what gravity acts on
   std::vector<RigidLoad> rigid_;
+  std::vector<int> load_of_dof_;  ///< [dofs], index in `rigid_`; -1: none
   std::vector<OutlineLoad> outline_;
 };
 

@@ -1,5 +1,3 @@
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -14,19 +12,6 @@
 
 namespace pliant::reference {
 namespace {
-
-/// A time such as "0.02 us"; a plain number means seconds, as in scene files.
-double parse_time(const char* option, const std::string& text) {
-  double time = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
-  try {
-    if (error != std::errc() || end != text.data() + text.size()) time = parse_quantity(text, "s");
-  } catch (const UnitError& failure) {
-    throw InputError(fmt::format("{} {}: {}", option, text, failure.what()));
-  }
-  if (std::isfinite(time) && time > 0) return time;
-  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
-}
 
 int main_program(int argc, char** argv) {
   CLI::App app{"Pliant's reference solver: implicit, slow, independent of the engine"};

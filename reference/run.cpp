@@ -1,10 +1,6 @@
 #include "reference/run.hpp"
 
-#include <sys/resource.h>
-
 #include <chrono>
-#include <fstream>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -12,30 +8,18 @@
 
 #include "build_info.hpp"
 #include "core/errors.hpp"
+#include "core/memory.hpp"
 #include "files/folder_lock.hpp"
 #include "reference/outputs/frames.hpp"
 #include "reference/outputs/probes.hpp"
+#include "scene/text_file.hpp"
 
 namespace pliant::reference {
 namespace {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-std::string read_text(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-long peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss * 1024L;
-}
 
 /// What a run has cost so far.
 struct Effort {
@@ -170,7 +154,8 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   SolverOptions solver = options.solver;
   if (solver.dt == 0) solver.dt = default_step(system.bodies(), solver.statics);
   TimeStepping run(system, solver);
-  const std::string text = read_text(scene.file);  // before the folder is emptied: the scene may lie in it
+  const std::string text =
+      read_text_file(scene.file, "a scene file (.toml)");  // before the folder is emptied: the scene may lie in it
   FolderLock::refuse_taken(options.out);
   prepare_output_folder(options.out, options.force);
   const FolderLock lock(options.out);

@@ -78,7 +78,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   system.accept(motion_);
   if (options.statics) {
     const Vector mass = bodies.lumped_mass();
-    inertia_ = options.pseudo_inertia * forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff();
+    holding_ = options.pseudo_inertia * forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff() * mass;
   } else {
     find_acceleration();
   }
@@ -148,9 +148,8 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
   Vector residual = forces.residual, magnitude = forces.magnitude;
   SparseMatrix matrix = forces.stiffness;
   if (options_.statics) {
-    const Vector held = inertia_ * system_.bodies().lumped_mass();
-    residual += held.cwiseProduct(q - anchor);
-    if (tangent && inertia_ > 0) matrix += SparseMatrix(held.asDiagonal());
+    residual += holding_.cwiseProduct(q - anchor);
+    if (tangent && options_.pseudo_inertia > 0) matrix += SparseMatrix(holding_.asDiagonal());
   } else {
     const Vector inertia = mass_ * acceleration_at(dt, q);
     residual = inertia + (1 + options_.hht) * residual - options_.hht * forces_.residual;
@@ -191,7 +190,7 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
       record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
       return false;
     }
-    if (inertia_ == 0 || settled(trial.forces, pick)) {
+    if (options_.pseudo_inertia == 0 || settled(trial.forces, pick)) {
       trial.acceleration = options_.statics ? Vector::Zero(q.size()) : acceleration_at(until - motion_.time, q);
       return true;
     }

@@ -77,7 +77,7 @@ class TimeStepping {
   SolverOptions options_;
   double beta_, gamma_;
   SparseMatrix mass_;
-  double inertia_ = 0;  ///< static runs: factor of the lumped mass that holds floating bodies, 1/s2
+  Vector holding_;  ///< static runs: [dofs], what holds floating bodies while they settle, N/m2 (N)
   LinearSolver solver_;
   Motion motion_;
   Vector acceleration_;

@@ -12,8 +12,8 @@
 #include "bodies/initial_state.hpp"
 #include "cli/estimates.hpp"
 #include "cli/rehearsal.hpp"
+#include "core/memory.hpp"
 #include "dynamics/time_step_bound.hpp"
-#include "results/summary.hpp"
 
 namespace pliant {
 namespace {

@@ -1,5 +1,3 @@
-#include <charconv>
-#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -22,20 +20,6 @@ struct Arguments {
   std::string scene, until, checkpoint_every;
   RunOptions run;
 };
-
-/// A time such as "0.02 us"; a plain number means seconds, as in scene files.
-double parse_time(const char* option, const std::string& text) {
-  double time = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
-  const bool plain = error == std::errc() && end == text.data() + text.size();
-  try {
-    if (!plain) time = parse_quantity(text, "s");
-  } catch (const UnitError& failure) {
-    throw InputError(fmt::format("{} {}: {}", option, text, failure.what()));
-  }
-  if (std::isfinite(time) && time > 0) return time;
-  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
-}
 
 Scene load(const Arguments& arguments) {
   if (arguments.scene.empty() && (!arguments.run.resume || arguments.run.out.empty()))

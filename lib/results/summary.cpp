@@ -2,20 +2,13 @@
 
 #include <algorithm>
 
-#include <sys/resource.h>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "build_info.hpp"
+#include "core/memory.hpp"
 
 namespace pliant {
-
-long peak_memory_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss * 1024L;
-}
 
 std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& status) {
   const State& state = simulation.state();

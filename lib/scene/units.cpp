@@ -85,4 +85,17 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   return converted;
 }
 
+double parse_time(const char* option, const std::string& text) {
+  double time = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
+  const bool plain = error == std::errc() && end == text.data() + text.size();
+  try {
+    if (!plain) time = parse_quantity(text, "s");
+  } catch (const UnitError& failure) {
+    throw InputError(fmt::format("{} {}: {}", option, text, failure.what()));
+  }
+  if (std::isfinite(time) && time > 0) return time;
+  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
+}
+
 }  // namespace pliant

@@ -14,4 +14,8 @@ struct UnitError : std::runtime_error {
 /// Throws UnitError for a bad number, an unknown unit, another dimension, an offset or logarithmic unit.
 double parse_quantity(const std::string& text, const std::string& unit);
 
+/// A positive time of a command line option, such as "0.02 us"; a plain number means seconds, as in scene files. Throws
+/// InputError, which names the option.
+double parse_time(const char* option, const std::string& text);
+
 }  // namespace pliant

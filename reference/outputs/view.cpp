@@ -28,12 +28,7 @@ Vec2 View::mean(const Body& body, const Vector& values) const {
 
 Points View::at_nodes(const Body& body, const Vector& values) const {
   Points points;
-  for (const Row& row : bodies().space_of(body).nodes) {
-    Vec2 at(0, 0);
-    for (std::size_t e = 0; e < row.node.size(); ++e)
-      at += row.value[e] * values.segment<2>(body.first_dof + 2 * row.node[e]);
-    points.push_back(at);
-  }
+  for (const Row& row : bodies().space_of(body).nodes) points.push_back(interpolated(row, values, body.first_dof));
   return points;
 }
 
