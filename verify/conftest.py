@@ -1,58 +1,87 @@
-"""Starts the checks of each case afresh, and shows all of them at the end."""
+"""Starts the checks of each case afresh, adds times and failures to them, and shows all of them at the end."""
 
 from __future__ import annotations
 
 import fcntl
 import json
-from collections import Counter
+from collections import defaultdict
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
+from report import report
 from verification import OUT, Label, read_rows
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Rows of an earlier run must not stand for checks that this one does not reach."""
-    for case in cases_of(session):
-        (OUT / case / "checks.json").unlink(missing_ok=True)
+    for case in {item.path.parent.name for item in session.items}:
+        for name in ("checks.json", "failures.json"):
+            (OUT / case / name).unlink(missing_ok=True)
 
 
-def cases_of(session: pytest.Session) -> list[str]:
-    return list(dict.fromkeys(item.path.parent.name for item in session.items))
+def pytest_configure(config: pytest.Config) -> None:
+    """Reports of tests arrive where the summary is written, not at the workers of pytest-xdist."""
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Record(), "pliant-record")
 
 
-def pytest_sessionfinish(session: pytest.Session) -> None:
-    """All cases that ever ran, in one file. Several sessions may end at once."""
-    if not OUT.is_dir():
-        return
-    with (OUT / ".lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        rows = [row for file in sorted(OUT.glob("*/checks.json")) for row in read_rows(file)]
-        temporary = OUT / "checks.json.tmp"
-        temporary.write_text(json.dumps(rows, indent=1) + "\n")
-        temporary.replace(OUT / "checks.json")
-    session.config.stash[shown] = [row for row in rows if row["case"] in cases_of(session)]
+class Record:
+    """Of the tests of this session: times, failures and, at the end, the report."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = defaultdict(float)
+        self.messages: dict[str, str] = {}
+        self.cases: list[report.CaseReport] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.seconds[report.nodeid] += report.duration
+        if report.failed:
+            self.messages[report.nodeid] = str(report.longrepr)
+
+    def pytest_sessionfinish(self) -> None:
+        """All cases that ever ran, in one report. Several sessions may end at once."""
+        if not OUT.is_dir():
+            return
+        ran = {case_of(test) for test in self.seconds}
+        for case in ran:
+            self._complete(OUT / case)
+        with (OUT / ".lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            self.cases = [case for case in report.write(OUT) if case.name in ran]
+
+    def _complete(self, folder: Path) -> None:
+        """Adds to the rows of a case how long they took, and what failed without a row."""
+        rows = read_rows(folder / "checks.json")
+        for row in rows:
+            row["seconds"] = self.seconds.get(row["test"], 0.0)
+        red = {row["test"] for row in rows if not row["green"]}
+        failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:])
+                    for test, message in self.messages.items() if case_of(test) == folder.name and test not in red]
+        folder.mkdir(exist_ok=True)
+        (folder / "checks.json").write_text(json.dumps(rows, indent=1) + "\n")
+        (folder / "failures.json").write_text(json.dumps([asdict(failure) for failure in failures], indent=1) + "\n")
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        rows = [row for case in self.cases for row in case.rows]
+        if not rows:
+            return
+        case_width, name_width = (max(len(getattr(row, key)) for row in rows) for key in ("case", "name"))
+        terminalreporter.section("checks")
+        heads = ("value", "expected", "tolerance")
+        terminalreporter.write_line(f"{'':5} {'label':11} {'case':{case_width}} {'name':{name_width}} " +
+                                    " ".join(f"{head:>12}" for head in heads))
+        for row in sorted(rows, key=lambda row: not row.green):
+            numbers = " ".join(f"{getattr(row, head):12.5g}" for head in heads)
+            line = f"{row.label:11} {row.case:{case_width}} {row.name:{name_width}} {numbers}"
+            terminalreporter.write("green " if row.green else "RED   ", green=row.green, red=not row.green)
+            terminalreporter.write_line(line)
+        share = ", ".join(f"{count} {label}" for label, count in report.totals(self.cases).items())
+        terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red")
+        terminalreporter.write_line(f"report: {OUT / 'report.html'}; table: {OUT / 'checks.json'}")
 
 
-shown = pytest.StashKey[list]()
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    rows = config.stash.get(shown, [])
-    if not rows:
-        return
-    case_width, name_width = (max(len(row[key]) for row in rows) for key in ("case", "name"))
-    terminalreporter.section("checks")
-    heads = ("value", "expected", "tolerance")
-    terminalreporter.write_line(f"{'':5} {'label':11} {'case':{case_width}} {'name':{name_width}} " +
-                                " ".join(f"{head:>12}" for head in heads))
-    for row in rows:
-        numbers = " ".join(f"{row[head]:12.5g}" for head in heads)
-        line = f"{row['label']:11} {row['case']:{case_width}} {row['name']:{name_width}} {numbers}"
-        terminalreporter.write("green " if row["green"] else "RED   ", green=row["green"], red=not row["green"])
-        terminalreporter.write_line(line)
-    count = Counter(row["label"] for row in rows)
-    share = ", ".join(f"{count[label.value]} {label.value}" for label in Label)
-    terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(not row['green'] for row in rows)} red")
-    terminalreporter.write_line(f"table: {Path(OUT) / 'checks.json'}")
+def case_of(test: str) -> str:
+    """The folder of a test's file."""
+    return Path(test.split("::")[0]).parent.name

@@ -21,16 +21,22 @@ ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engin
 REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
 OUT = Path(os.environ.get("PLIANT_VERIFY_OUT", ROOT / "results/verify"))
 FULL = os.environ.get("PLIANT_VERIFY_FULL", "") not in ("", "0")
-LONGEST_RUN = 1200  # s
+LONGEST_RUN = float(os.environ.get("PLIANT_VERIFY_LONGEST", 3600 if FULL else 900))  # s
 
 
 class Label(str, Enum):
     """Where an expected value comes from."""
 
-    EXACT = "EXACT"  # a closed form, or rounding
-    RATE = "RATE"  # an observed order against theory
-    INDEPENDENT = "INDEPENDENT"  # another solver or the literature, with its error
-    FROZEN = "FROZEN"  # an earlier value of our own
+    EXACT = "EXACT"
+    RATE = "RATE"
+    INDEPENDENT = "INDEPENDENT"
+    FROZEN = "FROZEN"
+
+    @property
+    def meaning(self) -> str:
+        return {"EXACT": "a closed form, or rounding", "RATE": "the order that theory gives, from three resolutions",
+                "INDEPENDENT": "another solver or the literature, with its error",
+                "FROZEN": "an earlier value of our own"}[self.value]
 
 
 @dataclass
@@ -45,6 +51,13 @@ class Row:
     tolerance: float
     source: str  # of the expected value and of the tolerance
     green: bool
+    test: str  # of pytest, in which it was made
+    seconds: float = 0.0  # of that test, with the runs that it waited for
+
+    @property
+    def used(self) -> float | None:
+        """Distance from the expected value as a share of the tolerance."""
+        return abs(self.value - self.expected) / self.tolerance if self.tolerance > 0 else None
 
 
 class Run:
@@ -86,9 +99,10 @@ class Run:
 
 
 class Case:
-    """A folder of verify/: its scenes, its results, its checks."""
+    """A folder of verify/: its scenes, its results, its checks. Fast cases run in ./pliant test too."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, fast: bool = False) -> None:
+        self.fast = fast
         self.folder = Path(file).resolve().parent
         self.name = self.folder.name
         self.out = OUT / self.name
@@ -127,7 +141,8 @@ class Case:
         if not (tolerance >= 0 and np.isfinite(expected)) or not source:
             raise ValueError(f"{name}: expected {expected}, tolerance {tolerance}, source '{source}'")
         green = bool(abs(value - expected) <= tolerance)
-        self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green))
+        test = os.environ.get("PYTEST_CURRENT_TEST", "").split(" ")[0]
+        self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green, test))
         assert green, f"{Label(label).value} {name}: {value:.6g}, expected {expected:.6g} +- {tolerance:.2g} ({source})"
 
     def check_rate(self, name: str, steps: list[float], errors: list[float], order: float, tolerance: float,

@@ -9,7 +9,7 @@ from order_study import Quantity, Study, check_differences, run_study
 from pictures import draw_both, draw_differences, legend, panels, save
 from verification import Case, Label
 
-CASE = Case(__file__)
+CASE = Case(__file__, fast=True)
 STEPS = [0.01, 0.005, 0.0025]
 FINEST = 0.00125
 TIMES = 0.04 * np.arange(1, 31)

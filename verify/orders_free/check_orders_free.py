@@ -9,7 +9,7 @@ from order_study import Quantity, Study, check_same_motion, run_study
 from pictures import draw_orders, panels, save
 from verification import FULL, Case
 
-CASE = Case(__file__)
+CASE = Case(__file__, fast=True)
 STEPS = [0.02, 0.01, 0.005, 0.0025] + ([0.00125] if FULL else [])
 FINEST = STEPS[-1] / 4
 TIMES = 0.2 * np.arange(1, 9)

@@ -8,7 +8,7 @@ import pytest
 from pictures import COLOURS, legend, panels, save
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__)
+CASE = Case(__file__, fast=True)
 NODES = 340 if FULL else 168
 APPROACHES = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3]
 GAP = 0.001  # of either plate at the start

@@ -1,0 +1,201 @@
+"""Makes small mistakes of physics, one at a time, in a copy of the code, and shows which check of verify/ finds each.
+
+    ./pliant verify --mutate                  all mutations of mutations.toml: an hour or two
+    ./pliant verify --mutate NAME NAME        these
+
+The copy and its builds are in build/mutants; what was found goes to results/verify/mutations.json and into the report. A mutation counts as found
+when a check is red, or a run ends with an error, that is green without it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import filecmp
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+import tomllib
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from report import report
+from verification import OUT, ROOT
+
+MUTATIONS = Path(__file__).with_name("mutations.toml")
+SCRATCH = ROOT / "build/mutants"
+SOURCE = SCRATCH / "source"
+BUILD = SOURCE / "build/release"
+PROGRAMS = ["pliant_engine", "pliant_reference_solver"]
+LONGEST_RUN = 300  # s; a solver that runs longer than this does not come to an end
+
+
+@dataclass
+class Mutation:
+    """A text that stands once in a file, and what stands there instead. `cases` are tried first, then the fast ones."""
+
+    name: str
+    what: str
+    file: str
+    old: str
+    new: str
+    cases: list[str]
+
+    def mutated(self, text: str) -> str:
+        if text.count(self.old) != 1:
+            raise ValueError(f"mutation {self.name}: its text stands {text.count(self.old)} times in {self.file}, not once")
+        return text.replace(self.old, self.new)
+
+
+@dataclass
+class Verdict:
+    """As results/verify/mutations.json has it."""
+
+    name: str
+    what: str
+    file: str
+    killed: bool
+    killer: str
+    message: str
+    seconds: float
+
+
+def read_mutations() -> list[Mutation]:
+    return [Mutation(**entry) for entry in tomllib.loads(MUTATIONS.read_text())["mutation"]]
+
+
+def copy_sources() -> None:
+    """Files that are the same keep their times, so that little is built anew."""
+    listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "-z"], check=True,
+                            capture_output=True, text=True).stdout
+    names = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
+    for name in sorted(names):
+        source, copy = ROOT / name, SOURCE / name
+        if copy.exists() and filecmp.cmp(source, copy, shallow=False):
+            continue
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source, copy)
+    for copy in [file for file in SOURCE.rglob("*") if file.is_file()]:
+        name = str(copy.relative_to(SOURCE))
+        if name not in names and not name.startswith("build/"):
+            copy.unlink()
+
+
+def build() -> None:
+    if not (BUILD / "build.ninja").exists():
+        subprocess.run(["cmake", "--preset", "release"], cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
+    result = subprocess.run(["ninja", "-C", str(BUILD), *PROGRAMS], capture_output=True, text=True)
+    if result.returncode != 0:
+        raise RuntimeError(f"the copy does not build:\n{result.stdout[-3000:]}")
+
+
+def run_cases(cases: list[str], name: str) -> list[str]:
+    """What is red in them, each a line "case: check, what it said"; stops soon after the first."""
+    out = SCRATCH / "results" / name
+    shutil.rmtree(out, ignore_errors=True)
+    folders = [str(SOURCE / "verify" / case) for case in cases]
+    environment = {**os.environ, "PLIANT_VERIFY_OUT": str(out), "PLIANT_VERIFY_LONGEST": str(LONGEST_RUN),
+                   "OMP_WAIT_POLICY": "passive"}
+    for variable in ("PLIANT_ENGINE", "PLIANT_REFERENCE", "PLIANT_VERIFY_FULL"):
+        environment.pop(variable, None)
+    command = [sys.executable, "-B", "-m", "pytest", "-c", str(SOURCE / "verify/pytest.ini"), "-x", "-n", str(os.cpu_count()),
+               "--dist", "loadfile", *folders]
+    result = subprocess.run(command, cwd=SOURCE, env=environment, capture_output=True, text=True)
+    if not (out / "checks.json").exists():
+        raise RuntimeError(f"no check ran:\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
+    return red_lines(json.loads((out / "checks.json").read_text()))
+
+
+def red_lines(checks: dict) -> list[str]:
+    lines = [f"{row['case']}: {row['name']} ({row['label']})\t{row['value']:.5g}, expected {row['expected']:.5g} "
+             f"+- {row['tolerance']:.2g}" for row in checks["checks"] if not row["green"]]
+    return lines + [f"{failure['case']}: {failure['test']}\t{last_error(failure['message'])}"
+                    for failure in checks["failures"]]
+
+
+def last_error(message: str) -> str:
+    """The line of a failed run that says why."""
+    lines = [line.removeprefix("E").strip() for line in message.splitlines() if line.strip()]
+    errors = [line for line in lines if "error" in line.lower() or "pliant" in line.lower()]
+    return (errors or lines or ["ended without a message"])[-1][:300]
+
+
+def fast_cases() -> list[str]:
+    return sorted(file.parent.name for file in (ROOT / "verify").glob("*/check_*.py")
+                  if "Case(__file__, fast=True)" in file.read_text())
+
+
+def judge(mutation: Mutation, sound: list[str]) -> Verdict:
+    """Builds the mutant and looks for a check that finds it."""
+    start = time.monotonic()
+    file = SOURCE / mutation.file
+    text = file.read_text()
+    file.write_text(mutation.mutated(text))
+    try:
+        build()
+        red: list[str] = []
+        suspects = [case for case in mutation.cases if case in sound]
+        for cases in (suspects, [case for case in fast_cases() if case in sound and case not in suspects]):
+            red = red or (run_cases(cases, mutation.name) if cases else [])
+    finally:
+        file.write_text(text)
+    killer, message = (red[0].split("\t") if red else ("", ""))
+    return Verdict(mutation.name, mutation.what, mutation.file, bool(red), killer, message, time.monotonic() - start)
+
+
+def write_down(verdicts: list[Verdict], names: list[str]) -> None:
+    """Beside what is known of the other mutations."""
+    OUT.mkdir(parents=True, exist_ok=True)
+    file = OUT / "mutations.json"
+    known = {row["name"]: row for row in json.loads(file.read_text())["rows"]} if file.exists() else {}
+    known.update({verdict.name: asdict(verdict) for verdict in verdicts})
+    rows = [known[name] for name in names if name in known]
+    file.write_text(json.dumps({"commit": report.commit(), "written": report.now(), "rows": rows}, indent=1) + "\n")
+    report.write(OUT)
+
+
+def sound_cases(mutations: list[Mutation]) -> list[str]:
+    """Cases that are green without a mutation: only these can find one."""
+    cases = sorted({case for mutation in mutations for case in mutation.cases} | set(fast_cases()))
+    print(f"the copy without mutations: {len(cases)} cases", flush=True)
+    red = {line.split(":")[0] for case in cases for line in run_cases([case], f"sound-{case}")}
+    for case in sorted(red):
+        print(f"  {case} is red without a mutation: left out", flush=True)
+    return [case for case in cases if case not in red]
+
+
+def chosen(mutations: list[Mutation], names: list[str]) -> list[Mutation]:
+    unknown = [name for name in names if name not in {mutation.name for mutation in mutations}]
+    if unknown:
+        print(f"pliant: verify --mutate: no mutation '{unknown[0]}'; there are: "
+              f"{' '.join(mutation.name for mutation in mutations)}", file=sys.stderr)
+        sys.exit(2)
+    return [mutation for mutation in mutations if not names or mutation.name in names]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./pliant verify --mutate", description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help="mutations (default: all)")
+    every = read_mutations()
+    mutations = chosen(every, parser.parse_args().names)
+    copy_sources()
+    build()
+    sound = sound_cases(mutations)
+    verdicts = []
+    for mutation in mutations:
+        verdicts.append(judge(mutation, sound))
+        write_down(verdicts, [mutation.name for mutation in every])
+        found = f"found by {verdicts[-1].killer}" if verdicts[-1].killed else "SURVIVED"
+        print(f"{mutation.name:28} {verdicts[-1].seconds:5.0f} s  {found}", flush=True)
+    survivors = [verdict.name for verdict in verdicts if not verdict.killed]
+    print(f"{len(verdicts) - len(survivors)} of {len(verdicts)} mutations found" +
+          (f"; survivors: {', '.join(survivors)}" if survivors else "") + f"; report: {OUT / 'report.html'}")
+    return 1 if survivors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

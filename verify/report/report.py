@@ -1,0 +1,130 @@
+"""The report of ./pliant verify: checks.json for programs, report.html for people."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from collections import Counter
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+import jinja2
+import markdown
+
+from verification import Label, Row, read_rows
+
+HERE = Path(__file__).resolve().parent
+CASES = HERE.parent
+
+
+@dataclass
+class Failure:
+    """A test that ended before it wrote a red row down: a solver failed, or the check itself."""
+
+    case: str
+    test: str
+    message: str
+
+
+@dataclass
+class CaseReport:
+    """What is known of a case: its rows, red first."""
+
+    name: str
+    readme: str  # HTML
+    rows: list[Row]
+    failures: list[Failure]
+    pictures: list[str]  # relative to the report
+
+    @property
+    def seconds(self) -> float:
+        """Of its tests: rows of one test share its time."""
+        return sum({row.test: row.seconds for row in self.rows}.values())
+
+    @property
+    def red(self) -> int:
+        return sum(not row.green for row in self.rows) + len(self.failures)
+
+    def count(self, label: Label) -> int:
+        return sum(row.label == label.value for row in self.rows)
+
+
+@dataclass
+class Mutations:
+    """What ./pliant verify --mutate found last."""
+
+    commit: str
+    written: str
+    rows: list[dict]
+
+    @property
+    def killed(self) -> int:
+        return sum(row["killed"] for row in self.rows)
+
+
+def write(out: Path) -> list[CaseReport]:
+    """Of all cases that ever ran with their results in this folder."""
+    cases = [read_case(out, file.parent) for file in sorted(out.glob("*/checks.json"))]
+    _replace(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
+    _replace(out / "report.html", as_html(cases, _mutations(out)))
+    return cases
+
+
+def read_case(out: Path, folder: Path) -> CaseReport:
+    rows = [Row(**row) for row in read_rows(folder / "checks.json")]
+    failures = [Failure(**failure) for failure in read_rows(folder / "failures.json")]
+    pictures = sorted(str(file.relative_to(out)) for file in folder.glob("*.png"))
+    return CaseReport(folder.name, _readme(folder.name), sorted(rows, key=lambda row: row.green), failures, pictures)
+
+
+def as_json(cases: list[CaseReport]) -> dict:
+    return {"commit": commit(), "written": now(), "totals": totals(cases), "red": sum(case.red for case in cases),
+            "checks": [vars(row) for case in cases for row in case.rows],
+            "failures": [vars(failure) for case in cases for failure in case.failures]}
+
+
+def as_html(cases: list[CaseReport], mutations: Mutations | None) -> str:
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    environment.filters["number"] = number
+    rows = sum(len(case.rows) for case in cases)
+    return environment.get_template("report.html.j2").render(
+        cases=cases, commit=commit(), now=now(), labels=list(Label), totals=totals(cases), rows=rows,
+        red=sum(case.red for case in cases), mutations=mutations, seconds=sum(case.seconds for case in cases))
+
+
+def totals(cases: list[CaseReport]) -> dict[str, int]:
+    count = Counter(row.label for case in cases for row in case.rows)
+    return {label.value: count[label.value] for label in Label}
+
+
+def number(value: float) -> str:
+    return "0" if value == 0 else f"{value:.5g}"
+
+
+def commit() -> str:
+    result = subprocess.run(["git", "-C", str(CASES), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    return result.stdout.strip() or "unknown"
+
+
+def now() -> str:
+    return datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
+
+
+def _readme(case: str) -> str:
+    file = CASES / case / "README.md"
+    if not file.exists():
+        return ""
+    return markdown.markdown(file.read_text(), extensions=["tables", "fenced_code"])
+
+
+def _replace(file: Path, text: str) -> None:
+    temporary = file.with_suffix(file.suffix + ".tmp")
+    temporary.write_text(text)
+    temporary.replace(file)
+
+
+def _mutations(out: Path) -> Mutations | None:
+    file = out / "mutations.json"
+    return Mutations(**json.loads(file.read_text())) if file.exists() else None
