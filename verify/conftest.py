@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from report import report
-from verification import OUT, Label, read_rows
+from verification import OUT, read_rows, replace_file
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
@@ -60,8 +60,8 @@ class Record:
         failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:])
                     for test, message in self.messages.items() if case_of(test) == folder.name and test not in red]
         folder.mkdir(exist_ok=True)
-        (folder / "checks.json").write_text(json.dumps(rows, indent=1) + "\n")
-        (folder / "failures.json").write_text(json.dumps([asdict(failure) for failure in failures], indent=1) + "\n")
+        replace_file(folder / "checks.json", json.dumps(rows, indent=1) + "\n")
+        replace_file(folder / "failures.json", json.dumps([asdict(failure) for failure in failures], indent=1) + "\n")
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         rows = [row for case in self.cases for row in case.rows]

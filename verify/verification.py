@@ -51,7 +51,7 @@ class Row:
     tolerance: float
     source: str  # of the expected value and of the tolerance
     green: bool
-    test: str  # of pytest, in which it was made
+    test: str = ""  # of pytest, in which it was made
     seconds: float = 0.0  # of that test, with the runs that it waited for
 
     @property
@@ -157,7 +157,7 @@ class Case:
     def _write_down(self, row: Row) -> None:
         file = self.out / "checks.json"
         others = [r for r in read_rows(file) if r["name"] != row.name]
-        file.write_text(json.dumps([*others, asdict(row)], indent=1) + "\n")
+        replace_file(file, json.dumps([*others, asdict(row)], indent=1) + "\n")
 
 
 def read_table(file: Path) -> tuple[list[str], np.ndarray]:
@@ -166,6 +166,13 @@ def read_table(file: Path) -> tuple[list[str], np.ndarray]:
         header, *rows = csv.reader(stream)
     values = [[float(cell) if cell else np.nan for cell in row] for row in rows]
     return [name.split(" [")[0] for name in header], np.array(values)
+
+
+def replace_file(file: Path, text: str) -> None:
+    """At once: other sessions may read it for their reports."""
+    temporary = file.with_suffix(file.suffix + ".tmp")
+    temporary.write_text(text)
+    temporary.replace(file)
 
 
 def read_rows(file: Path) -> list[dict]:

@@ -12,7 +12,7 @@ from pathlib import Path
 import jinja2
 import markdown
 
-from verification import Label, Row, read_rows
+from verification import Label, Row, read_rows, replace_file
 
 HERE = Path(__file__).resolve().parent
 CASES = HERE.parent
@@ -66,8 +66,8 @@ class Mutations:
 def write(out: Path) -> list[CaseReport]:
     """Of all cases that ever ran with their results in this folder."""
     cases = [read_case(out, file.parent) for file in sorted(out.glob("*/checks.json"))]
-    _replace(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
-    _replace(out / "report.html", as_html(cases, _mutations(out)))
+    replace_file(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
+    replace_file(out / "report.html", as_html(cases, _mutations(out)))
     return cases
 
 
@@ -117,12 +117,6 @@ def _readme(case: str) -> str:
     if not file.exists():
         return ""
     return markdown.markdown(file.read_text(), extensions=["tables", "fenced_code"])
-
-
-def _replace(file: Path, text: str) -> None:
-    temporary = file.with_suffix(file.suffix + ".tmp")
-    temporary.write_text(text)
-    temporary.replace(file)
 
 
 def _mutations(out: Path) -> Mutations | None:
