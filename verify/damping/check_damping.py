@@ -1,0 +1,137 @@
+"""Damping by mass, by viscosity and in moving supports, against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pictures import COLOURS, draw_orders, legend, panels, save
+from verification import Case, Label, Run
+
+CASE = Case(__file__, fast=True)
+
+STEPS = [0.02, 0.01, 0.005, 0.0025]
+END = 1.6
+FLIGHTS = {"hard": (1.5, 0.3), "soft": (0.8, -0.3)}  # mass damping, 1/s, and the speed along x at the start
+
+VISCOSITY, MU, PULL = 4.0, 1.0, 1e-4
+REFERENCE_STEP = 0.01
+
+SPEED, STIFFNESS, DASHPOT, LENGTH, MASS = 0.2, 1.0, 0.4, 4.0, 1.0
+
+
+@pytest.fixture(scope="module")
+def flights() -> dict[str, dict[float, Run]]:
+    scenes = {dt: CASE.scene("mass.toml", dt=dt) for dt in STEPS}
+    return {"engine": {dt: CASE.engine(f"mass_engine_{dt:g}", scene) for dt, scene in scenes.items()},
+            "reference": {dt: CASE.reference(f"mass_reference_{dt:g}", scene, "--dt", repr(dt))
+                          for dt, scene in scenes.items()}}
+
+
+def flight_errors(runs: dict[float, Run], body: str) -> list[float]:
+    """Of the way flown at all times: v (1 - exp(-c t)) / c, over its largest."""
+    damping, speed = FLIGHTS[body]
+    errors = []
+    for run in runs.values():
+        t, x = run.times(f"{body}.position_x"), run.probe(f"{body}.position_x")
+        way = speed * (1 - np.exp(-damping * t)) / damping
+        errors.append(float(np.abs(x - x[0] - way).max() / np.abs(way).max()))
+    return errors
+
+
+@pytest.mark.parametrize("body", FLIGHTS)
+def test_flights_slow_down(flights: dict[str, dict[float, Run]], body: str) -> None:
+    for name, order in (("engine", 1), ("reference", 2)):
+        CASE.check_rate(f"mass damping, {body}: way, {name}", STEPS, flight_errors(flights[name], body), order, 0.15,
+                        "the engine damps by the velocity of the half step before: first order; Newmark: second; the "
+                        "engine's short first steps and the next order take a tenth")
+
+
+def test_what_flights_lose_is_booked(flights: dict[str, dict[float, Run]]) -> None:
+    """Kinetic energy lost is energy dissipated, at any time."""
+    mass = flights["engine"][STEPS[0]].probe("energy.kinetic")[0] / (0.5 * 0.3**2 + 0.5 * (0.3**2 + 0.1**2))
+    speeds = {"hard": 0.3**2, "soft": 0.3**2 + 0.1**2}
+    expected = sum(0.5 * mass * speeds[body] * (1 - np.exp(-2 * FLIGHTS[body][0] * END)) for body in FLIGHTS)
+    for name, runs in flights.items():
+        errors = [abs(run.probe("energy.dissipated")[-1] / expected - 1) for run in runs.values()]
+        CASE.check(Label.EXACT, f"mass damping: dissipated energy, {name}", errors[-1], 0, 2 * STEPS[-1] * 1.5,
+                   "first order: at most twice damping times the step")
+
+
+@pytest.fixture(scope="module")
+def creep() -> dict[str, Run]:
+    scene = CASE.scene("viscous.toml", viscosity=VISCOSITY, pressure=-PULL)
+    return {"engine": CASE.engine("viscous_engine", scene),
+            "reference": CASE.reference("viscous_reference", scene, "--dt", repr(REFERENCE_STEP))}
+
+
+def way_of_centre(t: np.ndarray) -> np.ndarray:
+    """rho u_tt = 2 mu u_xx + 2 viscosity u_xxt on a bar of length 1, held at x = 0, pulled by PULL at x = 1: the mean of u, by modes."""
+    k = (np.arange(400)[:, None] + 0.5) * np.pi
+    rate, square = VISCOSITY * k**2, 2 * MU * k**2
+    root = np.sqrt((rate**2 - square).astype(complex))
+    slow, fast = -square / (rate + root), -(rate + root)  # roots of s^2 + 2 rate s + square, without cancellation
+    answer = ((1 - (fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow)) / square).real
+    return 2 * PULL * (np.sin(k) / k * answer).sum(axis=0)
+
+
+def creep_error(run: Run) -> float:
+    t, x = run.times("square.position_x"), run.probe("square.position_x")
+    late = t >= 1
+    return float(np.abs((x - x[0])[late] / way_of_centre(t[late]) - 1).max())
+
+
+def test_creep(creep: dict[str, Run]) -> None:
+    steps = {"engine": creep["engine"].steps("dt").max(), "reference": REFERENCE_STEP}
+    for name, run in creep.items():
+        CASE.check(Label.EXACT, f"viscosity: creep, {name}", creep_error(run), 0, 0.002 + 0.5 * steps[name],
+                   "Kelvin-Voigt bar, by modes; viscous forces may be half a step off, over the first second's way; the "
+                   "support yields by 2e-4 of the bar's stretch, the rest is for the mesh in the first second's diffusion")
+
+
+def test_what_creep_loses_is_booked(creep: dict[str, Run]) -> None:
+    for name, run in creep.items():
+        CASE.check(Label.EXACT, f"viscosity: balance of energy, {name}", run.balance_error, 0, 0.01,
+                   "damping by the velocity of the half step before: half a step times the fastest rate that carries energy")
+
+
+@pytest.fixture(scope="module")
+def towed() -> dict[str, Run]:
+    scene = CASE.scene("towed.toml", speed=SPEED, stiffness=STIFFNESS, damping=DASHPOT)
+    return {"engine": CASE.engine("towed_engine", scene), "reference": CASE.reference("towed_reference", scene, "--dt", "0.01")}
+
+
+def lag(t: np.ndarray) -> np.ndarray:
+    """m y'' + c L y' + k L y = 0 with y = x - v t from y(0) = 0, y'(0) = -v."""
+    rate, square = DASHPOT * LENGTH / (2 * MASS), STIFFNESS * LENGTH / MASS
+    damped = np.sqrt(square - rate**2)
+    return -SPEED / damped * np.exp(-rate * t) * np.sin(damped * t)
+
+
+def test_a_towed_square_comes_along(towed: dict[str, Run]) -> None:
+    for name, run in towed.items():
+        t = run.times("square.position_x")
+        error = np.abs(run.probe("square.position_x") - SPEED * t - lag(t)).max() / np.abs(lag(t)).max()
+        CASE.check(Label.EXACT, f"support: lag behind the far end, {name}", error, 0, 0.01,
+                   "the square yields by k L^2 / E = 0.4 % of the lag; steps of 10 ms err by less")
+
+
+def test_picture(flights: dict[str, dict[float, Run]], creep: dict[str, Run], towed: dict[str, Run]) -> None:
+    figure, axes = panels(3, "Damping", across=True)
+    curves = [(f"{body}, {name}", STEPS, flight_errors(runs, body)) for body in FLIGHTS for name, runs in flights.items()]
+    draw_orders(axes[0], "mass damping: way flown", curves, [1, 2])
+    for (name, run), colour, style in zip(creep.items(), COLOURS, ("-", "--")):
+        t, x = run.times("square.position_x"), run.probe("square.position_x")
+        axes[1].plot(t, (x - x[0]) / PULL, style, color=colour, linewidth=1.1, label=name)
+    axes[1].plot(t, way_of_centre(t) / PULL, ":", color=COLOURS[6], linewidth=1.5, label="closed form")
+    axes[1].set_title("viscosity: creep of a square over the pull", fontsize=10, loc="left")
+    axes[1].set_xlabel("time [s]")
+    for (name, run), colour, style in zip(towed.items(), COLOURS, ("-", "--")):
+        t = run.times("square.position_x")
+        axes[2].plot(t, run.probe("square.position_x") - SPEED * t, style, color=colour, linewidth=1.1, label=name)
+    axes[2].plot(t, lag(t), ":", color=COLOURS[6], linewidth=1.5, label="closed form")
+    axes[2].set_title("support that moves: lag", fontsize=10, loc="left")
+    axes[2].set_xlabel("time [s]")
+    for panel in axes[1:]:
+        legend(panel)
+    save(CASE, figure, "damping")

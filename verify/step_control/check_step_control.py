@@ -1,0 +1,130 @@
+"""Time steps: what an oscillator conserves under each integrator, and the step that error control and stability let it take."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from pictures import COLOURS, draw_orders, legend, panels, save
+from verification import Case, Label, Run
+
+CASE = Case(__file__, fast=True)
+
+SQUARED = 1000 * 0.5 * (11 + 10) * 0.1  # w^2, 1/s2: stiffness times length in touch over the mass 1
+OMEGA = np.sqrt(SQUARED)
+DEPTH = 1 / SQUARED  # where weight and springs balance
+AMPLITUDE = 0.8 * DEPTH  # released from rest below that: the block stays in touch
+SPACING = 0.1  # of the outline, to which errors of steps refer
+PERIOD = 2 * np.pi / OMEGA
+ROUNDING = 1e-9  # places near 0.5 with 1e-16 of rounding, amplitude 8e-4: 2e-13, over 1e4 steps
+TOLERANCE = (0.1**3) * AMPLITUDE / (6 * SPACING)  # for a step of 0.1 / w
+STEPS = [0.004, 0.002, 0.001, 0.0005]
+
+
+def run(name: str, control: str, end: float, period: float) -> Run:
+    scene = CASE.scene(control=control, end=end, height=0.5 - DEPTH - AMPLITUDE, period=period)
+    return CASE.engine(name, scene)
+
+
+def motion(result: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times, displacement from balance and speed."""
+    return result.times("block.position_y"), result.probe("block.position_y") - 0.5 + DEPTH, result.probe("speed.velocity_y")
+
+
+@pytest.fixture(scope="module")
+def doubling() -> dict[float, Run]:
+    """Steps that end at outputs, whatever their error."""
+    control = 'integrator = "step-doubling"\ntarget = 1'
+    return {dt: run(f"doubling_{dt:g}", control, 20 * PERIOD, dt) for dt in STEPS}
+
+
+@pytest.fixture(scope="module")
+def controlled() -> Run:
+    control = f'integrator = "verlet"\ntolerance = {TOLERANCE!r}\nsafety = 1'
+    return run("controlled", control, 20 * PERIOD, 20 * PERIOD)
+
+
+@pytest.fixture(scope="module")
+def stable() -> Run:
+    return run("stable", 'integrator = "verlet"\ntolerance = 1\nsafety = 0.8', 1000 * PERIOD, 5.3 * PERIOD)
+
+
+def test_verlet_conserves_its_quadratic_form() -> None:
+    """v^2 + w^2 x^2 (1 - (w dt)^2 / 4) of a linear oscillator with equal steps; the first ones are shorter."""
+    dt = 0.01
+    t, x, v = motion(run("verlet", 'integrator = "verlet"\ntolerance = 1\nsafety = 1', 50 * PERIOD, dt))
+    form = (v**2 + SQUARED * x**2 * (1 - SQUARED * dt**2 / 4))[t > 20 * dt]
+    CASE.check(Label.EXACT, "verlet: change of its quadratic form", np.ptp(form) / form[0], 0, ROUNDING,
+               "its matrix keeps v^2 + w^2 x^2 (1 - (w dt)^2/4) exactly; rounding")
+
+
+def test_step_doubling_conserves_its_quadratic_form(doubling: dict[float, Run]) -> None:
+    """v^2 + w^2 x^2 - h w^2 x v of semi-implicit Euler with steps h, half of those of step doubling."""
+    for dt, result in doubling.items():
+        t, x, v = motion(result)
+        form = (v**2 + SQUARED * x**2 - 0.5 * dt * SQUARED * x * v)[t > 20 * dt]
+        CASE.check(Label.EXACT, f"step doubling, {1e3 * dt:g} ms: change of its quadratic form", np.ptp(form) / form[0],
+                   0, ROUNDING, "two steps dt/2 of semi-implicit Euler keep it exactly; rounding")
+
+
+def errors(doubling: dict[float, Run]) -> list[float]:
+    """Largest, against the closed form, over two periods and the amplitude."""
+    result = []
+    for run_ in doubling.values():
+        t, x, _ = motion(run_)
+        early = t < 2 * PERIOD
+        result.append(float(np.abs(x[early] + AMPLITUDE * np.cos(OMEGA * t[early])).max() / AMPLITUDE))
+    return result
+
+
+def test_step_doubling_is_of_first_order(doubling: dict[float, Run]) -> None:
+    CASE.check_rate("step doubling: position", STEPS, errors(doubling), 1, 0.1,
+                    "semi-implicit Euler is of first order; the second adds w dt/4 = 3 % at the largest step")
+
+
+def test_error_control_holds_its_tolerance(controlled: Run) -> None:
+    """The largest jerk w^3 A decides: dt^2 |da| / (6 d) with |da| = w^3 A dt."""
+    time = controlled.steps("time")
+    middle = (time > PERIOD) & (time < 19 * PERIOD)  # not the start's short steps, nor the end's equal ones
+    expected = (6 * SPACING * TOLERANCE / (OMEGA**3 * AMPLITUDE)) ** (1 / 3)
+    CASE.check(Label.EXACT, "least step over that of the largest jerk", controlled.steps("dt")[middle].min() / expected, 1,
+               0.003, "a step of 0.1/w meets the crest within half of it, 1.3e-3 of the jerk, and averages over it, 4e-4; "
+               "the energy swings by (w dt/2)^2, 1.3e-3 of the jerk: a third of the sum, twice")
+    CASE.check(Label.EXACT, "largest error over the tolerance", controlled.steps("error")[middle].max() / TOLERANCE, 1.05,
+               0.05, "the remembered jerk fades by 0.99 a step and meets the next swing 24 steps on, at 0.79 of its crest, "
+               "where a step adds at most 8 % to the jerk")
+
+
+def test_steps_at_the_stability_bound(stable: Run) -> None:
+    """w dt = 2 safety is the largest step; what the bound estimates may be shorter, not longer."""
+    later = stable.steps("time") > PERIOD
+    product = OMEGA * stable.steps("dt")[later].max() / 2
+    CASE.check(Label.EXACT, "largest step over the stability limit", product, 0.4, 0.4 + ROUNDING,
+               "between 0 and the safety factor 0.8")
+    _, x, v = motion(stable)
+    share = 0.25 * (OMEGA * stable.steps("dt")[later].max()) ** 2
+    energy = v**2 + SQUARED * x**2
+    growth = energy[len(x) // 2:].max() / energy[:len(x) // 2].max()
+    CASE.check(Label.EXACT, "energy of the second 500 periods over that of the first", growth, 1, share,
+               "the conserved form lets the energy swing by (w dt / 2)^2, met at 94 phases in each half")
+
+
+def test_step_doubling_rejects_beyond_alpha() -> None:
+    result = run("rejecting", 'integrator = "step-doubling"\ntarget = 1e-5\nalpha = 2', 5 * PERIOD, PERIOD)
+    share = result.steps("error").max() / 2e-5
+    CASE.check(Label.EXACT, "step doubling: largest error over alpha target", share, 0.75, 0.25,
+               "steps above alpha target are rejected, and one of them comes near")
+
+
+def test_picture(doubling: dict[float, Run], controlled: Run) -> None:
+    figure, axes = panels(2, "Time steps of an oscillator", across=True)
+    draw_orders(axes[0], "step doubling against the closed form", [("position", STEPS, errors(doubling))], [1])
+    time = controlled.steps("time") / PERIOD
+    axes[1].plot(time, OMEGA * controlled.steps("dt"), color=COLOURS[0], linewidth=1.1, label="step x w")
+    axes[1].plot(time, 0.1 * controlled.steps("error") / TOLERANCE, color=COLOURS[1], linewidth=0.8, label="error / (10 tolerance)")
+    axes[1].set_xlabel("time over the period")
+    axes[1].set_xlim(0, 5)
+    axes[1].set_ylim(0, 0.15)
+    axes[1].set_title("error control", fontsize=10, loc="left")
+    legend(axes[1])
+    save(CASE, figure, "step_control")
