@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "reference/contact_pair.hpp"
+#include "support/figures.hpp"
 
 namespace pliant {
 namespace {
@@ -119,7 +120,7 @@ class Sides {
   }
 
   /// INDEPENDENT: two programs. Tolerances: that of VERIFICATION 3a; energies, of order 0.1, the same.
-  void expect_agreement() const {
+  void expect_agreement() {
     const Points forces = forces_of(result, outline_points(rig).size());
     double largest = 0, worst = 0;
     std::size_t node = 0;
@@ -129,6 +130,7 @@ class Sides {
         worst = std::max(worst, (rig.force(body, k) - forces[node]).norm());
       }
     EXPECT_LE(worst, 1e-11 * largest);
+    if (largest > 0) difference = std::max(difference, worst / largest);
     EXPECT_EQ(rig.totals.contacts, static_cast<int>(result.elements.size()));
     EXPECT_NEAR(rig.totals.stored, result.stored, 1e-12);
     EXPECT_NEAR(rig.totals.dissipated, result.dissipated, 1e-12);
@@ -137,6 +139,7 @@ class Sides {
   ContactRig rig;
   reference::Contacts contacts;
   reference::ContactResult result;
+  double difference = 0;  ///< the largest of forces, relative
 };
 
 struct Seen {
@@ -165,6 +168,7 @@ Seen compare_states(Sides& sides, Random& random, double size) {
 }
 
 TEST(ReferenceContact, EngineAgreesForAllLaws) {
+  LargestFigures figures;
   for (const Case& law : cases()) {
     SCOPED_TRACE(law.name);
     Seen all;
@@ -173,6 +177,7 @@ TEST(ReferenceContact, EngineAgreesForAllLaws) {
       Random random(sample + 1000);
       Sides sides(crowd(random, law.rules, sample % 2 == 0));
       const Seen seen = compare_states(sides, random, 0.01);
+      figures.note(std::string("contact forces: ") + law.name, sides.difference);
       all.contacts += seen.contacts;
       all.sheared += seen.sheared;
       all.dissipated += seen.dissipated;
@@ -186,6 +191,7 @@ TEST(ReferenceContact, EngineAgreesForAllLaws) {
 
 // Outlines with sharp, re-entrant and flat corners, which the crowd has not.
 TEST(ReferenceContact, EngineAgreesOnRandomOutlines) {
+  LargestFigures figures;
   int compared = 0;
   for (int sample = 0; sample < 300 && !HasFailure(); ++sample) {
     SCOPED_TRACE(sample);
@@ -200,12 +206,14 @@ TEST(ReferenceContact, EngineAgreesOnRandomOutlines) {
     Sides sides(scene);
     press_together(sides.rig, random, 0.03);
     compared += compare_states(sides, random, 0.003).contacts > 0;
+    figures.note("contact forces: random outlines", sides.difference);
   }
   EXPECT_GT(compared, 200);
 }
 
 // A tip in a re-entrant corner, most of the time behind its end node: nothing else stands beyond an end inside a body.
 TEST(ReferenceContact, EngineAgreesInANotch) {
+  LargestFigures figures;
   int beyond = 0;
   for (int sample = 0; sample < 220 && !HasFailure(); ++sample) {
     SCOPED_TRACE(sample);
@@ -223,6 +231,7 @@ TEST(ReferenceContact, EngineAgreesInANotch) {
     sides.rig.move(
         1, sides.rig.node(0, 1) - sides.rig.node(1, 0) - depth * Vec2(std::sin(direction), std::cos(direction)));
     compare_states(sides, random, 0.003);
+    figures.note("contact forces: a needle in a notch", sides.difference);
     beyond += std::abs(direction) < 0.2 && depth > 0.01;
   }
   EXPECT_GT(beyond, 50);

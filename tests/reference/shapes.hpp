@@ -32,10 +32,23 @@ inline double mean_node_distance(const FieldMesh& mesh) {
   return std::sqrt(area / static_cast<double>(mesh.nodes.size()));
 }
 
+/// As in scene files, with what is not the default.
+inline std::string name_of(const DiscretisationSettings& settings) {
+  const auto number = std::to_string(settings.gauss_points), support = std::to_string(settings.support);
+  switch (settings.recipe) {
+    case Recipe::mls:
+      return "mls, support " + support;
+    case Recipe::mls_gauss:
+      return "mls-gauss of " + number + " points, support " + support;
+    case Recipe::t3:
+      return "t3";
+    default:
+      return "es-t3";
+  }
+}
+
 inline std::string described(const ShapeSpec& shape, const DiscretisationSettings& settings) {
-  return shape.name + " of " + std::to_string(*shape.nodes) + " nodes, recipe " +
-         std::to_string(static_cast<int>(settings.recipe)) + ", " + std::to_string(settings.gauss_points) +
-         " Gauss points, support " + std::to_string(settings.support);
+  return shape.name + " of " + std::to_string(*shape.nodes) + " nodes, " + name_of(settings);
 }
 
 }  // namespace pliant::testing

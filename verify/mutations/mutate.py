@@ -30,7 +30,7 @@ MUTATIONS = Path(__file__).with_name("mutations.toml")
 SCRATCH = ROOT / "build/mutants"
 SOURCE = SCRATCH / "source"
 BUILD = SOURCE / "build/release"
-PROGRAMS = ["pliant_engine", "pliant_reference_solver"]
+PROGRAMS = ["pliant_engine", "pliant_reference_solver", "pliant_agreement"]
 LONGEST_RUN = 300  # s; a solver that runs longer than this does not come to an end
 
 
@@ -100,7 +100,7 @@ def run_cases(cases: list[str], name: str) -> list[str]:
     folders = [str(SOURCE / "verify" / case) for case in cases]
     environment = {**os.environ, "PLIANT_VERIFY_OUT": str(out), "PLIANT_VERIFY_LONGEST": str(LONGEST_RUN),
                    "OMP_WAIT_POLICY": "passive"}
-    for variable in ("PLIANT_ENGINE", "PLIANT_REFERENCE", "PLIANT_VERIFY_FULL"):
+    for variable in ("PLIANT_ENGINE", "PLIANT_REFERENCE", "PLIANT_AGREEMENT", "PLIANT_VERIFY_FULL"):
         environment.pop(variable, None)
     command = [sys.executable, "-B", "-m", "pytest", "-c", str(SOURCE / "verify/pytest.ini"), "-x", "-n", str(os.cpu_count()),
                "--dist", "loadfile", *folders]

@@ -1,0 +1,58 @@
+"""Engine against reference state by state: discretisations, internal forces, contact forces."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pictures import COLOURS, panels, save
+from verification import ENGINE, LONGEST_RUN, Case, Label
+
+CASE = Case(__file__)
+PROGRAM = Path(os.environ.get("PLIANT_AGREEMENT", ENGINE.parent / "pliant_agreement"))
+TOLERANCE = 1e-11
+SOURCE = "rounding: sums of up to 1e3 terms of both signs, conditioning of moment matrices of up to 1e3"
+FIGURES = 35 + 7 + 14  # of discretisations, of internal forces, of contact
+
+
+@pytest.fixture(scope="module")
+def figures() -> dict[str, float]:
+    """The largest differences by name, relative to the largest value of their kind."""
+    file = CASE.out / "agreement.json"
+    result = subprocess.run([str(PROGRAM), f"--gtest_output=json:{file}"], capture_output=True, text=True, timeout=LONGEST_RUN)
+    if result.returncode not in (0, 1):
+        raise RuntimeError(f"{PROGRAM.name}: exit code {result.returncode}\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
+    suites = json.loads(file.read_text())["testsuites"]
+    return {name: float(value) for suite in suites for test in suite["testsuite"] for name, value in test.items() if ": " in name}
+
+
+def test_engine_and_reference_agree(figures: dict[str, float]) -> None:
+    CASE.check(Label.EXACT, "number of figures", len(figures), FIGURES, 0, "7 recipes x (5 tables + forces), 12 sets of laws, 2 more shapes")
+    red = []
+    for name, value in figures.items():
+        try:
+            CASE.check(Label.INDEPENDENT, name, value, 0, TOLERANCE, SOURCE)
+        except AssertionError as error:  # all of them are written down
+            red.append(str(error))
+    assert not red, red[0]
+
+
+def test_picture(figures: dict[str, float]) -> None:
+    figure, (axes,) = panels(1, "Engine and reference, state by state: largest relative differences")
+    figure.set_size_inches(9, 0.19 * len(figures) + 1.2)
+    names = list(figures)[::-1]
+    kinds = list(dict.fromkeys(name.split(":")[0] for name in figures))
+    colours = [COLOURS[kinds.index(name.split(":")[0]) % len(COLOURS)] for name in names]
+    places = np.arange(len(names))
+    axes.barh(places, [max(figures[name], 1e-17) for name in names], color=colours)
+    axes.set_yticks(places, names, fontsize=7)
+    axes.set_ylim(-0.7, len(names) - 0.3)
+    axes.set_xscale("log")
+    axes.set_xlim(1e-17, 1e-10)
+    axes.axvline(TOLERANCE, color=COLOURS[6], linestyle="--", linewidth=1.2)
+    save(CASE, figure, "frozen_states")
