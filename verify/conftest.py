@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import fcntl
 import json
+import os
+import time
 from collections import defaultdict
 from dataclasses import asdict
 from pathlib import Path
@@ -13,18 +15,22 @@ import pytest
 from report import report
 from verification import OUT, read_rows, replace_file
 
-
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """Rows of an earlier run must not stand for checks that this one does not reach."""
-    for case in {item.path.parent.name for item in session.items}:
-        for name in ("checks.json", "failures.json"):
-            (OUT / case / name).unlink(missing_ok=True)
+BEGIN = "PLIANT_VERIFY_BEGIN"  # of the session, s
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """Reports of tests arrive where the summary is written, not at the workers of pytest-xdist."""
     if not hasattr(config, "workerinput"):
+        os.environ[BEGIN] = str(time.time())  # the workers inherit it
         config.pluginmanager.register(Record(), "pliant-record")
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Rows of an earlier run must not stand for checks that this one does not reach. Workers collect while others run."""
+    for case in {item.path.parent.name for item in session.items}:
+        for file in (OUT / case / "checks.json", OUT / case / "failures.json"):
+            if file.exists() and file.stat().st_mtime < float(os.environ[BEGIN]):
+                file.unlink(missing_ok=True)
 
 
 class Record:

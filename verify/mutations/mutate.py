@@ -93,8 +93,8 @@ def build() -> None:
         raise RuntimeError(f"the copy does not build:\n{result.stdout[-3000:]}")
 
 
-def run_cases(cases: list[str], name: str) -> list[str]:
-    """What is red in them, each a line "case: check, what it said"; stops soon after the first."""
+def run_cases(cases: list[str], name: str, *options: str) -> list[str]:
+    """What is red in them, each a line "case: check" and, after a tab, what it said."""
     out = SCRATCH / "results" / name
     shutil.rmtree(out, ignore_errors=True)
     folders = [str(SOURCE / "verify" / case) for case in cases]
@@ -102,8 +102,8 @@ def run_cases(cases: list[str], name: str) -> list[str]:
                    "OMP_WAIT_POLICY": "passive"}
     for variable in ("PLIANT_ENGINE", "PLIANT_REFERENCE", "PLIANT_AGREEMENT", "PLIANT_VERIFY_FULL"):
         environment.pop(variable, None)
-    command = [sys.executable, "-B", "-m", "pytest", "-c", str(SOURCE / "verify/pytest.ini"), "-x", "-n", str(os.cpu_count()),
-               "--dist", "loadfile", *folders]
+    command = [sys.executable, "-B", "-m", "pytest", "-c", str(SOURCE / "verify/pytest.ini"), *options, "-n",
+               str(os.cpu_count()), "--dist", "loadfile", *folders]
     result = subprocess.run(command, cwd=SOURCE, env=environment, capture_output=True, text=True)
     if not (out / "checks.json").exists():
         raise RuntimeError(f"no check ran:\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
@@ -140,7 +140,7 @@ def judge(mutation: Mutation, sound: list[str]) -> Verdict:
         red: list[str] = []
         suspects = [case for case in mutation.cases if case in sound]
         for cases in (suspects, [case for case in fast_cases() if case in sound and case not in suspects]):
-            red = red or (run_cases(cases, mutation.name) if cases else [])
+            red = red or (run_cases(cases, mutation.name, "-x") if cases else [])
     finally:
         file.write_text(text)
     killer, message = (red[0].split("\t") if red else ("", ""))
@@ -162,7 +162,7 @@ def sound_cases(mutations: list[Mutation]) -> list[str]:
     """Cases that are green without a mutation: only these can find one."""
     cases = sorted({case for mutation in mutations for case in mutation.cases} | set(fast_cases()))
     print(f"the copy without mutations: {len(cases)} cases", flush=True)
-    red = {line.split(":")[0] for case in cases for line in run_cases([case], f"sound-{case}")}
+    red = {line.split(":")[0] for line in run_cases(cases, "none")}
     for case in sorted(red):
         print(f"  {case} is red without a mutation: left out", flush=True)
     return [case for case in cases if case not in red]
