@@ -6,8 +6,10 @@
 #include <CLI/CLI.hpp>
 
 #include "cli/check.hpp"
+#include "cli/modes.hpp"
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
+#include "dynamics/natural_modes.hpp"
 #include "results/run.hpp"
 #include "scene/late_conditions.hpp"
 #include "scene/schema.hpp"
@@ -55,6 +57,19 @@ void print_schema(const std::vector<std::string>& files) {
       schema.markdown());
 }
 
+CLI::App* add_modes(CLI::App& app, std::string& scene, ModesRequest& modes) {
+  CLI::App* command = app.add_subcommand(
+      "modes", "Natural frequencies of compliant bodies, e.g. modes cases/two_discs.toml --count 20");
+  command->add_option("scene", scene, "Scene file (TOML)")->required();
+  command->add_option("--count", modes.count, "Frequencies a body; default 10")
+      ->check(CLI::Range(1, 2 * most_modal_nodes));
+  command->add_option("--body", modes.body,
+                      "Grains, or one of a set as in \"grains 17\"; default all that are compliant");
+  command->add_option("--json", modes.json, "File for the same figures");
+  command->add_option("--matrices", modes.matrices, "Folder for stiffness and inverse mass, Matrix Market format");
+  return command;
+}
+
 int main_program(int argc, char** argv) {
   CLI::App app{"Pliant: rigid and compliant grains in one simulation"};
   app.require_subcommand(1);
@@ -86,6 +101,8 @@ int main_program(int argc, char** argv) {
   run_command->add_option("--checkpoint-every", arguments.checkpoint_every,
                           "Wall time between checkpoints, as in \"10 min\", or never; default the scene's");
   run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
+  ModesRequest modes;
+  CLI::App* modes_command = add_modes(app, arguments.scene, modes);
   CLI::App* schema_command = app.add_subcommand("schema", "Table of the keys that the given scenes are asked for");
   std::vector<std::string> files;
   schema_command->add_option("scenes", files, "Scene files (TOML)")->required();
@@ -98,6 +115,7 @@ int main_program(int argc, char** argv) {
   if (*run_command) run(arguments);
   if (*schema_command) print_schema(files);
   if (*check_command) print_check(load(arguments), arguments.run.threads);
+  if (*modes_command) print_modes(load(arguments), modes);
   if (*shape_function_command) fmt::print("{}", shape_function_csv(shape_function));
   return 0;
 }

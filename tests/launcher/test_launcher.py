@@ -121,7 +121,7 @@ def test_failed_build_stops_and_looks_for_packages_again(launcher: Launcher) -> 
 
 
 @pytest.mark.parametrize("code", [0, 2, 3, 4, 130, 143])
-@pytest.mark.parametrize("command", ["run", "check"])
+@pytest.mark.parametrize("command", ["run", "check", "modes"])
 def test_exit_codes_pass_through(launcher: Launcher, command: str, code: int) -> None:
     result = launcher(command, "a.toml", ENGINE_EXIT=str(code))
     assert result.returncode == code
@@ -218,7 +218,7 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
     assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
 
 
-@pytest.mark.parametrize("command", ["run", "reference", "check", "plot", "info", "compare", "schema", "shape-functions", "export", "test",
+@pytest.mark.parametrize("command", ["run", "reference", "check", "modes", "plot", "info", "compare", "schema", "shape-functions", "export", "test",
                                      "verify", "build", "bench", "lint", "format"])
 def test_every_command_has_help_with_an_example(launcher: Launcher, command: str) -> None:
     result = launcher(command, "--help")
@@ -240,12 +240,12 @@ def test_readme_names_every_command(launcher: Launcher) -> None:
     assert set(readme_commands()) == set(listed)
 
 
-@pytest.mark.parametrize("command", ["run", "check", "plot", "compare", "export", "test", "verify", "build"])
+@pytest.mark.parametrize("command", ["run", "check", "modes", "plot", "compare", "export", "test", "verify", "build"])
 def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
     usage = re.match(r".*(\n +.*)*", launcher(command, "--help").stdout)[0]
     readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
     assert readme <= set(re.findall(r"--[a-z-]+", usage))
-    if command in {"run", "check", "plot", "compare", "export", "verify"}:
+    if command in {"run", "check", "modes", "plot", "compare", "export", "verify"}:
         assert readme == set(re.findall(r"--[a-z-]+", usage))
 
 

@@ -1,0 +1,196 @@
+"""Rigid blocks that bounce flat on a floor: heights against restitution, with the dashpot's end rule stated."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from pictures import COLOURS, legend, panels, save
+from verification import Case, Label, Run
+
+CASE = Case(__file__)
+
+RESTITUTION = {"elastic": 1.0, "lively": 0.9, "fair": 0.6, "dull": 0.3}
+DAMPED = ["lively", "fair", "dull"]
+STIFFNESS, MASS, HALF = 1e5, 0.5, 0.25
+LENGTH = 0.5 * (5 + 4) * 0.25  # in touch: five nodes of the block and four of the floor, half the weight a pass
+FREQUENCY = float(np.sqrt(STIFFNESS * LENGTH / MASS))  # w, of the block on its contact
+SAFETIES = [0.1, 0.05, 0.025]
+CLEAR = 0.03  # higher blocks touch in no two samples
+LEAST = 0.05  # heights compared
+FIRST_OVER = 1.9  # all met the floor once, at sqrt(2); the dullest flies for 2 x 0.3 sqrt(2) = 0.85 then
+
+
+def restitution_of(z: float | np.ndarray, pull: bool) -> float | np.ndarray:
+    """Speed after over before, without gravity, of x'' = -(w^2 x + 2 z w x'), x depth, started with x = 0; z < 1.
+
+    Pulling until x = 0: half a period, exp(-pi z / sqrt(1 - z^2)). Not pulling: the force vanishes earlier, at
+    tan(w_d t) = -2 z w_d / (w (1 - 2 z^2)), with z = cos(alpha) w_d t = 2 alpha, where x' = -exp(-z w t) of the speed
+    at the start: exp(-2 z acos(z) / sqrt(1 - z^2)).
+    """
+    return np.exp(-(np.pi if pull else 2 * np.arccos(z)) * z / np.sqrt(1 - z * z))
+
+
+def damping_ratio(e: float, pull: bool) -> float:
+    return 0.0 if e == 1 else float(brentq(lambda z: restitution_of(z, pull) - e, 0, 1 - 1e-9, xtol=1e-15))
+
+
+class Impact:
+    """With weight, from a height: x'' = g - w^2 x - 2 z w x', solved up to the end of the force; g = 1."""
+
+    def __init__(self, height: float, z: float, pull: bool) -> None:
+        self.z, self.pull, self.sag = z, pull, 1 / FREQUENCY**2
+        self.damped = FREQUENCY * np.sqrt(1 - z * z)
+        self.a, self.b = -self.sag, (np.sqrt(2 * height) - z * FREQUENCY * self.sag) / self.damped
+        times = np.linspace(0, 1.5 * np.pi / self.damped, 3001)[1:]
+        first = int(np.flatnonzero(self.left(times) < 0)[0])
+        self.end = brentq(self.left, times[first - 1], times[first], xtol=1e-18)
+
+    def swing(self, t: np.ndarray, a: float, b: float) -> np.ndarray:
+        return np.exp(-self.z * FREQUENCY * t) * (a * np.cos(self.damped * t) + b * np.sin(self.damped * t))
+
+    def depth(self, t: np.ndarray) -> np.ndarray:
+        return self.sag + self.swing(t, self.a, self.b)
+
+    def rate(self, t: np.ndarray) -> np.ndarray:
+        decay = self.z * FREQUENCY
+        return self.swing(t, self.b * self.damped - decay * self.a, -self.a * self.damped - decay * self.b)
+
+    def left(self, t: np.ndarray) -> np.ndarray:
+        """What falls to 0 at the end: the depth, or the force."""
+        return self.depth(t) if self.pull else FREQUENCY * self.depth(t) + 2 * self.z * self.rate(t)
+
+    def height(self) -> float:
+        """Of the flight after it."""
+        return float(self.rate(self.end)**2 / 2 - self.depth(self.end))
+
+    def deepest(self) -> float:
+        return float(self.depth(np.linspace(0, self.end, 20001)).max())
+
+
+@cache
+def heights(name: str, pull: bool) -> list[float]:
+    """After each impact, from height 1, down to LEAST."""
+    z, found = damping_ratio(RESTITUTION[name], pull), [1.0]
+    while len(found) < 4 and (next_one := Impact(found[-1], z, pull).height()) > LEAST:
+        found.append(next_one)
+    return found[1:]
+
+
+@cache
+def run(pull: bool, safety: float) -> Run:
+    scene = CASE.scene(pull=str(pull).lower(), safety=safety, stiffness=STIFFNESS, end=6.5, period=0.01)
+    return CASE.engine(f"{'pull' if pull else 'no_pull'}_{safety:g}", scene)
+
+
+def measured(name: str, pull: bool, safety: float) -> list[float]:
+    """Heights of the flights: y + v^2 / 2 of a sample in each.
+
+    Speeds grow from one sample to the next in impacts alone.
+    """
+    of = run(pull, safety)
+    height, speed = of.probe(f"{name}.position_y") - HALF, of.probe(f"{name}_motion.velocity_y")
+    impacts = np.flatnonzero((np.diff(speed) > 0) & (height[1:] < CLEAR))
+    firsts = [i for k, i in enumerate(impacts) if k == 0 or i > impacts[k - 1] + 1]
+    return [float(height[i + 3] + speed[i + 3]**2 / 2) for i in firsts if i + 3 < len(speed)]
+
+
+@cache
+def step(pull: bool, safety: float) -> float:
+    """w dt: nearly all steps are of the largest length."""
+    return FREQUENCY * float(np.median(run(pull, safety).steps("dt")))
+
+
+def bound(name: str, pull: bool, safety: float, impacts: int) -> float:
+    """Relative, on a height after some impacts.
+
+    The dashpot's force jumps by 2 z w v at the touch, somewhere within a step, and when it pulls also at the end: of
+    that step's impulse up to a half is missing or too much, z w dt of the speed. The spring's part is (w dt)^2 / 2 of
+    the energy (tests/closed_forms/bounce_test.cpp).
+    """
+    z = damping_ratio(RESTITUTION[name], pull)
+    return impacts * ((4 if pull else 2) * z * step(pull, safety) + step(pull, safety)**2 / 2)
+
+
+def test_end_rules() -> None:
+    """Of the closed forms: METHOD's figures for z = 0.1, three digits."""
+    for pull, expected in ((False, 0.744), (True, 0.729)):
+        CASE.check(Label.INDEPENDENT, f"restitution of z = 0.1, {'may' if pull else 'may not'} pull",
+                   restitution_of(0.1, pull),
+                   expected, 5e-4, "the method's description, three digits")
+
+
+@pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
+@pytest.mark.parametrize("name", RESTITUTION)
+def test_heights(name: str, pull: bool) -> None:
+    finest, rule = SAFETIES[-1], "may pull" if pull else "may not pull"
+    e, exact = RESTITUTION[name], heights(name, pull)
+    found = measured(name, pull, finest)
+    for k, (height, expected) in enumerate(zip(found, exact), 1):
+        tolerance = bound(name, pull, finest, k)
+        CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over the impact's with weight", height / expected, 1,
+                   tolerance,
+                   "closed form of spring, dashpot and weight; touch and end within a step")
+        CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over e^{2 * k} h", height / e**(2 * k), 1,
+                   tolerance + abs(expected / e**(2 * k) - 1), "instant impact; its error and the weight during it")
+
+
+@pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
+def test_depth(pull: bool) -> None:
+    """Each rule has its own damping ratio for the same restitution: the depth tells them apart."""
+    finest, rule, period = SAFETIES[-1], "may pull" if pull else "may not pull", 2e-4
+    scene = CASE.scene(pull=str(pull).lower(), safety=finest, stiffness=STIFFNESS, end=1.5, period=period)
+    of = CASE.engine(f"depth_{'pull' if pull else 'no_pull'}", scene)
+    for name in DAMPED:
+        z, deepest = damping_ratio(RESTITUTION[name], pull), HALF - of.probe(f"{name}.position_y").min()
+        other = Impact(1.0, damping_ratio(RESTITUTION[name], not pull), not pull).deepest()
+        exact = Impact(1.0, z, pull).deepest()
+        tolerance = z * step(pull, finest) + (FREQUENCY * period)**2 / 8
+        CASE.check(Label.EXACT, f"e = {RESTITUTION[name]}, {rule}: depth ({other / exact:.3f} by the other rule)",
+                   deepest / exact, 1,
+                   tolerance, "closed form; touch within a step, samples")
+
+
+@pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
+def test_dissipation(pull: bool) -> None:
+    """Weight times lost heights of all blocks; books take the half step's velocity for a dashpot."""
+    rule = "may pull" if pull else "may not pull"
+    error = [run(pull, safety).balance_error for safety in SAFETIES]
+    CASE.check_rate(f"{rule}: balance of energy", SAFETIES, error, 1, 0.2, "a dashpot's work is booked to first order")
+    of = run(pull, SAFETIES[-1])
+    lost = MASS * sum(1 - RESTITUTION[name]**2 for name in ("lively", "fair", "dull"))
+    first = of.at("energy.dissipated", np.array([FIRST_OVER]))[0]
+    tolerance = max(bound(name, pull, SAFETIES[-1], 1) for name in DAMPED) + of.balance_error
+    weight = max(abs(heights(name, pull)[0] / RESTITUTION[name]**2 - 1) for name in DAMPED)
+    CASE.check(Label.EXACT, f"{rule}: dissipated in the first impacts", first / lost, 1, tolerance + weight,
+               "m g h (1 - e^2); as heights, and the books")
+
+
+def test_picture() -> None:
+    figure, axes = panels(2, "Rigid blocks that fall flat on a floor", across=True)
+    of = run(False, SAFETIES[-1])
+    for (name, e), colour in zip(RESTITUTION.items(), COLOURS):
+        axes[0].plot(of.times(f"{name}.position_y"), of.probe(f"{name}.position_y") - HALF, color=colour, linewidth=1.1,
+                     label=f"e = {e:g}")
+        for k in range(1, 4):
+            axes[0].hlines(e**(2 * k), 0, 6.5, color=colour, linestyle=":", linewidth=0.8)
+    axes[0].set_title("no pull; dotted: e^2k h", fontsize=10, loc="left")
+    axes[0].set_xlabel("time over sqrt(L / g)")
+    axes[0].set_ylabel("height over L")
+    axes[0].set_xlim(-0.3, 8.4)  # room for the legend
+    legend(axes[0])
+    z = np.linspace(0, 0.7, 200)
+    for pull, style in ((False, "-"), (True, "--")):
+        axes[1].plot(z, restitution_of(z, pull), style, color=COLOURS[6], linewidth=1.1,
+                     label="may pull until g = 0" if pull else "may not pull")
+        found = [np.sqrt(measured(name, pull, SAFETIES[-1])[0]) for name in DAMPED]
+        axes[1].plot([damping_ratio(RESTITUTION[name], pull) for name in DAMPED], found, "s" if pull else "o",
+                     color=COLOURS[1 if pull else 0], markersize=5, label=f"engine, {'pull' if pull else 'no pull'}")
+    axes[1].set_title("closed forms and first impacts", fontsize=10, loc="left")
+    axes[1].set_xlabel("damping ratio z")
+    axes[1].set_ylabel("restitution e")
+    legend(axes[1])
+    save(CASE, figure, "bouncing")

@@ -1,0 +1,175 @@
+"""Disc under two opposite pressures: stresses against the exact field of linear elasticity."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from fields import Stresses, stresses_of
+from pictures import COLOURS, MARKERS, legend, panels, save
+from verification import FULL, Case, Label, Run, observed_order
+
+CASE = Case(__file__)
+
+HALF_ANGLE = np.radians(15)
+PRESSURE = 1e-6  # of mu: a Cauchy stress differs from that of linear elasticity by its strains
+POISSON = 0.4
+END = 25.0  # s; motion decays by exp(-1.5 t) from the end of loading at 5 s on: by 1e-13
+# Outline nodes by nodes; the arcs are whole segments.
+SIZES = {378: 72, 672: 96, 1512: 144, 2688: 192} | ({6048: 288, 10752: 384} if FULL else {})
+RECIPES = ["mls", "t3", "es-t3", "mls-gauss"]
+# Of stresses inside, where nodes lie regularly: the first of linear triangles, the second of gradients averaged over
+# neighbours. 0.7: what the arcs'
+# ends send inside falls faster at these sizes; half of an order more or less is noise, a whole one is not.
+ORDERS = {"mls": (2, 0.7), "t3": (1, 0.3), "es-t3": (2, 0.7), "mls-gauss": (2, 0.7)}
+CENTRE = 2 * PRESSURE / np.pi * np.array([np.sin(2 * HALF_ANGLE) - HALF_ANGLE, -np.sin(2 * HALF_ANGLE) - HALF_ANGLE])
+
+
+def exact(places: np.ndarray) -> np.ndarray:
+    """[places x 3] xx, yy, xy by Fourier's series, summed. With t from the y axis, the load is 2 a/pi and a_n cos(n t)
+    for even n,
+    a_n = 4 sin(n a)/(n pi). Airy's functions r^n cos(n t) and r^(n+2) cos(n t) without shear at r = 1 give
+    -a_n/2 (n r^(n-2) - (n-2) r^n) cos(n t) radially, a_n/2 (n r^(n-2) - (n+2) r^n) cos(n t) around, a_n/2 n (r^(n-2) -
+    r^n) sin(n t) as shear."""
+    r, t = np.hypot(*places.T), np.arctan2(places[:, 0], places[:, 1])
+    ahead, behind = ((r * np.exp(1j * (t + angle))) ** 2 for angle in (HALF_ANGLE, -HALF_ANGLE))
+    even = ahead / (1 - ahead) - behind / (1 - behind)  # sum of r^n sin(n a) e^(i n t), but for a factor 2 i
+    logarithm = 0.25 * np.imag(np.log(1 - behind) - np.log(1 - ahead))  # the same over n
+    mean = -2 * HALF_ANGLE / np.pi - 4 / np.pi * logarithm
+    difference = 2 / np.pi * (1 / r**2 - 1) * 0.5 * np.imag(even)
+    shear = -2 / np.pi * (1 / r**2 - 1) * 0.5 * np.real(even)
+    s, c = np.sin(t), np.cos(t)
+    radial, hoop = mean - difference, mean + difference
+    return PRESSURE * np.stack([radial * s**2 + hoop * c**2 + 2 * shear * s * c,
+                                radial * c**2 + hoop * s**2 - 2 * shear * s * c,
+                                (radial - hoop) * s * c + shear * (c**2 - s**2)], axis=1)
+
+
+def hondros(r: np.ndarray) -> np.ndarray:
+    """[r x 2] hoop (xx) and radial (yy) stress on the loaded diameter: Hondros 1959, Austral. J. Appl. Sci. 10, 243."""
+    a = HALF_ANGLE
+    first = (1 - r**2) * np.sin(2 * a) / (1 - 2 * r**2 * np.cos(2 * a) + r**4)
+    second = np.arctan((1 + r**2) / (1 - r**2) * np.tan(a))
+    return 2 * PRESSURE / np.pi * np.stack([first - second, -first - second], axis=1)
+
+
+def scene(recipe: str, nodes: int) -> str:
+    return CASE.scene(recipe=recipe, nodes=nodes, outline=SIZES[nodes], end=END)
+
+
+@pytest.fixture(scope="module")
+def engine() -> dict[str, dict[int, Stresses]]:
+    return {recipe: {nodes: stresses_of(CASE.engine(f"engine_{recipe}_{nodes}",
+                                                    scene(recipe, nodes))) for nodes in SIZES}
+            for recipe in RECIPES}
+
+
+def error(stresses: Stresses, reach: float) -> float:
+    """Within a share of the radius, over the magnitude of the exact stress at the centre."""
+    inside = np.hypot(*stresses.centres.T) < reach
+    return stresses.rms(stresses.values - exact(stresses.centres), inside) / np.linalg.norm(CENTRE)
+
+
+def spacings() -> list[float]:
+    return [2 * np.pi / count for count in SIZES.values()]
+
+
+def test_exact_solution() -> None:
+    """The sums, Hondros' closed form along the loaded diameter and that of the centre are one."""
+    r = np.linspace(0.01, 0.99, 99)
+    series = exact(np.stack([np.zeros_like(r), r], axis=1))
+    CASE.check(Label.EXACT, "summed series against Hondros", np.abs(series[:, :2] - hondros(r)).max() / PRESSURE, 0,
+               1e-12,
+               "two solutions of one problem; rounding")
+    CASE.check(Label.EXACT, "Hondros at the centre", np.abs(hondros(np.zeros(1))[0] - CENTRE).max() / PRESSURE, 0,
+               1e-12,
+               "(2 p/pi) (+-sin 2a - a), rounding")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_stresses_converge_inside(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
+    errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
+    order, tolerance = ORDERS[recipe]
+    CASE.check_rate(f"{recipe}: stress within half the radius", spacings(), errors, order, tolerance,
+                    "first order of linear triangles, second of averaged gradients")
+    whole = [error(engine[recipe][nodes], 2) for nodes in SIZES]
+    CASE.check_rate(f"{recipe}: stress in the whole disc", spacings(), whole, 1, 0.3,
+                    "stresses wrong by O(1) in an area of h^2 where the arcs end; first order of linear triangles")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_stress_at_the_centre(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
+    """Mean over a tenth of the radius, in which the exact stress varies by its square."""
+    nodes = list(SIZES)[-1]
+    stresses = engine[recipe][nodes]
+    core = np.hypot(*stresses.centres.T) < 0.1
+    mean = np.average(stresses.values[core], axis=0, weights=stresses.areas[core])
+    expected = np.average(exact(stresses.centres[core]), axis=0, weights=stresses.areas[core])
+    off = np.linalg.norm((mean - expected)[:2]) / np.linalg.norm(CENTRE)
+    scatter = error(stresses, 0.5) / np.sqrt(core.sum())
+    CASE.check(Label.EXACT, f"{recipe}: stress at the centre, error", off, 0, (2 * np.pi / SIZES[nodes]) ** 2 + scatter,
+               "Hondros, mean over a tenth of the radius; h^2 of the outline and the cells' scatter over the root of "
+               "their number")
+    ratio = stresses.across / (POISSON * stresses.values[:, :2].sum(axis=1))
+    CASE.check(Label.EXACT, f"{recipe}: zz over nu (xx + yy)", np.abs(ratio[core] - 1).max(), 0, 1e-6,
+               "plane strain; fields in single precision")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_both_solvers(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
+    run = CASE.reference(f"reference_{recipe}", scene(recipe, 672), "--static", "--dt", repr(END))
+    energies = [float(r.probe("energy.strain")[-1]) for r in (Run(CASE.out / f"engine_{recipe}_672"), run)]
+    CASE.check(Label.INDEPENDENT, f"{recipe}: strain energy, engine over reference", energies[0] / energies[1], 1, 1e-8,
+               "motion decays by 1e-13; displacements of 1e-6 are differences of places near 1, rounded to 1e-16: "
+               "1e-10")
+
+
+def draw_diameter(axes: Axes, stresses: Stresses) -> None:
+    r = np.linspace(-0.99, 0.99, 199)
+    near = np.abs(stresses.centres[:, 0]) < 0.05
+    for i, (name, colour) in enumerate((("across the load (xx)", COLOURS[0]), ("along the load (yy)", COLOURS[1]))):
+        axes.plot(r, hondros(np.abs(r))[:, i] / PRESSURE, color=colour, linewidth=1.1, label=f"{name}, Hondros")
+        axes.plot(stresses.centres[near, 1], stresses.values[near, i] / PRESSURE, ".", color=colour, markersize=3.5)
+    axes.set_title("loaded diameter; dots: engine, mls", fontsize=10, loc="left")
+    axes.set_xlabel("place y / R")
+    axes.set_ylabel("stress / pressure")
+    legend(axes)
+
+
+def draw_map(figure: Figure, axes: Axes, stresses: Stresses) -> None:
+    difference = (stresses.values - exact(stresses.centres)) / np.linalg.norm(CENTRE)
+    size = np.sqrt(difference[:, 0] ** 2 + difference[:, 1] ** 2 + 2 * difference[:, 2] ** 2)
+    cells = PolyCollection(list(stresses.triangles), array=np.log10(np.maximum(size, 1e-4)), cmap="viridis",
+                           edgecolors="face", linewidths=0.1)
+    cells.set_clim(-4, 0)
+    axes.add_collection(cells)
+    axes.set_xlim(-1.03, 1.03)
+    axes.set_ylim(-1.03, 1.03)
+    axes.set_aspect("equal")
+    axes.set_title("log10 of the stress error, mls, 2688 nodes", fontsize=10, loc="left")
+    figure.colorbar(cells, ax=axes, shrink=0.8)
+
+
+def test_picture(engine: dict[str, dict[int, Stresses]]) -> None:
+    figure, axes = panels(3, "Disc under two opposite pressures on arcs of 30 degrees", across=True)
+    draw_diameter(axes[0], engine["mls"][2688])
+    draw_map(figure, axes[1], engine["mls"][2688])
+    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+        errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
+        axes[2].loglog(spacings(), errors, marker=marker, markersize=4, color=colour, linewidth=1.1,
+                       label=f"{recipe}: {observed_order(spacings(), errors):.2f}")
+    for order, style in ((1, "--"), (2, ":")):
+        axes[2].loglog(spacings(), 1e-3 * (np.array(spacings()) / spacings()[-1]) ** order, style, color=COLOURS[6],
+                       linewidth=1.0,
+                       label=f"slope {order}")
+    axes[2].set_xticks(spacings(), [f"{h:.3f}" for h in spacings()])
+    axes[2].set_xticks([], minor=True)
+    axes[2].set_ylim(top=1)
+    axes[2].set_title("within half the radius", fontsize=10, loc="left")
+    axes[2].set_xlabel("outline spacing / R")
+    axes[2].set_ylabel("rms stress error / stress at the centre")
+    legend(axes[2])
+    save(CASE, figure, "brazilian")

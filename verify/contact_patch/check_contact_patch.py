@@ -1,0 +1,197 @@
+"""Contact patch test: uniform pressure through a face whose nodes do not match."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from fields import Stresses, along_outline, stresses_of
+from pictures import COLOURS, MARKERS, legend, panels, save
+from verification import FULL, Case, Label, Run, observed_order
+
+CASE = Case(__file__)
+
+PRESSURE = 1e-5
+YOUNG = 2.8
+END = 40.0
+# Segments of the faces, lower and upper, from coarse to fine: matching, and three ratios of spacings.
+FACES = {"1:1": [(16, 16), (32, 32), (64, 64)], "5:4": [(20, 16), (40, 32), (80, 64)],
+         "3:2": [(18, 12), (36, 24), (72, 48)], "2:1": [(16, 8), (32, 16), (64, 32)]}
+if FULL:
+    FACES = {ratio: [*faces, (2 * faces[-1][0], 2 * faces[-1][1])] for ratio, faces in FACES.items()}
+STIFFER = [4.0, 16.0, 64.0]  # times the automatic stiffness
+NARROWER = 1e-5  # the upper block on either side
+SMALL = ("the upper block is narrower by 1e-5 on either side, "
+         "Cauchy stresses differ from linear elasticity's by strains of 1e-5")
+RESIDUE = 5e-5
+# Newton stops at 1e-10 of the forces, which glide a block on springs of 1e-6 by 1e-10 p/1e-6 = 1e-9: 1e-8 of a
+# spacing. Times 0.1 p of error a node, and over p/kn = 1e-8 to 1e-7 of penetration where faces are rough: 1e-5 at most.
+GLIDING = 1e-5
+SPRINGS = ("statics glide on springs of 1e-6 by what Newton's method leaves, the engine's motion does not; "
+           "single precision")
+DEPTH = 0.25
+EXACT = np.array([0, -PRESSURE, 0])
+
+
+def spacing(face: tuple[int, int]) -> float:
+    """Of the coarser side."""
+    return 2 / min(face)
+
+
+def scene(face: tuple[int, int], stiffer: float = 1) -> str:
+    """The automatic stiffness 8 E/h of the finer side, or more."""
+    stiffness = stiffer * 8 * YOUNG * max(face) / 2
+    return CASE.scene(recipe="mls", lower=2 / face[0], upper=2 / face[1], stiffness=float(stiffness), end=END)
+
+
+def run_name(ratio: str, face: tuple[int, int], stiffer: float) -> str:
+    return f"reference_{ratio.replace(':', '_')}_{face[0]}_{stiffer:g}"
+
+
+def solve(ratio: str, face: tuple[int, int], stiffer: float = 1) -> Run:
+    return CASE.reference(run_name(ratio, face, stiffer), scene(face, stiffer), "--static", "--dt", repr(END))
+
+
+@pytest.fixture(scope="module")
+def statics() -> dict[str, list[Stresses]]:
+    return {ratio: [stresses_of(solve(ratio, face)) for face in faces] for ratio, faces in FACES.items()}
+
+
+@pytest.fixture(scope="module")
+def stiffer() -> list[Stresses]:
+    return [stresses_of(solve("2:1", FACES["2:1"][1], factor)) for factor in STIFFER]
+
+
+def error(stresses: Stresses, where: np.ndarray) -> float:
+    return stresses.rms(stresses.values - EXACT, where) / PRESSURE
+
+
+def everywhere(stresses: Stresses) -> np.ndarray:
+    return np.full(len(stresses.areas), True)
+
+
+def inside(stresses: Stresses) -> np.ndarray:
+    """Away from the sides and from the common face."""
+    x, y = np.abs(stresses.centres.T)
+    return (x < 0.5) & (y > DEPTH)
+
+
+def at_the_face(stresses: Stresses, h: float) -> np.ndarray:
+    """The layer of one spacing on either side, away from the sides."""
+    x, y = np.abs(stresses.centres.T)
+    return (x < 0.4) & (y < h)
+
+
+def errors(statics: dict[str, list[Stresses]], ratio: str, where: str) -> list[float]:
+    if where == "face":
+        return [error(s, at_the_face(s, spacing(face))) for s, face in zip(statics[ratio], FACES[ratio])]
+    choose = everywhere if where == "everywhere" else inside
+    return [error(s, choose(s)) for s in statics[ratio]]
+
+
+@pytest.mark.parametrize("ratio", [ratio for ratio in FACES if ratio != "1:1"])
+def test_error_of_the_face(statics: dict[str, list[Stresses]], ratio: str) -> None:
+    steps = [spacing(face) for face in FACES[ratio]]
+    CASE.check_rate(f"{ratio}: rms stress error in the layer of one spacing", steps, errors(statics, ratio, "face"), 0,
+                    0.1,
+                    "each spacing has the same error: kn h/E is kept, and nodes lie alike")
+    CASE.check_rate(f"{ratio}: rms stress error everywhere", steps, errors(statics, ratio, "everywhere"), 0.5, 0.1,
+                    "an error of O(1) in a layer of height h")
+    CASE.check(Label.EXACT, f"{ratio}: rms stress error a quarter of the width away", errors(statics, ratio,
+                                                                                             "inside")[-1], 0,
+               errors(statics, ratio, "face")[-1] * decay(FACES[ratio][-1], ratio) + RESIDUE,
+               "tractions that balance over a period of l of both spacings decay by exp(-2 pi y/l) (1 + 2 pi y/l)")
+
+
+def decay(face: tuple[int, int], ratio: str) -> float:
+    """Of the largest stress of a half-plane under tractions of wave length l, from the face to DEPTH."""
+    period = 2 / face[0] * int(ratio[0])
+    return (1 + 2 * np.pi * DEPTH / period) * np.exp(-2 * np.pi * DEPTH / period)
+
+
+def test_matching_faces_pass(statics: dict[str, list[Stresses]]) -> None:
+    for stresses, face in zip(statics["1:1"], FACES["1:1"]):
+        CASE.check(Label.EXACT, f"1:1, {face[0]} segments: rms stress error everywhere", error(stresses,
+                                                                                               everywhere(stresses)), 0,
+                   RESIDUE, SMALL)
+
+
+def test_error_falls_with_the_penalty(stiffer: list[Stresses]) -> None:
+    """In its limit all nodes of both faces lie on one line, which only linear displacements do: tractions of
+    equilibrium."""
+    values = [error(stresses, everywhere(stresses)) for stresses in stiffer]
+    CASE.check_rate("2:1: rms stress error over 1/kn", [1 / s for s in STIFFER], values, 1, 0.1,
+                    "the gap that takes up the error is p/kn")
+
+
+def test_balance_and_both_solvers(statics: dict[str, list[Stresses]]) -> None:
+    face = FACES["2:1"][1]
+    runs = {"engine": CASE.engine("engine_2_1", scene(face)), "reference": Run(CASE.out / run_name("2:1", face, 1))}
+    for name, run in runs.items():
+        force = float(run.probe("force.force_y")[-1])
+        CASE.check(Label.EXACT, f"2:1, {name}: force through the face over the load", force / (2 * PRESSURE), 1,
+                   2 * NARROWER,
+                   "balance; the upper block is narrower by 1e-5 on either side")
+    a, b = (stresses_of(run).values for run in runs.values())
+    CASE.check(Label.INDEPENDENT, "2:1: stresses, engine against reference", np.abs(a - b).max() / PRESSURE, 0, GLIDING,
+               SPRINGS)
+    p, q = (along_outline(run, 1, "contact_pressure")[1] for run in runs.values())
+    CASE.check(Label.INDEPENDENT, "2:1: contact pressures, engine against reference", np.abs(p - q).max() / PRESSURE, 0,
+               GLIDING, SPRINGS)
+
+
+def draw_pressures(axes: Axes) -> None:
+    for colour, marker, ratio in zip(COLOURS, MARKERS, ("1:1", "5:4", "2:1")):
+        for body, style in ((0, "-"), (1, ":")):
+            run = Run(CASE.out / run_name(ratio, FACES[ratio][1], 1))
+            places, pressure = along_outline(run, body, "contact_pressure")
+            face = np.flatnonzero((np.abs(places[:, 1]) < 0.01) & (np.abs(places[:, 0]) < 0.98))
+            face = face[np.argsort(places[face, 0])]
+            axes.plot(places[face, 0], pressure[face] / PRESSURE, style, marker=marker, markersize=3, color=colour,
+                      linewidth=0.9,
+                      label=f"{ratio}, {'lower' if body == 0 else 'upper'}")
+    axes.set_xlim(-0.55, 0.55)
+    axes.set_title("nodal pressure along the face", fontsize=10, loc="left")
+    axes.set_xlabel("x")
+    axes.set_ylabel("contact pressure / load")
+    axes.legend(fontsize=8, frameon=False, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.13))
+
+
+def draw_map(figure: Figure, axes: Axes, stresses: Stresses) -> None:
+    values = stresses.values[:, 1] / PRESSURE
+    cells = PolyCollection(list(stresses.triangles), array=values, cmap="RdBu_r", edgecolors="face", linewidths=0.1)
+    cells.set_clim(-1.1, -0.9)
+    axes.add_collection(cells)
+    axes.set_xlim(-1.03, 1.03)
+    axes.set_ylim(-1.03, 1.03)
+    axes.set_aspect("equal")
+    axes.set_title("stress yy / load, 2:1 (32 on 16)", fontsize=10, loc="left")
+    figure.colorbar(cells, ax=axes, shrink=0.8)
+
+
+def draw_rates(axes: Axes, statics: dict[str, list[Stresses]]) -> None:
+    for colour, marker, ratio in zip(COLOURS, MARKERS, FACES):
+        steps = [spacing(face) for face in FACES[ratio]]
+        values = errors(statics, ratio, "everywhere")
+        label = "1:1: none" if ratio == "1:1" else f"{ratio}: {observed_order(steps, values):.2f}"
+        axes.loglog(steps, values, marker=marker, markersize=4, color=colour, linewidth=1.1, label=label)
+    h = np.array([2 / 64, 2 / 8])
+    axes.loglog(h, 0.03 * np.sqrt(h / h[1]), "--", color=COLOURS[6], linewidth=1.0, label="slope 1/2")
+    axes.set_ylim(3e-6, 0.1)
+    axes.set_xticks([1 / 4, 1 / 8, 1 / 16, 1 / 32], ["1/4", "1/8", "1/16", "1/32"])
+    axes.set_xticks([], minor=True)
+    axes.set_title("rms stress error everywhere", fontsize=10, loc="left")
+    axes.set_xlabel("spacing of the coarser face")
+    axes.set_ylabel("over the load")
+    legend(axes)
+
+
+def test_picture(statics: dict[str, list[Stresses]]) -> None:
+    figure, axes = panels(3, "Uniform pressure through a face of nodes that do not match (8 E/h)", across=True)
+    draw_pressures(axes[0])
+    draw_map(figure, axes[1], statics["2:1"][1])
+    draw_rates(axes[2], statics)
+    save(CASE, figure, "contact_patch")

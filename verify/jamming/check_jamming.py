@@ -1,0 +1,260 @@
+"""400 frictionless compliant discs between four walls: solid fraction and coordination where they jam, and above."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+
+from jamming_network import Outlines
+from jamming_packing import BOTTOM, DISCS, FORCES, LEFT, RIGHT, TOP, Packing, Stage, read_packing
+from pictures import COLOURS, MARKERS, legend, panels, save
+from plots.run_data import Frames
+from verification import FULL, Case, Label
+
+CASE = Case(__file__)
+
+LARGE = 1.4  # diameter; the small one is 1
+AREA = DISCS / 2 * math.pi / 4 * (1 + LARGE**2)
+START = 0.78  # solid fraction between the walls, less than in the middle as grains leave gaps beside them
+CLOSING = [0.81, 0.825, 0.84, 0.86, 0.88]
+OPENING = [0.87, 0.86, 0.85, 0.845, 0.84, 0.835, 0.83, 0.825, 0.82]
+PAUSE = 300.0  # from one fraction to the next, in units of diameter over the speed sqrt(E/density)
+RAMP = 150.0  # of it in motion
+CLEARANCE = 0.02  # of a wall's end from the next wall
+STIFFNESS = 10.0
+CORE = 8.0  # half width of a fixed box, within the region at all times
+SEEDS = [1, 2, 3] if FULL else [1, 2]
+OUTLINE_NODES = 48
+OBLIQUE = math.pi / OUTLINE_NODES / math.sqrt(3)  # rms angle between a segment's normal and that of the circle
+WALL_CONTACTS = 80  # about 20 a wall
+NODES = {16: 24, 24: 40, 32: 60, 48: 100}  # field nodes by outline nodes
+COUNTS = [16, 24, 32]  # coarser ones
+ISOSTATIC = 4 * (1 - 1 / DISCS)
+POSITION = 1e-6  # rounding of frames' positions, in single precision: two halves of the last bit, 9.5e-7 from 8 to 16
+ONSET = 1e-4  # pressure over E below which a packing has come apart: a tenth of that at an excess of 0.01
+QUASI_STATIC = 0.01  # kinetic over stored energy: of the order of the pressure that motion adds
+FITTED = (0.005, 0.06)  # excess solid fractions: overlaps larger than corners stand out, and strains below 10 %
+
+
+def half_width(fraction: float) -> float:
+    """Of the square between the walls."""
+    return 0.5 * math.sqrt(AREA / fraction)
+
+
+def speeds() -> list[list[float]]:
+    """At which each wall closes in: triangles in time, one a stage."""
+    corners = []
+    for i, way in enumerate(-np.diff([half_width(fraction) for fraction in (START, *CLOSING, *OPENING)])):
+        start = i * PAUSE
+        corners += [[start, 0.0], [start + RAMP / 2, 2 * float(way) / RAMP], [start + RAMP, 0.0]]
+    return corners
+
+
+def scene(seed: int, outline_nodes: int) -> str:
+    half, closing = half_width(START), speeds()
+    length = 2 * half + 2
+    middle = half - CLEARANCE - length / 2  # of a wall that ends just before the next one's face
+    return CASE.scene(
+        end=PAUSE * len(CLOSING + OPENING), pause=PAUSE, seed=seed, nodes=NODES[outline_nodes], damping=0.1,
+        outline_nodes=outline_nodes, stiffness=STIFFNESS, length=length, low=-half, high=half,
+        bottom=[middle, -half - 0.5], right=[half + 0.5, middle], top=[-middle, half + 0.5],
+        left=[-half - 0.5, -middle], core=[[-CORE, -CORE], [CORE, CORE]], closing=closing,
+        opening=[[time, -speed] for time, speed in closing])
+
+
+def compact(seed: int, outline_nodes: int) -> Packing:
+    run = CASE.engine(f"seed_{seed}_outline_{outline_nodes}", scene(seed, outline_nodes))
+    frames = Frames(run.folder / "frames.h5", None)
+    grid = frames.grids["outlines"]
+    outlines = [Outlines.of(frames.positions("outlines", i), grid.cells, grid.body) for i in range(len(frames.times))]
+    return read_packing(run, outlines, STIFFNESS, 2 * LARGE, len(CLOSING))
+
+
+@pytest.fixture(scope="module")
+def packings() -> list[Packing]:
+    return [compact(seed, OUTLINE_NODES) for seed in SEEDS]
+
+
+def walls_of(stage: Stage) -> np.ndarray:
+    """[4] forces on the walls, outwards, as FORCES has them."""
+    sums = stage.network.resultants()
+    return np.array([-sums[BOTTOM, 1], sums[RIGHT, 0], sums[TOP, 1], -sums[LEFT, 0]])
+
+
+def test_outlines_alone_give_the_same_forces(packings: list[Packing]) -> None:
+    """A second search for contacts and the law of the scene; and the areas in a box by a second clipping."""
+    in_touch = 2 * 2 * half_width(START)  # length of a wall, from either side
+    for seed, packing in zip(SEEDS, packings):
+        found = np.array([walls_of(stage) for stage in packing.stages])
+        engine = np.abs(np.stack([packing.run.probe(name)[1:] for name in FORCES], axis=1))
+        CASE.check(Label.EXACT, f"packing {seed}: forces on walls, by outlines less engine",
+                   np.abs(found - engine).max() / engine.max(), 0, 0.5 * STIFFNESS * in_touch * POSITION / engine.max(),
+                   "penalty law; rounding of all outlines at a wall")
+
+
+def test_clipping_anew_gives_the_same_solid_fraction(packings: list[Packing]) -> None:
+    box = (-CORE, CORE, -CORE, CORE)
+    for seed, packing in zip(SEEDS, packings):
+        areas = np.array([stage.shares(box) @ stage.outlines.areas()[:DISCS] for stage in packing.stages])
+        error = areas / (2 * CORE) ** 2 - packing.run.probe("core.solid_fraction")[1:]
+        CASE.check(Label.EXACT, f"packing {seed}: solid fraction of a box, own less probe", np.abs(error).max(), 0,
+                   4 * POSITION / (2 * CORE), "rounding of the outlines along the four sides of the box")
+
+
+def test_at_rest(packings: list[Packing]) -> None:
+    for seed, packing in zip(SEEDS, packings):
+        opened = packing.opened(ONSET)
+        at = slice(len(CLOSING), len(CLOSING) + len(opened))  # of probes, which begin with the start
+        kinetic, strain, contact = (packing.run.probe(f"energy.{of}")[at] for of in ("kinetic", "strain", "contact"))
+        CASE.check(Label.EXACT, f"packing {seed}: kinetic over stored energy", (kinetic / (strain + contact)).max(), 0,
+                   QUASI_STATIC, "a pressure of motion of as much of the pressure: 2 kinetic / area against dU/dA")
+        squares = np.array([(2 * stage.half) ** 2 for stage in opened])
+        virial = packing.run.probe("all.pressure")[at] * packing.run.probe("area.area")[at] / squares
+        walls = np.array([stage.pressure for stage in opened])
+        CASE.check(Label.EXACT, f"packing {seed}: pressure by all contacts over that by walls",
+                   ((virial - contact / squares) / walls).mean(), 1, OBLIQUE / math.sqrt(WALL_CONTACTS),
+                   "virial of bodies at rest, less contact energy / area that overlaps bear; forces oblique to a wall")
+
+
+def test_no_friction_from_corners(packings: list[Packing]) -> None:
+    for seed, packing in zip(SEEDS, packings):
+        CASE.check(Label.EXACT, f"packing {seed}: forces across over along the line of centres, rms",
+                   packing.opened(ONSET)[-1].obliquity, 0, OBLIQUE,
+                   "normals of polygons turn by pi / n at most, evenly")
+
+
+def test_jams_where_others_do(packings: list[Packing]) -> None:
+    for seed, packing in zip(SEEDS, packings):
+        CASE.check(Label.INDEPENDENT, f"packing {seed}: solid fraction at jamming", packing.jamming_fraction(ONSET),
+                   0.84, 0.015, "O'Hern et al. 2003, Majmudar et al. 2007: 0.842; three times the scatter of 400 discs")
+
+
+def excess(packing: Packing) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Solid fractions above jamming, of what is fitted, and coordination there with its standard error."""
+    opened, jammed = packing.opened(ONSET), packing.jamming_fraction(ONSET)
+    fitted = [s for s in opened if FITTED[0] < s.solid_fraction - jammed < FITTED[1]]
+    errors = [s.counts.std() / math.sqrt(len(s.counts)) for s in fitted]
+    return (np.array([s.solid_fraction - jammed for s in fitted]), np.array([s.coordination for s in fitted]),
+            np.array(errors))
+
+
+def at_jamming(packing: Packing) -> float:
+    """Coordination with no excess, by a straight line over the root of the excess."""
+    over, coordination, _ = excess(packing)
+    return float(np.polyfit(np.sqrt(over), coordination, 1)[-1])
+
+
+def error_of_slope(over: np.ndarray, relative_errors: np.ndarray) -> float:
+    """Of a straight line through logarithms, from the errors of the ordinates."""
+    x = np.log(over) - np.log(over).mean()
+    return float(np.sqrt(((x * relative_errors) ** 2).sum()) / (x**2).sum())
+
+
+def test_coordination(packings: list[Packing]) -> None:
+    for seed, packing in zip(SEEDS, packings):
+        _, _, errors = excess(packing)
+        value = at_jamming(packing)
+        last = packing.stages[-1]
+        CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination when opened below jamming", last.coordination,
+                   0, 0, "O'Hern et al. 2003: contacts vanish at once, from isostatic to none")
+        CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination at jamming", value, ISOSTATIC, 3 * errors[-1],
+                   "isostatic, 4 (1 - 1/N); three standard errors of the mean over the discs of the region")
+
+
+def test_exponent(packings: list[Packing]) -> None:
+    """Of all packings together."""
+    over, coordination, errors = (np.concatenate(parts) for parts in zip(*(excess(packing) for packing in packings)))
+    above = coordination - ISOSTATIC
+    CASE.check_rate("exponent of Z - Z0 over the excess solid fraction", list(over), list(above), 0.5,
+                    2 * error_of_slope(over, errors / above),
+                    "square root, O'Hern et al. 2003; two standard errors of the counts")
+
+
+@pytest.mark.skipif(not FULL, reason="three packings more")
+def test_corners_vanish(packings: list[Packing]) -> None:
+    """With the number of sides: the forces across the line of centres, at the last stage that bears load."""
+    compared = [*(compact(1, count) for count in COUNTS), packings[0]]
+    across = [packing.opened(ONSET)[-1].obliquity for packing in compared]
+    CASE.check_rate("forces across over along the line of centres, by outline spacing",
+                    [1 / n for n in [*COUNTS, OUTLINE_NODES]], across, 1, 0.3,
+                    "angles of normals go with 1 / n; several nodes in touch, and fewer as pressure falls")
+
+
+def test_pictures(packings: list[Packing]) -> None:
+    figure, axes = panels(2, "400 frictionless discs: pressure and contact forces", across=True)
+    figure.set_size_inches(13, 6.4)
+    opened = packings[0].opened(ONSET)
+    for panel, stage in zip(axes, (opened[-1], opened[0])):
+        draw_packing(panel, packings[0], stage)
+    save(CASE, figure, "packing")
+    title = f"400 frictionless discs of {NODES[OUTLINE_NODES]} nodes, {OUTLINE_NODES} on the outline"
+    figure, axes = panels(3, title, across=True)
+    draw_histories(axes[:2], packings)
+    draw_excess(axes[2], packings)
+    save(CASE, figure, "jamming")
+
+
+def draw_packing(axes: Axes, packing: Packing, stage: Stage) -> None:
+    """Mean pressure of each disc, and forces as lines between centres, as wide as they are strong."""
+    frames = Frames(packing.run.folder / "frames.h5", None)
+    index = packing.stages.index(stage) + 1
+    cells = frames.grids["bodies"]
+    sums, counts = np.bincount(cells.body, frames.field("bodies", index, "pressure")), np.bincount(cells.body)
+    discs = PolyCollection([stage.outlines.of_body(disc) for disc in range(DISCS)], array=(sums / counts)[:DISCS],
+                           cmap="YlOrRd", edgecolors="#8a8a8a", linewidths=0.3)
+    discs.set_clim(0, np.quantile((sums / counts)[:DISCS], 0.98))
+    axes.figure.colorbar(axes.add_collection(discs), ax=axes, label="mean pressure over E", shrink=0.8, extend="max")
+    centres = stage.outlines.centres()
+    between = (stage.network.pairs < DISCS).all(axis=1)
+    force = stage.network.magnitudes()
+    axes.add_collection(LineCollection(centres[stage.network.pairs[between]], colors="#2b2b2b", capstyle="round",
+                                       linewidths=1.2 * (force / force.mean())[between]))
+    reach = stage.half - stage.margin
+    for half, style in ((stage.half, "-"), (reach, ":")):
+        axes.add_patch(plt.Rectangle((-half, -half), 2 * half, 2 * half, fill=False, linestyle=style, color=COLOURS[0]))
+    values = f"{stage.solid_fraction:.3f}, P = {stage.pressure:.2g} E, Z = {stage.coordination:.2f}"
+    axes.set_title(f"solid fraction {values}; dotted: region that counts", fontsize=10, loc="left")
+    axes.set_xlim(-1.03 * stage.half, 1.03 * stage.half)
+    axes.set_ylim(-1.03 * stage.half, 1.03 * stage.half)
+    axes.set_xlabel("x over the small diameter")
+    axes.set_ylabel("y over the small diameter")
+    axes.set_aspect("equal")
+    axes.grid(False)
+
+
+def draw_histories(axes: list[Axes], packings: list[Packing]) -> None:
+    labels = {"pressure": "pressure on the walls over E", "coordination": "contacts a disc, Z"}
+    for panel, (name, label) in zip(axes, labels.items()):
+        for packing, seed, colour in zip(packings, SEEDS, COLOURS):
+            values = [(s.solid_fraction, getattr(s, name)) for s in packing.stages]
+            parts = ((values[: len(CLOSING)], "o:", "closing"), (values[len(CLOSING) - 1 :], "s-", "opening"))
+            for part, style, what in parts:
+                panel.plot(*np.transpose(part), style, color=colour, markersize=4, linewidth=1.1,
+                           label=f"{what}, packing {seed}")
+        panel.axvspan(0.825, 0.855, color=COLOURS[6], alpha=0.2, label="jamming: 0.84 +- 0.015")
+        panel.set_xlabel("solid fraction of the region")
+        panel.set_ylabel(label)
+    axes[1].axhline(ISOSTATIC, color=COLOURS[6], linewidth=1.0, linestyle="--", label="isostatic")
+    axes[1].set_ylim(3.4, 5.1)
+    axes[1].set_title("below jamming the opened packing has no contacts", fontsize=9, loc="left")
+    axes[0].legend(fontsize=9, frameon=False, loc="upper left")
+    legend(axes[1])
+
+
+def draw_excess(axes: Axes, packings: list[Packing]) -> None:
+    for packing, seed, colour, marker in zip(packings, SEEDS, COLOURS, MARKERS):
+        over, coordination, errors = excess(packing)
+        axes.errorbar(over, coordination - ISOSTATIC, errors, fmt=marker, color=colour, markersize=4, capsize=2,
+                      label=f"packing {seed}")
+    line = np.array([0.003, 0.1])
+    axes.loglog(line, 3.6 * np.sqrt(line), "--", color=COLOURS[6], linewidth=1, label="3.6 x root: O'Hern et al. 2003")
+    axes.set_yticks([0.2, 0.4, 0.6, 0.8, 1.0], ["0.2", "0.4", "0.6", "0.8", "1"])
+    axes.set_yticks([], minor=True)
+    axes.set_xlabel("solid fraction above jamming")
+    axes.set_ylabel("Z - isostatic")
+    legend(axes)

@@ -1,0 +1,170 @@
+"""The network of contacts of a packing from its outlines alone: who touches whom, with what force, how full a box is.
+
+Nothing here knows the engine's contact code: a node inside another outline is found by the distance to one of the two
+segments at the nearest corner, chosen by the corner's bisector, and pressed out of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+Box = tuple[float, float, float, float]  # x and y limits
+
+
+@dataclass
+class Outlines:
+    """Closed outlines, counter-clockwise, points of each body one after another."""
+
+    points: np.ndarray  # [points x 2]
+    body: np.ndarray  # [points]
+    following: np.ndarray  # [points] the next point of the same outline
+    preceding: np.ndarray  # [points]
+
+    @classmethod
+    def of(cls, points: np.ndarray, cells: np.ndarray, cell_body: np.ndarray) -> Outlines:
+        """From segments [n x 2] and the body of each."""
+        body, following, preceding = (np.zeros(len(points), dtype=int) for _ in range(3))
+        body[cells[:, 0]], following[cells[:, 0]], preceding[cells[:, 1]] = cell_body, cells[:, 1], cells[:, 0]
+        return cls(points, body, following, preceding)
+
+    def of_body(self, body: int) -> np.ndarray:
+        return self.points[self.body == body]
+
+    def tributary_lengths(self) -> np.ndarray:
+        """[points] half of the two segments."""
+        lengths = np.linalg.norm(self.points[self.following] - self.points, axis=1)
+        return 0.5 * (lengths + lengths[self.preceding])
+
+    def areas(self) -> np.ndarray:
+        """[bodies]"""
+        x, y = self.points.T
+        return np.bincount(self.body, 0.5 * (x * y[self.following] - x[self.following] * y))
+
+    def centres(self) -> np.ndarray:
+        """[bodies x 2] mean of the points, which on these outlines are equally spaced."""
+        count = np.bincount(self.body)
+        return np.stack([np.bincount(self.body, column) / count for column in self.points.T], axis=1)
+
+
+@dataclass
+class Network:
+    """Pairs of bodies in touch, each once, i < j."""
+
+    pairs: np.ndarray  # [pairs x 2]
+    forces: np.ndarray  # [pairs x 2] on j; on i the opposite
+    bodies: int
+
+    def magnitudes(self) -> np.ndarray:
+        return np.linalg.norm(self.forces, axis=1)
+
+    def resultants(self) -> np.ndarray:
+        """[bodies x 2] sums of the forces."""
+        sums = np.zeros((self.bodies, 2))
+        np.add.at(sums, self.pairs[:, 1], self.forces)
+        np.add.at(sums, self.pairs[:, 0], -self.forces)
+        return sums
+
+    def counts(self) -> np.ndarray:
+        """[bodies] partners."""
+        return np.bincount(self.pairs.ravel(), minlength=self.bodies)
+
+    def without_rattlers(self, walls: np.ndarray) -> Network:
+        """Less the grains that fewer than three bodies touch, which cannot hold them, until none is left; not walls."""
+        network = self
+        while True:
+            loose = (network.counts() < 3) & ~np.isin(np.arange(self.bodies), walls)
+            keep = ~loose[network.pairs].any(axis=1)
+            if keep.all():
+                return network
+            network = Network(network.pairs[keep], network.forces[keep], self.bodies)
+
+
+def network(outlines: Outlines, tributary: np.ndarray, stiffness: float) -> Network:
+    """Of frictionless penalty contact: stiffness times depth times the node's reference length, half from each side."""
+    node, partner, push = _penetrations(outlines)
+    force = (0.5 * stiffness * tributary[node])[:, None] * push
+    own = outlines.body[node]
+    swapped = own < partner  # the force acts on the node's body; kept is that on the later body
+    keys = np.where(swapped, own, partner) * 1_000_000 + np.where(swapped, partner, own)
+    signed = np.where(swapped[:, None], -force, force)
+    unique, index = np.unique(keys, return_inverse=True)
+    sums = np.stack([np.bincount(index, column, len(unique)) for column in signed.T], axis=1)
+    return Network(np.stack([unique // 1_000_000, unique % 1_000_000], axis=1), sums, outlines.body.max() + 1)
+
+
+def _penetrations(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Nodes, the bodies they are in, and depth times outward normal, [n x 2]."""
+    node, corner = _nearest_corners(outlines)
+    start = np.where(_beyond(outlines, node, corner), corner, outlines.preceding[corner])
+    along = outlines.points[outlines.following[start]] - outlines.points[start]
+    way = outlines.points[node] - outlines.points[start]
+    inside = along[:, 0] * way[:, 1] > along[:, 1] * way[:, 0]
+    share = np.clip(np.einsum("ij,ij->i", way, along) / np.einsum("ij,ij->i", along, along), 0, 1)
+    push = share[:, None] * along - way
+    return node[inside], outlines.body[corner[inside]], push[inside]
+
+
+def _beyond(outlines: Outlines, node: np.ndarray, corner: np.ndarray) -> np.ndarray:
+    """Whether a node is past the bisector of a corner, so that the segment after it counts, not the one before."""
+    here = outlines.points[corner]
+    ways = here - outlines.points[outlines.preceding[corner]], outlines.points[outlines.following[corner]] - here
+    tangent = sum(way / np.linalg.norm(way, axis=1)[:, None] for way in ways)
+    return np.einsum("ij,ij->i", outlines.points[node] - here, tangent) > 0
+
+
+def _nearest_corners(outlines: Outlines) -> tuple[np.ndarray, np.ndarray]:
+    """Of every node and every other body near it: the body's point nearest to the node."""
+    reach = 1.01 * np.linalg.norm(outlines.points[outlines.following] - outlines.points, axis=1).max()
+    pairs = cKDTree(outlines.points).query_pairs(reach, output_type="ndarray")
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    node, corner = pairs[outlines.body[pairs[:, 0]] != outlines.body[pairs[:, 1]]].T
+    distance = np.linalg.norm(outlines.points[node] - outlines.points[corner], axis=1)
+    order = np.lexsort((distance, outlines.body[corner], node))
+    node, corner = node[order], corner[order]
+    first = np.ones(len(node), dtype=bool)
+    first[1:] = (node[1:] != node[:-1]) | (outlines.body[corner[1:]] != outlines.body[corner[:-1]])
+    return node[first], corner[first]
+
+
+def filled(outlines: Outlines, bodies: np.ndarray, box: Box) -> np.ndarray:
+    """[bodies] share of the area of each that lies in the box."""
+    areas = outlines.areas()
+    shares = np.zeros(len(bodies))
+    for i, body in enumerate(bodies):
+        polygon = outlines.of_body(body)
+        shares[i] = polygon_area(clipped(polygon, box)) / areas[body]
+    return shares
+
+
+def polygon_area(polygon: np.ndarray) -> float:
+    if len(polygon) < 3:
+        return 0.0
+    x, y = polygon.T
+    return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def clipped(polygon: np.ndarray, box: Box) -> np.ndarray:
+    """A polygon within a box, side by side of the box (Sutherland and Hodgman 1974)."""
+    for axis, sign, limit in ((0, 1, box[0]), (0, -1, box[1]), (1, 1, box[2]), (1, -1, box[3])):
+        if len(polygon) == 0:
+            return polygon
+        height = sign * (polygon[:, axis] - limit)
+        if (height >= 0).all():
+            continue
+        polygon = _cut(polygon, height)
+    return polygon
+
+
+def _cut(polygon: np.ndarray, height: np.ndarray) -> np.ndarray:
+    """What of a polygon is where `height` [points] is not negative."""
+    kept = []
+    for i in range(len(polygon)):
+        j = (i + 1) % len(polygon)
+        if height[i] >= 0:
+            kept.append(polygon[i])
+        if (height[i] >= 0) != (height[j] >= 0):
+            kept.append(polygon[i] + height[i] / (height[i] - height[j]) * (polygon[j] - polygon[i]))
+    return np.array(kept).reshape(-1, 2)

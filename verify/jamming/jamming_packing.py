@@ -1,0 +1,93 @@
+"""Packings at rest between four walls, and where they jam."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from jamming_network import Box, Network, Outlines, filled, network
+from verification import Run
+
+DISCS = 400
+BOTTOM, RIGHT, TOP, LEFT = WALLS = range(DISCS, DISCS + 4)  # numbers of their bodies
+FORCES = ["bottom.force_y", "right.force_x", "top.force_y", "left.force_x"]
+
+
+@dataclass(eq=False)
+class Stage:
+    """A packing at rest; lengths in small diameters, pressures in E."""
+
+    outlines: Outlines
+    network: Network  # all contacts
+    half: float  # of the square between the walls
+    margin: float  # from the walls to the region that counts
+    reference_areas: np.ndarray  # [bodies] at the start
+    pressure: float  # of the walls
+
+    @cached_property
+    def solid_fraction(self) -> float:
+        """Of the region, by areas at the start: what a disc gives way counts as excess."""
+        reach = self.half - self.margin
+        return float(self.shares((-reach, reach, -reach, reach)) @ self.reference_areas[:DISCS]) / (2 * reach) ** 2
+
+    def shares(self, box: Box) -> np.ndarray:
+        """[discs] of their areas that lie in the box."""
+        return filled(self.outlines, np.arange(DISCS), box)
+
+    @cached_property
+    def backbone(self) -> Network:
+        return self.network.without_rattlers(np.array(WALLS))
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """Contacts of each disc with its centre in the region that is no rattler."""
+        counts = self.backbone.counts()[:DISCS]
+        inside = (np.abs(self.outlines.centres()[:DISCS]) < self.half - self.margin).all(axis=1)
+        return counts[inside & (counts > 0)]
+
+    @property
+    def coordination(self) -> float:
+        return float(self.counts.mean()) if len(self.counts) else 0.0
+
+    @property
+    def obliquity(self) -> float:
+        """Root mean square of the forces across over those along the line of two discs' centres."""
+        between = (self.network.pairs < DISCS).all(axis=1)
+        centres, pairs = self.outlines.centres(), self.network.pairs[between]
+        force, line = self.network.forces[between], centres[pairs[:, 1]] - centres[pairs[:, 0]]
+        line /= np.linalg.norm(line, axis=1)[:, None]
+        across = force[:, 0] * line[:, 1] - force[:, 1] * line[:, 0]
+        return float(np.sqrt((across**2).mean() / (np.einsum("ij,ij->i", force, line) ** 2).mean()))
+
+
+@dataclass
+class Packing:
+    """A packing that is closed in and opened again, in stages."""
+
+    run: Run
+    stages: list[Stage]
+    closing: int  # stages of closing, which come first
+
+    def opened(self, onset: float) -> list[Stage]:
+        """From the densest on, as long as they bear a pressure above `onset`."""
+        return [stage for stage in self.stages[self.closing - 1 :] if stage.pressure > onset]
+
+    def jamming_fraction(self, onset: float) -> float:
+        """Where the pressure of opening vanishes: solid fraction as a parabola of the pressure, at 0."""
+        opened = self.opened(onset)
+        return float(np.polyfit([s.pressure for s in opened], [s.solid_fraction for s in opened], 2)[-1])
+
+
+def read_packing(run: Run, frames: list[Outlines], stiffness: float, margin: float, closing: int) -> Packing:
+    """Of the outlines at the start and at each rest."""
+    start, *rests = frames
+    tributary, areas = start.tributary_lengths(), start.areas()
+    forces = np.abs(np.stack([run.probe(name) for name in FORCES], axis=1))
+    stages = []
+    for outlines, force in zip(rests, forces[1:], strict=True):
+        half = outlines.of_body(TOP)[:, 1].min()
+        pressure = float(force.mean() / (2 * half))
+        stages.append(Stage(outlines, network(outlines, tributary, stiffness), half, margin, areas, pressure))
+    return Packing(run, stages, closing)

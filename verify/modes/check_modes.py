@@ -1,0 +1,204 @@
+"""Natural frequencies of a free disc: the engine's own stiffness and masses against exact ones and finite elements."""
+
+from __future__ import annotations
+
+import csv
+import json
+import subprocess
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.io import mmread
+from scipy.linalg import eigh
+
+from disc_spectrum import count_in_the_plane, disc_modes, frequencies, frequency_functions, roots
+from pictures import COLOURS, MARKERS, legend, panels, save
+from verification import ENGINE, FULL, ROOT, Case, Label, observed_order
+
+CASE = Case(__file__)
+COUNT = 10  # frequencies compared
+NODES = [168, 340, 700, 1400] if FULL else [168, 340, 700]
+H = [float(np.sqrt(np.pi / n)) for n in NODES]  # mean distance of nodes
+POISSON = [0.3, 0.4, 0.49]
+RECIPES = {"mls": "", "mls-gauss 1": "gauss_points = 1", "mls-gauss 3": "gauss_points = 3",
+           "mls-gauss 6": "gauss_points = 6", "t3": "", "es-t3": ""}
+MASSES = ["lumped", "corrected"]
+LAST = 8.0  # of the stored roots, w R / c_s
+
+# rms errors of the first ten at nu = 0.4 of a prototype of the method on meshes of its own, its support 9 nodes:
+# recipe, mass, nodes.
+PROTOTYPE = {("mls-gauss 3", "lumped", 168): 5.7e-2, ("mls-gauss 3", "corrected", 168): 0.9e-2,
+             ("mls", "lumped", 168): 4.9e-2, ("mls", "corrected", 168): 0.8e-2, ("t3", "lumped", 168): 1.1e-2,
+             ("es-t3", "corrected", 168): 0.10e-2, ("mls", "lumped", 700): 1.1e-2}
+
+
+def scene(recipe: str, mass: str, poisson: float, nodes: int, extra: str = "") -> str:
+    return CASE.scene(recipe=recipe.split()[0], mass=mass, points=RECIPES[recipe] + extra, nodes=nodes, poisson=poisson,
+                      young=2 * (1 + poisson))
+
+
+def ask(name: str, text: str, *options: str) -> dict:
+    """What `pliant modes` says of the only body."""
+    file, answer = CASE.out / f"{name}.toml", CASE.out / f"{name}.json"
+    file.write_text(text)
+    command = [str(ENGINE), "modes", str(file), "--count", str(COUNT), "--json", str(answer), *options]
+    result = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600)
+    if result.returncode != 0:
+        raise RuntimeError(f"{' '.join(command)}\nexit code {result.returncode}\n{result.stderr}")
+    return json.loads(answer.read_text())["bodies"][0]
+
+
+@cache
+def errors(recipe: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
+    """[COUNT] relative, sorted by frequency."""
+    name = f"{recipe.replace(' ', '_')}_{mass}_{poisson:g}_{nodes}"
+    export = ["--matrices", str(CASE.out / name)] if poisson == 0.4 else []  # see matrices()
+    answer = ask(name, scene(recipe, mass, poisson, nodes), *export)
+    CASE.check(Label.EXACT, f"{recipe}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
+               answer["motions_at_rest"], 3, 0, "two translations and a rotation; more were mechanisms")
+    return np.array(answer["frequencies"]) / frequencies(poisson, COUNT) - 1
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt((values**2).mean()))
+
+
+def test_roots_are_those_stored() -> None:
+    with (ROOT / "verify/oracles/disc_eigenfrequencies.csv").open() as stream:
+        stored = list(csv.DictReader(stream))
+    found = disc_modes(0.4, LAST)
+    CASE.check(Label.EXACT, "roots below 8: number", len(found), len(stored), 0,
+               "own roots of Bessel functions, stored")
+    same = [(int(row["circumferential_order"]), row["kind"], int(row["multiplicity"])) for row in stored]
+    CASE.check(Label.EXACT, "roots: orders, kinds, multiplicities that differ",
+               sum(a != b for a, b in zip(same, [(m.order, m.kind, m.multiplicity) for m in found])), 0, 0, "as stored")
+    off = [m.frequency / float(row["omega_R_over_cs"]) - 1 for m, row in zip(found, stored)]
+    CASE.check(Label.EXACT, "roots: largest difference", np.abs(off).max(), 0, 1e-13, "rounding of Bessel functions")
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+def test_no_root_is_missed(poisson: float) -> None:
+    """The argument principle counts zeros of the entire function in a rectangle, whatever a grid may have missed."""
+    highest = max(mode.order for mode in disc_modes(poisson, LAST)) + 3
+    lines = {(n, kind): f for n in range(highest + 1) for kind, f in frequency_functions(n, poisson).items()}
+    missed = sum(abs(count_in_the_plane(f, 0.3, LAST) - len(roots(f, 0.3, LAST))) for f in lines.values())
+    CASE.check(Label.EXACT, f"nu = {poisson}: roots that a grid missed", missed, 0, 0, "turns of the determinant")
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+def test_finite_elements_agree_with_the_roots(poisson: float) -> None:
+    from fem.eigen import natural_frequencies
+    from fem.meshes import disc
+    from fem.solid import Material, Solid
+
+    rings = [16, 24, 32] if poisson == 0.49 else [6, 9, 12]
+    found = [natural_frequencies(Solid(disc(n), Material.of_poisson(poisson)), COUNT) for n in rings]
+    error = [rms(f / frequencies(poisson, COUNT) - 1) for f in found]
+    CASE.check_rate(f"finite elements, nu = {poisson}: rms error", [1 / n for n in rings], error, 4, 0.5,
+                    "quadratic elements: twice the second order of their strains; late if nearly incompressible")
+    limit = found[-1] + (found[-1] - found[-2]) / ((rings[-1] / rings[-2])**4 - 1)
+    CASE.check(Label.INDEPENDENT, f"finite elements, nu = {poisson}: extrapolated over exact",
+               rms(limit / frequencies(poisson,
+                                       COUNT) - 1), 0, error[-1] / 4, "dolfinx and SLEPc, live; a quarter is left")
+
+
+@pytest.mark.parametrize("poisson", POISSON)
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_lumped_mass_is_of_second_order(recipe: str, poisson: float) -> None:
+    if recipe == "t3" and poisson == 0.49:
+        pytest.skip("locks: see test_locking")
+    error = [rms(errors(recipe, "lumped", poisson, nodes)) for nodes in NODES]
+    CASE.check_rate(f"{recipe}, lumped, nu = {poisson}: rms of the first ten", H, error, 2, 0.3,
+                    "row sums and linear functions; 0.3 for the fourth order in h^2 <= 0.14^2 x 4.8^2")
+
+
+@pytest.mark.parametrize("recipe, mass, nodes", PROTOTYPE)
+def test_figures_of_the_prototype(recipe: str, mass: str, nodes: int) -> None:
+    CASE.check(Label.INDEPENDENT, f"{recipe}, {mass}, {nodes} nodes: rms of the first ten",
+               rms(errors(recipe, mass, 0.4, nodes)), 0, 1.1 * PROTOTYPE[recipe, mass, nodes],
+               "a prototype's error on another mesh of as many nodes, and a tenth")
+
+
+def test_support_of_nine_nodes() -> None:
+    answer = ask("support_9", scene("mls", "corrected", 0.4, 700, "\nsupport = 9"))
+    error = rms(np.array(answer["frequencies"]) / frequencies(0.4, COUNT) - 1)
+    CASE.check(Label.INDEPENDENT, "mls with support 9, corrected, 700 nodes: rms", error, 0, 1.1 * 0.06e-2,
+               "the prototype's, whose support that was, and a tenth")
+
+
+def matrices(recipe: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+    """Stiffness and consistent mass, both [2 nodes x 2 nodes]: M = 2 D - D W D of the exported inverse masses D^-1
+    and W."""
+    folder = {mass: CASE.out / f"{recipe.replace(' ', '_')}_{mass}_0.4_{nodes}" for mass in MASSES}
+    for mass in MASSES:
+        errors(recipe, mass, 0.4, nodes)
+    lumped = 1 / mmread(folder["lumped"] / "disc_inverse_mass.mtx").diagonal()
+    inverse = mmread(folder["corrected"] / "disc_inverse_mass.mtx").toarray()
+    mass = 2 * np.diag(lumped) - lumped[:, None] * inverse * lumped
+    return mmread(folder["corrected"] / "disc_stiffness.mtx").toarray(), np.kron(mass, np.eye(2))
+
+
+@cache
+def parts(recipe: str) -> tuple[list[float], list[float]]:
+    """rms over NODES of what the stiffness errs (with the consistent mass), and of what the corrected mass adds to
+    that."""
+    of_stiffness, of_mass = [], []
+    for nodes in NODES:
+        consistent = np.sqrt(eigh(*matrices(recipe, nodes), eigvals_only=True, subset_by_index=(3, 2 + COUNT),
+                                  driver="gvx"))
+        exact = frequencies(0.4, COUNT)
+        of_stiffness.append(rms(consistent / exact - 1))
+        of_mass.append(rms((errors(recipe, "corrected", 0.4, nodes) + 1) * exact / consistent - 1))
+    return of_stiffness, of_mass
+
+
+@pytest.mark.parametrize("recipe", ["mls", "mls-gauss 3", "t3", "es-t3"])
+def test_corrected_mass_errs_in_fourth_order(recipe: str) -> None:
+    CASE.check_rate(f"{recipe}: corrected over consistent mass", H, parts(recipe)[1], 4, 0.5,
+                    "W - M^-1 = -D^-1 (1 - M D^-1)^2 ..., M D^-1 - 1 of the order h^2; half an order for its next term")
+
+
+@pytest.mark.parametrize("recipe", ["mls", "t3"])
+def test_stiffness_is_of_second_order(recipe: str) -> None:
+    CASE.check_rate(f"{recipe}: stiffness with consistent mass", H, parts(recipe)[0], 2, 0.5,
+                    "linear functions; half an order for the h^4 that is left")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_locking(recipe: str) -> None:
+    """Corrected mass, so that the stiffness shows; the least of the meshes, where locking is worst."""
+    error = [100 * rms(errors(recipe, "corrected", poisson, NODES[0])) for poisson in (0.3, 0.49)]
+    name = f"{recipe}, corrected, nu = 0.49: rms [%]"
+    if recipe == "t3":
+        CASE.check(Label.FROZEN, name, error[1], 12, 4, "measured: linear triangles lock, a constraint a triangle and two a node")
+    else:
+        CASE.check(Label.INDEPENDENT, name, error[1], 0, 1, "exact roots; what does not lock stays below 1 %, as at nu = 0.3")
+
+
+def test_picture() -> None:
+    figure, axes = panels(3, "First ten natural frequencies of a free disc", across=True)
+    draw_errors(axes[0], "lumped mass, nu = 0.4", lambda recipe, nodes: errors(recipe, "lumped", 0.4, nodes), [2])
+    draw_errors(axes[1], "corrected mass, nu = 0.4", lambda recipe, nodes: errors(recipe, "corrected", 0.4, nodes),
+                [2, 4])
+    draw_errors(axes[2], "corrected mass, nu = 0.49", lambda recipe, nodes: errors(recipe, "corrected", 0.49, nodes),
+                [2, 4])
+    save(CASE, figure, "modes")
+
+
+def draw_errors(axes, title: str, error: Callable[[str, int], np.ndarray], orders: list[int]) -> None:
+    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+        values = [100 * rms(error(recipe, nodes)) for nodes in NODES]
+        axes.loglog(NODES, values, marker=marker, markersize=4, linewidth=1.1, color=colour,
+                    label=f"{recipe}: {observed_order(H, values):.1f}")
+    for order, style in zip(orders, ("--", ":")):
+        axes.loglog(NODES, 0.05 * (np.array(H) / H[0])**order, style, color=COLOURS[6], linewidth=1.0,
+                    label=f"order {order}")
+    axes.set_xticks(NODES, [str(n) for n in NODES])
+    axes.set_xticks([], minor=True)
+    axes.set_ylim(1e-3, 3e3)  # room for the legend
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.set_xlabel("nodes")
+    axes.set_ylabel("rms error [%]")
+    legend(axes)

@@ -1,0 +1,296 @@
+"""A rigid disc of many sides with Coulomb friction: sliding turns to rolling, and inclines on which it rolls or
+slides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pytest
+
+from pictures import COLOURS, MARKERS, legend, panels, save
+from verification import FULL, Case, Label, Run
+
+CASE = Case(__file__)
+
+FRICTION = 0.2
+MASS = np.pi  # of a disc of radius and density 1; gravity 1
+SOLVERS = ["engine", "reference"]
+# The reference solver compares every node with every segment: fewer sides, and so a softer floor, that as many touch
+# it.
+STIFFNESS, SIDES = {"engine": 1e5, "reference": 1e3}, {"engine": 2000, "reference": 250}
+SOFT_TO_STIFF = [1e4, 1e5, 1e6]
+MANY_SIDES = [60, 125, 250, 500]
+STEP = 0.01  # of the reference, s: eleven sides pass in a time unit
+ANGLES = [10.0, 20.0, 25.0, 28.0, 35.0, 40.0]  # degrees; it rolls up to atan(3 x 0.2) = 31
+END, PERIOD = 4.0, 0.01  # of a run, and of its probes
+REFERENCE_ANGLES = [10.0, 20.0, 28.0] if FULL else [20.0]
+DESCENTS = [("engine", angle) for angle in ANGLES] + [("reference", angle) for angle in REFERENCE_ANGLES]
+SETTLED = 1.0  # s of rolling down, after the start from rest
+
+
+def depth(stiffness: float, pressing: float = 1.0) -> float:
+    """d over R, of a disc that bears `pressing` times its weight: 4/3 kn d sqrt(2 d R), half the width of contact
+    times 4/3 of the depth."""
+    return float((3 * MASS * pressing / (4 * stiffness * np.sqrt(2)))**(2 / 3))
+
+
+def tolerance(stiffness: float, sides: int, pressing: float = 1.0) -> float:
+    """Of an acceleration or a speed, relative: the next order after d, d^(3/2), and the sides, of which some m touch
+    on either side of the middle."""
+    d = depth(stiffness, pressing)
+    touching = np.sqrt(2 * d) * sides / (2 * np.pi)
+    return float(d * (np.sqrt(2 * d) + 1 / touching**2))
+
+
+def run(solver: str, name: str, stiffness: float, sides: int, speed: float = 0.0, degrees: float = 0.0) -> Run:
+    sine, cosine = float(np.sin(np.radians(degrees))), float(np.cos(np.radians(degrees)))
+    scene = CASE.scene(sides=sides, spacing=2 * np.pi / sides, stiffness=stiffness, end=END, period=PERIOD, speed=speed,
+                       along=sine, across=-cosine, height=1 - depth(stiffness, cosine))
+    return CASE.engine(name, scene) if solver == "engine" else CASE.reference(name, scene, "--dt", str(STEP))
+
+
+# ---- sliding turns to rolling: u = u0 - mu g t, w R = 2 mu g t meet at t = u0 / (3 mu g), u = 2 u0 / 3
+
+# A floor that gives way by d shifts these. Friction acts below the centre by R less a mean depth: on the disc's nodes
+# by d/5, on the floor's, along the
+# disc's tangent, by 3 d/5, each half of it: 2 d/5. A disc that rolls without force has its rim faster than its centre,
+# by d/3, so that the elastic slip,
+# whose rate is parabolic over the contact, has the mean 0. Friction comes after the elastic slip mu z of depth z: late
+# by 2/5 mu d / u0.
+LEVER, RIM, DELAY = 2 / 5, 1 / 3, 2 / 5
+SPEED_LOST = (LEVER + RIM) / 3  # of 2 u0 / 3, in units of d
+TIME_GAINED = 2 / 3 * LEVER + 3 * FRICTION**2 * DELAY  # of u0 / (3 mu g)
+LOSS_GAINED = 2 * 2 * SPEED_LOST - 2 * 2 / 3 * RIM  # of m u0^2 / 6: 1/2 - 1/3 (1 - 2 SPEED_LOST d) (1 + 2/3 RIM d)
+
+
+@dataclass
+class Turn:
+    """Of a disc that starts to slide."""
+
+    run: Run
+    slowing: float  # du/dt
+    spinning: float  # R dw/dt
+    time: float  # when the two lines meet
+    speed: float  # mean, later
+
+
+@cache
+def turn(solver: str, stiffness: float, sides: int) -> Turn:
+    of = run(solver, f"turn_{solver}_{stiffness:g}_{sides}", stiffness, sides, speed=1.0)
+    t, u, rim = of.times("disc.velocity_x"), of.probe("disc.velocity_x"), -of.probe("disc.angular_velocity")
+    slides = (t > 0.1) & (t < 1.6)
+    (slowing, start), (spinning, offset) = np.polyfit(t[slides], u[slides], 1), np.polyfit(t[slides], rim[slides], 1)
+    return Turn(of, slowing, spinning, (start - offset) / (spinning - slowing), float(u[t > 2.0].mean()))
+
+
+def usual_turn(solver: str) -> tuple[Turn, float, float]:
+    """With d and the relative tolerance."""
+    stiffness, sides = STIFFNESS[solver], SIDES[solver]
+    return turn(solver, stiffness, sides), depth(stiffness), tolerance(stiffness, sides)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_sliding(solver: str) -> None:
+    found, d, small = usual_turn(solver)
+    # The normal force swings about the weight by what the polygon's depth differs, and friction with it: a mean over
+    # 1.5 with 11 swings.
+    source = "Coulomb; next order in the depth d, sides in touch"
+    CASE.check(Label.EXACT, f"{solver}, sliding: deceleration over mu g", -found.slowing / FRICTION, 1, small, source)
+    CASE.check(Label.EXACT, f"{solver}, sliding: spin over 2 mu g / R, and friction's lever",
+               found.spinning / (2 * FRICTION), 1 - LEVER * d,
+               2 * small, source)
+    CASE.check(Label.EXACT, f"{solver}, turn: time over u0 / (3 mu g)", found.time * 3 * FRICTION, 1 + TIME_GAINED * d,
+               2 * small + (3 * FRICTION * STEP / 2 if solver == "reference" else 0),
+               "u = w R; lever and late friction in the first order of d; half a step in which friction sets in")
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_rolling_after_the_turn(solver: str) -> None:
+    found, d, small = usual_turn(solver)
+    CASE.check(Label.EXACT, f"{solver}, turn: speed over 2 u0 / 3", 1.5 * found.speed, 1 - SPEED_LOST * d, 2 * small,
+               "angular momentum about the contact; lever and rim in the first order of d")
+    lost = found.run.probe("works.dissipated_by_contact")[-1]
+    swing = 3 * FRICTION**2 * DELAY * 2 * d  # elastic energy at the turn, mu^2 (2/5) d of m g R, over 1/6
+    CASE.check(Label.EXACT, f"{solver}, turn: dissipated over m u0^2 / 6", 6 * lost / MASS,
+               1 + LOSS_GAINED * d - swing / 2, 4 * small + swing / 2,
+               "from the speeds; between none and all of the elastic energy at the turn swings on")
+
+
+def test_stiffer_floors() -> None:
+    error = [1 - 1.5 * turn("engine", stiffness, SIDES["engine"]).speed for stiffness in SOFT_TO_STIFF]
+    CASE.check_rate("turn: 2 u0 / 3 over the contact stiffness", [1 / k for k in SOFT_TO_STIFF], error, 2 / 3, 0.04,
+                    "d goes as stiffness^(-2/3); the next order, d^(3/2), is 0.08 of it at the softest")
+
+
+def test_more_sides() -> None:
+    """On a floor so stiff that few sides touch: it goes over their corners."""
+    stiff, limit = 1e6, 1 - SPEED_LOST * depth(1e6)
+    error = [abs(1.5 * turn("engine", stiff, sides).speed - limit) for sides in MANY_SIDES]
+    CASE.check_rate("turn: 2 u0 / 3 over the number of sides", [1 / n for n in MANY_SIDES], error, 2, 1,
+                    "facets lift the centre by 1 - cos(pi / n); what rattles on falls with n too")
+
+
+# ---- inclines: rolls with a = 2/3 g sin(theta) if tan(theta) <= 3 mu, else slides with a = g (sin - mu cos), dw/dt = 2
+# mu g cos / R
+
+
+@dataclass
+class Incline:
+    """Angle in degrees, and what the closed forms say, d over R the depth."""
+
+    degrees: float
+    stiffness: float = STIFFNESS["engine"]
+
+    @property
+    def sine(self) -> float:
+        return float(np.sin(np.radians(self.degrees)))
+
+    @property
+    def cosine(self) -> float:
+        return float(np.cos(np.radians(self.degrees)))
+
+    @property
+    def used(self) -> float:
+        """Of the friction that there is, the share that rolling needs."""
+        return self.sine / self.cosine / (3 * FRICTION)
+
+    @property
+    def d(self) -> float:
+        return depth(self.stiffness, self.cosine)
+
+    @property
+    def creep(self) -> float:
+        """Of rolling, over the speed: kt = kn, so that slip grows from the front edge until mu p / kt holds it back.
+
+        With q = creep A / (mu d) of a half width A = sqrt(2 d R), the force is (3/4) (2 q - q^2 + q^3/6) of mu N, so
+        q = 2 - 2 (1 - used)^(1/3).
+        """
+        return FRICTION * np.sqrt(2 * self.d) * (1 - (1 - self.used)**(1 / 3))
+
+    @property
+    def acceleration(self) -> float:
+        if self.used > 1:
+            return self.sine - FRICTION * self.cosine
+        return 2 / 3 * self.sine * (1 - ((LEVER + RIM) * self.d - self.creep) / 3)
+
+    @property
+    def spin(self) -> float:
+        """R dw/dt"""
+        if self.used > 1:
+            return 2 * FRICTION * self.cosine * (1 - LEVER * self.d)
+        return self.acceleration * (1 + RIM * self.d - self.creep)
+
+    @property
+    def friction(self) -> float:
+        return FRICTION * self.cosine * min(1.0, self.used)
+
+
+@cache
+def descent(solver: str, degrees: float) -> Run:
+    return run(solver, f"incline_{solver}_{degrees:g}", STIFFNESS[solver], SIDES[solver], degrees=degrees)
+
+
+def slopes(of: Run) -> tuple[float, float]:
+    """du/dt and R dw/dt, fitted once it has settled."""
+    t = of.times("disc.velocity_x")
+    late = t > SETTLED
+    return tuple(float(np.polyfit(t[late], sign * of.probe(f"disc.{name}")[late], 1)[0])
+                 for name, sign in (("velocity_x", 1), ("angular_velocity", -1)))
+
+
+@pytest.mark.parametrize("solver, degrees", DESCENTS)
+def test_incline(solver: str, degrees: float) -> None:
+    incline, (acceleration, spin) = Incline(degrees, STIFFNESS[solver]), slopes(descent(solver, degrees))
+    small = tolerance(STIFFNESS[solver], SIDES[solver], incline.cosine)
+    name = f"{solver}, {degrees:g} degrees, {'rolls' if incline.used <= 1 else 'slides'}"
+    source = "lever, rim and creep in the first order of d; the next order, sides in touch"
+    CASE.check(Label.EXACT, f"{name}: acceleration over closed form", acceleration / incline.acceleration, 1, small,
+               source)
+    CASE.check(Label.EXACT, f"{name}: spin over closed form", spin / incline.spin, 1, small, source)
+    rigid = 2 / 3 * incline.sine if incline.used <= 1 else incline.sine - FRICTION * incline.cosine
+    CASE.check(Label.EXACT, f"{name}: acceleration over that of a rigid floor", acceleration / rigid, 1,
+               small + abs(incline.acceleration / rigid - 1), "a floor that gives way: creep, lever and rim")
+    if incline.used <= 1 and solver == "engine":
+        CASE.check(Label.EXACT, f"{name}: creep", acceleration / spin - 1, incline.creep - RIM * incline.d, 2 * small,
+                   "springs on a parabola of pressure, slipping behind; as the accelerations")
+
+
+@pytest.mark.parametrize("degrees", ANGLES)
+def test_dissipation_down_the_incline(degrees: float) -> None:
+    """Friction times the way that the lever's end slips past the floor."""
+    incline, of = Incline(degrees), descent("engine", degrees)
+    t, lost = of.times("disc.velocity_x"), of.probe("works.dissipated_by_contact")
+    late = t >= SETTLED
+    way = float(np.trapz(of.probe("disc.velocity_x")[late], t[late]))
+    turned = -float(np.trapz(of.probe("disc.angular_velocity")[late], t[late]))
+    rolling = way * (incline.creep + (LEVER - RIM) * incline.d)
+    slipped = rolling if incline.used <= 1 else way - (1 - LEVER * incline.d) * turned
+    expected = MASS * incline.friction * slipped
+    small = tolerance(STIFFNESS["engine"], SIDES["engine"], incline.cosine)
+    CASE.check(Label.EXACT, f"engine, {degrees:g} degrees: dissipated over friction times slip",
+               (lost[-1] - lost[late][0]) / expected, 1,
+               3 * small * way / slipped, "closed form of the slip; next order in d over a slip that is little")
+
+
+@pytest.mark.parametrize("degrees", REFERENCE_ANGLES)
+def test_both_solvers_on_the_same_disc(degrees: float) -> None:
+    """That of few sides, on the soft floor: creep is much of the slip there, and closed forms err by it."""
+    reference, incline = descent("reference", degrees), Incline(degrees, STIFFNESS["reference"])
+    engine = run("engine", f"incline_soft_{degrees:g}", STIFFNESS["reference"], SIDES["reference"], degrees=degrees)
+    # Nodes gather slip from a step's end on, not from the edge: of their way through the half width a step's is late.
+    late = float(reference.probe("disc.velocity_x").max()) * STEP / np.sqrt(2 * incline.d)
+    (a, spin), (own_a, own_spin) = slopes(reference), slopes(engine)
+    source = "the share of a step in the way through the half width of contact, of the creep"
+    creep = own_a / own_spin - 1
+    CASE.check(Label.INDEPENDENT, f"both, {degrees:g} degrees: creep, reference over engine", (a / spin - 1) / creep, 1,
+               late, source)
+    CASE.check(Label.INDEPENDENT, f"both, {degrees:g} degrees: acceleration, reference over engine", a / own_a, 1,
+               late * creep, source)
+    lost = [float(np.diff(of.at("works.dissipated_by_contact", np.array([SETTLED, END])))[0]) for of in (reference,
+                                                                                                         engine)]
+    CASE.check(Label.INDEPENDENT, f"both, {degrees:g} degrees: dissipated, reference over engine", lost[0] / lost[1], 1,
+               late, source)
+
+
+def test_picture() -> None:
+    figure, axes = panels(3, f"Rigid disc of {SIDES['engine']} sides, friction {FRICTION}", across=True)
+    found, _, _ = usual_turn("engine")
+    t = found.run.times("disc.velocity_x")
+    meeting = 1 / (3 * FRICTION)
+    for name, sign, label, exact, colour in (
+            ("velocity_x", 1, "speed", np.where(t < meeting, 1 - FRICTION * t, 2 / 3), COLOURS[0]),
+            ("angular_velocity", -1, "angular velocity x R", np.where(t < meeting, 2 * FRICTION * t, 2 / 3),
+             COLOURS[1])):
+        axes[0].plot(t, sign * found.run.probe(f"disc.{name}"), color=colour, linewidth=2.0, label=label)
+        axes[0].plot(t, exact, "--", color=COLOURS[6], linewidth=1.0, label="closed form" if sign < 0 else None)
+    axes[0].set_title("starts to slide, turns to rolling", fontsize=10, loc="left")
+    axes[0].set_xlabel("time over sqrt(R / g)")
+    axes[0].set_ylabel("over u0")
+    draw_inclines(axes[1], axes[2])
+    for panel in axes:
+        legend(panel)
+    save(CASE, figure, "rolling")
+
+
+def draw_inclines(left, right) -> None:
+    angles = np.linspace(8, 42, 200)
+    for index, (label, colour,
+                marker) in enumerate(zip(("acceleration", "R x angular acceleration"), COLOURS, MARKERS)):
+        exact = [(Incline(a).acceleration, Incline(a).spin)[index] for a in angles]
+        left.plot(angles, exact, color=colour, linewidth=1.0, label=f"{label}, closed form")
+        left.plot(ANGLES, [slopes(descent("engine", a))[index] for a in ANGLES], marker, color=colour, markersize=5,
+                  label="engine")
+    left.set_title("inclines: rolls up to atan(3 x 0.2) = 31 degrees", fontsize=10, loc="left")
+    left.set_ylabel("over g")
+    rolls = [a for a in ANGLES if Incline(a).used <= 1]
+    inner = angles[[Incline(a).used <= 1 for a in angles]]
+    right.plot(inner, [100 * (Incline(a).creep - RIM * Incline(a).d) for a in inner], color=COLOURS[0], linewidth=1.0,
+               label="closed form")
+    right.plot(rolls, [100 * (slopes(descent("engine", a))[0] / slopes(descent("engine", a))[1] - 1) for a in rolls],
+               "o", color=COLOURS[0], label="engine")
+    right.set_title("creep of rolling", fontsize=10, loc="left")
+    right.set_ylabel("u / (w R) - 1 [%]")
+    for panel in (left, right):
+        panel.set_xlabel("incline [degrees]")

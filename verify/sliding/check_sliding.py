@@ -1,0 +1,138 @@
+"""A rigid block on an incline: Coulomb's law in slip up and down, the stop, and what is dissipated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import pytest
+
+from pictures import COLOURS, legend, panels, save
+from verification import Case, Label, Run
+
+CASE = Case(__file__, fast=True)
+
+FRICTION, MASS, STIFFNESS = 0.3, 0.5, 1e4
+LENGTH = 0.5 * 5 * 0.25  # in touch: five nodes of the block, half the weight a pass, and no node of the floor
+FREQUENCY = np.sqrt(STIFFNESS * LENGTH / MASS)  # of the block on its contact, along as across
+STEP = 0.002
+# Accelerations are differences of speeds of 0.1 to 1 over at least a second; Newton's method stops at 1e-10 of the
+# forces.
+ROUNDING = {"engine": 1e-12, "reference": 1e-9}
+
+
+@dataclass(frozen=True)
+class Start:
+    """Of a block at t = 0, with times between which it slips one way for sure."""
+
+    name: str
+    degrees: float
+    speed: float  # downhill
+    down: tuple[float, float] | None = None
+    up: tuple[float, float] | None = None
+
+    @property
+    def sine(self) -> float:
+        return float(np.sin(np.radians(self.degrees)))
+
+    @property
+    def cosine(self) -> float:
+        return float(np.cos(np.radians(self.degrees)))
+
+    def acceleration(self, down: bool = True) -> float:
+        """Downhill, of a block that slips."""
+        return self.sine - FRICTION * self.cosine * (1 if down else -1)
+
+
+STARTS = [Start("from rest", 30, 0.0, down=(0.2, 3.9)),
+          Start("kicked uphill", 30, -1.0, down=(2.0, 3.9), up=(0.2, 1.2)),
+          Start("too flat", 10, 0.2, down=(0.2, 1.5))]
+SOLVERS = ["engine", "reference"]
+
+
+@cache
+def run(start: Start, solver: str) -> Run:
+    depth = start.cosine * MASS / (STIFFNESS * LENGTH)
+    scene = CASE.scene(degrees=start.degrees, along=start.sine, across=-start.cosine, height=0.25 - depth,
+                       speed=start.speed, dt=STEP)
+    name = f"{start.name.replace(' ', '_')}_{solver}"
+    return CASE.engine(name, scene) if solver == "engine" else CASE.reference(name, scene, "--dt", str(STEP))
+
+
+def change(of: Run, column: str, times: tuple[float, float]) -> float:
+    before, after = of.at(column, np.array(times))
+    return float(after - before)
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("start", STARTS, ids=lambda start: start.name)
+def test_slip(start: Start, solver: str) -> None:
+    """a = g (sin - mu cos) downhill, g (sin + mu cos) while it still goes up; friction's work is its force times the
+    way."""
+    of = run(start, solver)
+    for way, times in (("down", start.down), ("up", start.up)):
+        if times is None:
+            continue
+        mean = change(of, "motion.velocity_x", times) / (times[1] - times[0])
+        CASE.check(Label.EXACT, f"{start.name}, {solver}: acceleration {way}", mean, start.acceleration(way == "down"),
+                   ROUNDING[solver], "Coulomb; rounding, Newton's residual")
+        work = FRICTION * MASS * start.cosine * abs(change(of, "block.displacement_x", times))
+        CASE.check(Label.EXACT, f"{start.name}, {solver}: friction work {way}",
+                   change(of, "works.dissipated_by_contact", times) / work, 1, ROUNDING[solver], "force times way")
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_stop(solver: str) -> None:
+    """Where tan(theta) < mu it stops after v^2 / (2 a), and swings on its tangential spring: with a / w, about a /
+    w^2 before that place."""
+    start, of = STARTS[2], run(STARTS[2], solver)
+    slow, since = -start.acceleration(), start.down[0]
+    speed = float(of.at("motion.velocity_x", np.array([since]))[0])
+    stopped = of.times("block.displacement_x") > since + speed / slow + 0.1
+    # Periods of 0.056 s, so that a mean over 2.2 s errs by the amplitude times 0.056 / (2.2 pi).
+    way = of.probe("block.displacement_x")[stopped].mean() - float(of.at("block.displacement_x", np.array([since]))[0])
+    swing = slow / FREQUENCY**2
+    # The step of the stop ends at up to half of its own change of speed, slow x dt / 2, off 0.
+    late = 0.5 * slow * STEP**2 + slow * STEP / FREQUENCY
+    CASE.check(Label.EXACT, f"stop, {solver}: way", way, speed**2 / (2 * slow) - swing, 0.01 * swing + late,
+               "v^2 / (2 a) less a / w^2; a hundredth of the swing from the mean, and the step in which it stops")
+    speeds = of.probe("motion.velocity_x")[stopped]
+    CASE.check(Label.EXACT, f"stop, {solver}: largest speed after it, over a / w",
+               np.abs(speeds).max() * FREQUENCY / slow, 1,
+               FREQUENCY * STEP / 2 + 0.03, "a spring that was at its limit; the step of the stop, dt w / 2; samples")
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_books(solver: str) -> None:
+    for start in STARTS:
+        CASE.check(Label.EXACT, f"{start.name}, {solver}: balance of energy", run(start, solver).balance_error, 0, 1e-5,
+                   "elastic energies are 1e-4 of all, and Verlet errs by less than a tenth of them")
+
+
+def test_picture() -> None:
+    figure, axes = panels(2, "Rigid block on an incline, friction 0.3", across=True)
+    for start, colour in zip(STARTS, COLOURS):
+        of = run(start, "engine")
+        times, speed = of.times("motion.velocity_x"), of.probe("motion.velocity_x")
+        axes[0].plot(times, speed, color=colour, linewidth=1.4, label=f"{start.name}, {start.degrees:g} degrees")
+        axes[0].plot(times, coulomb(start, times), "--", color=COLOURS[6], linewidth=1.0,
+                     label="Coulomb" if start is STARTS[-1] else None)
+        lost = of.probe("works.dissipated_by_contact")
+        axes[1].plot(times, lost, color=colour, linewidth=1.4, label=start.name)
+        way = np.concatenate([[0], np.cumsum(np.abs(np.diff(of.probe("block.displacement_x"))))])
+        axes[1].plot(times, FRICTION * MASS * start.cosine * way, "--", color=COLOURS[6], linewidth=1.0,
+                     label="friction x way" if start is STARTS[-1] else None)
+    for panel, label in zip(axes, ("speed downhill over sqrt(g L)", "dissipated; density, g, L: 1")):
+        panel.set_xlabel("time over sqrt(L / g)")
+        panel.set_ylabel(label)
+        legend(panel)
+    save(CASE, figure, "sliding")
+
+
+def coulomb(start: Start, times: np.ndarray) -> np.ndarray:
+    """Speed of a block without a spring in its contact."""
+    up = np.minimum(start.speed + start.acceleration(False) * times, 0) if start.speed < 0 else np.zeros_like(times)
+    turned = -start.speed / start.acceleration(False) if start.speed < 0 else 0.0
+    down = np.maximum(max(start.speed, 0.0) + start.acceleration() * (times - turned), 0)
+    return np.where(times < turned, up, down)
