@@ -226,31 +226,35 @@ Vector Loads::dof_damping(double time) const {
   return damping;
 }
 
-Vector Loads::outline_damping(double time) const {
-  Vector damping = Vector::Zero(2 * bodies_.outline_nodes());
-  for (const OutlineLoad& load : outline_)
-    if (load.condition.kind == Kind::support && acts(load, time))
-      for (const LoadedNode& node : load.nodes)
-        for (int c = 0; c < 2; ++c)
-          if (holds(load, c)) damping[2 * node.node + c] += load.condition.damping * node.length;
-  return damping;
+Dashpots Loads::dashpots(double time) const {
+  Dashpots result{Vector::Zero(2 * bodies_.outline_nodes()), Vector::Zero(2 * bodies_.outline_nodes())};
+  for (const OutlineLoad& load : outline_) {
+    if (load.condition.kind != Kind::support || !acts(load, time)) continue;
+    for (const LoadedNode& node : load.nodes)
+      for (int c = 0; c < 2; ++c) {
+        if (!holds(load, c)) continue;
+        const double coefficient = load.condition.damping * node.length;
+        result.coefficient[2 * node.node + c] += coefficient;
+        result.pull[2 * node.node + c] += coefficient * target_velocity(drive_of(load, c), time);
+      }
+  }
+  return result;
 }
 
-Vector Loads::outline_target_velocity(double time) const {
-  Vector velocity = Vector::Zero(2 * bodies_.outline_nodes());
-  for (const OutlineLoad& load : outline_)
-    if (load.condition.kind == Kind::support && acts(load, time))
-      for (const LoadedNode& node : load.nodes)
-        for (int c = 0; c < 2; ++c) velocity[2 * node.node + c] = target_velocity(drive_of(load, c), time);
-  return velocity;
-}
-
-Vector Loads::outline_target_motion(double t0, double t1) const {
-  Vector motion = Vector::Zero(2 * bodies_.outline_nodes());
-  for (const OutlineLoad& load : outline_)
-    if (load.condition.kind == Kind::support && acts(load, t0))
-      for (const LoadedNode& node : load.nodes) motion.segment<2>(2 * node.node) = moved(load, t1) - moved(load, t0);
-  return motion;
+double Loads::dashpot_work(const Vector& v0, double t0, const Vector& v1, double t1) const {
+  double work = 0;
+  for (const OutlineLoad& load : outline_) {
+    if (load.condition.kind != Kind::support || !acts(load, t0)) continue;
+    const Vec2 motion = moved(load, t1) - moved(load, t0);
+    for (const LoadedNode& node : load.nodes)
+      for (int c = 0; c < 2; ++c) {
+        if (!holds(load, c)) continue;
+        double slip = target_velocity(drive_of(load, c), t0) - v0[2 * node.node + c];
+        if (acts(load, t1)) slip += target_velocity(drive_of(load, c), t1) - v1[2 * node.node + c];
+        work += 0.5 * load.condition.damping * node.length * slip * motion[c];
+      }
+  }
+  return work;
 }
 
 bool Loads::imposed(int dof, double time) const {

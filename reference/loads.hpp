@@ -42,6 +42,12 @@ struct OutlineResidual {
   bool symmetric = true;
 };
 
+/// Dashpots of soft supports, of several at one node together: force = pull - coefficient x velocity. [2 outline nodes]
+struct Dashpots {
+  Vector coefficient;  ///< Pa s
+  Vector pull;         ///< that of their targets' velocities, N/m
+};
+
 /// Everything that acts on bodies from outside.
 class Loads {
  public:
@@ -54,11 +60,11 @@ class Loads {
   OutlineResidual outlines(const Points& x, double time) const;
   /// Work of pressures, and of supports whose targets move, between two times, by the mean of the forces, J/m.
   double outline_work(const Points& x0, double t0, const Points& x1, double t1) const;
-  /// Damping forces are minus this matrix times the velocities less those of moving supports: on degrees of freedom, and on outlines.
+  /// Damping forces on degrees of freedom are minus this times their velocities.
   Vector dof_damping(double time) const;
-  Vector outline_damping(double time) const;
-  Vector outline_target_velocity(double time) const;
-  Vector outline_target_motion(double t0, double t1) const;  ///< of supports that act at t0, [2 outline nodes], m
+  Dashpots dashpots(double time) const;
+  /// Work of the targets on dashpots that act at t0, by the mean of the forces at outline velocities v0 and v1 [2 outline nodes], J/m.
+  double dashpot_work(const Vector& v0, double t0, const Vector& v1, double t1) const;
 
   bool imposed(int dof, double time) const;
   /// Position at t1 of a degree of freedom that is imposed from t0 on and was at q0 then.

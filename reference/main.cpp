@@ -35,7 +35,8 @@ int main_program(int argc, char** argv) {
   app.add_option("--tolerance", options.solver.newton.tolerance, "Newton: residual over the forces")
       ->check(CLI::Range(1e-14, 1e-2));
   app.add_flag("--force", options.force, "Overwrite results in the output folder");
-  app.add_flag("--quiet", options.quiet, "Print errors only");
+  CLI::Option* quiet = app.add_flag("--quiet", options.quiet, "Print errors only");
+  app.add_flag("--verbose", options.verbose, "Print a line for every step")->excludes(quiet);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -60,6 +61,9 @@ int main(int argc, char** argv) {
   spdlog::set_pattern("%l: %v");
   try {
     return pliant::reference::main_program(argc, argv);
+  } catch (const pliant::Stopped& stopped) {
+    fmt::print(stderr, "{}\n", stopped.what());
+    return static_cast<int>(stopped.code());
   } catch (const pliant::Error& error) {
     fmt::print(stderr, "error: {}\n", error.what());
     return static_cast<int>(error.code());

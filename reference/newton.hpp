@@ -33,7 +33,7 @@ struct NewtonResult {
 };
 
 /// Newton's method with a line search that keeps to admissible places. Residuals are measured in the norm of the inverse diagonal of the first
-/// matrix, an energy, so that forces and moments can be added. `x`: the start, then the solution.
+/// matrix, an energy, so that forces and moments can be added. `x`: the start, then the solution, at which `equations` was asked last.
 NewtonResult solve_newton(const Equations& equations, const NewtonOptions& options, LinearSolver& solver, Vector& x);
 
 }  // namespace pliant::reference

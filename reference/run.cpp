@@ -1,6 +1,7 @@
 #include "reference/run.hpp"
 
-#include <chrono>
+#include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -9,22 +10,28 @@
 #include "build_info.hpp"
 #include "core/errors.hpp"
 #include "core/memory.hpp"
+#include "core/stop_signals.hpp"
 #include "files/folder_lock.hpp"
 #include "reference/outputs/frames.hpp"
 #include "reference/outputs/probes.hpp"
+#include "reference/progress.hpp"
 #include "scene/text_file.hpp"
 
 namespace pliant::reference {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+/// Share of its energy that a run may make without a warning: well resolved bounces stay below (verify/energy_drift).
+constexpr double made_energy = 0.01;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// What a run has cost so far.
-struct Effort {
-  long steps = 0, bisections = 0, iterations = 0;
-};
+/// Of strains of 1e-12, which may be rounding, J/m.
+double least_energy(const Bodies& bodies) {
+  double energy = 0;
+  for (const Body& body : bodies.all()) {
+    const Material& material = bodies.material_of(body);
+    if (body.compliant()) energy += 1e-24 * material.young * body.mass / material.density;
+  }
+  return energy;
+}
 
 /// A run's files.
 class Outputs {
@@ -33,6 +40,10 @@ class Outputs {
       : system_(system),
         run_(run),
         options_(options),
+        progress_(options.quiet     ? Progress::Detail::none
+                  : options.verbose ? Progress::Detail::steps
+                                    : Progress::Detail::periodic,
+                  system.bodies().scene().time.end),
         probes_(system.bodies(), options.out),
         frames_(system.bodies(), options.out),
         steps_(options.out / "steps.csv",
@@ -55,28 +66,43 @@ class Outputs {
 
   void record_step(const StepRecord& record) {
     ++effort.steps;
+    longest_step_ = std::max(longest_step_, record.dt);
     effort.bisections += record.bisections, effort.iterations += record.iterations;
+    if (run_.books().made() > most_made_) most_made_ = run_.books().made(), most_made_at_ = run_.motion().time;
     const Forces& forces = run_.forces();
-    const auto touching = static_cast<double>(forces.contacts.elements.size());
     steps_.row({run_.motion().time, record.dt, record.residual, static_cast<double>(effort.bisections),
-                static_cast<double>(effort.iterations), touching, jacobian()});
+                static_cast<double>(effort.iterations), static_cast<double>(forces.contacts.elements.size()),
+                least_jacobian(forces)});
     steps_.flush();
-    if (options_.quiet) return;
-    fmt::print(stderr, "t = {:.6g} s: {} Newton iterations, residual {:.1e}, least J {:.4f}, {} contact nodes{}\n",
-               run_.motion().time, record.iterations, record.residual, jacobian(), touching,
-               record.bisections > 0 ? fmt::format(", step halved {} times", record.bisections) : "");
+    progress_.show_if_due(run_, record, effort);
+  }
+
+  void stop_if_asked() const {
+    const int signal = StopSignals::received();
+    if (signal == 0) return;
+    throw Stopped(signal, fmt::format("stopped by {} at t = {:.6g} s; results up to there are in {}; there are no "
+                                      "checkpoints: --force starts anew",
+                                      signal_name(signal), run_.motion().time, options_.out.string()));
   }
 
   void write_summary(const std::string& status) const {
     write_file_atomically(options_.out / "summary.json", summary(status).dump(2) + "\n");
   }
 
- private:
-  /// Of compliant bodies; 1 without any.
-  double jacobian() const {
-    return std::min(1e300, run_.forces().least_jacobian) < 1e300 ? run_.forces().least_jacobian : 1.0;
+  /// The last summary, and what there is to say at the end.
+  void finish(const std::string& status) {
+    progress_.finish();
+    write_summary(status);
+    const double scale = run_.books().scale();
+    if (options_.solver.statics || most_made_ <= made_energy * scale + least_energy(system_.bodies())) return;
+    spdlog::warn(
+        "the time steps have made energy: up to {:.2g} % of what the scene had or took up, at t = {:.6g} s; steps of "
+        "{:.3g} s are long against the vibrations of its contacts: give a smaller --dt, such as {:.2g} s{}",
+        100 * most_made_ / scale, most_made_at_, longest_step_, longest_step_ / 4,
+        options_.solver.hht == 0 ? ", or --hht -0.1" : "");
   }
 
+ private:
   nlohmann::ordered_json summary(const std::string& status) const {
     const Scene& scene = system_.bodies().scene();
     const Books& books = run_.books();
@@ -91,7 +117,7 @@ class Outputs {
     json["steps"] = effort.steps;
     json["rejections"] = effort.bisections;
     json["evaluations"] = effort.iterations;
-    json["wall_seconds"] = seconds_since(start_);
+    json["wall_seconds"] = progress_.seconds();
     json["energy"] = {{"kinetic", books.kinetic},
                       {"strain", books.strain},
                       {"contact", books.contact},
@@ -112,7 +138,9 @@ class Outputs {
   const System& system_;
   const TimeStepping& run_;
   const RunOptions& options_;
-  Clock::time_point start_ = Clock::now();
+  double most_made_ = 0, most_made_at_ = 0;  ///< energy, J/m, and when, s
+  double longest_step_ = 0;                  ///< s
+  Progress progress_;
   ProbeFile probes_;
   FrameOutput frames_;
   CsvFile steps_;
@@ -129,9 +157,12 @@ void advance(const System& system, TimeStepping& run, Outputs& outputs, double d
     for (const double t : switches)
       if (t > now) until = std::min(until, t);
     const int parts = std::max(1, static_cast<int>(std::ceil((until - now) / dt * (1 - 1e-9))));
-    for (int part = 1; part <= parts; ++part)
+    for (int part = 1; part <= parts; ++part) {
       outputs.record_step(run.step(part == parts ? until : now + (until - now) * part / parts));
+      if (part < parts) outputs.stop_if_asked();
+    }
     outputs.record_due();
+    if (run.motion().time < end) outputs.stop_if_asked();
   }
 }
 
@@ -162,13 +193,18 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   Outputs outputs(system, run, options);
   write_file_atomically(options.out / "scene.toml", text);
   outputs.write_summary("running");
+  const StopSignals signals;
   try {
     advance(system, run, outputs, solver.dt);
+  } catch (const Stopped&) {
+    outputs.finish(fmt::format("stopped: {}", signal_name(StopSignals::received())));
+    throw;
   } catch (const Error& error) {
-    outputs.write_summary(std::string("failed: ") + error.what());
+    outputs.finish(std::string("failed: ") + error.what());
     throw;
   }
-  outputs.write_summary("finished");
+  outputs.finish("finished");
+  if (options.quiet) return;
   fmt::print("{}: t = {:.6g} s, {} steps, {} halved, {} Newton iterations, energy balance {:.2e}\n",
              options.out.string(), run.motion().time, outputs.effort.steps, outputs.effort.bisections,
              outputs.effort.iterations, run.books().balance_error());

@@ -9,6 +9,7 @@ namespace pliant::reference {
 struct RunOptions {
   std::filesystem::path out;
   bool force = false, quiet = false;
+  bool verbose = false;  ///< a line of progress for every step
   SolverOptions solver;  ///< dt 0: chosen by default_step
 };
 
@@ -17,7 +18,8 @@ struct RunOptions {
 double default_step(const Bodies& bodies, bool statics);
 
 /// Solves a scene to its end and writes a folder of results as the engine does, for `compare`. A failure leaves readable outputs with a summary
-/// that names it, and is thrown on.
+/// that names it, and is thrown on. SIGINT and SIGTERM end the run after the present step in the same way: throws Stopped. Warns when the
+/// steps have made energy.
 void run_scene(const Scene& scene, const RunOptions& options);
 
 }  // namespace pliant::reference

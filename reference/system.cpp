@@ -25,21 +25,22 @@ System::System(const Scene& scene)
       internal_.emplace_back(bodies_.space_of(body), bodies_.material_of(body), body.placed.scale, body.placed.angle);
 }
 
-void System::accept(const Motion& motion) {
-  contacts_.accept();
-  accepted_ = motion;
-}
-
 Forces System::evaluate(const Motion& motion, bool tangent) {
   Forces forces;
   forces.residual = forces.magnitude = forces.damping = Vector::Zero(bodies_.dofs());
-  Triplets entries;
+  Triplets entries, rates;
   add_internal(motion, tangent, forces, entries);
   if (!(forces.least_jacobian > 0)) return forces;
-  add_outlines(motion, tangent, forces, entries);
+  const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q);
+  add_outlines(motion, jacobian, tangent, forces, entries);
   add_applied(motion, forces);
-  add_damping(motion, forces);
-  if (tangent) forces.stiffness = assembled(entries, bodies_.dofs());
+  add_dashpots(motion, jacobian, tangent, forces, rates);
+  add_viscosity(motion, tangent, forces, entries, rates);
+  forces.residual += forces.damping;
+  forces.magnitude += forces.damping.cwiseAbs();
+  if (!tangent) return forces;
+  forces.stiffness = assembled(entries, bodies_.dofs());
+  forces.viscosity = assembled(rates, bodies_.dofs());
   return forces;
 }
 
@@ -49,17 +50,13 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
     const Body& body = bodies_.all()[b];
     if (!body.compliant()) continue;
     const int first = body.first_dof;
-    std::optional<Increment> increment;
-    if (bodies_.material_of(body).viscosity > 0 && motion.time > accepted_.time)
-      increment = {accepted_.q.segment(first, body.dofs), motion.time - accepted_.time};
-    const InternalState internal = internal_[number++].evaluate(motion.q.segment(first, body.dofs), tangent, increment);
+    const InternalState internal = internal_[number++].evaluate(motion.q.segment(first, body.dofs), tangent);
     if (internal.least_jacobian < forces.least_jacobian) {
       forces.least_jacobian = internal.least_jacobian;
       forces.worst_body = static_cast<int>(b);
     }
     if (!(internal.least_jacobian > 0)) return;
     forces.strain += internal.energy;
-    forces.dissipated_by_viscosity += internal.dissipated;
     forces.residual.segment(first, body.dofs) += internal.residual;
     forces.magnitude.segment(first, body.dofs) += internal.residual.cwiseAbs();
     if (tangent) append(internal.tangent, first, entries);
@@ -67,7 +64,8 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
 }
 
 /// Contacts, pressures and supports act on outlines, and through them on the bodies.
-void System::add_outlines(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) {
+void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
+                          Triplets& entries) {
   const Points x = bodies_.outline_positions(motion.q);
   OutlineResidual outlines = loads_.outlines(x, motion.time);
   forces.boundary = outlines.stored;
@@ -89,7 +87,7 @@ void System::add_outlines(const Motion& motion, bool tangent, Forces& forces, Tr
     forces.symmetric &= element.further.empty() && element.tangent.isApprox(element.tangent.transpose(), 1e-13);
   }
   forces.symmetric &= outlines.symmetric;
-  const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();
+  const SparseMatrix back = jacobian.transpose();
   forces.residual += back * outlines.residual;
   forces.magnitude += back.cwiseAbs() * magnitude;
   if (!tangent) return;
@@ -103,23 +101,36 @@ void System::add_applied(const Motion& motion, Forces& forces) const {
   forces.magnitude += applied.cwiseAbs();
 }
 
-void System::add_damping(const Motion& motion, Forces& forces) const {
-  const Vector own = loads_.dof_damping(motion.time), outline = loads_.outline_damping(motion.time);
-  Triplets entries;
-  for (int i = 0; i < bodies_.dofs(); ++i)
-    if (own[i] != 0) entries.emplace_back(i, i, own[i]);
-  forces.viscosity = assembled(entries, bodies_.dofs());
-  forces.damping = forces.viscosity * motion.v;
-  forces.dashpots = Vector::Zero(outline.size());
-  if (!outline.isZero(0)) {
-    const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q), back = jacobian.transpose();
-    const Vector slip = jacobian * motion.v - loads_.outline_target_velocity(motion.time);
-    forces.dashpots = outline.cwiseProduct(slip);
-    forces.damping += back * forces.dashpots;
-    forces.viscosity += SparseMatrix(back * outline.asDiagonal() * jacobian);
+void System::add_dashpots(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
+                          Triplets& rates) const {
+  const Vector own = loads_.dof_damping(motion.time);
+  const Dashpots outline = loads_.dashpots(motion.time);
+  const SparseMatrix back = jacobian.transpose();
+  forces.outline_velocity = jacobian * motion.v;
+  forces.damping +=
+      own.cwiseProduct(motion.v) + back * (outline.coefficient.cwiseProduct(forces.outline_velocity) - outline.pull);
+  if (!tangent) return;
+  for (int i = 0; i < own.size(); ++i)
+    if (own[i] != 0) rates.emplace_back(i, i, own[i]);
+  if (!outline.coefficient.isZero(0)) append(back * outline.coefficient.asDiagonal() * jacobian, 0, rates);
+}
+
+void System::add_viscosity(const Motion& motion, bool tangent, Forces& forces, Triplets& entries,
+                           Triplets& rates) const {
+  std::size_t number = 0;
+  for (const Body& body : bodies_.all()) {
+    if (!body.compliant()) continue;
+    const InternalForces& internal = internal_[number++];
+    if (bodies_.material_of(body).viscosity == 0) continue;
+    const int first = body.first_dof;
+    const ViscousState viscous =
+        internal.damping(motion.q.segment(first, body.dofs), motion.v.segment(first, body.dofs), tangent);
+    forces.damping.segment(first, body.dofs) += viscous.residual;
+    forces.symmetric &= motion.v.segment(first, body.dofs).isZero(0);
+    if (!tangent) continue;
+    append(viscous.by_positions, first, entries);
+    append(viscous.by_velocities, first, rates);
   }
-  forces.residual += forces.damping;
-  forces.magnitude += forces.damping.cwiseAbs();
 }
 
 }  // namespace pliant::reference

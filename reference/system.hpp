@@ -16,16 +16,15 @@ struct Motion {
 
 /// All forces at one motion, as residuals: mass x acceleration + residual = 0.
 struct Forces {
-  Vector residual;         ///< [dofs]
-  Vector magnitude;        ///< [dofs], sum of the absolute values of what cancels in it
-  Vector damping;          ///< [dofs], the part that depends on velocities
-  Vector dashpots;         ///< [2 x outline nodes], minus what those of soft supports pull with
-  SparseMatrix stiffness;  ///< of the residual by positions; empty unless asked for
-  SparseMatrix viscosity;  ///< of the residual by velocities
+  Vector residual;          ///< [dofs]
+  Vector magnitude;         ///< [dofs], sum of the absolute values of what cancels in it
+  Vector damping;           ///< [dofs], the part that depends on velocities: dashpots, mass damping, viscosity
+  Vector outline_velocity;  ///< [2 x outline nodes], m/s
+  SparseMatrix stiffness;   ///< of the residual by positions; empty unless asked for
+  SparseMatrix viscosity;   ///< of the residual by velocities; empty unless asked for
   bool symmetric = true;
   double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
   double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
-  double dissipated_by_viscosity = 0;            ///< since then, J/m
   double least_jacobian = 1e300;
   int worst_body = -1;  ///< the one with it
   double deepest = 0;   ///< penetration over the segment's length
@@ -41,22 +40,24 @@ class System {
   const Loads& loads() const { return loads_; }
   /// With the tangent when asked to. Contacts remember what accept() has accepted.
   Forces evaluate(const Motion& motion, bool tangent);
-  /// Histories go on from this motion, the last one evaluated.
-  void accept(const Motion& motion);
+  /// Histories go on from the last motion evaluated.
+  void accept() { contacts_.accept(); }
   /// [compliant bodies] in their order.
   const std::vector<InternalForces>& internal() const { return internal_; }
 
  private:
   void add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) const;
-  void add_outlines(const Motion& motion, bool tangent, Forces& forces, Triplets& entries);
+  void add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
+                    Triplets& entries);
   void add_applied(const Motion& motion, Forces& forces) const;
-  void add_damping(const Motion& motion, Forces& forces) const;
+  void add_dashpots(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
+                    Triplets& rates) const;
+  void add_viscosity(const Motion& motion, bool tangent, Forces& forces, Triplets& entries, Triplets& rates) const;
 
   Bodies bodies_;
   Loads loads_;
   std::vector<InternalForces> internal_;  ///< [compliant bodies]
   Contacts contacts_;
-  Motion accepted_;
 };
 
 }  // namespace pliant::reference

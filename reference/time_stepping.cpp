@@ -48,11 +48,11 @@ std::string worst_body(const Forces& forces, const Bodies& bodies) {
 
 }  // namespace
 
-double Books::balance_error() const {
-  const double missing = mechanical() - at_start - external_work() + dissipated();
-  const double whole = std::max({std::abs(external_work()), std::abs(at_start), dissipated()});
-  return whole > 0 ? std::abs(missing) / whole : 0.0;
-}
+double Books::made() const { return mechanical() - at_start - external_work() + dissipated(); }
+
+double Books::scale() const { return std::max({std::abs(external_work()), std::abs(at_start), dissipated()}); }
+
+double Books::balance_error() const { return scale() > 0 ? std::abs(made()) / scale() : 0.0; }
 
 struct TimeStepping::Trial {
   Motion motion;
@@ -75,7 +75,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   forces_ = system.evaluate(motion_, true);
   if (const std::string trouble = trouble_of(forces_, bodies); !trouble.empty())
     throw PhysicsError(fmt::format("at the start: {}", trouble));
-  system.accept(motion_);
+  system.accept();
   if (options.statics) {
     const Vector mass = bodies.lumped_mass();
     holding_ = options.pseudo_inertia * forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff() * mass;
@@ -135,11 +135,13 @@ Motion TimeStepping::motion_at(double until, const Vector& q) const {
   return {q, std::move(v), until};
 }
 
-/// `anchor`: static runs: where pseudo-inertia holds the bodies.
+/// `anchor`: static runs: where pseudo-inertia holds the bodies. `trial`: the motion and the forces there.
 Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor,
-                                      bool tangent) {
+                                      bool tangent, Trial& trial) {
   const double dt = until - motion_.time;
-  const Forces forces = system_.evaluate(motion_at(until, q), tangent);
+  trial.motion = motion_at(until, q);
+  trial.forces = system_.evaluate(trial.motion, tangent);
+  const Forces& forces = trial.forces;
   Linearisation result;
   result.trouble = trouble_of(forces, system_.bodies());
   result.admissible = result.trouble.empty();
@@ -177,15 +179,15 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
     Vector free = pick * q;
     const Vector imposed = q - select * free;
     const NewtonResult result = solve_newton(
-        [&](const Vector& x, bool tangent) { return equations(until, select, imposed + select * x, anchor, tangent); },
+        [&](const Vector& x, bool tangent) {
+          return equations(until, select, imposed + select * x, anchor, tangent, trial);
+        },
         options_.newton, solver_, free);
     record.iterations += result.iterations;
     if (!result.residuals.empty()) record.residual = result.residuals.back(), record.residuals = result.residuals;
     record.trouble = fmt::format("{} (largest residual in '{}')", result.trouble, worst_);
     if (!result.converged) return false;
-    q = imposed + select * free;
-    trial.motion = motion_at(until, q);
-    trial.forces = system_.evaluate(trial.motion, true);
+    q = trial.motion.q;  // Newton's last evaluation is that of its solution
     if (double moved = largest_motion(trial.motion); moved > system_.bodies().finest_spacing()) {
       record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
       return false;
@@ -226,7 +228,7 @@ void TimeStepping::book(const Trial& trial) {
                                              bodies.outline_positions(after.q), after.time);
   // A dashpot between a node and a moving target takes what both put in.
   const double by_targets =
-      -0.5 * (forces_.dashpots + trial.forces.dashpots).dot(loads.outline_target_motion(before.time, after.time));
+      loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.time);
   books_.work_of_loads += by_targets;
   books_.dissipated_by_damping += by_targets;
   // What holds an imposed motion gives it its kinetic energy and works against the other forces.
@@ -235,15 +237,14 @@ void TimeStepping::book(const Trial& trial) {
       books_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
                               0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
   books_.dissipated_by_contact += trial.forces.dissipated;
-  books_.dissipated_by_damping +=
-      0.5 * (forces_.damping + trial.forces.damping).dot(moved) + trial.forces.dissipated_by_viscosity;
+  books_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
   books_.kinetic = 0.5 * after.v.dot(mass_ * after.v);
   books_.strain = trial.forces.strain, books_.contact = trial.forces.contact, books_.boundary = trial.forces.boundary;
 }
 
 void TimeStepping::accept(const Trial& trial) {
   book(trial);
-  system_.accept(trial.motion);
+  system_.accept();
   motion_ = trial.motion;
   acceleration_ = trial.acceleration;
   forces_ = trial.forces;

@@ -28,8 +28,9 @@ struct Books {
   double mechanical() const { return kinetic + strain + contact + boundary; }
   double dissipated() const { return dissipated_by_contact + dissipated_by_damping; }
   double external_work() const { return work_of_loads + work_of_gravity; }
-  /// What is missing, over the largest of external work, the start's energy and dissipation.
-  double balance_error() const;
+  double made() const;           ///< what no work has brought; negative: lost, J/m
+  double scale() const;          ///< the largest of external work, the start's energy and dissipation, J/m
+  double balance_error() const;  ///< |made| over scale
 };
 
 /// What became of one step that was asked for.
@@ -66,8 +67,8 @@ class TimeStepping {
   void book(const Trial& trial);
   Motion motion_at(double until, const Vector& q) const;
   Vector acceleration_at(double dt, const Vector& q) const;
-  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor,
-                          bool tangent);
+  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor, bool tangent,
+                          Trial& trial);
   double largest_motion(const Motion& next) const;
   bool settled(const Forces& forces, const SparseMatrix& pick) const;
   void find_acceleration();

@@ -102,6 +102,19 @@ def size_text(size: int) -> str:
     return readable(float(size), "B") if size else "0 B"
 
 
+def is_reference(summary: dict) -> bool:
+    """Of the reference solver, which counts other things than the engine and writes no checkpoints."""
+    return "solver" in summary
+
+
+def speed_text(summary: dict) -> str:
+    wall = duration(summary["wall_seconds"])
+    if is_reference(summary):
+        return f"{wall} on one thread, {summary['solver']}"
+    resumed = f", resumed {summary['resumed']} times" if summary.get("resumed") else ""
+    return f"{summary['evaluations_per_second']:.0f} evaluations/s, {wall} on {summary['threads']} threads{resumed}"
+
+
 def progress_lines(summary: dict, steps: dict[str, float], end: float | None) -> list[tuple[str, str]]:
     time = max(steps.get("time", 0.0), summary.get("time", 0.0))
     share = f" of {readable(end, 's')} ({100 * time / end:.1f} %)" if end else ""
@@ -110,10 +123,9 @@ def progress_lines(summary: dict, steps: dict[str, float], end: float | None) ->
         return lines
     evaluations = int(max(steps.get("evaluations", 0), summary["evaluations"]))
     at = readable(summary["time"], "s")
-    lines.append(("steps", f"{summary['steps']}, {summary['rejections']} rejected (at {at}), {evaluations} evaluations"))
-    resumed = f", resumed {summary['resumed']} times" if summary.get("resumed") else ""
-    lines.append(("speed", f"{summary['evaluations_per_second']:.0f} evaluations/s, "
-                           f"{duration(summary['wall_seconds'])} on {summary['threads']} threads{resumed}"))
+    counted = "Newton iterations" if is_reference(summary) else "evaluations"
+    lines.append(("steps", f"{summary['steps']}, {summary['rejections']} rejected (at {at}), {evaluations} {counted}"))
+    lines.append(("speed", speed_text(summary)))
     if time > 0 and end and time < end and summary["time"] > 0:
         lines.append(("left", f"about {duration(summary['wall_seconds'] / summary['time'] * (end - time))}"))
     return lines
@@ -123,11 +135,14 @@ def book_lines(summary: dict) -> list[tuple[str, str]]:
     if not summary:
         return []
     at = readable(summary["time"], "s")
-    return [("energy", f"balance error {summary['energy']['balance_error']:.2e}, momentum error "
-                       f"{summary['momentum_error']:.1e} (at {at})"),
+    energy = f"balance error {summary['energy']['balance_error']:.2e}"
+    build = ("build", f"{summary['commit']}, {summary['compiler']}")
+    if is_reference(summary):
+        return [("energy", f"{energy} (at {at})"),
+                ("scene", f"{summary['bodies']} bodies, {summary['dofs']} DOFs"), build]
+    return [("energy", f"{energy}, momentum error {summary['momentum_error']:.1e} (at {at})"),
             ("hash", f"{summary['state_hash']} (at {at})"),
-            ("scene", f"{summary['bodies']} bodies, {summary['nodes']} nodes, {summary['dofs']} DOFs"),
-            ("build", f"{summary['commit']}, {summary['compiler']}")]
+            ("scene", f"{summary['bodies']} bodies, {summary['nodes']} nodes, {summary['dofs']} DOFs"), build]
 
 
 def file_lines(folder: Path) -> list[tuple[str, str]]:
@@ -135,7 +150,11 @@ def file_lines(folder: Path) -> list[tuple[str, str]]:
     return [("files", ", ".join(f"{file.name} {size_text(file.stat().st_size)}" for file in files))]
 
 
-def next_step(folder: Path, status: str, checkpoint: dict) -> str:
+def next_step(folder: Path, status: str, checkpoint: dict, reference: bool) -> str:
+    if reference and status == "finished":
+        return f"./pliant plot {folder}, or ./pliant compare with a folder of the engine"
+    if reference and status == "running":
+        return "wait, or stop it with SIGINT or SIGTERM: results are whole up to there"
     if status == "finished":
         return f"./pliant plot {folder}, or go on to a later end: ./pliant run --resume --out {folder} --until TIME"
     if status == "running":
@@ -163,7 +182,7 @@ def report(folder: Path) -> list[tuple[str, str]]:
                                 f"{checkpoint['written']} UTC" if checkpoint else "none"))
     times = frame_times(folder)
     lines.append(("frames", f"{len(times)}, the last at {readable(times[-1], 's')}" if times else "none"))
-    return [*lines, *file_lines(folder), ("next", next_step(folder, status, checkpoint))]
+    return [*lines, *file_lines(folder), ("next", next_step(folder, status, checkpoint, is_reference(summary)))]
 
 
 def main(arguments: list[str]) -> int:

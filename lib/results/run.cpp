@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "core/stop_signals.hpp"
 #include "files/folder_lock.hpp"
 #include "results/checkpoint.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
-#include "results/stop_signals.hpp"
 
 namespace pliant {
 namespace {

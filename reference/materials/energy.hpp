@@ -55,16 +55,13 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   return shear + 0.5 * m.lambda * log(J) * log(J);
 }
 
-/// Kelvin-Voigt by implicit steps: eta |E - E_before|^2 / dt, whose derivative by F is F S with the second Piola stress
-/// S = 2 eta (E - E_before)/dt. Twice its value is the work that the step dissipates. E: Green-Lagrange strain.
+/// Kelvin-Voigt damping (METHOD 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot : E_dot. Its derivative by the rate
+/// of F is F S with the second Piola stress S = 2 eta E_dot. E: Green-Lagrange strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
 template <class Scalar>
-Scalar viscous_potential(double viscosity, double dt, const Deformation<Scalar>& F, const Deformation<double>& before) {
-  // 2 (E - E_before) = F^T F - F0^T F0, the symmetric part of (F - F0)^T (F + F0): exact for small steps as well.
-  const Deformation<Scalar> d{F.xx - before.xx, F.xy - before.xy, F.yx - before.yx, F.yy - before.yy};
-  const Deformation<Scalar> s{F.xx + before.xx, F.xy + before.xy, F.yx + before.yx, F.yy + before.yy};
-  const Scalar xx = 0.5 * (d.xx * s.xx + d.yx * s.yx), yy = 0.5 * (d.xy * s.xy + d.yy * s.yy);
-  const Scalar xy = 0.25 * (d.xx * s.xy + d.yx * s.yy + d.xy * s.xx + d.yy * s.yx);
-  return viscosity / dt * (xx * xx + yy * yy + 2.0 * xy * xy);
+Scalar viscous_potential(double viscosity, const Deformation<Scalar>& F, const Deformation<Scalar>& rate) {
+  const Scalar xx = F.xx * rate.xx + F.yx * rate.yx, yy = F.xy * rate.xy + F.yy * rate.yy;
+  const Scalar twice_xy = F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx;
+  return viscosity * (xx * xx + yy * yy + 0.5 * twice_xy * twice_xy);
 }
 
 }  // namespace pliant::reference

@@ -12,11 +12,11 @@ Deformation<double> entries_at(const Eigen::VectorXd& F, Eigen::Index point) {
   return {F[4 * point], F[4 * point + 1], F[4 * point + 2], F[4 * point + 3]};
 }
 
-/// F with its entries as variables 0 to 3; with five variables zz as variable 4.
+/// F with its entries as variables 0 to 3; of five variables zz is variable 4.
 template <int N>
 Deformation<Jet<N>> as_variables(const Deformation<double>& F) {
   Deformation<Jet<N>> result{Jet<N>(F.xx, 0), Jet<N>(F.xy, 1), Jet<N>(F.yx, 2), Jet<N>(F.yy, 3)};
-  if constexpr (N > 4) result.zz = Jet<N>(F.zz, 4);
+  if constexpr (N == 5) result.zz = Jet<N>(F.zz, 4);
   return result;
 }
 
@@ -45,38 +45,51 @@ Deformation<Scalar> InternalForces::measured(const Deformation<Scalar>& F) const
           F.zz};  // F R^T
 }
 
-InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent,
-                                       const std::optional<Increment>& increment) const {
+Eigen::SparseMatrix<double> InternalForces::at_nodes(const std::vector<Eigen::Matrix4d>& of_points) const {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t g = 0; g < of_points.size(); ++g)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) entries.emplace_back(4 * int(g) + i, 4 * int(g) + j, of_points[g](i, j));
+  Eigen::SparseMatrix<double> matrix(gradient_.rows(), gradient_.rows());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> columns = matrix * gradient_;
+  return Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
+}
+
+InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent) const {
   const Eigen::VectorXd F = gradient_ * q;
-  const bool viscous = increment && material_.viscosity > 0;
-  const Eigen::VectorXd F_before = viscous ? Eigen::VectorXd(gradient_ * increment->before) : Eigen::VectorXd();
   InternalState state;
   Eigen::VectorXd stress(F.size());
-  std::vector<Eigen::Triplet<double>> stiffness;
+  std::vector<Eigen::Matrix4d> stiffness;
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
-    const auto variables = as_variables<4>(entries_at(F, g));
-    Jet<4> energy = strain_energy(material_, measured(variables));
+    const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
     state.energy += weight_[g] * energy.value;
-    if (viscous) {
-      const Jet<4> lost =
-          viscous_potential(material_.viscosity, increment->duration, variables, entries_at(F_before, g));
-      state.dissipated += weight_[g] * 2 * lost.value;
-      energy += lost;
-    }
     stress.segment<4>(4 * g) = weight_[g] * energy.gradient;
-    for (int i = 0; tangent && i < 4; ++i)
-      for (int j = 0; j < 4; ++j)
-        stiffness.emplace_back(4 * int(g) + i, 4 * int(g) + j, weight_[g] * energy.hessian(i, j));
+    if (tangent) stiffness.push_back(weight_[g] * energy.hessian);
     const double J = jacobian(entries_at(F, g));
     if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
   }
   state.residual = gradient_.transpose() * stress;
-  if (tangent) {
-    Eigen::SparseMatrix<double> of_points(F.size(), F.size());
-    of_points.setFromTriplets(stiffness.begin(), stiffness.end());
-    const Eigen::SparseMatrix<double> columns = of_points * gradient_;
-    state.tangent = Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
+  if (tangent) state.tangent = at_nodes(stiffness);
+  return state;
+}
+
+ViscousState InternalForces::damping(const Eigen::VectorXd& q, const Eigen::VectorXd& v, bool tangent) const {
+  const Eigen::VectorXd F = gradient_ * q, rate = gradient_ * v;
+  Eigen::VectorXd stress(F.size());
+  std::vector<Eigen::Matrix4d> by_positions, by_velocities;
+  for (Eigen::Index g = 0; g < weight_.size(); ++g) {
+    const Deformation<double> at = entries_at(F, g), change = entries_at(rate, g);
+    const Jet<8> potential =
+        viscous_potential(material_.viscosity, as_variables<8>(at),
+                          {Jet<8>(change.xx, 4), Jet<8>(change.xy, 5), Jet<8>(change.yx, 6), Jet<8>(change.yy, 7)});
+    stress.segment<4>(4 * g) = weight_[g] * potential.gradient.tail<4>();
+    if (!tangent) continue;
+    by_positions.emplace_back(weight_[g] * potential.hessian.bottomLeftCorner<4, 4>());
+    by_velocities.emplace_back(weight_[g] * potential.hessian.bottomRightCorner<4, 4>());
   }
+  ViscousState state{.residual = gradient_.transpose() * stress, .by_positions = {}, .by_velocities = {}};
+  if (tangent) state.by_positions = at_nodes(by_positions), state.by_velocities = at_nodes(by_velocities);
   return state;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/SparseCore>
-#include <optional>
 #include <vector>
 
 #include "reference/discretisation/space.hpp"
@@ -10,20 +9,20 @@
 
 namespace pliant::reference {
 
-/// The step that viscosity acts over.
-struct Increment {
-  Eigen::VectorXd before;  ///< [2 nodes], positions at its start, m
-  double duration = 0;     ///< s
-};
-
 /// Internal forces of one body at one state. Not numbers where some J <= 0, but for `linear_elastic`.
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
-  double dissipated = 0;                ///< by viscosity over the increment, J/m
   Eigen::VectorXd residual;             ///< [2 nodes], minus the forces, N/m
   Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty if not asked for
   double least_jacobian = 0;
   int least_point = 0;
+};
+
+/// Kelvin-Voigt damping of one body at one motion.
+struct ViscousState {
+  Eigen::VectorXd residual;  ///< [2 nodes], minus the forces, N/m
+  /// [2 nodes x 2 nodes] of the residual by positions, unsymmetric, and by velocities; empty if not asked for.
+  Eigen::SparseMatrix<double> by_positions, by_velocities;
 };
 
 /// What pictures show of an integration point. Cauchy stress, Pa; of `linear_elastic` that of small strains.
@@ -39,9 +38,10 @@ class InternalForces {
  public:
   InternalForces(const Space& space, const Material& material, double size, double angle);
 
-  /// At positions q, m, from any origin. Viscosity acts only over an increment.
-  InternalState evaluate(const Eigen::VectorXd& q, bool tangent,
-                         const std::optional<Increment>& increment = std::nullopt) const;
+  /// At positions q, m, from any origin.
+  InternalState evaluate(const Eigen::VectorXd& q, bool tangent) const;
+  /// At positions q, m, and velocities v, m/s.
+  ViscousState damping(const Eigen::VectorXd& q, const Eigen::VectorXd& v, bool tangent) const;
   /// [points] Elastic stresses at positions q.
   std::vector<PointStress> stresses(const Eigen::VectorXd& q) const;
   /// [points], m2
@@ -51,6 +51,9 @@ class InternalForces {
   /// From the unrotated start for `linear_elastic`, else as it is: the others do not see the initial rotation.
   template <class Scalar>
   Deformation<Scalar> measured(const Deformation<Scalar>& F) const;
+
+  /// [2 nodes x 2 nodes] of matrices [4 x 4] at the points, the entries (row, column) of F.
+  Eigen::SparseMatrix<double> at_nodes(const std::vector<Eigen::Matrix4d>& of_points) const;
 
   Material material_;
   double cos_, sin_;

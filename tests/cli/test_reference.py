@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import csv
+import json
+import os
+import pty
+import signal
 import subprocess
 import sys
 
 import h5py
 import pytest
-from conftest import ROOT, Desk
+from conftest import REFERENCE, ROOT, Desk
 from scenes import TWO_DISCS
 
 SHORT = TWO_DISCS.replace('end = "20 ns"', 'end = "2 ns"').replace('period = "2 ns"', 'period = "0.5 ns"').replace(
@@ -78,6 +82,20 @@ period = "0.5 ns"
     assert ours == pytest.approx(theirs, rel=0.05)  # INDEPENDENT: as above
 
 
+def test_info_of_it_and_what_is_next(desk) -> None:
+    desk.write(SHORT)
+    assert desk.reference("--out", "out", "--quiet", "--dt", "0.1 ns").returncode == 0
+    summary = desk.folder / "out/summary.json"
+    for status, then in [("finished", "./pliant compare"), ("running", "--force"), ("stopped: SIGINT", "--force")]:
+        summary.write_text(json.dumps({**desk.summary("out"), "status": status}))
+        result = subprocess.run([sys.executable, "-B", ROOT / "scripts/info.py", "out"], cwd=desk.folder,
+                                capture_output=True, text=True)
+        assert result.returncode == 0, result.stderr
+        told = dict(line.split(maxsplit=1) for line in result.stdout.splitlines())
+        assert "Newton iterations" in told["steps"] and "reference, Newmark" in told["speed"]
+        assert then in told["next"] and "--resume" not in told["next"] and told["checkpoint"] == "none"
+
+
 def test_draws(desk, tmp_path) -> None:
     desk.write(SHORT)
     assert desk.reference("--out", "out", "--quiet", "--dt", "0.1 ns").returncode == 0
@@ -87,10 +105,91 @@ def test_draws(desk, tmp_path) -> None:
     assert {"grains.png", "energy.png"} <= {file.name for file in (desk.folder / "out").glob("*.png")}
 
 
-def test_progress_tells_iterations_residual_and_least_jacobian(desk) -> None:
+def test_verbose_progress_is_a_line_a_step(desk) -> None:
     desk.write(SHORT)
-    result = desk.reference("--out", "out", "--dt", "0.5 ns")
-    assert "Newton iterations, residual" in result.stderr and "least J" in result.stderr
+    for option, lines in ("--verbose", 4), ("--quiet", 0):
+        result = desk.reference("--out", "out", "--dt", "0.5 ns", "--force", option)
+        told = [line for line in result.stderr.splitlines() if line.startswith("t = ")]
+        assert len(told) == lines and (result.stdout == "") == (option == "--quiet"), result.stderr
+        assert all(part in line for line in told for part in ("Newton iterations", "residual", "least J", "balance"))
+
+
+# Long enough to be interrupted, in steps of some milliseconds.
+LONG = SHORT.replace('end = "2 ns"', 'end = "1 us"')
+
+
+@pytest.mark.parametrize("stop, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_stops_in_order(desk, stop: signal.Signals, code: int) -> None:
+    """After a line of progress, which a terminal gets every second."""
+    desk.write(LONG)
+    ours, terminal = pty.openpty()
+    process = subprocess.Popen([REFERENCE, desk.scene, "--out", "out", "--dt", "0.01 ns"], cwd=desk.folder,
+                               stdout=subprocess.PIPE, stderr=terminal, stdin=subprocess.DEVNULL,
+                               preexec_fn=lambda: signal.signal(stop, signal.SIG_DFL))  # ignored in the background
+    os.close(terminal)
+    said = b""
+    while b"\x1b[Kt = " not in said:
+        said += os.read(ours, 1000)
+    process.send_signal(stop)
+    assert process.wait(60) == code and process.stdout.read() == b""
+    while b"--force" not in said:
+        said += os.read(ours, 1000)
+    lines = said.decode().replace("\r\n", "\n").split("\n")
+    assert lines[0].startswith("\r\x1b[Kt = ") and lines[1].startswith(f"stopped by {stop.name} at t = "), lines
+    summary = desk.summary("out")
+    assert summary["status"] == f"stopped: {stop.name}" and 0 < summary["time"] < summary["end"]
+    assert summary["steps"] == len(rows(desk, "out/steps.csv"))
+    assert float(rows(desk, "out/steps.csv")[-1]["time [s]"]) == summary["time"]
+    with h5py.File(desk.folder / "out/frames.h5") as frames:
+        assert len(frames["times"]) == sum(name.isdigit() for name in frames["bodies"])
+
+
+# A disc falls on a stiff floor. Units mu = R = rho = 1.
+BOUNCE = """\
+[time]
+end = 3
+[domain]
+period = 4
+[materials]
+hard = { law = "rigid", density = 1 }
+soft = { law = "neo-hookean", density = 1, young = 2.8, poisson = 0.4 }
+[shapes.disc]
+kind = "disc"
+diameter = 2
+nodes = 30
+[[grains]]
+shape = "disc"
+body = "compliant"
+material = "soft"
+packing = { kind = "positions", positions = [[2, 1.05]] }
+velocity = { uniform = [0, -0.3] }
+[[walls]]
+name = "floor"
+material = "hard"
+solid = "below"
+level = 0
+[[contacts]]
+between = "all"
+law = "frictionless"
+stiffness = 3000
+"""
+
+
+def test_steps_that_make_energy_are_warned_of_once(desk) -> None:
+    """Long against the vibrations of the floor's springs."""
+    desk.write(BOUNCE)
+    warned = desk.reference("--out", "out", "--dt", "0.1", "--verbose")
+    assert warned.returncode == 0
+    assert warned.stderr.count("have made energy: up to ") == 1
+    assert "give a smaller --dt, such as 0.025 s, or --hht -0.1" in warned.stderr
+    share = float(warned.stderr.split("made energy: up to ")[1].split(" %")[0])
+    balance = max(float(line.split("balance ")[1].split(" ")[0]) for line in warned.stderr.splitlines() if "dt" in line
+                  and "balance" in line)
+    assert share == pytest.approx(100 * balance, rel=0.5) and share > 10
+    assert "made energy" not in desk.reference("--out", "out", "--dt", "0.005", "--force").stderr
+    assert desk.reference("--out", "out", "--dt", "0.1", "--force", "--quiet").stderr == ""
+    desk.write(BOUNCE.replace("[0, -0.3]", "[0, 0]"))  # nothing but rounding
+    assert "made energy" not in desk.reference("--out", "out", "--dt", "0.1", "--force").stderr
 
 
 @pytest.mark.parametrize("arguments, message", [

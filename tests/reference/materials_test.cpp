@@ -133,16 +133,24 @@ TEST(ReferenceInternalForces, residual_and_tangent_are_the_limits_of_differences
       Sample sample(recipe, law, 7);
       sample.material.viscosity = 0.3;
       const InternalForces forces = sample.forces();
-      const Increment increment{sample.rest, 0.1};
-      const InternalState state = forces.evaluate(sample.q, true, increment);
+      const InternalState state = forces.evaluate(sample.q, true);
       const double h = 1e-5;
-      const InternalState above = forces.evaluate(sample.q + h * sample.direction, false, increment);
-      const InternalState below = forces.evaluate(sample.q - h * sample.direction, false, increment);
-      // The incremental potential of viscosity is half of what it dissipates.
-      const double slope = (above.energy + above.dissipated / 2 - below.energy - below.dissipated / 2) / (2 * h);
-      const Eigen::VectorXd change = (above.residual - below.residual) / (2 * h);
-      EXPECT_NEAR(state.residual.dot(sample.direction) / slope, 1, 1e-6) << "EXACT: h^2 of third derivatives";
-      EXPECT_LT((state.tangent * sample.direction - change).norm(), 1e-6 * change.norm()) << "EXACT: as above";
+      const Eigen::VectorXd step = h * sample.direction;
+      const InternalState above = forces.evaluate(sample.q + step, false),
+                          below = forces.evaluate(sample.q - step, false);
+      const double slope = (above.energy - below.energy) / (2 * h);
+      const auto expect_change = [&](const Eigen::SparseMatrix<double>& tangent, const Eigen::VectorXd& difference) {
+        EXPECT_LT((tangent * sample.direction - difference / (2 * h)).norm(), 1e-6 * difference.norm() / (2 * h))
+            << "EXACT: h^2 of third derivatives";
+      };
+      EXPECT_NEAR(state.residual.dot(sample.direction) / slope, 1, 1e-6) << "EXACT: as there";
+      expect_change(state.tangent, above.residual - below.residual);
+      const Eigen::VectorXd v = sample.q - sample.rest;
+      const ViscousState damping = forces.damping(sample.q, v, true);
+      expect_change(damping.by_positions, forces.damping(sample.q + step, v, false).residual -
+                                              forces.damping(sample.q - step, v, false).residual);
+      expect_change(damping.by_velocities, forces.damping(sample.q, v + step, false).residual -
+                                               forces.damping(sample.q, v - step, false).residual);
     }
 }
 
@@ -194,22 +202,16 @@ TEST(ReferenceInternalForces, find_the_point_that_is_turned_over) {
   EXPECT_EQ(nodes.front(), 0) << "EXACT: only its triangles are";
 }
 
-/// Simple extension at the rate r: S = 2 eta E_dot, so that the work of a step of any size is its own dissipation.
-TEST(ReferenceInternalForces, viscosity_resists_no_rotation_and_dissipates_its_work) {
+TEST(ReferenceInternalForces, viscosity_resists_no_rotation_and_dissipates_what_the_law_says) {
   Sample sample(Recipe::mls, MaterialLaw::neo_hookean, 11);
   sample.material.viscosity = 0.7;
   const InternalForces forces = sample.forces();
-  const Eigen::Rotation2Dd turn(0.4);
-  Eigen::VectorXd turned = sample.q;
-  for (Eigen::Index i = 0; i < turned.size() / 2; ++i) turned.segment<2>(2 * i) = turn * sample.q.segment<2>(2 * i);
-  EXPECT_LT(forces.evaluate(turned, false, Increment{sample.q, 0.1}).dissipated, 1e-24) << "EXACT: squares of rounding";
-  const Eigen::VectorXd velocity = sample.q;  // uniform growth
-  for (const double dt : {0.1, 0.05, 0.025}) {
-    const Eigen::VectorXd before = sample.q - dt * velocity;
-    const InternalState with = forces.evaluate(sample.q, false, Increment{before, dt});
-    const double work = (with.residual - forces.evaluate(sample.q, false).residual).dot(dt * velocity);
-    EXPECT_NEAR((work / with.dissipated - 1) / dt, 0.5, 2 * dt) << "RATE: P is taken at the end, F^T F grows linearly";
-  }
+  Eigen::VectorXd spin = sample.q;
+  for (Eigen::Index i = 0; i < spin.size(); i += 2) spin.segment<2>(i) << -sample.q[i + 1], sample.q[i];
+  EXPECT_LT(forces.damping(sample.q, spin, false).residual.norm(), 1e-12) << "EXACT: rounding";
+  // Growth at the rate 1 from the rest: E_dot = 1, so that 2 eta E_dot : E_dot = 4 eta per area.
+  const double power = forces.damping(sample.rest, sample.rest, false).residual.dot(sample.rest);
+  EXPECT_NEAR(power, 4 * 0.7 * forces.weights().sum(), 1e-12 * power) << "EXACT";
 }
 
 }  // namespace

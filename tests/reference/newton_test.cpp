@@ -44,6 +44,27 @@ TEST(ReferenceNewton, converges_quadratically_without_contact) {
   expect_quadratic(run.stepping.step(0.4));
 }
 
+TEST(ReferenceNewton, converges_quadratically_with_all_that_is_unsymmetric_or_depends_on_velocities) {
+  Scene scene = free_disc(60, 1, stretching(0.8));
+  scene.materials[0].viscosity = 0.3;
+  scene.materials[0].mass_damping = 2;
+  scene.boundary.resize(2);
+  for (BoundaryCondition& condition : scene.boundary) condition.grains = "disc";
+  scene.boundary[0].kind = BoundaryCondition::Kind::pressure;
+  scene.boundary[0].pressure = constant(0.5);
+  scene.boundary[1].kind = BoundaryCondition::Kind::support;
+  scene.boundary[1].stiffness = 1;
+  scene.boundary[1].damping = 2;
+  for (const double hht : {0.0, -0.3}) {
+    SolverOptions options;
+    options.hht = hht;
+    expect_quadratic(ReferenceRun(scene, options).stepping.step(0.3));
+    Scene viscous = scene;
+    viscous.boundary.clear();
+    expect_quadratic(ReferenceRun(viscous, options).stepping.step(0.3));
+  }
+}
+
 Scene pressed(const ContactRule& rule) {
   Scene scene = on_a_floor(1, 8, 0.2, {0, 0});
   scene.shapes = {disc_shape("disc", 2, 60)};
@@ -89,6 +110,26 @@ TEST(ReferenceNewton, searches_along_the_line_and_keeps_to_admissible_places) {
   EXPECT_TRUE(result.converged);
   EXPECT_GT(refused, 0);
   EXPECT_NEAR(x[0], 2, 1e-9);  // EXACT
+}
+
+/// Whole steps of Newton's method go farther and farther from the solution of atan x = 0.
+TEST(ReferenceNewton, shortens_steps_that_raise_the_residual) {
+  reference::LinearSolver solver;
+  Vector x = Vector::Constant(1, 3.0);
+  const NewtonResult result = solve_newton(
+      [](const Vector& at, bool tangent) {
+        Linearisation here;
+        here.residual = Vector::Constant(1, std::atan(at[0]));
+        here.magnitude = Vector::Constant(1, 1);
+        if (tangent) {
+          here.matrix.resize(1, 1);
+          here.matrix.insert(0, 0) = 1 / (1 + at[0] * at[0]);
+        }
+        return here;
+      },
+      NewtonOptions{}, solver, x);
+  EXPECT_TRUE(result.converged) << result.trouble;
+  EXPECT_NEAR(x[0], 0, 1e-9);  // EXACT
 }
 
 TEST(ReferenceNewton, says_why_there_is_no_solution) {

@@ -94,7 +94,7 @@ double tangent_error(System& system, const Motion& motion, bool by_positions, do
 TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
   System system(on_compliant_grains(everything()));
   system.evaluate(Motion{system.bodies().initial_positions(), system.bodies().initial_velocities(), 0}, false);
-  system.accept(Motion{system.bodies().initial_positions(), system.bodies().initial_velocities(), 0});
+  system.accept();
   const Motion motion = shaken(system, 5, 0.004);
   const Forces forces = system.evaluate(motion, true);
   ASSERT_GT(forces.contacts.elements.size(), 20U);

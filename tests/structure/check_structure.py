@@ -20,7 +20,7 @@ SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
 
 # All of lib/ that the reference solver may share: no mechanics (DESIGN 6). Of core only these.
 SHARED_FOLDERS = ["files", "geometry", "scene"]
-SHARED_CORE = {"errors.hpp", "located.hpp", "memory.hpp", "vec2.hpp"}
+SHARED_CORE = {"errors.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
 
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
 

@@ -1,4 +1,4 @@
-#include "results/stop_signals.hpp"
+#include "core/stop_signals.hpp"
 
 #include <csignal>
 
