@@ -1,0 +1,199 @@
+"""A disc hits a rigid frictionless wall: engine and reference solver against finite elements with the same penalty."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from dolfinx.fem import Constant, assemble_scalar
+from matplotlib.axes import Axes
+
+from fem.compiled import compile_form
+from fem.dynamics import Explicit
+from fem.meshes import disc
+from fem.solid import Material, Solid
+from pictures import COLOURS, MARKERS, legend, panels, save
+from verification import FULL, Case, Label, Run, observed_order
+
+CASE = Case(__file__)
+
+END, PERIOD = 4.5, 0.02
+TIMES = PERIOD * np.arange(round(END / PERIOD) + 1)
+STIFFNESS, START = 1000.0, 1.002  # of the scene: penalty, height of the centre
+SPEEDS = [0.1, 0.2, 0.3]
+SPEED = 0.2  # of the studies
+NODES = [168, 340, 700, 1400] + ([2800] if FULL else [])
+VARIANTS = [("mls", "lumped"), ("mls", "corrected"), ("t3", "lumped"), ("es-t3", "corrected")]
+CHOSEN = [VARIANTS[0], VARIANTS[3]]  # at all speeds
+SAFETY = 0.4
+RINGS = (9, 12)
+SMOOTH = 5  # periods over which momentum is differenced for the force
+
+OWN = ("finite elements with the same penalty: their two meshes apart (order 3 or more), and the engine's error by its "
+       "own: 700 and 1400 nodes apart, second order")
+
+
+def engine_run(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY) -> Run:
+    name = f"{'_'.join(variant)}_{nodes}_{speed:g}_{safety:g}"
+    return CASE.engine(name, scene(variant, nodes, speed, safety))
+
+
+def scene(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY) -> str:
+    return CASE.scene(end=END, period=PERIOD, recipe=variant[0], mass=variant[1], nodes=nodes, speed=-speed,
+                      safety=safety)
+
+
+def velocity(run: Run) -> np.ndarray:
+    """Of the centre of mass at TIMES: the impulse so far over the mass, free of the force's chatter."""
+    return run.at("disc.velocity_y", TIMES)
+
+
+def contact_time(velocities: np.ndarray) -> float:
+    """From a hundredth of the momentum's change to all but a hundredth, s."""
+    share = (velocities - velocities[0]) / (velocities[-1] - velocities[0])
+    begin, end = (int(np.argmax(share > limit)) for limit in (0.01, 0.99))
+    return float(crossing(share, end, 0.99) - crossing(share, begin, 0.01))
+
+
+def crossing(share: np.ndarray, index: int, limit: float) -> float:
+    """When it passes the limit, between index - 1 and index."""
+    return TIMES[index - 1] + PERIOD * (limit - share[index - 1]) / (share[index] - share[index - 1])
+
+
+def time_error(velocities: np.ndarray, error: float) -> float:
+    """Of contact_time for an error of the velocity: over the slopes where it begins and ends."""
+    share = (velocities - velocities[0]) / (velocities[-1] - velocities[0])
+    slopes = np.gradient(velocities, PERIOD)
+    return float(sum(error / slopes[int(np.argmax(share > limit))] for limit in (0.01, 0.99)))
+
+
+def finite_elements(rings: int, speed: float) -> np.ndarray:
+    """Velocity of the centre of mass at TIMES; quadratic triangles, half of the stable step with all nodes in touch."""
+    solid = Solid(disc(rings), Material())
+    height, stiffness = Constant(solid.domain, 10.0), Constant(solid.domain, STIFFNESS)
+    motion = Explicit(solid, solid.strain_energy() + solid.plate_energy(height, stiffness, -1))
+    steps = int(np.ceil(PERIOD * motion.largest_frequency()))
+    height.value = -START
+    motion.v.interpolate(lambda x: np.stack([0 * x[0], 0 * x[0] - speed]))
+    motion.start()
+    momentum = compile_form(motion.v[1] * solid.dx)
+    values = [assemble_scalar(momentum)]
+    for _ in TIMES[1:]:
+        for _ in range(steps):
+            motion.step(PERIOD / steps)
+        values.append(assemble_scalar(momentum))
+    return -speed * np.array(values) / values[0]
+
+
+@pytest.fixture(scope="module")
+def elements() -> dict[float, list[np.ndarray]]:
+    return {speed: [finite_elements(rings, speed) for rings in RINGS] for speed in SPEEDS}
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[tuple[tuple[str, str], float], dict[int, Run]]:
+    studies = {(variant, SPEED): {n: engine_run(variant, n, SPEED) for n in NODES} for variant in VARIANTS}
+    others = [(variant, speed) for variant in CHOSEN for speed in SPEEDS if speed != SPEED]
+    return studies | {key: {n: engine_run(key[0], n, key[1]) for n in (700, 1400)} for key in others}
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+@pytest.mark.parametrize("variant", CHOSEN, ids="-".join)
+def test_impact(runs: dict, elements: dict, variant: tuple[str, str], speed: float) -> None:
+    coarse, fine = (velocity(runs[variant, speed][n]) for n in (700, 1400))
+    expected, name = elements[speed][1], f"{' '.join(variant)}, speed {speed:g}"
+    error = np.abs(fine - coarse).max() + np.abs(expected - elements[speed][0]).max()
+    CASE.check(Label.INDEPENDENT, f"{name}: momentum's history", np.abs(fine - expected).max() / speed, 0,
+               error / speed, OWN)
+    CASE.check(Label.INDEPENDENT, f"{name}: speed after over before", fine[-1] / speed, expected[-1] / speed,
+               error / speed, OWN)
+    CASE.check(Label.INDEPENDENT, f"{name}: contact time", contact_time(fine), contact_time(expected),
+               time_error(expected, error), OWN)
+    balance = np.abs(runs[variant, speed][1400].probe("energy.balance_error")).max()
+    CASE.check(Label.EXACT, f"{name}: balance of energy", balance, 0, 1e-3,
+               "energy is conserved; safety 0.4 keeps a bounce to 0.1 % (docs/defaults.md)")
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids="-".join)
+def test_converges(runs: dict, elements: dict, variant: tuple[str, str]) -> None:
+    CASE.check_rate(f"{' '.join(variant)}: momentum's history", [spacing(n) for n in NODES],
+                    differences(runs[variant, SPEED], elements), 2, 0.5,
+                    "second order of space and of the polygon's poles; nodes that touch in turn scatter each error by "
+                    "a third")
+
+
+def spacing(nodes: int) -> float:
+    return float(np.sqrt(np.pi / nodes))
+
+
+def differences(found: dict[int, Run], elements: dict) -> list[float]:
+    """From finite elements, root mean square over the speed before."""
+    return [float(np.sqrt(np.mean((velocity(found[n]) - elements[SPEED][1])**2)) / SPEED) for n in NODES]
+
+
+STEPS = (0.02, 0.01)  # of the reference
+
+
+@pytest.fixture(scope="module")
+def references() -> list[np.ndarray]:
+    text = scene(VARIANTS[0], NODES[0], SPEED)
+    return [velocity(CASE.reference(f"reference_{dt:g}", text, "--dt", repr(dt))) for dt in STEPS]
+
+
+def test_reference(runs: dict, references: list[np.ndarray]) -> None:
+    """The same nodes, so only steps in time tell them apart."""
+    long, short = velocity(runs[VARIANTS[0], SPEED][NODES[0]]), velocity(engine_run(VARIANTS[0], NODES[0], SPEED,
+                                                                                  SAFETY / 2))
+    error = np.abs(references[1] - references[0]).max() + np.abs(long - short).max()
+    CASE.check(Label.INDEPENDENT, f"mls lumped, {NODES[0]} nodes: momentum's history, engine - reference",
+               np.abs(short - references[1]).max() / SPEED, 0, error / SPEED,
+               "what halving the step changes in either: more than the error left from the first order on")
+
+
+def test_picture(runs: dict, elements: dict, references: list[np.ndarray]) -> None:
+    figure, axes = panels(3, "A disc hits a rigid wall", across=True)
+    for speed, colour in zip(SPEEDS, COLOURS):
+        axes[0].plot(TIMES, velocity(runs[CHOSEN[0], speed][1400]) / speed, color=colour, linewidth=1.3,
+                     label=f"engine, {speed:g}")
+        axes[0].plot(TIMES, elements[speed][1] / speed, ":", color=COLOURS[7], linewidth=1.3)
+    axes[0].set_title("momentum over that before; dots: finite elements", fontsize=10, loc="left")
+    draw_forces(axes[1], runs, elements, references)
+    for panel in axes[:2]:
+        panel.set_xlabel("time over R sqrt(density / mu)")
+        legend(panel)
+    draw_convergence(axes[2], runs, elements)
+    save(CASE, figure, "impact")
+
+
+def force(velocities: np.ndarray) -> np.ndarray:
+    """Mean over SMOOTH periods, over mu R."""
+    return np.pi * (velocities[SMOOTH:] - velocities[:-SMOOTH]) / (SMOOTH * PERIOD)
+
+
+def draw_forces(axes: Axes, runs: dict, elements: dict, references: list[np.ndarray]) -> None:
+    middle = TIMES[:-SMOOTH] + SMOOTH * PERIOD / 2
+    curves = {"engine, mls lumped, 1400": velocity(runs[CHOSEN[0], SPEED][1400]),
+              "engine, mls lumped, 168": velocity(runs[CHOSEN[0], SPEED][168]),
+              "reference, mls lumped, 168": references[1]}
+    for (name, values), colour, style in zip(curves.items(), COLOURS, ("-", "-", "--")):
+        axes.plot(middle, force(values), style, color=colour, linewidth=1.0, label=name)
+    coarse, fine = (force(values) for values in elements[SPEED])
+    axes.errorbar(middle[::8], fine[::8], np.abs(fine - coarse)[::8], fmt=".", color=COLOURS[7], markersize=4,
+                  capsize=2, label="finite elements")
+    axes.set_title(f"force on the wall, speed {SPEED:g}, means over {SMOOTH * PERIOD:g}", fontsize=10, loc="left")
+    axes.set_ylabel("force over mu R")
+    axes.set_ylim(top=1.35 * fine.max())
+
+
+def draw_convergence(axes: Axes, runs: dict, elements: dict) -> None:
+    steps = [spacing(n) for n in NODES]
+    for variant, colour, marker in zip(VARIANTS, COLOURS, MARKERS):
+        errors = differences(runs[variant, SPEED], elements)
+        axes.loglog(steps, errors, marker=marker, markersize=4, linewidth=1.0, color=colour,
+                    label=f"{' '.join(variant)}: {observed_order(steps, errors):.2f}")
+    own = np.sqrt(np.mean((elements[SPEED][1] - elements[SPEED][0])**2)) / SPEED
+    axes.axhline(own, color=COLOURS[7], linewidth=0.8, linestyle="--", label="finite elements, two meshes")
+    axes.set_xticks(steps, [str(n) for n in NODES])
+    axes.set_xticks([], minor=True)
+    axes.set_xlabel("nodes")
+    axes.set_title("momentum - finite elements, rms; slopes", fontsize=10, loc="left")
+    axes.legend(fontsize=8, frameon=False, loc="upper left")

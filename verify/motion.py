@@ -1,0 +1,62 @@
+"""Motion of one compliant body, from the frames of a run of either solver."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+
+import numpy as np
+
+from verification import ROOT, Run
+
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from plots.run_data import Frames
+
+SINGLE = 6e-8  # relative rounding of frames, which are in single precision
+
+
+@dataclass
+class Motion:
+    """Positions of all field nodes, m, at the times of the frames, s."""
+
+    times: np.ndarray  # [frames]
+    positions: np.ndarray  # [frames x nodes x 2]
+    displacements: np.ndarray  # [frames x nodes x 2]
+    velocities: np.ndarray | None  # [frames x nodes x 2], m/s; None where the frames have none
+    triangles: np.ndarray  # [triangles x 3]
+
+    def areas(self) -> np.ndarray:
+        """[triangles] at the start, m2."""
+        corners = self.positions[0][self.triangles]
+        return 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+    def node_areas(self) -> np.ndarray:
+        """[nodes] a third of the triangles around each: row sums of their mass over the density, m2."""
+        return np.bincount(self.triangles.ravel(), np.repeat(self.areas() / 3, 3), self.positions.shape[1])
+
+    def modal(self, axis: int, shape: np.ndarray) -> np.ndarray:
+        """[frames] displacements weighted by shape [nodes] and the areas of nodes, m3."""
+        return self.displacements[:, :, axis] @ (shape * self.node_areas())
+
+    def second_moments(self, axis: int) -> np.ndarray:
+        """[frames] integral of x^2 over the area of the start, m4; x linear in each triangle."""
+        x = self.positions[:, :, axis][:, self.triangles]
+        return ((x**2).sum(axis=2) + x.sum(axis=2)**2) @ (self.areas() / 12)
+
+
+def read_motion(run: Run) -> Motion:
+    """Of a run with one body and frames with the field displacement, and velocity if it is wanted."""
+    frames = Frames(run.folder / "frames.h5", None)
+    count = range(len(frames.times))
+    velocities = None
+    if frames.field("bodies", 0, "velocity") is not None:
+        velocities = np.array([plane(frames, i, "velocity") for i in count])
+    return Motion(frames.times, np.array([frames.positions("bodies", i) for i in count]),
+                  np.array([plane(frames, i, "displacement") for i in count]), velocities,
+                  frames.grids["bodies"].cells)
+
+
+def plane(frames: Frames, index: int, name: str) -> np.ndarray:
+    """[nodes x 2] of a vector that a frame stores with a z of zero."""
+    return np.array(frames.field("bodies", index, name), dtype=float)[:, :2]

@@ -1,0 +1,267 @@
+"""Speeds of P and S waves in a bar that is held sideways: standing and travelling, by three solvers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from dolfinx.fem import assemble_scalar, dirichletbc, locate_dofs_topological
+from dolfinx.mesh import locate_entities_boundary
+from matplotlib.axes import Axes
+from scipy.optimize import brentq, least_squares
+from ufl import sin
+
+from fem.compiled import compile_form
+from fem.dynamics import Explicit
+from fem.meshes import rectangle
+from fem.solid import Material, Solid
+from motion import Motion, read_motion
+from pictures import COLOURS, draw_orders, legend, panels, save
+from verification import FULL, Case, Label
+
+CASE = Case(__file__)
+
+LENGTH, WIDTH = 2.0, 0.5
+MU, LAME = 1.0, 4.0
+STIFFNESS = 2e4  # of the supports
+SPACINGS = [1 / 8, 1 / 12, 1 / 16, 1 / 24] + ([1 / 32] if FULL else [])
+PERIODS, SAMPLES = 4, 20  # of the first mode; frames a period
+AMPLITUDE = 1e-5  # speed over wave speed: strains of 1e-5, so what is not linear is some 1e-5 of it
+# Linear triangles with lumped mass carry S waves almost without error, that of mass against that of stiffness: no
+# rate can be seen. With corrected mass both errors have one sign.
+CONVERGE = [("mls", "lumped"), ("mls-gauss", "lumped"), ("t3", "corrected"), ("es-t3", "lumped")]
+OTHERS = [("mls", "corrected"), ("t3", "lumped"), ("es-t3", "corrected")]
+ASKED = "closed form, a tenth of a percent is asked for"
+
+
+@dataclass(frozen=True)
+class Wave:
+    """P or S: what moves, what the long sides hold."""
+
+    name: str
+    axis: int
+    modulus: float
+    support: float  # the stress that the sides carry, over that of the wave's own strain
+
+    @property
+    def speed(self) -> float:
+        return float(np.sqrt(self.modulus))
+
+    @property
+    def held(self) -> int:
+        return 1 - self.axis
+
+    @property
+    def frequency(self) -> float:
+        """Of the first mode of free ends, u = sin(pi x / L) about the middle, rad/s."""
+        return np.pi * self.speed / LENGTH
+
+    @property
+    def softening(self) -> float:
+        """Speed over that between rigid sides: springs that give by stress / k take energy like so much softer a
+        modulus, modulus - 2 support^2 / (k W) (first order in 1 / k, any wave length)."""
+        return float(np.sqrt(1 - 2 * self.support**2 / (STIFFNESS * WIDTH * self.modulus)))
+
+    def gradient(self) -> list[list[float]]:
+        """Of the velocity at the start along x, 1/s."""
+        rate = 2 * AMPLITUDE * self.speed / LENGTH
+        return [[rate, 0], [0, 0]] if self.axis == 0 else [[0, 0], [rate, 0]]
+
+
+WAVES = {"P": Wave("P", 0, LAME + 2 * MU, LAME), "S": Wave("S", 1, MU, MU)}
+
+
+def frequency_of(times: np.ndarray, values: np.ndarray, guess: float) -> float:
+    """Of a sine through the values, rad/s."""
+
+    def misfit(factor: np.ndarray) -> np.ndarray:
+        phase = factor[0] * guess * times
+        waves = np.column_stack([np.cos(phase), np.sin(phase)])
+        return (waves @ np.linalg.lstsq(waves, values, rcond=None)[0] - values) / np.abs(values).max()
+
+    return float(least_squares(misfit, [1.0], diff_step=1e-6, xtol=1e-14, ftol=1e-14).x[0] * guess)
+
+
+def standing_scene(wave: Wave, recipe: str, mass: str, spacing: float) -> str:
+    period = 2 * np.pi / wave.frequency
+    return CASE.scene("standing.toml", end=float(PERIODS * period), recipe=recipe, mass=mass, spacing=spacing,
+                      gradient=wave.gradient(), axis="xy"[wave.held], stiffness=STIFFNESS,
+                      period=float(period / SAMPLES))
+
+
+def mode_frequency(wave: Wave, motion: Motion, mode: int = 1) -> float:
+    """Of an odd mode, rad/s, between sides that do not give."""
+    shape = np.sin(mode * np.pi * motion.positions[0][:, 0] / LENGTH)
+    return frequency_of(motion.times, motion.modal(wave.axis, shape), mode * wave.frequency) / wave.softening
+
+
+def engine_motion(wave: Wave, recipe: str, mass: str, spacing: float) -> Motion:
+    scene = standing_scene(wave, recipe, mass, spacing)
+    return read_motion(CASE.engine(f"{wave.name}_{recipe}_{mass}_{spacing:.4f}", scene))
+
+
+@pytest.fixture(scope="module", params=WAVES.values(), ids=lambda w: w.name)
+def wave(request: pytest.FixtureRequest) -> Wave:
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def errors() -> dict[tuple[str, str, str], list[float]]:
+    """Of the engine's wave speeds, relative, by wave, recipe and mass, for SPACINGS."""
+    return {(wave.name, *variant): [mode_frequency(wave, engine_motion(wave, *variant, h)) / wave.frequency - 1
+                                    for h in SPACINGS] for wave in WAVES.values() for variant in CONVERGE}
+
+
+@pytest.mark.parametrize("variant", CONVERGE, ids=lambda v: "-".join(v))
+def test_standing_waves_converge(wave: Wave, variant: tuple[str, str], errors: dict) -> None:
+    name, found = f"{wave.name}, {' '.join(variant)}", errors[wave.name, *variant]
+    CASE.check(Label.EXACT, f"{name}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}", 1 + found[-1], 1, 1e-3, ASKED)
+    CASE.check_rate(f"{name}: standing wave", SPACINGS, np.abs(found).tolist(), 2, 0.4,
+                    "dispersion is even in wave number times spacing: second order; nodes along the outline are of the "
+                    "third, up to 0.3, and meshes scatter each error by a tenth")
+
+
+@pytest.mark.parametrize("variant", OTHERS, ids=lambda v: "-".join(v))
+def test_standing_waves_of_other_variants(wave: Wave, variant: tuple[str, str]) -> None:
+    found = mode_frequency(wave, engine_motion(wave, *variant, SPACINGS[-1])) / wave.frequency
+    CASE.check(Label.EXACT, f"{wave.name}, {' '.join(variant)}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}", found,
+               1, 1e-3, ASKED)
+
+
+REFERENCE_SPACING = 1 / 16
+REFERENCE_STEPS = 40  # a period
+
+
+def test_standing_waves_of_the_reference(wave: Wave, errors: dict) -> None:
+    """Newmark's method turns a frequency w into 2/dt atan(w dt/2), of every mode: undone exactly. What is left is
+    space, the same in both solvers."""
+    dt = 2 * np.pi / wave.frequency / REFERENCE_STEPS
+    scene = standing_scene(wave, "mls", "lumped", REFERENCE_SPACING)
+    motion = read_motion(CASE.reference(f"{wave.name}_reference", scene, "--dt", repr(float(dt))))
+    seen = mode_frequency(wave, motion) * wave.softening
+    found = np.tan(seen * dt / 2) / (dt / 2) / wave.softening / wave.frequency
+    engine = 1 + errors[wave.name, "mls", "lumped"][SPACINGS.index(REFERENCE_SPACING)]
+    CASE.check(Label.EXACT, f"{wave.name}, reference: standing wave, spacing 1/16", found, 1, 2e-3,
+               "closed form; a tenth of a percent at 1/24, so 9/4 of it at 1/16, second order")
+    CASE.check(Label.INDEPENDENT, f"{wave.name}: standing wave, reference over engine", found / engine, 1, 2e-5,
+               "the same nodes: overtones in the fit, 1e-4 of the amplitude over 12 or more periods of theirs")
+
+
+def finite_element_speed(wave: Wave, columns: int, steps: int) -> float:
+    """Over the closed form; quadratic triangles, sides held exactly, Verlet's frequency error undone."""
+    solid = Solid(rectangle(LENGTH, WIDTH, columns, columns // 4), Material(MU, LAME))
+    motion = Explicit(solid, solid.strain_energy(), held_sides(solid, wave))
+    (xx, xy), (yx, yy) = wave.gradient()
+    motion.v.interpolate(lambda x: np.stack([xx * (x[0] - LENGTH / 2), yx * (x[0] - LENGTH / 2)]))
+    coordinate = compile_form(solid.u[wave.axis] * sin(np.pi / LENGTH * (solid.X[0] - LENGTH / 2)) * solid.dx)
+    motion.start()
+    dt = 2 * np.pi / wave.frequency / (SAMPLES * steps)
+    values = [0.0]
+    for _ in range(SAMPLES * PERIODS):
+        for _ in range(steps):
+            motion.step(dt)
+        values.append(assemble_scalar(coordinate))
+    seen = frequency_of(dt * steps * np.arange(len(values)), np.array(values), wave.frequency)
+    return float(np.sin(seen * dt / 2) / (dt / 2) / wave.frequency)
+
+
+def held_sides(solid: Solid, wave: Wave) -> list:
+    def on_sides(x: np.ndarray) -> np.ndarray:
+        return (x[1] < 1e-9) | (x[1] > WIDTH - 1e-9)
+
+    space = solid.space.sub(wave.held)
+    edges = locate_entities_boundary(solid.domain, 1, on_sides)
+    return [dirichletbc(0.0, locate_dofs_topological(space, 1, edges), space)]
+
+
+def test_standing_waves_of_finite_elements(wave: Wave) -> None:
+    found = finite_element_speed(wave, 8, 20)
+    CASE.check(Label.EXACT, f"{wave.name}, finite elements: standing wave", found, 1, 1e-4,
+               "closed form; quadratic triangles of 1/4: (q h)^4 / 1440 = 2e-5, and what is not linear, 1e-5")
+
+
+# A pulse of a raised cosine of this length travels from the left end.
+PULSE = 1.2
+GAUGES = (-0.6, 0.2)  # where it has passed before it comes back from the right end
+TRAVELLING_SPACING = 1 / 24
+
+
+def travelling_scene(wave: Wave) -> str:
+    duration, end = PULSE / wave.speed, 2.8 / wave.speed
+    times = np.linspace(0, duration, 41)
+    pulse = AMPLITUDE * wave.modulus * (1 - np.cos(2 * np.pi * times / duration)) / 2
+    return CASE.scene("travelling.toml", end=end, recipe="mls", mass="corrected", spacing=TRAVELLING_SPACING,
+                      axis="xy"[wave.held], stiffness=STIFFNESS, period=end / 280,
+                      direction=[1, 0] if wave.axis == 0 else [0, 1],
+                      pulse=[[float(t), float(p)] for t, p in zip(times, pulse)])
+
+
+def arrivals(wave: Wave, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """Places of nodes between the gauges, and when the pulse s(t) began there: T of the largest integral of
+    v(t) s(t - T)."""
+    x, duration = motion.positions[0][:, 0], PULSE / wave.speed
+    chosen = (x > GAUGES[0]) & (x < GAUGES[1])
+    velocities = motion.velocities[:, chosen, wave.axis]
+
+    def slope(start: float, velocity: np.ndarray) -> float:
+        """Derivative of the integral, but for a factor."""
+        phase = np.clip((motion.times - start) / duration, 0, 1)
+        return float(velocity @ np.sin(2 * np.pi * phase))
+
+    guesses = (x[chosen] + LENGTH / 2) / wave.speed
+    found = [brentq(slope, t - 0.2 * duration, t + 0.2 * duration, args=(v,)) for t, v in zip(guesses, velocities.T)]
+    return x[chosen], np.array(found)
+
+
+def travelling_speed(wave: Wave, motion: Motion) -> float:
+    """Over the closed form, from a line through the arrivals at all nodes between the gauges."""
+    slope = np.polyfit(*arrivals(wave, motion), 1)[0]
+    return float(1 / slope / wave.speed / wave.softening)
+
+
+@pytest.fixture(scope="module")
+def travelling() -> dict[str, Motion]:
+    return {wave.name: read_motion(CASE.engine(f"{wave.name}_travelling", travelling_scene(wave)))
+            for wave in WAVES.values()}
+
+
+def test_travelling_waves(wave: Wave, travelling: dict[str, Motion]) -> None:
+    CASE.check(Label.EXACT, f"{wave.name}, mls corrected: travelling wave, spacing 1/24",
+               travelling_speed(wave, travelling[wave.name]), 1, 1e-3,
+               f"{ASKED}; dispersion at the pulse's wave number, 3.3 of the standing wave's, is 3e-4")
+
+
+def test_picture_of_travelling_waves(travelling: dict[str, Motion]) -> None:
+    figure, axes = panels(2, "Pulses in a bar that is held sideways: velocity over its amplitude", across=True)
+    for panel, wave in zip(axes, WAVES.values()):
+        draw_pulses(panel, wave, travelling[wave.name])
+    save(CASE, figure, "travelling")
+
+
+def draw_pulses(axes: Axes, wave: Wave, motion: Motion) -> None:
+    """At five nodes, above one another by place; theory is the pulse moved by x / c, until it comes back."""
+    points, way = motion.positions[0], np.linspace(0, PULSE, 100)
+    for i, place in enumerate(np.linspace(-0.75, 0.25, 5)):
+        node = int(np.argmin(np.hypot(points[:, 0] - place, points[:, 1])))
+        x, speed = points[node, 0], motion.velocities[:, node, wave.axis]
+        axes.plot(motion.times * wave.speed, x + 0.2 * speed / (AMPLITUDE * wave.speed), color=COLOURS[0],
+                  linewidth=1.2, label="" if i else "engine, mls corrected, 1/24")
+        axes.plot(1 + x + way, x + 0.1 * (1 - np.cos(2 * np.pi * way / PULSE)), "--", color=COLOURS[1], linewidth=1.2,
+                  label="" if i else "closed form")
+    axes.set_title(f"{wave.name}, c = {wave.speed:.3f}", fontsize=10, loc="left")
+    axes.set_xlabel("c x time")
+    axes.set_ylabel("place along the bar")
+    axes.set_ylim(-0.9, 0.9)
+    legend(axes)
+
+
+def test_picture_of_convergence(errors: dict) -> None:
+    figure, axes = panels(2, "Speed of standing waves: error over the spacing of nodes", across=True)
+    for panel, wave in zip(axes, WAVES.values()):
+        curves = [(" ".join(v), SPACINGS, np.abs(errors[wave.name, *v]).tolist()) for v in CONVERGE]
+        draw_orders(panel, f"{wave.name}, c = {wave.speed:.3f}", curves, [2])
+        panel.axhline(1e-3, color=COLOURS[7], linewidth=0.8)
+        panel.set_xticks(SPACINGS, [f"1/{1 / h:.0f}" for h in SPACINGS])
+        panel.set_xlabel("spacing (bar: 2 x 0.5); line: a tenth of a percent")
+    save(CASE, figure, "convergence")
