@@ -152,6 +152,16 @@ SparseMatrix Bodies::mass(MassMatrix kind) const {
 
 Vector Bodies::lumped_mass() const { return mass(MassMatrix::lumped).diagonal(); }
 
+Vector Bodies::arms() const {
+  Vector arms = Vector::Ones(dofs_);
+  for (const Body& body : bodies_) {
+    if (body.compliant()) continue;
+    double& arm = arms[body.first_dof + 2] = 0;
+    for (const Vec2& p : body.outline) arm = std::max(arm, p.norm());
+  }
+  return arms;
+}
+
 Points Bodies::outline_positions(const Vector& q) const {
   Points x;
   for (const Body& body : bodies_) {

@@ -54,6 +54,7 @@ class Bodies {
   Vector initial_velocities() const;
   SparseMatrix mass(MassMatrix kind) const;  ///< [dofs x dofs]
   Vector lumped_mass() const;                ///< [dofs]
+  Vector arms() const;                       ///< [dofs], largest motion of an outline per unit: 1, of angles m
 
   Points outline_positions(const Vector& q) const;  ///< [outline nodes], m
   SparseMatrix outline_jacobian(

@@ -71,15 +71,15 @@ Vector LinearSolver::solve(const SparseMatrix& matrix, const Vector& right_side,
   const Vector scales = scales_of(matrix), right = scales.cwiseProduct(right_side);
   const SparseMatrix scaled = scales.asDiagonal() * matrix * scales.asDiagonal();
   Vector x;
-  if (symmetric && factors_->symmetric.factorise(scaled, counts_)) {
+  definite_ = symmetric && factors_->symmetric.factorise(scaled, counts_);
+  if (definite_) {
     x = factors_->symmetric.method.solve(right);
   } else if (factors_->general.factorise(scaled, counts_)) {
     x = factors_->general.method.solve(right);
   }
   counts_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (x.size() == right.size() && x.allFinite()) return scales.cwiseProduct(x);
-  throw PhysicsError(
-      "the tangent is singular: some body is free to move without any force; static runs need --pseudo-inertia then");
+  throw PhysicsError("the tangent is singular: some body is free to move without any force");
 }
 
 }  // namespace pliant::reference

@@ -16,6 +16,9 @@ class LinearSolver {
   /// Throws PhysicsError for a singular matrix.
   Vector solve(const SparseMatrix& matrix, const Vector& right_side, bool symmetric);
 
+  /// Whether the last matrix was symmetric and positive definite.
+  bool definite() const { return definite_; }
+
   struct Counts {
     long analyses = 0, factorisations = 0;
     double seconds = 0;     ///< in analyses, factorisations and solutions
@@ -25,6 +28,7 @@ class LinearSolver {
 
  private:
   struct Factors;
+  bool definite_ = false;
   std::unique_ptr<Factors> factors_;
   Counts counts_;
 };

@@ -107,7 +107,7 @@ Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
     }
   }
   load_of_dof_.assign(static_cast<std::size_t>(bodies.dofs()), -1);
-  for (std::size_t i = rigid_.size(); i-- > 0;)  // of several the first
+  for (std::size_t i = 0; i < rigid_.size(); ++i)  // scenes have one of an axis at most
     load_of_dof_[static_cast<std::size_t>(rigid_[i].dof)] = static_cast<int>(i);
 }
 
@@ -182,7 +182,9 @@ OutlineResidual Loads::outlines(const Points& x, double time) const {
       auto residual = result.residual.segment<2>(2 * node.node);
       if (load.condition.kind == Kind::pressure) {
         const double pressure = load.condition.pressure.at(time);
-        residual -= pressure * pressed(load, node, x);
+        const Vec2 force = pressure * pressed(load, node, x);
+        residual -= force;
+        result.potential -= force.dot(x[node.node]);
         if (load.condition.following) add_following_tangent(node, pressure, result.tangent), result.symmetric = false;
         continue;
       }

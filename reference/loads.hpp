@@ -36,9 +36,10 @@ struct OutlineLoad {
 
 /// Forces on the outlines as residuals (minus the force), with their tangent.
 struct OutlineResidual {
-  Vector residual;    ///< [2 outline nodes], N/m
-  Triplets tangent;   ///< of it by the outline's positions
-  double stored = 0;  ///< in the supports' springs, J/m
+  Vector residual;       ///< [2 outline nodes], N/m
+  Triplets tangent;      ///< of it by the outline's positions
+  double stored = 0;     ///< in the supports' springs, J/m
+  double potential = 0;  ///< of pressures that do not follow, J/m
   bool symmetric = true;
 };
 

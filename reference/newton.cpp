@@ -15,22 +15,6 @@ constexpr int memory =
     4;  ///< the residual may grow against the last one, but not against the largest of so many: forces of contact have kinks
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
-/// Residuals in the norm of an inverse diagonal.
-class Measure {
- public:
-  explicit Measure(const Linearisation& start) : weight_(start.matrix.diagonal().cwiseAbs()) {
-    const double largest = weight_.maxCoeff();
-    stiffness_ = weight_;
-    weight_ = weight_.cwiseMax(1e-14 * largest).cwiseSqrt().cwiseInverse();
-  }
-  double operator()(const Vector& residual) const { return residual.cwiseProduct(weight_).norm(); }
-  /// What rounding of the positions makes of the residual.
-  double floor(const Vector& x) const { return rounding * (*this)(x.lpNorm<Eigen::Infinity>() * stiffness_); }
-
- private:
-  Vector weight_, stiffness_;
-};
-
 /// The step's share that lowers the residual; of those that do not, the one with the least.
 double search(const Equations& equations, const Measure& measure, const Vector& x, const Vector& step, double allowed,
               Linearisation& found) {
@@ -52,6 +36,20 @@ double search(const Equations& equations, const Measure& measure, const Vector& 
 
 }  // namespace
 
+Measure::Measure(const Linearisation& start) : stiffness_(start.matrix.diagonal().cwiseAbs()) {
+  weight_ = stiffness_.cwiseMax(1e-14 * stiffness_.maxCoeff()).cwiseSqrt().cwiseInverse();
+}
+
+double Measure::relative(const Linearisation& at) const {
+  const double whole = (*this)(at.magnitude);
+  return whole > 0 ? (*this)(at.residual) / whole : 0.0;
+}
+
+bool Measure::vanishes(const Linearisation& at, const Vector& x, double tolerance) const {
+  const double floor = rounding * (*this)(x.lpNorm<Eigen::Infinity>() * stiffness_);
+  return (*this)(at.residual) <= tolerance * (*this)(at.magnitude) + floor;
+}
+
 NewtonResult solve_newton(const Equations& equations, const NewtonOptions& options, LinearSolver& solver, Vector& x) {
   NewtonResult result;
   Linearisation at = equations(x, true);
@@ -66,15 +64,15 @@ NewtonResult solve_newton(const Equations& equations, const NewtonOptions& optio
   const Measure measure(at);
   std::vector<double> sizes;
   for (;; ++result.iterations) {
-    const double size = measure(at.residual), whole = measure(at.magnitude);
-    result.residuals.push_back(whole > 0 ? size / whole : 0.0);
-    sizes.push_back(size);
-    result.converged = size <= options.tolerance * whole + measure.floor(x);
+    result.residuals.push_back(measure.relative(at));
+    sizes.push_back(measure(at.residual));
+    result.converged = measure.vanishes(at, x, options.tolerance);
     if (result.converged) return result;
     if (result.iterations == options.iterations) break;
     Vector step;
     try {
       step = solver.solve(at.matrix, -at.residual, at.symmetric);
+      result.stable = !at.symmetric || solver.definite();
     } catch (const PhysicsError& singular) {
       result.trouble = singular.what();
       return result;

@@ -14,6 +14,7 @@ struct Linearisation {
   Vector magnitude;     ///< sum of the absolute values of what cancels in it
   SparseMatrix matrix;  ///< its derivative; empty unless asked for
   bool symmetric = true;
+  double potential = 0;    ///< what the residual is the gradient of, where the matrix is symmetric, J/m
   bool admissible = true;  ///< else the place cannot be: J <= 0, or a contact that is lost
   std::string trouble;     ///< why not
 };
@@ -27,13 +28,28 @@ struct NewtonOptions {
 
 struct NewtonResult {
   bool converged = false;
+  bool stable = true;  ///< the last matrix, where symmetric, was positive definite
   int iterations = 0;
   std::vector<double> residuals;  ///< [iterations + 1], relative
   std::string trouble;            ///< why it did not
 };
 
-/// Newton's method with a line search that keeps to admissible places. Residuals are measured in the norm of the inverse diagonal of the first
-/// matrix, an energy, so that forces and moments can be added. `x`: the start, then the solution, at which `equations` was asked last.
+/// Residuals in the norm of an inverse diagonal, an energy, so that forces and moments can be added.
+class Measure {
+ public:
+  explicit Measure(const Linearisation& start);
+  double operator()(const Vector& residual) const { return residual.cwiseProduct(weight_).norm(); }
+  /// Over the magnitude of what cancels in it.
+  double relative(const Linearisation& at) const;
+  /// Whether the residual is within the tolerance, or what rounding of the positions makes of it.
+  bool vanishes(const Linearisation& at, const Vector& x, double tolerance) const;
+
+ private:
+  Vector weight_, stiffness_;
+};
+
+/// Newton's method with a line search that keeps to admissible places. Residuals are measured with the first matrix. `x`: the start, then
+/// the solution, at which `equations` was asked last.
 NewtonResult solve_newton(const Equations& equations, const NewtonOptions& options, LinearSolver& solver, Vector& x);
 
 }  // namespace pliant::reference

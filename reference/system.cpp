@@ -34,10 +34,12 @@ Forces System::evaluate(const Motion& motion, bool tangent) {
   const SparseMatrix jacobian = bodies_.outline_jacobian(motion.q);
   add_outlines(motion, jacobian, tangent, forces, entries);
   add_applied(motion, forces);
-  add_dashpots(motion, jacobian, tangent, forces, rates);
-  add_viscosity(motion, tangent, forces, entries, rates);
-  forces.residual += forces.damping;
-  forces.magnitude += forces.damping.cwiseAbs();
+  if (motion.moves) {
+    add_dashpots(motion, jacobian, tangent, forces, rates);
+    add_viscosity(motion, tangent, forces, entries, rates);
+    forces.residual += forces.damping;
+    forces.magnitude += forces.damping.cwiseAbs();
+  }
   if (!tangent) return forces;
   forces.stiffness = assembled(entries, bodies_.dofs());
   forces.viscosity = assembled(rates, bodies_.dofs());
@@ -69,8 +71,10 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
   const Points x = bodies_.outline_positions(motion.q);
   OutlineResidual outlines = loads_.outlines(x, motion.time);
   forces.boundary = outlines.stored;
+  forces.potential += forces.strain + outlines.stored + outlines.potential;
   forces.contacts = contacts_.evaluate(x);
   forces.contact = forces.contacts.stored;
+  forces.potential += forces.contact;
   forces.dissipated = forces.contacts.dissipated;
   Vector magnitude = outlines.residual.cwiseAbs();
   for (const ContactElement& element : forces.contacts.elements) {
@@ -98,6 +102,7 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
 void System::add_applied(const Motion& motion, Forces& forces) const {
   const Vector applied = loads_.applied(motion.time) + loads_.gravity(motion.time);
   forces.residual -= applied;
+  forces.potential -= applied.dot(motion.q);
   forces.magnitude += applied.cwiseAbs();
 }
 

@@ -12,6 +12,7 @@ namespace pliant::reference {
 struct Motion {
   Vector q, v;
   double time = 0;
+  bool moves = true;  ///< else it stands still at each time: statics, without any damping
 };
 
 /// All forces at one motion, as residuals: mass x acceleration + residual = 0.
@@ -24,6 +25,7 @@ struct Forces {
   SparseMatrix viscosity;   ///< of the residual by velocities; empty unless asked for
   bool symmetric = true;
   double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
+  double potential = 0;                          ///< of all forces that have one: stored, less what loads can give, J/m
   double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
   double least_jacobian = 1e300;
   int worst_body = -1;  ///< the one with it

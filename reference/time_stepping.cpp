@@ -6,14 +6,16 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "reference/relaxation.hpp"
 
 namespace pliant::reference {
 namespace {
 
-constexpr int most_bisections = 10;        ///< of a step: to a thousandth of it
-constexpr int most_settling_steps = 200;   ///< of a static step with floating bodies
-constexpr double settled_residual = 1e-9;  ///< over the largest force: what pseudo-inertia may still hold
-constexpr double lost_penetration = 1;     ///< over a segment's length: deeper ones cannot be told from the far side
+constexpr int most_bisections = 10;  ///< of a step: to a thousandth of it
+// Of pseudo-transient continuation, over a segment:
+constexpr double longest_pseudo_step = 0.2;  ///< contacts cannot be missed
+constexpr double furthest = 10;              ///< what moves on does not come to rest
+constexpr double lost_penetration = 1;       ///< over a segment's length: deeper ones cannot be told from the far side
 
 /// Picks the free degrees of freedom: [dofs x free].
 SparseMatrix selection(const std::vector<int>& free, int dofs) {
@@ -68,6 +70,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
       mass_(system.bodies().mass(options.mass)) {
   const Bodies& bodies = system.bodies();
   motion_ = {bodies.initial_positions(), bodies.initial_velocities(), 0};
+  motion_.moves = !options.statics;
   if (options.statics) motion_.v.setZero();
   for (int i = 0; i < bodies.dofs(); ++i)
     if (system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
@@ -78,7 +81,8 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   system.accept();
   if (options.statics) {
     const Vector mass = bodies.lumped_mass();
-    holding_ = options.pseudo_inertia * forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff() * mass;
+    holding_ = forces_.stiffness.diagonal().cwiseAbs().maxCoeff() / mass.maxCoeff() * mass;
+    arms_ = bodies.arms();
   } else {
     find_acceleration();
   }
@@ -128,16 +132,16 @@ Vector TimeStepping::acceleration_at(double dt, const Vector& q) const {
 
 Motion TimeStepping::motion_at(double until, const Vector& q) const {
   const double dt = until - motion_.time;
-  if (options_.statics) return {q, Vector::Zero(q.size()), until};
+  if (options_.statics) return {q, Vector::Zero(q.size()), until, false};
   Vector v = motion_.v + dt * ((1 - gamma_) * acceleration_ + gamma_ * acceleration_at(dt, q));
   for (int i = 0; i < v.size(); ++i)
     if (system_.loads().imposed(i, motion_.time)) v[i] = system_.loads().imposed_velocity(i, until);
   return {q, std::move(v), until};
 }
 
-/// `anchor`: static runs: where pseudo-inertia holds the bodies. `trial`: the motion and the forces there.
-Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor,
-                                      bool tangent, Trial& trial) {
+/// `trial`: the motion and the forces there.
+Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& q, bool tangent,
+                                      Trial& trial) {
   const double dt = until - motion_.time;
   trial.motion = motion_at(until, q);
   trial.forces = system_.evaluate(trial.motion, tangent);
@@ -149,10 +153,7 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
   const SparseMatrix pick = select.transpose();
   Vector residual = forces.residual, magnitude = forces.magnitude;
   SparseMatrix matrix = forces.stiffness;
-  if (options_.statics) {
-    residual += holding_.cwiseProduct(q - anchor);
-    if (tangent && options_.pseudo_inertia > 0) matrix += SparseMatrix(holding_.asDiagonal());
-  } else {
+  if (!options_.statics) {
     const Vector inertia = mass_ * acceleration_at(dt, q);
     residual = inertia + (1 + options_.hht) * residual - options_.hht * forces_.residual;
     magnitude += inertia.cwiseAbs();
@@ -162,6 +163,7 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
   result.residual = pick * residual;
   result.magnitude = pick * magnitude;
   result.symmetric = forces.symmetric;
+  result.potential = forces.potential;
   if (tangent) result.matrix = restricted(matrix, select);
   worst_ = worst_body(forces, system_.bodies());
   return result;
@@ -172,49 +174,54 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
   for (int i = 0; i < q.size(); ++i)
     if (system_.loads().imposed(i, motion_.time)) q[i] = system_.loads().imposed_position(i, q[i], motion_.time, until);
   const SparseMatrix select = selection(free_dofs(motion_.time), system_.bodies().dofs());
-  const SparseMatrix pick = select.transpose();
   record.dt = std::min(record.dt, until - motion_.time);
-  for (int settling = 0; settling < most_settling_steps; ++settling) {
-    const Vector anchor = q;
-    Vector free = pick * q;
-    const Vector imposed = q - select * free;
-    const NewtonResult result = solve_newton(
-        [&](const Vector& x, bool tangent) {
-          return equations(until, select, imposed + select * x, anchor, tangent, trial);
-        },
-        options_.newton, solver_, free);
-    record.iterations += result.iterations;
-    if (!result.residuals.empty()) record.residual = result.residuals.back(), record.residuals = result.residuals;
-    record.trouble = fmt::format("{} (largest residual in '{}')", result.trouble, worst_);
-    if (!result.converged) return false;
-    q = trial.motion.q;  // Newton's last evaluation is that of its solution
-    if (double moved = largest_motion(trial.motion); moved > system_.bodies().finest_spacing()) {
-      record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
-      return false;
-    }
-    if (options_.pseudo_inertia == 0 || settled(trial.forces, pick)) {
-      trial.acceleration = options_.statics ? Vector::Zero(q.size()) : acceleration_at(until - motion_.time, q);
-      return true;
-    }
+  if (moves_too_far(q, record)) return false;
+  Vector free = select.transpose() * q;
+  const Vector start = free, imposed = q - select * free;
+  const Equations system = [&](const Vector& x, bool tangent) {
+    return equations(until, select, imposed + select * x, tangent, trial);
+  };
+  NewtonResult result = solve_newton(system, options_.newton, solver_, free);
+  bool found = note(result, record) && !moves_too_far(trial.motion.q, record);
+  if (options_.statics && options_.pseudo_inertia > 0 && !(found && result.stable)) {
+    free = start;
+    const RelaxationOptions settling{.tolerance = options_.newton.tolerance,
+                                     .start = options_.pseudo_inertia,
+                                     .longest = longest_pseudo_step * system_.bodies().finest_spacing(),
+                                     .furthest = furthest * system_.bodies().finest_spacing()};
+    const SparseMatrix pick = select.transpose();
+    found = note(relax(system, pick * holding_, pick * arms_, settling, solver_, free), record);
+    if (found) system(free, false);  // the last step that was tried may not be the one taken
   }
-  record.trouble = fmt::format("no equilibrium after {} steps of settling", most_settling_steps);
-  return false;
+  if (!found) return false;
+  trial.acceleration =
+      options_.statics ? Vector::Zero(q.size()) : acceleration_at(until - motion_.time, trial.motion.q);
+  return true;
+}
+
+/// Writes down what became of a solution; returns whether it is one.
+bool TimeStepping::note(const NewtonResult& result, StepRecord& record) const {
+  record.iterations += result.iterations;
+  if (!result.residuals.empty()) record.residual = result.residuals.back(), record.residuals = result.residuals;
+  if (!result.converged) record.trouble = fmt::format("{} (largest residual in '{}')", result.trouble, worst_);
+  return result.converged;
+}
+
+bool TimeStepping::moves_too_far(const Vector& q, StepRecord& record) const {
+  const double moved = largest_motion(q);
+  if (moved <= system_.bodies().finest_spacing()) return false;
+  record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
+  return true;
 }
 
 /// Of the outlines, from the present motion; 0 where there is nothing to touch.
-double TimeStepping::largest_motion(const Motion& next) const {
+double TimeStepping::largest_motion(const Vector& next) const {
   const Bodies& bodies = system_.bodies();
   if (bodies.all().size() < 2 || bodies.scene().contacts.empty()) return 0;
-  const Points before = bodies.outline_positions(motion_.q), after = bodies.outline_positions(next.q);
+  const Points before = bodies.outline_positions(motion_.q), after = bodies.outline_positions(next);
   double largest = 0;
   for (std::size_t k = 0; k < before.size(); ++k) largest = std::max(largest, (after[k] - before[k]).norm());
   return largest;
-}
-
-/// Whether forces balance without the pseudo-inertia.
-bool TimeStepping::settled(const Forces& forces, const SparseMatrix& pick) const {
-  const double scale = forces.magnitude.size() > 0 ? forces.magnitude.maxCoeff() : 0.0;
-  return (pick * forces.residual).lpNorm<Eigen::Infinity>() <= settled_residual * scale;
 }
 
 void TimeStepping::book(const Trial& trial) {
@@ -227,10 +234,12 @@ void TimeStepping::book(const Trial& trial) {
                           loads.outline_work(bodies.outline_positions(before.q), before.time,
                                              bodies.outline_positions(after.q), after.time);
   // A dashpot between a node and a moving target takes what both put in.
-  const double by_targets =
-      loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.time);
-  books_.work_of_loads += by_targets;
-  books_.dissipated_by_damping += by_targets;
+  if (after.moves) {
+    const double by_targets =
+        loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.time);
+    books_.work_of_loads += by_targets;
+    books_.dissipated_by_damping += by_targets;
+  }
   // What holds an imposed motion gives it its kinetic energy and works against the other forces.
   for (int i = 0; i < moved.size(); ++i)
     if (loads.imposed(i, before.time))

@@ -13,8 +13,9 @@ struct SolverOptions {
   MassMatrix mass = MassMatrix::lumped;
   double dt = 0;   ///< s
   double hht = 0;  ///< alpha of Hilber, Hughes and Taylor, in [-1/3, 0]; 0: Newmark's average acceleration
-  double pseudo_inertia =
-      0;  ///< static runs: share of the largest stiffness that holds floating bodies while they settle
+  /// Static runs: where Newton's method fails, share of the largest stiffness that holds bodies at first while they
+  /// settle by pseudo-transient continuation; 0: never.
+  double pseudo_inertia = 1e-3;
   NewtonOptions newton;
 };
 
@@ -67,10 +68,10 @@ class TimeStepping {
   void book(const Trial& trial);
   Motion motion_at(double until, const Vector& q) const;
   Vector acceleration_at(double dt, const Vector& q) const;
-  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, const Vector& anchor, bool tangent,
-                          Trial& trial);
-  double largest_motion(const Motion& next) const;
-  bool settled(const Forces& forces, const SparseMatrix& pick) const;
+  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, bool tangent, Trial& trial);
+  bool note(const NewtonResult& result, StepRecord& record) const;
+  bool moves_too_far(const Vector& q, StepRecord& record) const;
+  double largest_motion(const Vector& next) const;
   void find_acceleration();
   std::vector<int> free_dofs(double time) const;
 
@@ -78,7 +79,8 @@ class TimeStepping {
   SolverOptions options_;
   double beta_, gamma_;
   SparseMatrix mass_;
-  Vector holding_;  ///< static runs: [dofs], what holds floating bodies while they settle, N/m2 (N)
+  Vector holding_;  ///< static runs: [dofs], masses scaled to the largest stiffness, N/m2 (N)
+  Vector arms_;     ///< static runs: [dofs], motion of the outline per unit, 1 or m
   LinearSolver solver_;
   Motion motion_;
   Vector acceleration_;

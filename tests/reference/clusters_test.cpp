@@ -40,7 +40,6 @@ Differences compare_at_rest(const Scene& scene, int load_steps) {
   advance(simulation, scene.time.end);
   SolverOptions options;
   options.statics = true;
-  options.pseudo_inertia = 1e-6;
   ReferenceRun run(scene, options);
   run.run(load_steps);
   Differences result;

@@ -1,0 +1,90 @@
+#include "reference/relaxation.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+
+namespace pliant::reference {
+namespace {
+
+constexpr double least = 1e-12, most = 1e4;           ///< of the share
+constexpr double faster = 0.1, slower = 2, back = 4;  ///< factors on it
+constexpr double linear = 0.1, barely_linear = 0.5;   ///< error of the linear model over the residual at the start
+constexpr double creep = 0.1;                         ///< steps shorter than this share of the longest may cross kinks
+constexpr double rounding = 1e-14;                    ///< of potentials
+
+SparseMatrix held(const SparseMatrix& matrix, const Vector& holding) {
+  return matrix + SparseMatrix(holding.asDiagonal());
+}
+
+double largest(const Vector& step, const Vector& arms) { return step.cwiseProduct(arms).lpNorm<Eigen::Infinity>(); }
+
+/// Of the forces after a step, over those before it.
+double model_error(const Measure& measure, const Linearisation& at, const Linearisation& next, const Vector& step) {
+  return measure(next.residual - at.residual - at.matrix * step) / measure(at.residual);
+}
+
+/// Whether a step takes energy instead of giving it; by the trapezoidal rule where forces have no potential.
+bool climbs(const Measure& measure, const Linearisation& at, const Linearisation& next, const Vector& step) {
+  if (at.symmetric && next.symmetric) return next.potential > at.potential + rounding * std::abs(at.potential);
+  return (at.residual + next.residual).dot(step) > 0 && measure(next.residual) > measure(at.residual);
+}
+
+/// One step, no longer than allowed; empty unless it goes downhill.
+Vector downhill(const Linearisation& at, const Vector& holding, const Vector& arms, double longest,
+                LinearSolver& solver) {
+  Vector step;
+  try {
+    step = solver.solve(held(at.matrix, holding), -at.residual, at.symmetric);
+  } catch (const PhysicsError&) {
+    return {};
+  }
+  if ((at.symmetric && !solver.definite()) || step.dot(at.residual) > 0) return {};
+  const double moved = largest(step, arms);
+  return moved > longest ? Vector(longest / moved * step) : step;
+}
+
+}  // namespace
+
+NewtonResult relax(const Equations& equations, const Vector& mass, const Vector& arms, const RelaxationOptions& options,
+                   LinearSolver& solver, Vector& x) {
+  NewtonResult result;
+  Linearisation at = equations(x, true);
+  if (!at.admissible) {
+    result.trouble = at.trouble;
+    return result;
+  }
+  const Measure measure(at);
+  const Vector start = x;
+  double share = options.start;
+  for (; share < most && largest(x - start, arms) <= options.furthest; ++result.iterations) {
+    result.residuals.push_back(measure.relative(at));
+    result.converged = measure.vanishes(at, x, options.tolerance);
+    if (result.converged || result.iterations == options.steps) break;
+    const Vector step = downhill(at, share * mass, arms, options.longest, solver);
+    if (step.size() == 0) {
+      share *= back;
+      continue;
+    }
+    const Linearisation next = equations(x + step, true);
+    const double error = next.admissible ? model_error(measure, at, next, step) : 0;
+    const bool leaps = error > barely_linear && largest(step, arms) > creep * options.longest;
+    if (!next.admissible || leaps || climbs(measure, at, next, step)) {
+      share *= back;
+      continue;
+    }
+    share = std::max(least, share * (error < linear ? faster : error < barely_linear ? 1 : slower));
+    x += step;
+    at = next;
+  }
+  if (!result.converged)
+    result.trouble = fmt::format(
+        "no equilibrium after {} steps of pseudo-transient continuation, over {:.3g} m; relative residual {:.3g}, "
+        "allowed {:.3g}",
+        result.iterations, largest(x - start, arms), result.residuals.back(), options.tolerance);
+  return result;
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,168 @@
+"""Clusters of glued grains at rest: the reference's statics against the engine's damped motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+import pytest
+
+from hexagons import SIDES, Grain, cluster, grain_tables, probes, shapes
+from pictures import COLOURS, draw_orders, legend, panels, save
+from verification import FULL, Case, Label, Run
+
+CASE = Case(__file__)
+NODES = 168 if FULL else 60
+RAMP = 40.0  # s, of the push; twice as long a rest follows in the engine
+STEPS = 40  # of the statics
+FEWER = [5, 10, 20]
+DIAMETER = 2.0
+CLUSTERS = {"7 compliant": (1, False), "7 mixed": (1, True), "19 compliant": (2, False), "19 mixed": (2, True)}
+# Slip is the sum of length times d(xi). Two ways to one end differ by the area between them: what facets stretch by,
+# 0.01 to 0.1, times the engine's lag on the way, some 1e-3 R, and half a load step. Twice the time and steps halve it.
+FORCES = 1e-4
+SOURCE = "slip depends on the way: stretch of facets times lag of the engine and half a load step, 1e-4 R at most"
+
+
+@dataclass
+class Rest:
+    """What a run ends with."""
+
+    displacement: np.ndarray  # [points x 2] of all grains' nodes
+    centre: np.ndarray  # [grains x 2]
+    force: np.ndarray  # [outline nodes x 2], of contacts
+    outline: np.ndarray  # [outline nodes x 2], positions
+
+    @classmethod
+    def of(cls, run: Run, grains: list[Grain]) -> Rest:
+        with h5py.File(run.folder / "frames.h5") as file:
+            last = f"{len(file['times']) - 1:06d}"
+            displacement = np.array(file[f"bodies/{last}/displacement"], dtype=float)[:, :2]
+            outline = np.array(file[f"outlines/{last}/position"], dtype=float)
+        names = [f"{grain.name}-{k}.force" for grain in grains for k in range(SIDES[NODES][grain.sort])]
+        return cls(displacement, last_pair(run, [f"{grain.name}.position" for grain in grains]),
+                   last_pair(run, names), outline)
+
+    def difference(self, other: Rest) -> tuple[float, float, float]:
+        """Of all positions and of centres, over the diameter; of forces, over the largest."""
+        return (largest(self.displacement - other.displacement) / DIAMETER,
+                largest(self.centre - other.centre) / DIAMETER,
+                largest(self.force - other.force) / largest(other.force))
+
+
+def last_pair(run: Run, names: list[str]) -> np.ndarray:
+    return np.array([[run.probe(f"{name}_{axis}")[-1] for axis in "xy"] for name in names])
+
+
+def largest(values: np.ndarray) -> float:
+    return float(np.abs(values).max())
+
+
+@dataclass
+class Result:
+    grains: list[Grain]
+    engine: Rest
+    reference: dict[int, Rest]  # by load steps
+    run: Run  # of the engine
+
+
+def solve(name: str) -> Result:
+    rings, mixed = CLUSTERS[name]
+    grains = cluster(rings, mixed)
+    scene = CASE.scene(shapes=shapes(NODES), grains=grain_tables(grains, NODES, RAMP), end=3 * RAMP, ramp=RAMP,
+                       probes=probes(grains, NODES, RAMP))
+    folder = name.replace(" ", "_")
+    engine = CASE.engine(f"{folder}_engine", scene)
+    reference = {}
+    for steps in [*(FEWER if rings == 1 else []), STEPS]:
+        # Its rest is over when the push is.
+        run = CASE.reference(f"{folder}_{steps}", scene, "--static", "--dt", f"{RAMP / steps} s",
+                             "--until", f"{RAMP} s")
+        reference[steps] = Rest.of(run, grains)
+    return Result(grains, Rest.of(engine, grains), reference, engine)
+
+
+@pytest.fixture(scope="module")
+def results() -> dict[str, Result]:
+    return {name: solve(name) for name in CLUSTERS}
+
+
+@pytest.mark.parametrize("name", CLUSTERS)
+def test_both_solvers_come_to_rest_alike(results: dict[str, Result], name: str) -> None:
+    result = results[name]
+    positions, centres, forces = result.engine.difference(result.reference[STEPS])
+    CASE.check(Label.INDEPENDENT, f"{name}: positions over the diameter", positions, 0, 1e-6, SOURCE)
+    CASE.check(Label.INDEPENDENT, f"{name}: centres over the diameter", centres, 0, 1e-6, SOURCE)
+    CASE.check(Label.INDEPENDENT, f"{name}: forces over the largest", forces, 0, FORCES, SOURCE)
+    kinetic, strain = (result.run.probe(f"energy.{part}")[-1] for part in ("kinetic", "strain"))
+    CASE.check(Label.EXACT, f"{name}: kinetic over strain energy", kinetic / strain, 0, 1e-12,
+               "rest: then forces of damping, 2 m v, are below some 1e-6 of the others")
+
+
+@pytest.mark.parametrize("name", CLUSTERS)
+def test_forces_balance(results: dict[str, Result], name: str) -> None:
+    """Of contacts, on all grains together, and on each that nothing else holds."""
+    result = results[name]
+    for solver, rest in (("engine", result.engine), ("reference", result.reference[STEPS])):
+        owner = np.repeat(np.arange(len(result.grains)), [SIDES[NODES][g.sort] for g in result.grains])
+        sums = np.array([rest.force[owner == i].sum(axis=0) for i in range(len(result.grains))])
+        inner = [sums[i] for i, grain in enumerate(result.grains) if not grain.outer]
+        worst = max(largest(np.array(inner)), largest(sums.sum(axis=0))) / largest(rest.force)
+        CASE.check(Label.EXACT, f"{name}, {solver}: balance of forces", worst, 0, 1e-8,
+                   "Newton's 1e-10 of what cancels in a node, of some ten in touch; the engine's rest")
+
+
+@pytest.mark.parametrize("name", ["7 compliant", "7 mixed"])
+def test_load_steps_converge(results: dict[str, Result], name: str) -> None:
+    CASE.check_rate(f"{name}: forces of the reference over load steps", *refinements(results[name]), 1, 0.15,
+                    "backward sums of slip: first order; a tenth of the second at five steps")
+
+
+def refinements(result: Result) -> tuple[list[float], list[float]]:
+    """Load steps in s, and by how much forces of the reference change when they are halved, over the largest."""
+    counts = sorted(result.reference)
+    forces = [result.reference[count].force for count in counts]
+    changes = [largest(a - b) / largest(result.engine.force) for a, b in zip(forces, forces[1:])]
+    return [RAMP / count for count in counts[:-1]], changes
+
+
+def test_picture(results: dict[str, Result]) -> None:
+    figure, axes = panels(3, f"Glued clusters at rest, {NODES} nodes a grain", across=True)
+    draw_forces(axes[0], results["19 mixed"])
+    for (name, result), colour in zip(results.items(), COLOURS):
+        rest = result.reference[STEPS]
+        size = np.linalg.norm(rest.force, axis=1) / largest(rest.force)
+        error = np.linalg.norm(rest.force - result.engine.force, axis=1) / largest(rest.force)
+        touching = size > 0
+        axes[1].loglog(size[touching], error[touching], ".", color=colour, markersize=4, label=name)
+    axes[1].axhline(FORCES, linestyle=":", color=COLOURS[6], linewidth=1.2)
+    axes[1].set_xlabel("force on a node over the largest")
+    axes[1].set_ylabel("engine - reference, over the largest")
+    axes[1].set_ylim(top=3e-3)
+    legend(axes[1])
+    curves = [(name, *refinements(results[name])) for name in list(CLUSTERS)[:2]]
+    draw_orders(axes[2], "reference: changes of forces by half the load step", curves, [1])
+    axes[2].set_xlabel("load step [ms], of 40 s")
+    axes[2].set_ylabel("change over the largest force")
+    save(CASE, figure, "clusters")
+
+
+def draw_forces(axes, result: Result) -> None:
+    first = 0
+    for grain in result.grains:
+        last = first + SIDES[NODES][grain.sort]
+        x = result.engine.outline[first:last]
+        axes.fill(*x.T, facecolor="0.75" if grain.rigid else "0.93", edgecolor="0.4", linewidth=0.6)
+        first = last
+    count = first
+    for rest, colour, width, name in ((result.engine, COLOURS[0], 0.009, "engine"),
+                                      (result.reference[STEPS], COLOURS[1], 0.003, "reference")):
+        axes.quiver(*rest.outline[:count].T, *rest.force.T, color=colour, width=width, label=name,
+                    scale=8 * largest(rest.force), zorder=3)
+    axes.set_aspect("equal")
+    axes.grid(False)
+    axes.set_title("19 mixed: contact forces on nodes; dark grains are rigid", fontsize=10, loc="left")
+    axes.set_xlim(-5.6, 5.6)
+    axes.set_ylim(-4.9, 6.3)
+    legend(axes)
