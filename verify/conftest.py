@@ -10,6 +10,8 @@ from collections import defaultdict
 from dataclasses import asdict
 from pathlib import Path
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # of numpy and dolfinx, before they load: cases run side by side
+
 import pytest
 
 from report import report

@@ -1,0 +1,99 @@
+"""Locking: a nearly incompressible disc (nu = 0.49) between two plates, by all recipes, beside nu = 0.4."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fem.plates import Plates, hertz_force, hertz_half_width
+from fem.solid import Material
+from pictures import COLOURS, MARKERS, legend, panels, save
+from squeeze import OUTLINE, RECIPES, Rests, Squeeze, both_ways
+from verification import FULL, Case, Label, observed_order
+
+CASE = Case(__file__)
+NODES = [168, 340, 700, 1400] if FULL else [168, 340, 700]
+APPROACHES = (0.05, 0.0625, 0.075, 0.0875, 0.1)
+RATIOS = [0.4, 0.49]
+STIFFNESS = 3e3  # of the contact, mu / R
+LINEAR, SQUARE, CUBIC = 1, 2, 3  # degrees of finite elements
+
+
+def by_elements(approach: float, poisson: float, degree: int, rings: int = 12, edges: int = 6) -> float:
+    """Force with the engine's penalty."""
+    material = Material.of_poisson(poisson)
+    width = hertz_half_width(hertz_force(approach, material), material)
+    return Plates(material, rings, width, edges, degree).squeeze(approach, STIFFNESS).force
+
+
+@pytest.fixture(scope="module")
+def elements() -> dict[float, np.ndarray]:
+    """[approaches] by Poisson's ratio."""
+    return {poisson: np.array([by_elements(D, poisson, SQUARE) for D in APPROACHES]) for poisson in RATIOS}
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[float, dict[str, dict[int, list[Rests]]]]:
+    """By Poisson's ratio, recipe and nodes, both ways."""
+    return {poisson: {recipe: {nodes: both_ways(CASE, squeeze(poisson, recipe, nodes)) for nodes in NODES}
+                      for recipe in RECIPES} for poisson in RATIOS}
+
+
+def squeeze(poisson: float, recipe: str, nodes: int) -> Squeeze:
+    return Squeeze(APPROACHES, recipe, nodes, stiffness=STIFFNESS, poisson=poisson)
+
+
+def rms_errors(sizes: dict[int, list[Rests]], elements: np.ndarray) -> np.ndarray:
+    """[sizes] of the force, over approaches and both ways."""
+    found = [[rests.force / elements - 1 for rests in both] for both in sizes.values()]
+    return np.sqrt(np.mean(np.square(found), axis=(1, 2)))
+
+
+def spacings(nodes: list[int]) -> list[float]:
+    return [2 * np.pi / OUTLINE[count] for count in nodes]
+
+
+def test_finite_elements_agree() -> None:
+    """Quadratic triangles do not lock: cubic ones and finer meshes of both give the same."""
+    forces = [by_elements(0.1, 0.49, *choice) for choice in ((SQUARE, 12, 6), (SQUARE, 24, 12), (CUBIC, 12, 6))]
+    for name, force in zip(("a finer mesh", "cubic triangles"), forces[1:]):
+        CASE.check(Label.INDEPENDENT, f"finite elements: quadratic triangles over {name} at 10 %", forces[0] / force, 1,
+                   3e-4, "the contact's edge lies within an element: second order of six edges in the half width")
+
+
+@pytest.mark.parametrize("recipe", [recipe for recipe in RECIPES if recipe != "t3"])
+def test_does_not_lock(runs: dict, elements: dict, recipe: str) -> None:
+    CASE.check_rate(f"{recipe}: error of the force in h at nu = 0.49", spacings(NODES),
+                    list(rms_errors(runs[0.49][recipe], elements[0.49])), 3, 1.2,
+                    "from 2, as at nu = 0.4, to 4: a dilation of order h^2 that shapes cannot avoid costs lambda h^4; "
+                    "0.2 for ten samples of a saw tooth")
+
+
+def test_linear_triangles_lock(runs: dict, elements: dict) -> None:
+    found = rms_errors(runs[0.49]["t3"], elements[0.49])[:3]
+    CASE.check_rate("t3: error of the force in h at nu = 0.49", spacings(NODES[:3]), list(found), 1, 0.5,
+                    "between no convergence (two triangles a node, each holds its area: no freedom left) and order 2, "
+                    "which sets in at h^2 lambda / mu << 1: here 0.8 to 0.2")
+    linear = np.array([by_elements(D, 0.49, LINEAR, rings=8, edges=2) for D in APPROACHES]) / elements[0.49] - 1
+    excess = np.mean([rests.force / elements[0.49] - 1 for rests in runs[0.49]["t3"][168]])
+    CASE.check(Label.INDEPENDENT, "t3: mean excess of the force, 168 nodes, over that of dolfinx's linear triangles",
+               excess / linear.mean(), 1, 0.3, "a mesh as fine, of rings: 6 to 15 % at five approaches")
+
+
+def test_picture(runs: dict, elements: dict) -> None:
+    figure, axes = panels(2, "Disc between plates, 5 to 10 %: rms error of the force [%]", across=True)
+    for panel, poisson in zip(axes, RATIOS):
+        for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+            found = 100 * rms_errors(runs[poisson][recipe], elements[poisson])
+            locks = ", locks" if (recipe, poisson) == ("t3", 0.49) else ""
+            panel.loglog(spacings(NODES), found, marker=marker, markersize=4, linewidth=1.1, color=colour,
+                         label=f"{recipe}: {observed_order(spacings(NODES), found):.2f}{locks}")
+        ends = np.array([min(spacings(NODES)), max(spacings(NODES))])
+        panel.loglog(ends, 0.15 * (ends / ends[0]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
+        panel.set_xticks(spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
+        panel.set_xticks([], minor=True)
+        panel.set_ylim(0.1, 30)
+        panel.set_title(f"nu = {poisson}", fontsize=10, loc="left")
+        panel.set_xlabel("node distance of the outline over R")
+        legend(panel)
+    save(CASE, figure, "locking")

@@ -1,0 +1,215 @@
+"""Disc between two frictionless plates up to 30 %: engine, reference solver, finite elements, Hertz."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+from fem.plates import Plates, Squeezed, hertz_force, hertz_half_width
+from fem.solid import Material
+from oracle_tables import read_oracle
+from pictures import COLOURS, MARKERS, legend, panels, save
+from squeeze import (OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_engine, by_reference, to_rigid_contact,
+                     to_zero_spacing)
+from verification import FULL, Case, Label, observed_order
+
+CASE = Case(__file__)
+# The cheapest recipe is the furthest off: it gets one size more.
+SIZES = {recipe: [168, 340, 700] + ([1400] if FULL or recipe == "t3" else []) for recipe in RECIPES}
+APPROACHES = tuple(np.round(0.025 * np.arange(1, 13), 3))
+CHECKED = np.array(APPROACHES) >= 0.05
+SOFT, STIFF = 3e3, 12e3  # contact stiffness, mu / R
+STIFFNESSES = [1e3, 2e3, 4e3, 8e3]
+ACCEPTED = 0.003
+MATERIAL = Material()
+ORACLE = read_oracle("disc_between_plates")
+
+
+@pytest.fixture(scope="module")
+def squeezed() -> list[Squeezed]:
+    """By approach, finite elements with the engine's own penalty: the same problem, but for the mesh."""
+    widths = [hertz_half_width(hertz_force(D, MATERIAL), MATERIAL) for D in APPROACHES]
+    return [Plates(MATERIAL, 12, width, 6).squeeze(D, SOFT) for D, width in zip(APPROACHES, widths)]
+
+
+@pytest.fixture(scope="module")
+def elements(squeezed: list[Squeezed]) -> np.ndarray:
+    """[approaches] forces."""
+    return np.array([squeeze.force for squeeze in squeezed])
+
+
+@pytest.fixture(scope="module")
+def runs() -> dict[str, dict[int, list[Rests]]]:
+    """By recipe and nodes, both ways."""
+    return {recipe: {nodes: both_ways(CASE, Squeeze(APPROACHES, recipe, nodes)) for nodes in SIZES[recipe]}
+            for recipe in RECIPES}
+
+
+@pytest.fixture(scope="module")
+def stiff() -> dict[int, list[Rests]]:
+    return {nodes: both_ways(CASE, Squeeze(APPROACHES, "mls", nodes, stiffness=STIFF)) for nodes in SIZES["mls"]}
+
+
+def mean(both: list[Rests]) -> np.ndarray:
+    """[approaches] of the forces, both ways."""
+    return np.mean([rests.force for rests in both], axis=0)
+
+
+def errors(both: list[Rests], elements: np.ndarray) -> np.ndarray:
+    """[2 x approaches checked] of the forces against finite elements with the same penalty."""
+    return np.array([rests.force / elements - 1 for rests in both])[:, CHECKED]
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_convergence_in_node_distance(runs: dict, elements: np.ndarray, recipe: str) -> None:
+    found = rms_errors(runs[recipe], elements)
+    CASE.check_rate(f"{recipe}: error of the force in h", spacings(runs[recipe]), found, 2, 0.4,
+                    "second order of triangles, outline and contact's edge; 1.5 to 3 node distances in the half width "
+                    "at 5 %, where errors weigh most, and 22 samples of a saw tooth")
+    limit = (at_zero_spacing(runs[recipe]) / elements)[CHECKED]
+    CASE.check(Label.INDEPENDENT, f"{recipe}: force at h = 0 over finite elements", worst(limit), 1, ACCEPTED,
+               "dolfinx, same penalty, 1.5e-4; saw tooth of the contact's edges, halved by two ways to lie")
+
+
+def rms_errors(sizes: dict[int, list[Rests]], elements: np.ndarray) -> list[float]:
+    return [float(np.sqrt(np.mean(errors(both, elements) ** 2))) for both in sizes.values()]
+
+
+def spacings(sizes: dict[int, list[Rests]]) -> list[float]:
+    return [2 * np.pi / OUTLINE[nodes] for nodes in sizes]
+
+
+def at_zero_spacing(sizes: dict[int, list[Rests]]) -> np.ndarray:
+    return to_zero_spacing(list(sizes), [mean(both) for both in sizes.values()])
+
+
+def worst(ratios: np.ndarray) -> float:
+    return float(ratios[np.abs(ratios - 1).argmax()])
+
+
+def test_convergence_in_contact_stiffness() -> None:
+    stiffnesses = [*STIFFNESSES, 2 * STIFFNESSES[-1]]
+    forces = [by_engine(CASE, Squeeze(APPROACHES, stiffness=k)).force[CHECKED] for k in stiffnesses]
+    changes = [((b - a) / b).mean() for a, b in zip(forces, forces[1:])]
+    CASE.check_rate("change of the force from k to 2 k in 1 / k", [1 / k for k in STIFFNESSES], changes, 1, 0.02,
+                    "penetration p / k; the next term is smaller by the penetration over D, 2e-4 / 0.05")
+
+
+def limits(runs: dict, stiff: dict) -> np.ndarray:
+    """[approaches] force of `mls` in rigid contact at zero node distance."""
+    rigid = [to_rigid_contact(mean(runs["mls"][nodes]), mean(stiff[nodes]), STIFF / SOFT) for nodes in stiff]
+    return to_zero_spacing(list(stiff), rigid)
+
+
+def test_force_against_the_oracle(runs: dict, stiff: dict) -> None:
+    found = dict(zip(APPROACHES, limits(runs, stiff)))
+    names = ("approach_over_diameter", "force_over_muR", "relative_error")
+    for D, force, error in zip(*(ORACLE[name] for name in names)):
+        if D >= 0.05:
+            CASE.check(Label.INDEPENDENT, f"mls: force at {100 * D:g} %, h = 0, rigid contact, over the oracle",
+                       found[D] / force, 1, ACCEPTED, f"oracle {error:.1g}; saw tooth 2e-3, its extrapolation 1e-3")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_energy_of_the_disc(runs: dict, squeezed: list[Squeezed], recipe: str) -> None:
+    strain = [np.mean([rests.strain for rests in both], axis=0) for both in runs[recipe].values()]
+    ratios = to_zero_spacing(SIZES[recipe], strain) / [squeeze.strain_energy for squeeze in squeezed]
+    CASE.check(Label.INDEPENDENT, f"{recipe}: strain energy at h = 0 over finite elements", worst(ratios[CHECKED]), 1,
+               ACCEPTED, "dolfinx, same penalty, 1.5e-4; the work of the force, so as good as that")
+
+
+@pytest.mark.parametrize("facet", [False, True], ids=["corner", "facet"])
+def test_work_is_force_times_way(facet: bool) -> None:
+    middles, step = (0.1, 0.2, 0.3), 0.001
+    rests = by_engine(CASE, Squeeze(tuple(D + i * step for D in middles for i in (-1, 0, 1)), facet=facet))
+    lie = "facet" if facet else "corner"
+    for i, D in enumerate(middles):
+        part = slice(3 * i, 3 * i + 3)
+        force, stored = rests.force[part], rests.stored[part]
+        work, chord = (2 * step * np.dot(weights, force) for weights in ([1 / 3, 4 / 3, 1 / 3], [0.5, 1, 0.5]))
+        unrest = np.sqrt((rests.kinetic[part] / stored).max())
+        CASE.check(Label.EXACT, f"stored energy over work around {100 * D:g} %, {lie} at the pole",
+                   (stored[2] - stored[0]) / work, 1, abs(work - chord) / work + unrest,
+                   "Simpson's rule on the force, its difference to the trapezoidal one; what still moves")
+
+
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_engine_against_reference(runs: dict, recipe: str) -> None:
+    engine, reference = runs[recipe][168][0], by_reference(CASE, Squeeze(APPROACHES, recipe))
+    ratio, unrest = engine.force / reference.force, np.sqrt(engine.kinetic / engine.strain)
+    i = int(np.abs(ratio - 1).argmax())
+    CASE.check(Label.INDEPENDENT, f"{recipe}: engine over reference, the worst", ratio[i], 1, 5 * unrest[i] + 1e-5,
+               "amplitude that is left, from kinetic energy: a mode of five times the oval one's frequency has "
+               "five times its force; 1e-5 the kinks of contact")
+
+
+def test_at_rest_and_balanced(runs: dict) -> None:
+    every = [rests for recipe in runs.values() for both in recipe.values() for rests in both]
+    kinetic = max((rests.kinetic / rests.strain).max() for rests in every)
+    CASE.check(Label.EXACT, "kinetic over strain energy at rest, all runs", kinetic, 0, 1e-6,
+               "the slowest, turning on the springs at the poles, decays by exp(-1.5 t) over 5.5 s: 7e-8, and as much "
+               "again for what the plates excite")
+    uneven = max(np.abs((rests.upper - rests.lower) / rests.force)[CHECKED].max() for rests in every)
+    CASE.check(Label.EXACT, "upper less lower force, all runs", uneven, 0, 1e-3, "balance; root of the kinetic energy")
+    places = max(np.abs(rests.gap - 2 * (1 - np.array(APPROACHES))).max() for rests in every)
+    CASE.check(Label.EXACT, "gap of the plates, all runs", places, 0, 1e-12, "imposed motion; rounding")
+    held = max((rests.boundary / rests.strain)[CHECKED].max() for rests in every)
+    CASE.check(Label.EXACT, "energy of the springs at the poles, all runs", held, 0, 1e-3,
+               "they may add no more than a third of the accepted error")
+
+
+def test_hertz(runs: dict) -> None:
+    """The closed form for small approaches."""
+    force = at_zero_spacing(runs["mls"])
+    CASE.check(Label.INDEPENDENT, "mls: force at 2.5 % over Hertz", force[0] / hertz_force(APPROACHES[0], MATERIAL), 1,
+               0.02, "linear theory to 1.2e-3; at 168 nodes three of them touch: 5 % too much, of which h^2 takes most")
+
+
+def test_picture(runs: dict, stiff: dict, elements: np.ndarray) -> None:
+    figure, axes = panels(3, "Disc between plates", across=True)
+    percent = 100 * np.array(APPROACHES)
+    draw_forces(axes[0], runs, percent)
+    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+        axes[1].plot(percent[CHECKED], 100 * (mean(runs[recipe][700]) / elements - 1)[CHECKED], marker=marker,
+                     markersize=4, linewidth=1.1, color=colour, label=f"{recipe}, 700 nodes")
+    draw_limits(axes[1], limits(runs, stiff))
+    axes[1].axhspan(-100 * ACCEPTED, 100 * ACCEPTED, color="0.9")
+    axes[1].set_title("force over finite elements, less 1 [%]", fontsize=10, loc="left")
+    for panel in axes[:2]:
+        panel.set_xlabel("approach over the diameter [%]")
+    draw_convergence(axes[2], runs, elements)
+    for panel in axes:
+        legend(panel)
+    save(CASE, figure, "plates")
+
+
+def draw_limits(axes: Axes, forces: np.ndarray) -> None:
+    oracle = dict(zip(ORACLE["approach_over_diameter"], ORACLE["force_over_muR"]))
+    found = {D: 100 * (force / oracle[D] - 1) for D, force in zip(APPROACHES, forces) if D in oracle and D >= 0.05}
+    axes.plot(100 * np.array(list(found)), list(found.values()), "k*", label="mls, h = 0, rigid contact")
+
+
+def draw_forces(axes: Axes, runs: dict, percent: np.ndarray) -> None:
+    fine = 0.001 * np.arange(1, 301)
+    axes.plot(100 * fine, [hertz_force(D, MATERIAL) for D in fine], ":", color=COLOURS[6], label="Hertz")
+    axes.plot(100 * ORACLE["approach_over_diameter"], ORACLE["force_over_muR"], "-", color="0.3",
+              label="finite elements")
+    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+        axes.plot(percent, mean(runs[recipe][168]), marker, markersize=4, fillstyle="none", color=colour,
+                  label=f"{recipe}, 168 nodes")
+    axes.set_title("force on a plate over mu R", fontsize=10, loc="left")
+
+
+def draw_convergence(axes: Axes, runs: dict, elements: np.ndarray) -> None:
+    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
+        steps, found = spacings(runs[recipe]), 100 * np.array(rms_errors(runs[recipe], elements))
+        axes.loglog(steps, found, marker=marker, markersize=4, linewidth=1.1, color=colour,
+                    label=f"{recipe}: {observed_order(steps, found):.2f}")
+    ticks = spacings(runs["t3"])
+    axes.loglog(ticks, 0.1 * (np.array(ticks) / ticks[-1]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
+    axes.set_xticks(ticks, [f"{h:.3f}" for h in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_title("5 to 30 %, corners and facets at the poles", fontsize=10, loc="left")
+    axes.set_xlabel("node distance of the outline over R")
+    axes.set_ylabel("rms error of the force [%]")

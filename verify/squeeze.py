@@ -1,0 +1,95 @@
+"""A disc between two frictionless plates by the engine and the reference solver, for the cases plates and locking.
+
+Units mu = R = rho = 1. The approach is that of the plates over the diameter, counted from the true circle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from verification import Case, Run
+
+SCENE = "../plates/scene.toml"
+RECIPES = ["mls", "mls-gauss", "t3", "es-t3"]
+OUTLINE = {168: 48, 340: 68, 700: 100, 1400: 140}  # nodes on the outline: multiples of four, so both poles are alike
+GAP = 0.01  # of either plate at the start
+PAUSE, RAMP = 8.0, 2.5  # s from one approach to the next; of them in motion
+HOLD = 6.0  # springs at the poles, mu / R, over a length of 0.14: five hundred times softer than contact
+
+
+@dataclass(frozen=True)
+class Squeeze:
+    """One run: a disc of so many nodes with a corner or, turned by half a segment, a facet at each pole."""
+
+    approaches: tuple[float, ...]
+    recipe: str = "mls"
+    nodes: int = 168
+    facet: bool = False
+    stiffness: float = 3e3  # of the contact, mu / R
+    poisson: float = 0.4
+
+    def name(self) -> str:
+        turned = "facet" if self.facet else "corner"
+        return f"{self.recipe}_{self.nodes}_{turned}_{self.stiffness:g}_{self.poisson:g}_{len(self.approaches)}"
+
+    def scene(self, case: Case) -> str:
+        up = self.speeds()
+        outline = OUTLINE[self.nodes]
+        return case.scene(SCENE, recipe=self.recipe, nodes=self.nodes, outline=outline, hold=HOLD, rest=PAUSE,
+                          angle=np.pi / outline if self.facet else 0.0, end=PAUSE * len(self.approaches),
+                          young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
+                          up=up, down=[[t, -v] for t, v in up])
+
+    def speeds(self) -> list[list[float]]:
+        """Of the lower plate: triangles in time, one an approach; both plates go as far."""
+        corners, closed = [], -GAP
+        for i, approach in enumerate(self.approaches):
+            start, way = i * PAUSE, approach - closed
+            corners += [[start, 0.0], [start + RAMP / 2, 2 * way / RAMP], [start + RAMP, 0.0]]
+            closed = approach
+        return corners
+
+
+class Rests:
+    """What a run shows at the end of each pause, [approaches] each: force on a plate, energies, horizontal diameter."""
+
+    def __init__(self, squeeze: Squeeze, run: Run) -> None:
+        at = PAUSE * np.arange(1, len(squeeze.approaches) + 1)
+        self.upper, self.lower = run.at("upper.force_y", at), -run.at("lower.force_y", at)
+        self.force = (self.upper + self.lower) / 2
+        names = ("kinetic", "strain", "contact", "boundary")
+        self.kinetic, self.strain, self.contact, self.boundary = (run.at(f"energy.{name}", at) for name in names)
+        self.stored = self.strain + self.contact + self.boundary
+        self.diameter = run.at("disc.diameter_x", at)
+        self.gap = 2 * run.at("plate.position_y", at)
+
+
+def by_engine(case: Case, squeeze: Squeeze) -> Rests:
+    return Rests(squeeze, case.engine(squeeze.name(), squeeze.scene(case)))
+
+
+def by_reference(case: Case, squeeze: Squeeze) -> Rests:
+    """Statics, eight load steps an approach."""
+    run = case.reference(squeeze.name() + "_reference", squeeze.scene(case), "--static", "--dt", repr(PAUSE / 8))
+    return Rests(squeeze, run)
+
+
+def both_ways(case: Case, squeeze: Squeeze) -> list[Rests]:
+    """With corners and with facets at the poles: nodes come into touch at other approaches, errors alternate."""
+    return [by_engine(case, replace(squeeze, facet=facet)) for facet in (False, True)]
+
+
+def to_zero_spacing(nodes: list[int], values: list[np.ndarray]) -> np.ndarray:
+    """A straight line in the square of the outline's node distance, at zero. [sizes] of [approaches].
+
+    Least squares, weighted as for errors that grow with that square, as the saw tooth of the contact's edges does.
+    """
+    squares = np.array([OUTLINE[count] ** -2.0 for count in nodes])
+    return np.polyfit(squares, np.array(values), 1, w=1 / squares)[1]
+
+
+def to_rigid_contact(soft: np.ndarray, stiff: np.ndarray, ratio: float) -> np.ndarray:
+    """From contact stiffnesses k and ratio x k: the error is of order 1 / k."""
+    return (ratio * stiff - soft) / (ratio - 1)
