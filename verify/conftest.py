@@ -27,6 +27,11 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(Record(), "pliant-record")
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """So that no long case is left over at the end, on one core."""
+    items.sort(key=lambda item: -item.module.CASE.cost)
+
+
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Rows of an earlier run must not stand for checks that this one does not reach. Workers collect while others run."""
     for case in {item.path.parent.name for item in session.items}:

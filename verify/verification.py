@@ -99,10 +99,11 @@ class Run:
 
 
 class Case:
-    """A folder of verify/: its scenes, its results, its checks. Fast cases run in ./pliant test too."""
+    """A folder of verify/: its scenes, its results, its checks. Fast cases run in ./pliant test too; those of the largest cost, in minutes of one
+    core, start first."""
 
-    def __init__(self, file: str, fast: bool = False) -> None:
-        self.fast = fast
+    def __init__(self, file: str, fast: bool = False, cost: float = 1) -> None:
+        self.fast, self.cost = fast, cost
         self.folder = Path(file).resolve().parent
         self.name = self.folder.name
         self.out = OUT / self.name
