@@ -143,9 +143,10 @@ def test_edge_of_stick(runs: dict[int, Run], level: int) -> None:
     run = runs[SEGMENTS[-1]]
     expected = theory(run, level)
     share = expected.sheared / (FRICTION * expected.pressed)
-    CASE.check(Label.EXACT, f"Q = {share:.2f} friction P: half width of stick over that of contact",
+    CASE.check(Label.INDEPENDENT, f"Q = {share:.2f} friction P: half width of stick over that of contact",
                stuck_half_width(run, level) / expected.half_width, expected.stuck / expected.half_width,
-               2 / SEGMENTS[-1] / expected.half_width, "Cattaneo and Mindlin, the blocks' finite size; a spacing")
+               2 / SEGMENTS[-1] / expected.half_width,
+               "Cattaneo and Mindlin, the blocks' finite size by dolfinx (1 to 3 %); a spacing")
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -156,10 +157,10 @@ def test_tractions(runs: dict[int, Run], level: int) -> None:
     CASE.check_rate(f"{name}: rms error of the pressure", spacings(), [v[0] for v in values], 2, 0.6,
                     "second order of the mesh; first of the penalty, 2 % at first; 0.6 for where nodes lie to the "
                     "edges")
-    CASE.check(Label.EXACT, f"{name}: rms error of the shear over friction x largest pressure", values[-1][1], 0,
+    CASE.check(Label.INDEPENDENT, f"{name}: rms error of the shear over friction x largest pressure", values[-1][1], 0,
                errors(run, PRESSED)[1] + kink(theory(run, level)),
-               "Cattaneo and Mindlin; what pressure alone leaves, and the slope's jump at the edge of stick within a "
-               "spacing")
+               "Cattaneo and Mindlin, finite size by dolfinx; what pressure alone leaves, and the slope's jump at the "
+               "edge of stick within a spacing")
 
 
 def kink(expected: Theory) -> float:

@@ -22,7 +22,8 @@ CLUSTERS = {"7 compliant": (1, False), "7 mixed": (1, True), "19 compliant": (2,
 # Slip is the sum of length times d(xi). Two ways to one end differ by the area between them: what facets stretch by,
 # 0.01 to 0.1, times the engine's lag on the way, some 1e-3 R, and half a load step. Twice the time and steps halve it.
 FORCES = 1e-4
-SOURCE = "slip depends on the way: stretch of facets times lag of the engine and half a load step, 1e-4 R at most"
+SOURCE = ("slip depends on the way: stretch of facets times lag of the engine and half a load step, 1e-4 R of slip "
+          "at most; asked of positions is 1e-6, of forces 1e-4")
 
 
 @dataclass

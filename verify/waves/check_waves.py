@@ -32,6 +32,8 @@ AMPLITUDE = 1e-5  # speed over wave speed: strains of 1e-5, so what is not linea
 # rate can be seen. With corrected mass both errors have one sign.
 CONVERGE = [("mls", "lumped"), ("mls-gauss", "lumped"), ("t3", "corrected"), ("es-t3", "lumped")]
 OTHERS = [("mls", "corrected"), ("t3", "lumped"), ("es-t3", "corrected")]
+# Of a chain of lumped masses in the first mode, which corrected mass takes away.
+LUMPED_DISPERSION = (np.pi / LENGTH * SPACINGS[-1])**2 / 24
 ASKED = "closed form, a tenth of a percent is asked for"
 
 
@@ -125,8 +127,12 @@ def test_standing_waves_converge(wave: Wave, variant: tuple[str, str], errors: d
 @pytest.mark.parametrize("variant", OTHERS, ids=lambda v: "-".join(v))
 def test_standing_waves_of_other_variants(wave: Wave, variant: tuple[str, str]) -> None:
     found = mode_frequency(wave, engine_motion(wave, *variant, SPACINGS[-1])) / wave.frequency
-    CASE.check(Label.EXACT, f"{wave.name}, {' '.join(variant)}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}", found,
-               1, 1e-3, ASKED)
+    name = f"{wave.name}, {' '.join(variant)}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}"
+    if variant[1] == "corrected":
+        CASE.check(Label.EXACT, name, found, 1, LUMPED_DISPERSION,
+                   "closed form; dispersion of lumped masses, (q h)^2/24, is gone")
+    else:
+        CASE.check(Label.EXACT, name, found, 1, 1e-3, ASKED)
 
 
 REFERENCE_SPACING = 1 / 16
