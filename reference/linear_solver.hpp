@@ -21,8 +21,7 @@ class LinearSolver {
 
   struct Counts {
     long analyses = 0, factorisations = 0;
-    double seconds = 0;     ///< in analyses, factorisations and solutions
-    long largest_size = 0;  ///< entries of the largest factor
+    double seconds = 0;  ///< in analyses, factorisations and solutions
   };
   const Counts& counts() const { return counts_; }
 

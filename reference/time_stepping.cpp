@@ -39,10 +39,10 @@ std::string trouble_of(const Forces& forces, const Bodies& bodies) {
   return {};
 }
 
-/// The body whose degree of freedom has the largest residual.
-std::string worst_body(const Forces& forces, const Bodies& bodies) {
+/// The body whose degree of freedom has the largest residual, [dofs]. Reactions of imposed ones do not count.
+std::string worst_body(const Vector& residual, const Bodies& bodies) {
   Eigen::Index worst = 0;
-  if (forces.residual.size() > 0) forces.residual.cwiseAbs().maxCoeff(&worst);
+  if (residual.size() > 0) residual.cwiseAbs().maxCoeff(&worst);
   for (const Body& body : bodies.all())
     if (worst < body.first_dof + body.dofs) return body.placed.name;
   return {};
@@ -165,7 +165,7 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
   result.symmetric = forces.symmetric;
   result.potential = forces.potential;
   if (tangent) result.matrix = restricted(matrix, select);
-  worst_ = worst_body(forces, system_.bodies());
+  worst_ = worst_body(select * result.residual, system_.bodies());
   return result;
 }
 

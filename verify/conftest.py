@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import time
@@ -23,8 +22,18 @@ BEGIN = "PLIANT_VERIFY_BEGIN"  # of the session, s
 def pytest_configure(config: pytest.Config) -> None:
     """Reports of tests arrive where the summary is written, not at the workers of pytest-xdist."""
     if not hasattr(config, "workerinput"):
+        make_results_folder()
         os.environ[BEGIN] = str(time.time())  # the workers inherit it
         config.pluginmanager.register(Record(), "pliant-record")
+
+
+def make_results_folder() -> None:
+    try:
+        OUT.mkdir(parents=True, exist_ok=True)
+        (OUT / ".lock").touch()
+    except OSError as error:
+        raise pytest.UsageError(f"{OUT}: results cannot be written there: {error.strerror}; PLIANT_VERIFY_OUT names "
+                                "another folder") from None
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -46,29 +55,36 @@ class Record:
     def __init__(self) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
         self.messages: dict[str, str] = {}
+        self.known: dict[str, str] = {}
         self.cases: list[report.CaseReport] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.seconds[report.nodeid] += report.duration
         if report.failed:
             self.messages[report.nodeid] = str(report.longrepr)
+        elif report.skipped and hasattr(report, "wasxfail"):
+            self.known[report.nodeid] = report.wasxfail
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        """A case that cannot be loaded is red: its rows of an earlier run do not stand for it."""
+        if report.failed and report.nodeid.endswith(".py"):
+            (OUT / case_of(report.nodeid) / "checks.json").unlink(missing_ok=True)
+            self.seconds[report.nodeid] = 0.0
+            self.messages[report.nodeid] = str(report.longrepr)
 
     def pytest_sessionfinish(self) -> None:
-        """All cases that ever ran, in one report. Several sessions may end at once."""
-        if not OUT.is_dir():
-            return
+        """All cases that ever ran, in one report."""
         ran = {case_of(test) for test in self.seconds}
         for case in ran:
             self._complete(OUT / case)
-        with (OUT / ".lock").open("w") as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX)
-            self.cases = [case for case in report.write(OUT) if case.name in ran]
+        self.cases = [case for case in report.write(OUT) if case.name in ran]
 
     def _complete(self, folder: Path) -> None:
-        """Adds to the rows of a case how long they took, and what failed without a row."""
+        """Adds to the rows of a case how long they took and what is known to be red, and what failed without a row."""
         rows = read_rows(folder / "checks.json")
         for row in rows:
             row["seconds"] = self.seconds.get(row["test"], 0.0)
+            row["known"] = "" if row["green"] else self.known.get(row["test"], "")
         red = {row["test"] for row in rows if not row["green"]}
         failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:])
                     for test, message in self.messages.items() if case_of(test) == folder.name and test not in red]
@@ -91,7 +107,9 @@ class Record:
             terminalreporter.write("green " if row.green else "RED   ", green=row.green, red=not row.green)
             terminalreporter.write_line(line)
         share = ", ".join(f"{count} {label}" for label, count in report.totals(self.cases).items())
-        terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red")
+        known = sum(case.known for case in self.cases)
+        terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red" +
+                                    (f", {known} of them known" if known else ""))
         terminalreporter.write_line(f"report: {OUT / 'report.html'}; table: {OUT / 'checks.json'}")
 
 

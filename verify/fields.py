@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 
-from verification import ROOT, Run
-
-sys.path.insert(0, str(ROOT / "scripts"))
-
 from plots.run_data import Frames
+from verification import Run
 
 STRESSES = ("xx", "yy", "xy")
 

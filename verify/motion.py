@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 
 import numpy as np
 
-from verification import ROOT, Run
-
-sys.path.insert(0, str(ROOT / "scripts"))
-
+from fields import frames_of
 from plots.run_data import Frames
+from verification import Run
 
 SINGLE = 6e-8  # relative rounding of frames, which are in single precision
 
@@ -47,7 +44,7 @@ class Motion:
 
 def read_motion(run: Run) -> Motion:
     """Of a run with one body and frames with the field displacement, and velocity if it is wanted."""
-    frames = Frames(run.folder / "frames.h5", None)
+    frames = frames_of(run)
     count = range(len(frames.times))
     velocities = None
     if frames.field("bodies", 0, "velocity") is not None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import matplotlib
 
 matplotlib.use("Agg")
@@ -14,11 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from order_study import Quantity, Study
-from verification import ROOT, Case, Run, observed_order
-
-sys.path.insert(0, str(ROOT / "scripts"))
-
 from plots.curves import COLOURS
+from verification import Case, Run, observed_order
 
 DOTS_PER_INCH = 200
 MARKERS = ["o", "s", "^", "D", "v", "P"]

@@ -53,6 +53,7 @@ class Row:
     green: bool
     test: str = ""  # of pytest, in which it was made
     seconds: float = 0.0  # of that test, with the runs that it waited for
+    known: str = ""  # why it is red and may stay so: the reason of the test's xfail
 
     @property
     def used(self) -> float | None:
@@ -99,8 +100,10 @@ class Run:
 
 
 class Case:
-    """A folder of verify/: its scenes, its results, its checks. Fast cases run in ./pliant test too; those of the largest cost, in minutes of one
-    core, start first."""
+    """A folder of verify/: its scenes, its results, its checks.
+
+    Fast cases run in ./pliant test too; those of the largest cost, in minutes of one core, start first.
+    """
 
     def __init__(self, file: str, fast: bool = False, cost: float = 1) -> None:
         self.fast, self.cost = fast, cost
@@ -142,7 +145,7 @@ class Case:
         if not (tolerance >= 0 and np.isfinite(expected)) or not source:
             raise ValueError(f"{name}: expected {expected}, tolerance {tolerance}, source '{source}'")
         green = bool(abs(value - expected) <= tolerance)
-        test = os.environ.get("PYTEST_CURRENT_TEST", "").split(" ")[0]
+        test = os.environ.get("PYTEST_CURRENT_TEST", "").rpartition(" ")[0]  # without "(call)"
         self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green, test))
         assert green, f"{Label(label).value} {name}: {value:.6g}, expected {expected:.6g} +- {tolerance:.2g} ({source})"
 
@@ -157,7 +160,7 @@ class Case:
 
     def _write_down(self, row: Row) -> None:
         file = self.out / "checks.json"
-        others = [r for r in read_rows(file) if r["name"] != row.name]
+        others = [r for r in read_rows(file) if (r["name"], r["test"]) != (row.name, row.test)]
         replace_file(file, json.dumps([*others, asdict(row)], indent=1) + "\n")
 
 

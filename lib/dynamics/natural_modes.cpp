@@ -116,7 +116,11 @@ SmallMotions small_motions(const Model& model, const Body& body) {
 /// With W = L L^T the eigenvalues of W K are those of L^T K L, which is symmetric.
 NaturalModes natural_modes(const SmallMotions& motions) {
   const Index nodes = motions.inverse_mass.rows();
-  const MatrixXd lower = motions.inverse_mass.llt().matrixL();
+  const Eigen::LLT<MatrixXd> factors(motions.inverse_mass);
+  if (factors.info() != Eigen::Success)
+    throw InputError(
+        "the mass is not positive definite: take mass = \"lumped\", or another `support` or number of nodes");
+  const MatrixXd lower = factors.matrixL();
   MatrixXd scaled(2 * nodes, 2 * nodes);
   for (Index a = 0; a < 2; ++a)
     for (Index b = 0; b < 2; ++b) {

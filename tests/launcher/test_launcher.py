@@ -257,7 +257,8 @@ def test_presets_are_the_same_everywhere(launcher: Launcher) -> None:
     assert names == set(re.findall(r"`([a-z-]+)`", row))
 
 
-@pytest.mark.parametrize("arguments", [["no_such_case"], ["--ful"], ["../verify/orders_free"], [""]])
+@pytest.mark.parametrize("arguments", [["no_such_case"], ["--ful"], ["../verify/orders_free"], [""], ["*"], ["fem"],
+                                       ["--full", "--mutate"]])
 def test_unknown_cases_of_verify_are_refused(launcher: Launcher, arguments: list[str]) -> None:
     shutil.copytree(ROOT / "verify", launcher.root / "verify")
     result = launcher("verify", *arguments)

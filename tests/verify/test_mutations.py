@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "verify/mutations"))
 
-from mutate import Mutation, read_mutations
+from mutate import Mutation, read_mutations, red_lines
 
 MUTATIONS = read_mutations()
 
@@ -36,3 +36,9 @@ def test_a_text_that_moved_is_told() -> None:
     mutation = Mutation("m", "what", "file", "a", "b", [])
     with pytest.raises(ValueError, match="2 times"):
         mutation.mutated("a a")
+
+
+def test_what_is_red_without_a_mutation_finds_none() -> None:
+    row = {"case": "a", "name": "b", "label": "EXACT", "value": 1.0, "expected": 2.0, "tolerance": 0.1, "green": False}
+    assert red_lines({"checks": [{**row, "known": "the paper differs"}], "failures": []}) == []
+    assert len(red_lines({"checks": [{**row, "known": ""}], "failures": []})) == 1

@@ -60,13 +60,19 @@ def test_how_much_of_a_tolerance_is_used() -> None:
 
 
 CASE = '''
+import pytest
 from verification import Case
 CASE = Case(__file__)
 def test_red(): CASE.check("EXACT", "two", 2, 1, 0.5, "counted")
 def test_green(): CASE.check("EXACT", "one", 1, 1, 0.5, "counted")
 def test_broken(): raise RuntimeError("no run")
 def test_without_a_source(): CASE.check("EXACT", "three", 3, 3, 0.5, "")
+@pytest.mark.parametrize("value", [1, 4], ids=["a b", "a c"])
+def test_named(value): CASE.check("EXACT", "named", value, 1, 0.5, "counted")
+@pytest.mark.xfail(strict=True, reason="the paper differs")
+def test_known(): CASE.check("EXACT", "paper", 2, 1, 0.5, "counted")
 '''
+BEFORE = [asdict(row("unreadable", "of an earlier run", 1.0))]
 
 
 @pytest.mark.parametrize("options", [[], ["-n", "2", "--dist", "loadfile"]], ids=["alone", "side by side"])
@@ -76,11 +82,30 @@ def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, options: li
     for name in ("conftest.py", "pytest.ini", "verification.py", "report"):
         (tmp_path / "verify" / name).symlink_to(ROOT / "verify" / name)
     (case / "check_odd.py").write_text(CASE)
-    environment = {**os.environ, "PLIANT_VERIFY_OUT": str(tmp_path / "out")}
-    result = subprocess.run([sys.executable, "-B", "-m", "pytest", "-c", str(tmp_path / "verify/pytest.ini"), *options, str(case)],
-                            env=environment, capture_output=True, text=True)
+    (tmp_path / "verify/unreadable").mkdir()
+    (tmp_path / "verify/unreadable/check_unreadable.py").write_text("import no_such_module")
+    (tmp_path / "out/unreadable").mkdir(parents=True)
+    (tmp_path / "out/unreadable/checks.json").write_text(json.dumps(BEFORE))
+    result = session(tmp_path / "verify/pytest.ini", *options, tmp_path / "verify", out=tmp_path / "out")
     assert result.returncode == 1
     checks = json.loads((tmp_path / "out/checks.json").read_text())
-    assert [(r["name"], r["green"]) for r in checks["checks"]] == [("two", False), ("one", True)]
-    assert sorted(failure["test"] for failure in checks["failures"]) == ["test_broken", "test_without_a_source"]
-    assert checks["red"] == 3 and "2 checks: 2 EXACT" in result.stdout
+    assert sorted((r["name"], r["green"]) for r in checks["checks"]) == [
+        ("named", False), ("named", True), ("one", True), ("paper", False), ("two", False)]
+    assert [(r["name"], r["known"]) for r in checks["checks"] if r["known"]] == [("paper", "the paper differs")]
+    assert all(r["seconds"] > 0 for r in checks["checks"])
+    assert sorted(failure["test"] for failure in checks["failures"]) == [
+        "test_broken", "test_without_a_source", "unreadable/check_unreadable.py"]
+    assert (checks["red"], checks["known"]) == (6, 1)
+    assert "5 checks: 5 EXACT" in result.stdout and "6 red, 1 of them known" in result.stdout
+    assert "known: the paper differs" in (tmp_path / "out/report.html").read_text()
+
+
+def test_a_folder_that_cannot_be_written_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    result = session(ROOT / "verify/pytest.ini", ROOT / "verify/sliding", out=tmp_path / "file/out")
+    assert result.returncode != 0 and "results cannot be written there" in result.stderr
+
+
+def session(settings: Path, *arguments: str | Path, out: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-B", "-m", "pytest", "-c", *map(str, [settings, *arguments])]
+    return subprocess.run(command, env={**os.environ, "PLIANT_VERIFY_OUT": str(out)}, capture_output=True, text=True)

@@ -2,8 +2,9 @@
 
 They share nothing with engine or reference solver, and hold no expected numbers. Plane strain, per unit thickness.
 `meshes` of triangles with curved edges, `solid` the material and its forms, `statics` Newton's method on a potential,
-`dynamics` explicit and implicit steps, `plates` the disc between two rigid plates. Compiled forms are kept in
-results/verify/.fenics. One thread: several cases may run at once.
+`dynamics` explicit and implicit steps, `eigen` natural frequencies, `plates` the disc between two rigid plates,
+`free_disc` its large oscillation. `compiled` keeps compiled forms in results/verify/.fenics. One thread: several
+cases may run at once.
 """
 
 import os

@@ -16,7 +16,7 @@ from pictures import COLOURS, MARKERS, legend, panels, save
 from plots.run_data import Frames
 from verification import FULL, Case, Label
 
-CASE = Case(__file__)
+CASE = Case(__file__, cost=4)
 
 LARGE = 1.4  # diameter; the small one is 1
 AREA = DISCS / 2 * math.pi / 4 * (1 + LARGE**2)

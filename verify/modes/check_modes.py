@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from disc_spectrum import count_in_the_plane, disc_modes, frequencies, frequency_functions, roots
 from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import ENGINE, FULL, ROOT, Case, Label, observed_order
+from verification import ENGINE, LONGEST_RUN, FULL, ROOT, Case, Label, observed_order
 
 CASE = Case(__file__)
 COUNT = 10  # frequencies compared
@@ -44,7 +44,7 @@ def ask(name: str, text: str, *options: str) -> dict:
     file, answer = CASE.out / f"{name}.toml", CASE.out / f"{name}.json"
     file.write_text(text)
     command = [str(ENGINE), "modes", str(file), "--count", str(COUNT), "--json", str(answer), *options]
-    result = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600)
+    result = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=LONGEST_RUN)
     if result.returncode != 0:
         raise RuntimeError(f"{' '.join(command)}\nexit code {result.returncode}\n{result.stderr}")
     return json.loads(answer.read_text())["bodies"][0]

@@ -10,21 +10,25 @@ when a check is red, or a run ends with an error, that is green without it.
 from __future__ import annotations
 
 import argparse
+import fcntl
 import filecmp
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import time
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from report import report
-from verification import OUT, ROOT
+from verification import OUT, ROOT, replace_file
 
 MUTATIONS = Path(__file__).with_name("mutations.toml")
 SCRATCH = ROOT / "build/mutants"
@@ -112,7 +116,7 @@ def run_cases(cases: list[str], name: str, *options: str) -> list[str]:
 
 def red_lines(checks: dict) -> list[str]:
     lines = [f"{row['case']}: {row['name']} ({row['label']})\t{row['value']:.5g}, expected {row['expected']:.5g} "
-             f"+- {row['tolerance']:.2g}" for row in checks["checks"] if not row["green"]]
+             f"+- {row['tolerance']:.2g}" for row in checks["checks"] if not (row["green"] or row["known"])]
     return lines + [f"{failure['case']}: {failure['test']}\t{last_error(failure['message'])}"
                     for failure in checks["failures"]]
 
@@ -126,7 +130,7 @@ def last_error(message: str) -> str:
 
 def fast_cases() -> list[str]:
     return sorted(file.parent.name for file in (ROOT / "verify").glob("*/check_*.py")
-                  if "Case(__file__, fast=True)" in file.read_text())
+                  if re.search(r"^CASE = Case\(__file__, .*fast=True", file.read_text(), re.MULTILINE))
 
 
 def judge(mutation: Mutation, sound: list[str]) -> Verdict:
@@ -154,7 +158,7 @@ def write_down(verdicts: list[Verdict], names: list[str]) -> None:
     known = {row["name"]: row for row in json.loads(file.read_text())["rows"]} if file.exists() else {}
     known.update({verdict.name: asdict(verdict) for verdict in verdicts})
     rows = [known[name] for name in names if name in known]
-    file.write_text(json.dumps({"commit": report.commit(), "written": report.now(), "rows": rows}, indent=1) + "\n")
+    replace_file(file, json.dumps({"commit": report.commit(), "written": report.now(), "rows": rows}, indent=1) + "\n")
     report.write(OUT)
 
 
@@ -177,18 +181,42 @@ def chosen(mutations: list[Mutation], names: list[str]) -> list[Mutation]:
     return [mutation for mutation in mutations if not names or mutation.name in names]
 
 
+@contextmanager
+def alone() -> Iterator[None]:
+    """Another call would write its mistakes into the same copy."""
+    SCRATCH.mkdir(parents=True, exist_ok=True)
+    with (SCRATCH / ".lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise RuntimeError(f"another call makes mutations in {SCRATCH}; wait for its end") from None
+        yield
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(prog="./pliant verify --mutate", description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help="mutations (default: all)")
     every = read_mutations()
     mutations = chosen(every, parser.parse_args().names)
+    try:
+        for mutation in mutations:
+            mutation.mutated((ROOT / mutation.file).read_text())  # before an hour has gone by
+        with alone():
+            return judge_all(mutations, [mutation.name for mutation in every])
+    except (OSError, RuntimeError, ValueError, subprocess.CalledProcessError) as error:
+        print(f"pliant: verify --mutate: {error}", file=sys.stderr)
+        return 1
+
+
+def judge_all(mutations: list[Mutation], known: list[str]) -> int:
+    """Exit code: 1 when one survives. What is found is written down at once."""
     copy_sources()
     build()
     sound = sound_cases(mutations)
     verdicts = []
     for mutation in mutations:
         verdicts.append(judge(mutation, sound))
-        write_down(verdicts, [mutation.name for mutation in every])
+        write_down(verdicts, known)
         found = f"found by {verdicts[-1].killer}" if verdicts[-1].killed else "SURVIVED"
         print(f"{mutation.name:28} {verdicts[-1].seconds:5.0f} s  {found}", flush=True)
     survivors = [verdict.name for verdict in verdicts if not verdict.killed]

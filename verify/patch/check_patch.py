@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 import ufl
@@ -14,12 +12,9 @@ from fem.meshes import disc
 from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from pictures import COLOURS, legend, panels, save
-from squeeze import RECIPES
-from verification import ROOT, Case, Label, Run
-
-sys.path.insert(0, str(ROOT / "scripts"))
-
 from plots.run_data import COMPLIANT, Frames
+from squeeze import RECIPES
+from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
 MATERIAL = Material()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
 import subprocess
 from collections import Counter
@@ -46,6 +47,11 @@ class CaseReport:
     def red(self) -> int:
         return sum(not row.green for row in self.rows) + len(self.failures)
 
+    @property
+    def known(self) -> int:
+        """Of the red ones: those that do not make the case fail."""
+        return sum(bool(row.known) for row in self.rows)
+
     def count(self, label: Label) -> int:
         return sum(row.label == label.value for row in self.rows)
 
@@ -64,10 +70,12 @@ class Mutations:
 
 
 def write(out: Path) -> list[CaseReport]:
-    """Of all cases that ever ran with their results in this folder."""
-    cases = [read_case(out, file.parent) for file in sorted(out.glob("*/checks.json"))]
-    replace_file(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
-    replace_file(out / "report.html", as_html(cases, _mutations(out)))
+    """Of all cases that ever ran with their results in this folder. Several sessions may end at once."""
+    with (out / ".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        cases = [read_case(out, file.parent) for file in sorted(out.glob("*/checks.json"))]
+        replace_file(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
+        replace_file(out / "report.html", as_html(cases, _mutations(out)))
     return cases
 
 
@@ -80,6 +88,7 @@ def read_case(out: Path, folder: Path) -> CaseReport:
 
 def as_json(cases: list[CaseReport]) -> dict:
     return {"commit": commit(), "written": now(), "totals": totals(cases), "red": sum(case.red for case in cases),
+            "known": sum(case.known for case in cases),
             "checks": [vars(row) for case in cases for row in case.rows],
             "failures": [vars(failure) for case in cases for failure in case.failures]}
 
@@ -91,7 +100,8 @@ def as_html(cases: list[CaseReport], mutations: Mutations | None) -> str:
     rows = sum(len(case.rows) for case in cases)
     return environment.get_template("report.html.j2").render(
         cases=cases, commit=commit(), now=now(), labels=list(Label), totals=totals(cases), rows=rows,
-        red=sum(case.red for case in cases), mutations=mutations, seconds=sum(case.seconds for case in cases))
+        red=sum(case.red for case in cases), known=sum(case.known for case in cases), mutations=mutations,
+        seconds=sum(case.seconds for case in cases))
 
 
 def totals(cases: list[CaseReport]) -> dict[str, int]:

@@ -17,7 +17,7 @@ from third_body_order import (Neighbours, bond_order, kept_fraction, like_fracti
                               neighbours)
 from verification import FULL, ROOT, Case, Label, Run
 
-CASE = Case(__file__)
+CASE = Case(__file__, cost=4)
 
 DIAMETER, PITCH, ROW_PITCH = 1e-6, 0.87e-6, 1.002e-6  # m
 COLUMNS, ROWS = 10, 20
