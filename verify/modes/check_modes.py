@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from disc_spectrum import count_in_the_plane, disc_modes, frequencies, frequency_functions, roots
 from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import ENGINE, LONGEST_RUN, FULL, ROOT, Case, Label, observed_order
+from verification import ENGINE, FULL, LONGEST_RUN, ROOT, Case, Label, observed_order
 
 CASE = Case(__file__)
 COUNT = 10  # frequencies compared
