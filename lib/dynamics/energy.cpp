@@ -91,9 +91,12 @@ Audit Auditor::audit(const State& state) {
   return result;
 }
 
+double Auditor::energy_gained(const Energies& energy) const {
+  return energy.mechanical() - energy_start_ - energy.external_work + energy.dissipated;
+}
+
 double Auditor::balance_error(const Energies& energy) const {
-  const double imbalance = energy.mechanical() - energy_start_ - energy.external_work + energy.dissipated;
-  return ratio(std::abs(imbalance),
+  return ratio(std::abs(energy_gained(energy)),
                std::max({std::abs(energy.external_work), std::abs(energy_start_), energy.dissipated}));
 }
 

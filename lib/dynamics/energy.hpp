@@ -33,8 +33,9 @@ class Auditor {
   Auditor(Forces& forces, const State& start);
   Audit audit(const State& state);
 
-  /// |mechanical - mechanical at start - external work + dissipated| over the largest of external work, initial mechanical energy and
-  /// dissipation; 0 when all vanish.
+  /// Mechanical energy that neither the start nor work nor dissipation accounts for, J/m; negative when some is lost.
+  double energy_gained(const Energies& energy) const;
+  /// |energy_gained| over the largest of external work, initial mechanical energy and dissipation; 0 when all vanish.
   double balance_error(const Energies& energy) const;
 
   template <class Visitor>

@@ -18,6 +18,7 @@ class Simulation {
   /// One accepted step, ending at `until` at the latest.
   StepReport step(double until);
   Audit audit() { return auditor_->audit(state_); }
+  double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }
   double balance_error(const Energies& energy) const { return auditor_->balance_error(energy); }
 
   const Model& model() const { return model_; }

@@ -10,6 +10,7 @@
 #include "core/errors.hpp"
 #include "core/stop_signals.hpp"
 #include "files/folder_lock.hpp"
+#include "results/balance_warning.hpp"
 #include "results/checkpoint.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
@@ -68,6 +69,7 @@ void advance(Run& run) {
   }
   run.write_checkpoint("finished");
   run.recorder.finish_progress();
+  warn_of_balance(simulation, simulation.audit().energy);
 }
 
 /// A failed run's last words: its summary, and what there is to go on from. Returns the message.
