@@ -23,7 +23,8 @@ SOURCE = "the disc creeps along the plates by exp(-0.055 x 94) of 1e-4 R yet: 1e
 # Frictionless: dolfinx 0.5.2, quadratic triangles, infinite penalty, error 1e-4; lambda = 4 mu.
 FINITE_ELEMENTS = [0.1051389406525349, 0.258472983976877, 0.4545345427439884, 0.6990259315023695, 1.0026247766513285,
                    1.3811043025520182]
-POLES = 1.4e-3  # by which poles of the equal-area polygon of 168 nodes stand out: approach, worth at least 1.15 / D
+# By which poles of the equal-area polygon of 48 or 68 sides stand out: approach, worth at least 1.15 / D
+POLES = (2 * np.pi / (68 if FULL else 48)) ** 2 / 12
 REST_TIMES = PAUSE * np.arange(1, len(APPROACHES) + 1)
 REST = 0.005  # 0.15 % of the penalty and the second-order error of the mesh
 
