@@ -16,12 +16,13 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
 import tomllib
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -108,9 +109,13 @@ def run_cases(cases: list[str], name: str, *options: str) -> list[str]:
         environment.pop(variable, None)
     command = [sys.executable, "-B", "-m", "pytest", "-c", str(SOURCE / "verify/pytest.ini"), *options, "-n",
                str(os.cpu_count()), "--dist", "loadfile", *folders]
-    result = subprocess.run(command, cwd=SOURCE, env=environment, capture_output=True, text=True)
+    process = subprocess.Popen(command, cwd=SOURCE, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                               text=True, start_new_session=True)
+    said, _ = process.communicate()
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)  # runs of a worker that was stopped after another's red check
     if not (out / "checks.json").exists():
-        raise RuntimeError(f"no check ran:\n{result.stdout[-2000:]}{result.stderr[-2000:]}")
+        raise RuntimeError(f"no check ran:\n{said[-4000:]}")
     return red_lines(json.loads((out / "checks.json").read_text()))
 
 
