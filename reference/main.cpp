@@ -29,8 +29,9 @@ int main_program(int argc, char** argv) {
   app.add_option("--hht", options.solver.hht, "alpha of Hilber, Hughes and Taylor; 0: Newmark")
       ->check(CLI::Range(-1.0 / 3, 0.0));
   app.add_flag("--static", options.solver.statics, "Equilibrium at each time, without inertia");
-  app.add_option("--pseudo-inertia", options.solver.pseudo_inertia,
-                 "Static: holds floating bodies while they settle, a share of the largest stiffness")
+  app.add_option(
+         "--pseudo-inertia", options.solver.pseudo_inertia,
+         "Static: share of the largest stiffness that holds bodies at first where Newton's method fails; 0: never")
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--tolerance", options.solver.newton.tolerance, "Newton: residual over the forces")
       ->check(CLI::Range(1e-14, 1e-2));

@@ -9,6 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from order_study import Quantity, Study
@@ -63,6 +64,19 @@ def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]
     axes.set_xlabel("time step [ms]")
     axes.set_ylabel("relative error")
     legend(axes)
+
+
+def draw_cells(figure: Figure, axes: Axes, triangles: np.ndarray, values: np.ndarray, colours: str,
+               limits: tuple[float, float], title: str) -> None:
+    """A value a triangle, [triangles x 3 x 2] and [triangles], in colours between two limits."""
+    cells = PolyCollection(list(triangles), array=values, cmap=colours, edgecolors="face", linewidths=0.1)
+    cells.set_clim(*limits)
+    axes.add_collection(cells)
+    axes.set_xlim(-1.03, 1.03)
+    axes.set_ylim(-1.03, 1.03)
+    axes.set_aspect("equal")
+    axes.set_title(title, fontsize=10, loc="left")
+    figure.colorbar(cells, ax=axes, shrink=0.8)
 
 
 def save(case: Case, figure: Figure, name: str) -> None:

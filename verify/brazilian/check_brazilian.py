@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from fields import Stresses, stresses_of
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, draw_cells, legend, panels, save
 from verification import FULL, Case, Label, Run, observed_order
 
 CASE = Case(__file__)
@@ -142,15 +141,8 @@ def draw_diameter(axes: Axes, stresses: Stresses) -> None:
 def draw_map(figure: Figure, axes: Axes, stresses: Stresses) -> None:
     difference = (stresses.values - exact(stresses.centres)) / np.linalg.norm(CENTRE)
     size = np.sqrt(difference[:, 0] ** 2 + difference[:, 1] ** 2 + 2 * difference[:, 2] ** 2)
-    cells = PolyCollection(list(stresses.triangles), array=np.log10(np.maximum(size, 1e-4)), cmap="viridis",
-                           edgecolors="face", linewidths=0.1)
-    cells.set_clim(-4, 0)
-    axes.add_collection(cells)
-    axes.set_xlim(-1.03, 1.03)
-    axes.set_ylim(-1.03, 1.03)
-    axes.set_aspect("equal")
-    axes.set_title("log10 of the stress error, mls, 2688 nodes", fontsize=10, loc="left")
-    figure.colorbar(cells, ax=axes, shrink=0.8)
+    draw_cells(figure, axes, stresses.triangles, np.log10(np.maximum(size, 1e-4)), "viridis", (-4, 0),
+               "log10 of the stress error, mls, 2688 nodes")
 
 
 def test_picture(engine: dict[str, dict[int, Stresses]]) -> None:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from fields import Stresses, along_outline, stresses_of
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, draw_cells, legend, panels, save
 from verification import FULL, Case, Label, Run, observed_order
 
 CASE = Case(__file__)
@@ -161,15 +160,8 @@ def draw_pressures(axes: Axes) -> None:
 
 
 def draw_map(figure: Figure, axes: Axes, stresses: Stresses) -> None:
-    values = stresses.values[:, 1] / PRESSURE
-    cells = PolyCollection(list(stresses.triangles), array=values, cmap="RdBu_r", edgecolors="face", linewidths=0.1)
-    cells.set_clim(-1.1, -0.9)
-    axes.add_collection(cells)
-    axes.set_xlim(-1.03, 1.03)
-    axes.set_ylim(-1.03, 1.03)
-    axes.set_aspect("equal")
-    axes.set_title("stress yy / load, 2:1 (32 on 16)", fontsize=10, loc="left")
-    figure.colorbar(cells, ax=axes, shrink=0.8)
+    draw_cells(figure, axes, stresses.triangles, stresses.values[:, 1] / PRESSURE, "RdBu_r", (-1.1, -0.9),
+               "stress yy / load, 2:1 (32 on 16)")
 
 
 def draw_rates(axes: Axes, statics: dict[str, list[Stresses]]) -> None:
