@@ -194,6 +194,23 @@ def test_signals_reach_a_run_once(launcher: Launcher, stop: signal.Signals) -> N
     assert Path(f"{launcher.log}.signals").read_text() == f"{stop.name[3:]}\n"
 
 
+@pytest.mark.parametrize(("body", "code"), [("open(os.environ['LOG'] + '.ready', 'w'); time.sleep(60)", 130),
+                                            ("assert False", 1), ("pass", 0)])
+def test_exit_codes_of_verify(launcher: Launcher, body: str, code: int) -> None:
+    """Interrupted from the terminal, red, green."""
+    folder = launcher.root / "verify/a"
+    folder.mkdir(parents=True)
+    (folder.parent / "pytest.ini").write_text("[pytest]\npython_files = check_*.py\n")
+    (folder / "check_a.py").write_text(f"import os, time\ndef test_a():\n    {body}\n")
+    run = launcher.start("verify", "a", process_group=0)
+    while run.poll() is None and not Path(f"{launcher.log}.ready").exists():
+        time.sleep(0.02)
+    if code == 130:
+        os.killpg(run.pid, signal.SIGINT)
+    run.communicate(timeout=60)
+    assert run.returncode == code
+
+
 def test_schema_reads_the_scenes_of_docs_and_cases(launcher: Launcher) -> None:
     for name in ["docs/keys/a.toml", "cases/b.toml"]:
         (launcher.root / name).parent.mkdir(parents=True)
