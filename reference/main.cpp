@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/errors.hpp"
+#include "reference/natural_modes.hpp"
 #include "reference/run.hpp"
 #include "scene/units.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 int main_program(int argc, char** argv) {
   CLI::App app{"Pliant's reference solver: implicit, slow, independent of the engine"};
-  std::string file, until, dt;
+  std::string file, until, dt, modes;
   RunOptions options;
   std::optional<MassMatrix> mass;
   const std::map<std::string, MassMatrix> masses{
@@ -28,6 +29,7 @@ int main_program(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(masses));
   app.add_option("--hht", options.solver.hht, "alpha of Hilber, Hughes and Taylor; 0: Newmark")
       ->check(CLI::Range(-1.0 / 3, 0.0));
+  app.add_option("--modes", modes, "Write the natural frequencies of compliant bodies to this file (JSON), and end");
   app.add_flag("--static", options.solver.statics, "Equilibrium at each time, without inertia");
   app.add_option(
          "--pseudo-inertia", options.solver.pseudo_inertia,
@@ -49,6 +51,10 @@ int main_program(int argc, char** argv) {
   if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
   options.solver.mass =
       mass.value_or(scene.discretisation.mass == Mass::corrected ? MassMatrix::corrected : MassMatrix::lumped);
+  if (!modes.empty()) {
+    write_modes(scene, options.solver.mass, modes);
+    return 0;
+  }
   if (options.out.empty()) options.out = std::filesystem::path("results") / (scene.name + "_reference");
   run_scene(scene, options);
   return 0;

@@ -12,7 +12,7 @@ import sys
 
 import h5py
 import pytest
-from conftest import REFERENCE, ROOT, Desk
+from conftest import ENGINE, REFERENCE, ROOT, Desk
 from scenes import TWO_DISCS
 
 SHORT = TWO_DISCS.replace('end = "20 ns"', 'end = "2 ns"').replace('period = "2 ns"', 'period = "0.5 ns"').replace(
@@ -173,6 +173,26 @@ between = "all"
 law = "frictionless"
 stiffness = 3000
 """
+
+
+def test_natural_frequencies_are_those_of_the_engine(desk) -> None:
+    """INDEPENDENT: the engine's stiffness is differences of its forces, to 1e-11."""
+    desk.write(SHORT)
+    assert desk.reference("--modes", "reference.json").returncode == 0
+    engine = subprocess.run([ENGINE, "modes", "scene.toml", "--count", "1000", "--json", "engine.json"], cwd=desk.folder)
+    assert engine.returncode == 0 and not (desk.folder / "results").exists()
+    ours, theirs = (json.loads((desk.folder / name).read_text())["bodies"] for name in ("reference.json", "engine.json"))
+    assert len(ours) == 2 and ours[0]["motions_at_rest"] == 3
+    for body in ours:
+        assert body["frequencies"] == pytest.approx(theirs[0]["frequencies"], rel=1e-8)
+
+
+def test_natural_frequencies_need_a_compliant_body(desk) -> None:
+    rigid = SHORT.replace('body = "compliant"', 'body = "rigid"')
+    desk.write(rigid.replace('"frictionless"', '"frictionless"\nstiffness = 1e18'))
+    result = desk.reference("--modes", "modes.json")
+    assert result.returncode == 2 and "no compliant body" in result.stderr
+    assert not (desk.folder / "modes.json").exists()
 
 
 def test_steps_that_make_energy_are_warned_of_once(desk) -> None:

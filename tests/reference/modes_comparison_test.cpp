@@ -2,11 +2,8 @@
 // INDEPENDENT: they share the mesh and the scene.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
-
 #include "dynamics/natural_modes.hpp"
-#include "reference/bodies.hpp"
-#include "reference/materials/internal.hpp"
+#include "reference/natural_modes.hpp"
 #include "reference/shapes.hpp"
 #include "support/scenes.hpp"
 
@@ -14,7 +11,6 @@ namespace pliant {
 namespace {
 
 using namespace testing;
-using Eigen::MatrixXd;
 
 constexpr double tolerance = 1e-8;  ///< differences of forces err by 1e-11 of the stiffness, w^2 spans 1e3
 
@@ -28,27 +24,15 @@ Scene one_disc(const DiscretisationSettings& settings) {
   return scene;
 }
 
-/// Angular, growing, rigid motions first.
-Eigen::VectorXd reference_frequencies(const Scene& scene) {
-  const reference::Bodies bodies(scene);
-  const reference::Body& body = bodies.all()[0];
-  const reference::InternalForces forces(bodies.space_of(body), bodies.material_of(body), body.placed.scale,
-                                         body.placed.angle);
-  const MatrixXd tangent(forces.evaluate(bodies.initial_positions(), true).tangent);
-  const auto kind =
-      scene.discretisation.mass == Mass::corrected ? reference::MassMatrix::corrected : reference::MassMatrix::lumped;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(tangent, MatrixXd(bodies.mass(kind)),
-                                                                  Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-}
-
 TEST(NaturalModesOfBoth, agree) {
   for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3})
     for (const Mass mass : {Mass::lumped, Mass::corrected}) {
       const Scene scene = one_disc({.recipe = recipe, .mass = mass});
       const Model model = build_model(scene);
       const NaturalModes engine = natural_modes(small_motions(model, model.bodies[0]));
-      const Eigen::VectorXd own = reference_frequencies(scene);
+      const reference::Bodies bodies(scene);
+      const auto kind = mass == Mass::corrected ? reference::MassMatrix::corrected : reference::MassMatrix::lumped;
+      const Eigen::VectorXd own = natural_frequencies(bodies, bodies.all()[0], kind);
       ASSERT_EQ(engine.motions_at_rest, 3);
       ASSERT_EQ(engine.frequency.size(), static_cast<std::size_t>(own.size()) - 3);
       for (std::size_t i = 0; i < engine.frequency.size(); ++i)

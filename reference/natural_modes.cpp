@@ -1,0 +1,49 @@
+#include "reference/natural_modes.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <Eigen/Eigenvalues>
+#include <nlohmann/json.hpp>
+
+#include "core/errors.hpp"
+#include "files/text_files.hpp"
+#include "reference/materials/internal.hpp"
+
+namespace pliant::reference {
+namespace {
+
+constexpr double at_rest = 1e-4;  ///< of the largest frequency: motions without stiffness
+
+}  // namespace
+
+Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix kind) {
+  if (body.dofs > 2 * most_modal_nodes)
+    throw InputError(fmt::format("{}: {}: {} nodes; natural frequencies are found for at most {}",
+                                 bodies.scene().file.string(), body.placed.name, body.dofs / 2, most_modal_nodes));
+  const InternalForces forces(bodies.space_of(body), bodies.material_of(body), body.placed.scale, body.placed.angle);
+  const Vector start = bodies.initial_positions().segment(body.first_dof, body.dofs);
+  const Eigen::MatrixXd tangent(forces.evaluate(start, true).tangent);
+  const Eigen::MatrixXd mass(bodies.mass(kind).block(body.first_dof, body.first_dof, body.dofs, body.dofs));
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(tangent, mass, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+}
+
+void write_modes(const Scene& scene, MassMatrix kind, const std::filesystem::path& file) {
+  const Bodies bodies(scene);
+  nlohmann::ordered_json json{{"scene", scene.name}, {"unit", "rad/s"}, {"bodies", nlohmann::json::array()}};
+  for (const Body& body : bodies.all()) {
+    if (!body.compliant()) continue;
+    const Vector all = natural_frequencies(bodies, body, kind);
+    const auto first = std::upper_bound(all.begin(), all.end(), at_rest * all.maxCoeff());
+    json["bodies"].push_back({{"body", body.placed.name},
+                              {"nodes", body.dofs / 2},
+                              {"motions_at_rest", first - all.begin()},
+                              {"frequencies", std::vector<double>(first, all.end())}});
+  }
+  if (json["bodies"].empty())
+    throw InputError(fmt::format("{}: no compliant body: only they have natural frequencies", scene.file.string()));
+  write_file_atomically(file, json.dump(1) + "\n");
+}
+
+}  // namespace pliant::reference
