@@ -22,10 +22,11 @@ Curve = tuple[str, list[float], list[float]]  # name, steps, errors
 
 
 def panels(count: int, title: str, across: bool = False) -> tuple[Figure, list[Axes]]:
-    """Above one another with a common axis of x, or side by side."""
-    size = (4.6 * count, 4.4) if across else (9, 1.2 + 2.4 * count)
-    figure, axes = plt.subplots(1 if across else count, count if across else 1, figsize=size, sharex=not across,
-                                squeeze=False, layout="constrained")
+    """Above one another with a common axis of x, or side by side, in rows of at most three."""
+    rows = (count + 2) // 3 if across else count
+    columns = -(-count // rows)
+    size = (4.6 * columns, 4.2 * rows + 0.2) if across else (9, 1.2 + 2.4 * rows)
+    figure, axes = plt.subplots(rows, columns, figsize=size, sharex=not across, squeeze=False, layout="constrained")
     figure.suptitle(title)
     for panel in axes.flat:
         panel.grid(alpha=0.3)

@@ -5,17 +5,18 @@ from __future__ import annotations
 import csv
 import json
 import subprocess
-from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from scipy.io import mmread
 from scipy.linalg import eigh
 
 from disc_spectrum import count_in_the_plane, disc_modes, frequencies, frequency_functions, roots
 from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import ENGINE, FULL, LONGEST_RUN, ROOT, Case, Label, observed_order
+from verification import ENGINE, FULL, LONGEST_RUN, REFERENCE, ROOT, Case, Label, observed_order
 
 CASE = Case(__file__)
 COUNT = 10  # frequencies compared
@@ -42,8 +43,17 @@ def scene(recipe: str, mass: str, poisson: float, nodes: int, extra: str = "") -
 def ask(name: str, text: str, *options: str) -> dict:
     """What `pliant modes` says of the only body."""
     file, answer = CASE.out / f"{name}.toml", CASE.out / f"{name}.json"
+    return answer_of([ENGINE, "modes", file, "--count", COUNT, "--json", answer, *options], text, file, answer)
+
+
+def ask_the_reference(name: str, text: str) -> dict:
+    file, answer = CASE.out / f"{name}_reference.toml", CASE.out / f"{name}_reference.json"
+    return answer_of([REFERENCE, file, "--modes", answer], text, file, answer)
+
+
+def answer_of(words: list, text: str, file: Path, answer: Path) -> dict:
     file.write_text(text)
-    command = [str(ENGINE), "modes", str(file), "--count", str(COUNT), "--json", str(answer), *options]
+    command = [str(word) for word in words]
     result = subprocess.run(command, capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=LONGEST_RUN)
     if result.returncode != 0:
         raise RuntimeError(f"{' '.join(command)}\nexit code {result.returncode}\n{result.stderr}")
@@ -53,12 +63,36 @@ def ask(name: str, text: str, *options: str) -> dict:
 @cache
 def errors(recipe: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
     """[COUNT] relative, sorted by frequency."""
-    name = f"{recipe.replace(' ', '_')}_{mass}_{poisson:g}_{nodes}"
+    name = named(recipe, mass, poisson, nodes)
     export = ["--matrices", str(CASE.out / name)] if poisson == 0.4 else []  # see matrices()
     answer = ask(name, scene(recipe, mass, poisson, nodes), *export)
     CASE.check(Label.EXACT, f"{recipe}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
                answer["motions_at_rest"], 3, 0, "two translations and a rotation; more were mechanisms")
     return np.array(answer["frequencies"]) / frequencies(poisson, COUNT) - 1
+
+
+def named(recipe: str, mass: str, poisson: float, nodes: int) -> str:
+    return f"{recipe.replace(' ', '_')}_{mass}_{poisson:g}_{nodes}"
+
+
+@cache
+def errors_of_the_reference(recipe: str, mass: str, poisson: float) -> np.ndarray:
+    """[COUNT] as errors(), on the coarsest mesh."""
+    answer = ask_the_reference(named(recipe, mass, poisson, NODES[0]), scene(recipe, mass, poisson, NODES[0]))
+    return np.array(answer["frequencies"][:COUNT]) / frequencies(poisson, COUNT) - 1
+
+
+@cache
+def finite_elements(poisson: float) -> tuple[list[int], list[int], list[np.ndarray]]:
+    """Rings of elements, nodes, frequencies of three meshes."""
+    from fem.eigen import natural_frequencies
+    from fem.meshes import disc
+    from fem.solid import Material, Solid
+
+    rings = [16, 24, 32] if poisson == 0.49 else [6, 9, 12]
+    solids = [Solid(disc(n), Material.of_poisson(poisson)) for n in rings]
+    nodes = [solid.space.dofmap.index_map.size_global for solid in solids]
+    return rings, nodes, [natural_frequencies(solid, COUNT) for solid in solids]
 
 
 def rms(values: np.ndarray) -> float:
@@ -89,12 +123,7 @@ def test_no_root_is_missed(poisson: float) -> None:
 
 @pytest.mark.parametrize("poisson", POISSON)
 def test_finite_elements_agree_with_the_roots(poisson: float) -> None:
-    from fem.eigen import natural_frequencies
-    from fem.meshes import disc
-    from fem.solid import Material, Solid
-
-    rings = [16, 24, 32] if poisson == 0.49 else [6, 9, 12]
-    found = [natural_frequencies(Solid(disc(n), Material.of_poisson(poisson)), COUNT) for n in rings]
+    rings, _, found = finite_elements(poisson)
     error = [rms(f / frequencies(poisson, COUNT) - 1) for f in found]
     CASE.check_rate(f"finite elements, nu = {poisson}: rms error", [1 / n for n in rings], error, 4, 0.5,
                     "quadratic elements: twice the second order of their strains; late if nearly incompressible")
@@ -131,7 +160,7 @@ def test_support_of_nine_nodes() -> None:
 def matrices(recipe: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and consistent mass, both [2 nodes x 2 nodes]: M = 2 D - D W D of the exported inverse masses D^-1
     and W."""
-    folder = {mass: CASE.out / f"{recipe.replace(' ', '_')}_{mass}_0.4_{nodes}" for mass in MASSES}
+    folder = {mass: CASE.out / named(recipe, mass, 0.4, nodes) for mass in MASSES}
     for mass in MASSES:
         errors(recipe, mass, 0.4, nodes)
     lumped = 1 / mmread(folder["lumped"] / "disc_inverse_mass.mtx").diagonal()
@@ -179,28 +208,41 @@ def test_locking(recipe: str) -> None:
         CASE.check(Label.EXACT, f"{recipe}, corrected, nu = 0.3: rms [%]", error[0], 0, 1, "as at nu = 0.49")
 
 
+@pytest.mark.parametrize("poisson", [0.4, 0.49])
+@pytest.mark.parametrize("recipe", RECIPES)
+def test_engine_against_reference(recipe: str, poisson: float) -> None:
+    off = [(1 + errors(recipe, mass, poisson, NODES[0])) / (1 + errors_of_the_reference(recipe, mass, poisson)) - 1
+           for mass in MASSES]
+    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = {poisson}: engine over reference, the worst of both masses",
+               np.abs(off).max(), 0, 1e-8, "differences of forces err by 1e-11 of the largest w^2, 1e3 times the least")
+
+
 def test_picture() -> None:
     figure, axes = panels(3, "First ten natural frequencies of a free disc", across=True)
-    draw_errors(axes[0], "lumped mass, nu = 0.4", lambda recipe, nodes: errors(recipe, "lumped", 0.4, nodes), [2])
-    draw_errors(axes[1], "corrected mass, nu = 0.4", lambda recipe, nodes: errors(recipe, "corrected", 0.4, nodes),
-                [2, 4])
-    draw_errors(axes[2], "corrected mass, nu = 0.49", lambda recipe, nodes: errors(recipe, "corrected", 0.49, nodes),
-                [2, 4])
+    for panel, mass, poisson, orders in zip(axes, ["lumped", "corrected", "corrected"], [0.4, 0.4, 0.49],
+                                            [[2], [2, 4], [2, 4]]):
+        draw_errors(panel, mass, poisson, orders)
     save(CASE, figure, "modes")
 
 
-def draw_errors(axes, title: str, error: Callable[[str, int], np.ndarray], orders: list[int]) -> None:
+def draw_errors(axes: Axes, mass: str, poisson: float, orders: list[int]) -> None:
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        values = [100 * rms(error(recipe, nodes)) for nodes in NODES]
+        values = [100 * rms(errors(recipe, mass, poisson, nodes)) for nodes in NODES]
         axes.loglog(NODES, values, marker=marker, markersize=4, linewidth=1.1, color=colour,
-                    label=f"{recipe}: {observed_order(H, values):.1f}")
-    for order, style in zip(orders, ("--", ":")):
+                    label=f"engine, {recipe}: {observed_order(H, values):.1f}")
+    of_reference = [100 * rms(errors_of_the_reference(recipe, mass, poisson)) for recipe in RECIPES]
+    axes.plot([NODES[0]] * len(RECIPES), of_reference, "kx", markersize=7, label="reference, each of them")
+    rings, nodes, found = finite_elements(poisson)
+    values = [100 * rms(f / frequencies(poisson, COUNT) - 1) for f in found]
+    axes.plot(nodes, values, "k:", marker="*", label=f"finite elements: {observed_order([1 / n for n in rings], values):.1f}")
+    for order, style in zip(orders, ("--", "-.")):
         axes.loglog(NODES, 0.05 * (np.array(H) / H[0])**order, style, color=COLOURS[6], linewidth=1.0,
                     label=f"order {order}")
-    axes.set_xticks(NODES, [str(n) for n in NODES])
+    ticks = sorted({*NODES, nodes[-1]})
+    axes.set_xticks(ticks, [str(n) for n in ticks])
     axes.set_xticks([], minor=True)
-    axes.set_ylim(1e-3, 3e3)  # room for the legend
-    axes.set_title(title, fontsize=10, loc="left")
+    axes.set_ylim(1e-5, 1e5)  # room for the legend
+    axes.set_title(f"{mass} mass, nu = {poisson}", fontsize=10, loc="left")
     axes.set_xlabel("nodes")
     axes.set_ylabel("rms error [%]")
     legend(axes)
