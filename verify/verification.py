@@ -21,7 +21,7 @@ ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engin
 REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
 OUT = Path(os.environ.get("PLIANT_VERIFY_OUT", ROOT / "results/verify"))
 FULL = os.environ.get("PLIANT_VERIFY_FULL", "") not in ("", "0")
-LONGEST_RUN = float(os.environ.get("PLIANT_VERIFY_LONGEST", 3600 if FULL else 900))  # s
+LONGEST_RUN = float(os.environ.get("PLIANT_VERIFY_LONGEST", 14400 if FULL else 900))  # s
 
 
 class Label(str, Enum):
