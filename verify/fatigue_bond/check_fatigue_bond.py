@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cache
+
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
 from order_study import Quantity, Study, check_differences, run_study
-from pictures import COLOURS, draw_both, draw_differences, legend, panels, save
+from pictures import COLOURS, MARKERS, draw_both, draw_differences, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__)
@@ -15,10 +19,15 @@ CASE = Case(__file__)
 STRENGTH, STIFFNESS, RANGE, THRESHOLD, RATE_OF_WEAR = 1.0, 1000.0, 0.01, 0.3, 0.4
 CRITICAL = STRENGTH / STIFFNESS
 LENGTH = 0.5 * (11 + 10) * 0.1
-# Up and down twice, to 0.8 and to 0.9 of the critical gap, then off: corners of the velocity, m/s.
-CORNERS = [(0, 0), (0.1, 0.002), (0.4, 0.002), (0.6, -0.002), (0.9, -0.002), (1.0, 0), (1.1, 0.00225), (1.4, 0.00225),
-           (1.6, -0.00225), (1.9, -0.00225), (2.0, 0), (2.1, 0.02), (2.7, 0.02)]
+# Out and back twice, to 0.8 and to 0.9 of the critical opening, then off: corners of the velocity, m/s.
+WEARING = [(0, 0), (0.1, 0.002), (0.4, 0.002), (0.6, -0.002), (0.9, -0.002), (1.0, 0), (1.1, 0.00225), (1.4, 0.00225),
+           (1.6, -0.00225), (1.9, -0.00225)]
+TEARING = [(2.0, 0), (2.1, 0.02), (2.7, 0.02)]
 DRIVEN_STEPS = [0.01, 0.005, 0.0025, 0.00125]
+
+WEAR_ORDER = 0.05
+WEAR_SOURCE = ("a step's wear counts the damage at its start: first order; a step is 2 % of the critical opening at "
+               "the coarsest, the next order's share")
 
 STEPS = [0.02, 0.01, 0.005]
 FINEST = 0.0025
@@ -28,96 +37,160 @@ FORCE = Quantity("force on the bench", ["force.force_y"])
 DISSIPATION = Quantity("work of damage", ["works.dissipated_by_contact"])
 
 
-def gap_at(times: np.ndarray) -> np.ndarray:
+@dataclass(eq=False)
+class Drive:
+    """How the block moves, and the bond's ratio of strengths, tension over shear."""
+
+    name: str
+    ratio: float
+    up: list[tuple[float, float]]  # corners of the velocity, m/s
+    along: list[tuple[float, float]]  # none: free
+    wear_by_shear: float = RATE_OF_WEAR  # 1/Pa
+
+    def __str__(self) -> str:
+        return self.name
+
+    def scene(self, dt: float) -> str:
+        along = f"{{ velocity = {table(self.along)} }}" if self.along else '"free"'
+        return CASE.scene("driven.toml", dt=dt, up=table(self.up), along=along, ratio=self.ratio,
+                          shear_rate=self.wear_by_shear)
+
+    def ways(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap and slip, m."""
+        return way_at(self.up, times), way_at(self.along, times) if self.along else np.zeros_like(times)
+
+
+def table(corners: list[tuple[float, float]]) -> str:
+    return str([list(corner) for corner in corners])
+
+
+def aslant(ratio: float) -> Drive:
+    """Worn by shear alone, twice the way for twice the ratio; torn off by 0.8 of tension and 0.6 of shear."""
+    up, along = ([(t, share * v) for t, v in TEARING] for share in (0.8, 0.6 * ratio))
+    return Drive(f"ratio {ratio:g}, worn by shear, torn aslant", ratio, [(0.0, 0.0), *up],
+                 [*((t, ratio * v) for t, v in WEARING), *along], 0.5 * ratio)
+
+
+DRIVES = [Drive("ratio 1, lifted", 1.0, [*WEARING, *TEARING], []), aslant(2.0), aslant(0.5)]
+
+
+def way_at(corners: list[tuple[float, float]], times: np.ndarray) -> np.ndarray:
     """Integral of the velocity between its corners."""
-    fine = np.unique(np.concatenate([times, [t for t, _ in CORNERS]]))
-    speed = np.interp(fine, *zip(*CORNERS))
-    gap = np.concatenate([[0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(fine))])
-    return gap[np.searchsorted(fine, times)]
+    fine = np.unique(np.concatenate([times, [t for t, _ in corners]]))
+    speed = np.interp(fine, *zip(*corners))
+    way = np.concatenate([[0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(fine))])
+    return way[np.searchsorted(fine, times)]
 
 
-def opened(damage: float, gap: float) -> float:
+def opened(opening: np.ndarray) -> np.ndarray:
     """Damage that an opening brings at once."""
-    return RANGE / (RANGE - CRITICAL) * (1 - CRITICAL / gap) if gap > CRITICAL else 0.0
+    return RANGE / (RANGE - CRITICAL) * (1 - CRITICAL / np.maximum(opening, CRITICAL))
 
 
-def bond(gap: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Damage and pull of the law, per area, along gaps in fine steps, by the midpoint rule: as p grows,
-    dD = rate (p - threshold)+ / (strength - threshold) dp, with dp = stiffness (1 - D) dg."""
-    damage, pull, now = np.zeros_like(gap), np.zeros_like(gap), 0.0
+@dataclass
+class Law:
+    """The bond's tractions along a way, N/m, both as they hold it back."""
 
-    def growth(d: float, g: float) -> float:
-        return RATE_OF_WEAR * max(STIFFNESS * (1 - d) * g - THRESHOLD, 0) / (STRENGTH - THRESHOLD) * STIFFNESS * (1 - d)
+    pull: np.ndarray
+    shear: np.ndarray
+    tears: np.ndarray  # where the damage is that of the opening
+
+
+def worn(rate: float, stiffness: float, before: float, after: float, ratio: float) -> float:
+    """Of an intact bond: rate (p - threshold)+ / (strength - threshold) dp as p = stiffness x way grows, p counting
+    `ratio` times against the limits of tension."""
+    load, step = ratio * stiffness * 0.5 * (before + after), stiffness * max(after - before, 0.0)
+    return rate * max(load - THRESHOLD, 0.0) / (STRENGTH - THRESHOLD) * step
+
+
+def integrate(drive: Drive, gap: np.ndarray, slip: np.ndarray) -> Law:
+    """In fine steps, by the midpoint rule: p, and so dp, of a bond with damage D is 1 - D of an intact one's."""
+    shear_stiffness = STIFFNESS / drive.ratio**2
+    by_opening = opened(np.hypot(gap, slip / drive.ratio))
+    damage, now = np.zeros_like(gap), 0.0
+
+    def growth(d: float, i: int) -> float:
+        return (worn(RATE_OF_WEAR, (1 - d) * STIFFNESS, gap[i - 1], gap[i], 1.0)
+                + worn(drive.wear_by_shear, (1 - d) * shear_stiffness, slip[i - 1], slip[i], drive.ratio))
 
     for i in range(1, len(gap)):
-        way = gap[i] - gap[i - 1]
-        if way > 0 and now < 1:
-            half = now + 0.5 * way * growth(now, gap[i - 1])
-            now += way * growth(half, 0.5 * (gap[i] + gap[i - 1]))
-        now = min(max(now, opened(now, gap[i])), 1.0)
-        damage[i], pull[i] = now, STIFFNESS * (1 - now) * gap[i]
-    return damage, pull
+        half = now + 0.5 * growth(now, i)
+        now = min(max(now + growth(half, i), by_opening[i]), 1.0)
+        damage[i] = now
+    intact = LENGTH * (1 - damage)
+    return Law(intact * STIFFNESS * gap, intact * shear_stiffness * slip, damage == np.minimum(by_opening, 1.0))
 
 
-@pytest.fixture(scope="module")
-def driven() -> dict[str, dict[float, Run]]:
-    velocity = str([list(corner) for corner in CORNERS])
+FINE = np.linspace(0, TEARING[-1][0], 54001)
+
+
+@cache
+def law_of(drive: Drive) -> Law:
+    """At the times FINE."""
+    return integrate(drive, *drive.ways(FINE))
+
+
+@cache
+def driven_runs(drive: Drive) -> dict[str, dict[float, Run]]:
     runs: dict[str, dict[float, Run]] = {"engine": {}, "reference": {}}
     for dt in DRIVEN_STEPS:
-        scene = CASE.scene("driven.toml", dt=dt, velocity=velocity)
-        runs["engine"][dt] = CASE.engine(f"driven_engine_{dt:g}", scene)
-        runs["reference"][dt] = CASE.reference(f"driven_reference_{dt:g}", scene, "--dt", repr(dt))
+        scene, name = drive.scene(dt), f"{drive.ratio:g}_{dt:g}"
+        runs["engine"][dt] = CASE.engine(f"driven_engine_{name}", scene)
+        runs["reference"][dt] = CASE.reference(f"driven_reference_{name}", scene, "--dt", repr(dt))
     return runs
 
 
-def law_on(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Gap and pull (N/m) by the law, when the force was measured."""
-    times = run.times("force.force_y")
-    fine = np.linspace(0, times[-1], 54001)
-    return gap_at(times), LENGTH * np.interp(times, fine, bond(gap_at(fine))[1])
+def force_error(drive: Drive, run: Run) -> np.ndarray:
+    """[times] over the strength, that of shear for shear."""
+    times, law = run.times("force.force_y"), law_of(drive)
+    off_y = run.probe("force.force_y") + np.interp(times, FINE, law.pull)
+    off_x = run.probe("force.force_x") + np.interp(times, FINE, law.shear)
+    return np.hypot(off_y, drive.ratio * off_x) / (STRENGTH * LENGTH)
 
 
 @pytest.mark.parametrize("solver", ["engine", "reference"])
-def test_driven_bond_follows_the_law(driven: dict[str, dict[float, Run]], solver: str) -> None:
-    """Wear in steps is of first order; the gap itself is exact."""
-    worn, torn = [], []
-    for dt, run in driven[solver].items():
-        gap, pull = law_on(run)
-        missed = np.abs(run.probe("block.position_y") - 0.2 - gap).max() / CRITICAL
-        CASE.check(Label.EXACT, f"driven, {solver}: gap, dt {dt:g}", missed, 0, 1e-10,
+@pytest.mark.parametrize("drive", DRIVES, ids=str)
+def test_driven_bond_follows_the_law(drive: Drive, solver: str) -> None:
+    """Wear in steps is of first order; the way itself is exact."""
+    errors, name = [], f"driven, {drive}, {solver}"
+    for dt, run in driven_runs(drive)[solver].items():
+        gap, slip = drive.ways(run.times("block.position_y"))
+        off = np.hypot(run.probe("block.position_y") - 0.2 - gap, run.probe("block.position_x") - 0.05 - slip)
+        CASE.check(Label.EXACT, f"{name}: way, dt {dt:g}", off.max() / CRITICAL, 0, 1e-10,
                    "imposed motion; rounding of positions near 0.2 over 0.001")
-        error = np.abs(run.probe("force.force_y") + pull) / (STRENGTH * LENGTH)
-        wears = gap < (1 + 1e-6) * CRITICAL
-        worn.append(float(error[wears].max()))
-        torn.append(float(error[~wears].max()))
-    CASE.check_rate(f"driven, {solver}: force while it wears", DRIVEN_STEPS, worn, 1, 0.2,
-                    "a step's wear counts the damage at its start: first order")
-    CASE.check(Label.INDEPENDENT, f"driven, {solver}: force while it wears, finest step", worn[-1], 0, worn[-2] / 1.7,
+        errors.append(force_error(drive, run))
+    times = driven_runs(drive)[solver][DRIVEN_STEPS[-1]].times("force.force_y")
+    tears = np.interp(times, FINE, law_of(drive).tears) == 1
+    wears = [float(error[~tears].max()) for error in errors]
+    CASE.check_rate(f"{name}: force while it wears", DRIVEN_STEPS, wears, 1, WEAR_ORDER, WEAR_SOURCE)
+    CASE.check(Label.INDEPENDENT, f"{name}: force while it wears, finest step", wears[-1], 0, wears[-2] / 1.7,
                "half of that at twice the step: nothing stays")
-    CASE.check(Label.EXACT, f"driven, {solver}: force while it tears, finest step", torn[-1], 0, 1e-9,
-               "the damage of the opening, whatever was worn before; rounding of gaps")
+    CASE.check(Label.EXACT, f"{name}: force while it tears, finest step", errors[-1][tears].max(), 0, 1e-9,
+               "the damage of the opening, whatever was worn before; rounding of ways")
 
 
 @pytest.mark.parametrize("solver", ["engine", "reference"])
-def test_work_of_the_driven_bond(driven: dict[str, dict[float, Run]], solver: str) -> None:
-    """All of it is dissipated: the integral of the pull over the gap."""
-    fine = np.linspace(0, CORNERS[-1][0], 54001)
-    gap = gap_at(fine)
-    pull = bond(gap)[1]
-    work = LENGTH * float((0.5 * (pull[1:] + pull[:-1]) * np.diff(gap)).sum())
-    errors = [abs(run.probe("energy.dissipated")[-1] / work - 1) for run in driven[solver].values()]
-    CASE.check_rate(f"driven, {solver}: work to tear the bond off", DRIVEN_STEPS, errors, 1.5, 0.6,
+@pytest.mark.parametrize("drive", DRIVES, ids=str)
+def test_work_of_the_driven_bond(drive: Drive, solver: str) -> None:
+    """All of it is dissipated: the integral of the tractions over the way."""
+    work = sum(float((0.5 * (force[1:] + force[:-1]) * np.diff(way)).sum())
+               for force, way in zip((law_of(drive).pull, law_of(drive).shear), drive.ways(FINE)))
+    errors = [abs(run.probe("energy.dissipated")[-1] / work - 1) for run in driven_runs(drive)[solver].values()]
+    name = f"driven, {drive}, {solver}: work to tear the bond off"
+    CASE.check_rate(name, DRIVEN_STEPS, errors, 1.5, 0.6,
                     "wear is of first order, sums over the way of second: between them, 0.1 for scatter")
-    CASE.check(Label.INDEPENDENT, f"driven, {solver}: work to tear the bond off, finest step", 1 + errors[-1], 1,
-               errors[-2], "no more than at twice the step: nothing stays")
+    CASE.check(Label.INDEPENDENT, f"{name}, finest step", 1 + errors[-1], 1, errors[-2],
+               "no more than at twice the step: nothing stays")
 
 
-def test_driven_solvers_agree(driven: dict[str, dict[float, Run]]) -> None:
-    dt = DRIVEN_STEPS[-1]
-    engine, reference = (driven[solver][dt].probe("force.force_y") for solver in ("engine", "reference"))
-    late = driven["engine"][dt].times("force.force_y") > 0.1
-    difference = np.abs(engine - reference)[late].max() / (STRENGTH * LENGTH)
-    CASE.check(Label.INDEPENDENT, "driven: engine - reference, force", difference, 0, 1e-6,
+@pytest.mark.parametrize("drive", DRIVES, ids=str)
+def test_driven_solvers_agree(drive: Drive) -> None:
+    runs = {solver: by_step[DRIVEN_STEPS[-1]] for solver, by_step in driven_runs(drive).items()}
+    late = runs["engine"].times("force.force_y") > 0.1
+    differences = [(runs["engine"].probe(f"force.force_{axis}") - runs["reference"].probe(f"force.force_{axis}"))[late]
+                   for axis in "xy"]
+    CASE.check(Label.INDEPENDENT, f"driven, {drive}: engine - reference, force",
+               np.abs(differences).max() / (STRENGTH * LENGTH), 0, 1e-6,
                "same steps but for the engine's first ones, when nothing wears")
 
 
@@ -132,18 +205,26 @@ def test_pulled_bond_converges(pulled: Study, quantity: Quantity) -> None:
                       "the engine's dashpots and wear are of first order, the rest of second: little above the first")
 
 
-def test_picture(driven: dict[str, dict[float, Run]], pulled: Study) -> None:
+def draw_driven(axes: Axes) -> None:
+    for drive, colour, marker in zip(DRIVES, COLOURS, MARKERS):
+        gap, slip = drive.ways(FINE)
+        law = law_of(drive)
+        axes.plot(np.hypot(gap, slip / drive.ratio) / CRITICAL, np.hypot(law.pull, drive.ratio * law.shear),
+                  color=colour, linewidth=1.1, label=drive.name)
+        run = driven_runs(drive)["engine"][DRIVEN_STEPS[-1]]
+        gap, slip = drive.ways(run.times("force.force_y"))
+        axes.plot(np.hypot(gap, slip / drive.ratio) / CRITICAL,
+                  np.hypot(run.probe("force.force_y"), drive.ratio * run.probe("force.force_x")), marker, color=colour,
+                  markersize=3)
+    axes.set_xlim(-0.05, 3)
+    axes.set_title("driven rigid block: law (lines), engine (marks)", fontsize=10, loc="left")
+    axes.set_xlabel("opening over the critical one")
+    axes.set_ylabel("root of pull^2 + (ratio x shear)^2 [N/m]")
+
+
+def test_picture(pulled: Study) -> None:
     figure, axes = panels(3, "Bond that wears and tears", across=True)
-    dt = DRIVEN_STEPS[-1]
-    fine = gap_at(np.linspace(0, CORNERS[-1][0], 5401))
-    axes[0].plot(fine / CRITICAL, LENGTH * bond(fine)[1], color=COLOURS[6], linewidth=2.5, alpha=0.5, label="law")
-    for solver, colour, style in zip(driven, COLOURS, ("-", "--")):
-        run = driven[solver][dt]
-        gap = (run.probe("block.position_y") - 0.2) / CRITICAL
-        axes[0].plot(gap, -run.probe("force.force_y"), style, color=colour, linewidth=1.1, label=solver)
-    axes[0].set_title("driven rigid block", fontsize=10, loc="left")
-    axes[0].set_xlabel("gap over the critical one")
-    axes[0].set_ylabel("pull [N/m]")
+    draw_driven(axes[0])
     draw_both(axes[1], pulled.finest_runs(), "force.force_y", 1e3)
     axes[1].set_title("pulled compliant block", fontsize=10, loc="left")
     axes[1].set_xlabel("time [s]")

@@ -93,7 +93,7 @@ class Implicit(Motion):
         self._predicted = fem.Function(solid.space)
         self._factor = fem.Constant(solid.domain, 1.0)
         way = self.u - self._predicted
-        inertia = self._factor * solid.density / 2 * ufl.inner(way, way) * solid.dx
+        inertia = self._factor / 2 * solid.inertia(way, way) * solid.dx
         self._minimiser = Minimiser(potential + inertia, self.u, conditions)
 
     def start(self) -> None:

@@ -15,16 +15,17 @@ RATE = 0.5  # of the initial velocity, cs / R
 
 
 class Oscillation:
-    """Runs at half of the stable step; `times`, `energies` and s = sqrt(Ixx / Ixx0), diameter at each step."""
+    """Runs in so many steps, or at half of the stable one; `times`, `energies` and s = sqrt(Ixx / Ixx0), diameter at
+    each step."""
 
-    def __init__(self, rings: int, until: float, material: Material = Material()) -> None:
+    def __init__(self, rings: int, until: float, material: Material = Material(), steps: int | None = None) -> None:
         solid = Solid(disc(rings), material)
         motion = Explicit(solid, solid.strain_energy())
         motion.v.interpolate(lambda x: np.stack([RATE * x[0], -RATE * x[1]]))
         self._inertia = compile_form((solid.X[0] + solid.u[0]) ** 2 * solid.dx)
         self._right = int(solid.component_at((1, 0), 0)[0])
         self._solid = solid
-        steps = int(np.ceil(until * motion.largest_frequency()))
+        steps = steps or int(np.ceil(until * motion.largest_frequency()))
         motion.start()
         rows = [self._row(motion)]
         for _ in range(steps):

@@ -14,11 +14,16 @@ from fem.compiled import vector_space
 
 @dataclass
 class Material:
-    """Lame's constants, Pa, and density, kg/m3. The defaults are the units of verify/: mu = 1, nu = 0.4."""
+    """Lame's constants, Pa, density, kg/m3, and micro-inertia, m2. The defaults are the units of verify/: mu = 1,
+    nu = 0.4.
+
+    Kinetic energy is density/2 (|v|^2 + micro_inertia |grad v|^2).
+    """
 
     mu: float = 1.0
     lame: float = 4.0
     density: float = 1.0
+    micro_inertia: float = 0.0
 
     @classmethod
     def of_poisson(cls, poisson: float) -> Material:
@@ -39,6 +44,7 @@ class Solid:
         self.test, self.trial = ufl.TestFunction(self.space), ufl.TrialFunction(self.space)
         self.mu, self.lame, self.density = (fem.Constant(domain, value) for value in (
             material.mu, material.lame, material.density))
+        self._micro_inertia = fem.Constant(domain, material.micro_inertia) if material.micro_inertia else None
         rule = {"quadrature_degree": 2 * degree + 2}
         self.dx, self.ds = ufl.Measure("dx", domain, metadata=rule), ufl.Measure("ds", domain, metadata=rule)
         self.X = ufl.SpatialCoordinate(domain)
@@ -62,11 +68,18 @@ class Solid:
         return self.energy_density(self.u) * self.dx
 
     def kinetic_energy(self, v: fem.Function) -> ufl.Form:
-        return self.density / 2 * ufl.inner(v, v) * self.dx
+        return self.inertia(v, v) / 2 * self.dx
 
     def mass(self) -> ufl.Form:
         """Bilinear form of the consistent mass."""
-        return self.density * ufl.inner(self.trial, self.test) * self.dx
+        return self.inertia(self.trial, self.test) * self.dx
+
+    def inertia(self, v: ufl.core.expr.Expr, w: ufl.core.expr.Expr) -> ufl.core.expr.Expr:
+        """Density of the bilinear form of the mass."""
+        product = ufl.inner(v, w)
+        if self._micro_inertia is not None:
+            product += self._micro_inertia * ufl.inner(ufl.grad(v), ufl.grad(w))
+        return self.density * product
 
     def stiffness(self) -> ufl.Form:
         """Bilinear form of the tangent at the present `u`: at u = 0 that of linear elasticity."""

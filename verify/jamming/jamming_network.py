@@ -82,17 +82,38 @@ class Network:
             network = Network(network.pairs[keep], network.forces[keep], self.bodies)
 
 
-def network(outlines: Outlines, tributary: np.ndarray, stiffness: float) -> Network:
+@dataclass
+class Touching:
+    """Nodes inside other bodies, each force where it acts: on the node's body there, on the other at its foot."""
+
+    own: np.ndarray  # [n] the node's body
+    partner: np.ndarray  # [n]
+    places: np.ndarray  # [n x 2]
+    feet: np.ndarray  # [n x 2]
+    forces: np.ndarray  # [n x 2] on the node
+
+    def moments(self, bodies: int) -> np.ndarray:
+        """[bodies] sums of force times place, about the origin."""
+        return (np.bincount(self.own, np.einsum("ij,ij->i", self.forces, self.places), bodies)
+                - np.bincount(self.partner, np.einsum("ij,ij->i", self.forces, self.feet), bodies))
+
+
+def touching(outlines: Outlines, tributary: np.ndarray, stiffness: float) -> Touching:
     """Of frictionless penalty contact: stiffness times depth times the node's reference length, half from each side."""
     node, partner, push = _penetrations(outlines)
-    force = (0.5 * stiffness * tributary[node])[:, None] * push
-    own = outlines.body[node]
+    places = outlines.points[node]
+    return Touching(outlines.body[node], partner, places, places + push,
+                    (0.5 * stiffness * tributary[node])[:, None] * push)
+
+
+def network(touching: Touching, bodies: int) -> Network:
+    own, partner, force = touching.own, touching.partner, touching.forces
     swapped = own < partner  # the force acts on the node's body; kept is that on the later body
     keys = np.where(swapped, own, partner) * 1_000_000 + np.where(swapped, partner, own)
     signed = np.where(swapped[:, None], -force, force)
     unique, index = np.unique(keys, return_inverse=True)
     sums = np.stack([np.bincount(index, column, len(unique)) for column in signed.T], axis=1)
-    return Network(np.stack([unique // 1_000_000, unique % 1_000_000], axis=1), sums, outlines.body.max() + 1)
+    return Network(np.stack([unique // 1_000_000, unique % 1_000_000], axis=1), sums, bodies)
 
 
 def _penetrations(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

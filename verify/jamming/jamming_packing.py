@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from jamming_network import Box, Network, Outlines, filled, network
+from jamming_network import Box, Network, Outlines, Touching, filled, network, touching
 from verification import Run
 
 DISCS = 400
@@ -20,11 +20,30 @@ class Stage:
     """A packing at rest; lengths in small diameters, pressures in E."""
 
     outlines: Outlines
-    network: Network  # all contacts
+    touching: Touching
     half: float  # of the square between the walls
     margin: float  # from the walls to the region that counts
     reference_areas: np.ndarray  # [bodies] at the start
     pressure: float  # of the walls
+
+    @cached_property
+    def network(self) -> Network:
+        """All contacts."""
+        return network(self.touching, DISCS + len(WALLS))
+
+    @cached_property
+    def moment_of_walls(self) -> float:
+        """Sum of the walls' forces times the places where they act: of a pressure, twice the area as much."""
+        return float(self.touching.moments(DISCS + len(WALLS))[DISCS:].sum())
+
+    @cached_property
+    def unbalanced(self) -> float:
+        """Sum of the discs' resultants times their centres: what discs in motion take from the moment of the walls."""
+        return float((self.network.resultants() * self.outlines.centres())[:DISCS].sum())
+
+    @property
+    def nodes_at_walls(self) -> int:
+        return int((np.maximum(self.touching.own, self.touching.partner) >= DISCS).sum())
 
     @cached_property
     def solid_fraction(self) -> float:
@@ -89,5 +108,5 @@ def read_packing(run: Run, frames: list[Outlines], stiffness: float, margin: flo
     for outlines, force in zip(rests, forces[1:], strict=True):
         half = outlines.of_body(TOP)[:, 1].min()
         pressure = float(force.mean() / (2 * half))
-        stages.append(Stage(outlines, network(outlines, tributary, stiffness), half, margin, areas, pressure))
+        stages.append(Stage(outlines, touching(outlines, tributary, stiffness), half, margin, areas, pressure))
     return Packing(run, stages, closing)

@@ -18,7 +18,12 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
 MATERIAL = Material()
-NODES = [168, 340, 700]
+NODES = [168, 340, 700, 1400]
+FINE = NODES[1:]  # at 168 the outline's curvature still shows
+SIDE = {"square": 2.0, "disc": np.sqrt(np.pi)}  # of a square of the shape's area
+# By how much errors vary between meshes, standard deviation of the logarithm: measured on eleven meshes of 5 % more or
+# fewer nodes at each of FINE, root mean square of the three.
+SCATTER = {"all": 0.035, "outline": 0.040, "middle": 0.076}
 STRETCH = {"square": np.array([[1.2, 0.1], [0.1, 1.1]]), "disc": 0.9 * np.eye(2)}
 CONSISTENT = [recipe for recipe in RECIPES if recipe != "mls-gauss"]
 COMPONENTS = {"xx": (0, 0), "yy": (1, 1), "xy": (0, 1)}
@@ -88,19 +93,37 @@ def flawed() -> dict[str, dict[int, Run]]:
     return {shape: {nodes: run(shape, nodes) for nodes in NODES} for shape in STRETCH}
 
 
-def root_mean_square(run: Run, shape: str) -> float:
+def part_of(run: Run, part: str) -> np.ndarray:
+    """Mask of the triangles: all, those with a node on the outline, those within half of the radius."""
+    frames = Frames(run.folder / "frames.h5", None)
+    grid, points = frames.grids["bodies"], frames.positions("bodies", 0)
+    cells = grid.cells[grid.kind == COMPLIANT]
+    if part == "middle":
+        return np.hypot(*points[cells].mean(axis=1)[:, :2].T) < 0.5
+    edges, count = np.unique(np.sort(cells[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)), axis=0, return_counts=True)
+    return np.isin(cells, edges[count == 1]).any(axis=1) if part == "outline" else np.ones(len(cells), dtype=bool)
+
+
+def root_mean_square(run: Run, shape: str, part: str = "all") -> float:
     """Of the triangles' errors, over the strain."""
-    return float(np.sqrt(np.mean(cell_errors(run, shape)[2] ** 2)) / np.linalg.norm(strain(STRETCH[shape])))
+    errors = cell_errors(run, shape)[2][part_of(run, part)]
+    return float(np.sqrt(np.mean(errors**2)) / np.linalg.norm(strain(STRETCH[shape])))
 
 
-@pytest.mark.parametrize("shape, order, where", [("square", 1, "at corners: a share h^2 of the area"),
-                                                 ("disc", 0.5, "along the outline: a share h of the area")])
-def test_known_flaw(flawed: dict, shape: str, order: float, where: str) -> None:
+FLAWS = [("square", "all", 1, "it does not fall at corners, a share h^2 of the area"),
+         ("disc", "outline", 0, "what the quadrature leaves there scales with the mesh"),
+         ("disc", "middle", 1.5, "1/h places along the outline, each at random, without resultant, an area h^2 of "
+          "stress: the root of 1/h (h^2)^2")]
+
+
+@pytest.mark.parametrize("shape, part, order, why", FLAWS, ids=lambda value: value if isinstance(value, str) else "")
+def test_known_flaw(flawed: dict, shape: str, part: str, order: float, why: str) -> None:
     """Quadrature with three points does not integrate the gradients of moving least squares exactly."""
-    found = [root_mean_square(flawed[shape][nodes], shape) for nodes in NODES]
-    spacings = [nodes**-0.5 for nodes in NODES]
-    CASE.check_rate(f"mls-gauss, {shape}: rms error of the strain in h", spacings, found, order, 0.3,
-                    f"an error that does not fall {where}; between both, and falling errors inside")
+    found = [root_mean_square(flawed[shape][nodes], shape, part) for nodes in FINE]
+    spacings = np.array([SIDE[shape] * nodes**-0.5 for nodes in FINE])
+    CASE.check_rate(f"mls-gauss, {shape}, {part}: rms error of the strain in h", list(spacings), found, order,
+                    3 * SCATTER[part] / np.sqrt(len(FINE)) / np.log(spacings).std(),
+                    f"{why}; three standard errors of the slope, by the scatter of meshes")
 
 
 @pytest.mark.parametrize("shape", STRETCH)
@@ -145,10 +168,10 @@ def test_picture(flawed: dict) -> None:
         panel.set_aspect("equal")
         panel.grid(False)
         panel.set_title(f"{shape}, 340 nodes", fontsize=10, loc="left")
-    for shape, colour, marker, order in zip(STRETCH, COLOURS, "os", (1, 0.5)):
-        found = [root_mean_square(flawed[shape][nodes], shape) for nodes in NODES]
-        axes[2].loglog(NODES, found, marker=marker, color=colour, label=shape)
-        slope = found[0] * (np.array(NODES) / NODES[0]) ** (-order / 2)
+    for (shape, part, order, _), colour, marker in zip(FLAWS, COLOURS, "os^"):
+        found = [root_mean_square(flawed[shape][nodes], shape, part) for nodes in NODES]
+        axes[2].loglog(NODES, found, marker=marker, color=colour, label=f"{shape}, {part}")
+        slope = found[-1] * (np.array(NODES) / NODES[-1]) ** (-order / 2)
         axes[2].loglog(NODES, slope, ":", color=colour, label=f"slope {order} in h")
     axes[2].set_xticks(NODES, [str(nodes) for nodes in NODES])
     axes[2].set_xticks([], minor=True)
