@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from fem.plates import Plates, Squeezed, hertz_force, hertz_half_width
 from fem.solid import Material
 from oracle_tables import read_oracle
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, draw_ratios, legend, panels, save
 from squeeze import (OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_engine, by_reference, to_rigid_contact,
                      to_zero_spacing)
 from verification import FULL, Case, Label, observed_order
@@ -175,33 +175,23 @@ def test_hertz(runs: dict) -> None:
 
 def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements: np.ndarray) -> None:
     figure, axes = panels(4, "Disc between plates", across=True)
-    percent = 100 * np.array(APPROACHES)
-    draw_forces(axes[0], runs, percent)
-    draw_ratios(axes[1], {recipe: runs[recipe][168][0].force for recipe in RECIPES}, elements)
-    for recipe in RECIPES:
-        axes[1].plot(percent[CHECKED], 100 * (references[recipe].force / elements - 1)[CHECKED], "kx", markersize=5,
-                     label="reference" if recipe == "mls" else None)
+    draw_forces(axes[0], runs, 100 * np.array(APPROACHES))
+    draw_checked_ratios(axes[1], {recipe: runs[recipe][168][0].force for recipe in RECIPES},
+                        {recipe: rests.force for recipe, rests in references.items()}, elements)
     axes[1].set_title("168 nodes, corner at the pole: over finite elements, less 1 [%]", fontsize=10, loc="left")
-    draw_ratios(axes[2], {recipe: mean(runs[recipe][700]) for recipe in RECIPES}, elements)
+    draw_checked_ratios(axes[2], {recipe: mean(runs[recipe][700]) for recipe in RECIPES}, {}, elements)
     draw_limits(axes[2], limits(runs, stiff))
     axes[2].axhspan(-100 * ACCEPTED, 100 * ACCEPTED, color="0.9")
     axes[2].set_title("700 nodes, both ways to lie: over finite elements, less 1 [%]", fontsize=10, loc="left")
-    for panel in axes[:3]:
-        panel.set_xlabel("approach over the diameter [%]")
     draw_convergence(axes[3], runs, elements)
     for panel in axes:
         legend(panel)
     save(CASE, figure, "plates")
 
 
-def draw_ratios(axes: Axes, forces: dict[str, np.ndarray], elements: np.ndarray) -> None:
-    """Of the engine, by recipe, over finite elements, whose own error the bars show."""
-    percent = 100 * np.array(APPROACHES)[CHECKED]
-    for (recipe, force), colour, marker in zip(forces.items(), COLOURS, MARKERS):
-        axes.plot(percent, 100 * (force / elements - 1)[CHECKED], marker=marker, markersize=4, linewidth=1.1,
-                  color=colour, label=f"engine, {recipe}")
-    axes.errorbar(percent, 0 * percent, 100 * ELEMENTS_ERROR, fmt="none", ecolor="0.3", capsize=3,
-                  label="finite elements and their error")
+def draw_checked_ratios(axes: Axes, engine: dict, references: dict, elements: np.ndarray) -> None:
+    checked = [{recipe: force[CHECKED] for recipe, force in forces.items()} for forces in (engine, references)]
+    draw_ratios(axes, 100 * np.array(APPROACHES)[CHECKED], *checked, elements[CHECKED], ELEMENTS_ERROR)
 
 
 def draw_limits(axes: Axes, forces: np.ndarray) -> None:
@@ -220,6 +210,7 @@ def draw_forces(axes: Axes, runs: dict, percent: np.ndarray) -> None:
         axes.plot(percent, mean(runs[recipe][168]), marker, markersize=4, fillstyle="none", color=colour,
                   label=f"{recipe}, 168 nodes")
     axes.set_title("force on a plate over mu R", fontsize=10, loc="left")
+    axes.set_xlabel("approach over the diameter [%]")
 
 
 def draw_convergence(axes: Axes, runs: dict, elements: np.ndarray) -> None:

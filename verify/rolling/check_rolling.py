@@ -27,7 +27,7 @@ SOFTER = 20  # contact against shear, where friction's delay is measured
 STEP = 0.01  # of the reference, s: eleven sides pass in a time unit
 ANGLES = [10.0, 20.0, 25.0, 28.0, 35.0, 40.0]  # degrees; it rolls up to atan(3 x 0.2) = 31
 END, PERIOD = 4.0, 0.01  # of a run, and of its probes
-REFERENCE_ANGLES = [10.0, 20.0, 28.0] if FULL else [20.0]
+REFERENCE_ANGLES = [20.0, 25.0, 28.0] if FULL else [20.0]
 DESCENTS = [("engine", angle) for angle in ANGLES] + [("reference", angle) for angle in REFERENCE_ANGLES]
 SETTLED = 1.0  # s of rolling down, after the start from rest
 
