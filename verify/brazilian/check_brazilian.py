@@ -26,11 +26,13 @@ WIDTH = float(np.sqrt(((LOG_SPACINGS - LOG_SPACINGS.mean())**2).sum()))  # a slo
 # of the arcs' ends, wrong by O(1) in an area of h^2, and h^(5/2) of the band along the outline whose cells, 1/h of
 # them, are wrong by O(h) in areas of h^2 independently of each other. That arrives in some ten waves around the disc,
 # whose sum of squares scatters by sqrt(2/10), errors by half of that.
-BETWEEN, WAVES = (2 + 2.5) / 2, 10
-AVERAGED = (BETWEEN, 0.25 + np.sqrt(2 / WAVES) / 2 / WIDTH)
+SCATTER = np.sqrt(2 / 10) / 2 / WIDTH  # of a slope
+AVERAGED = ((2 + 2.5) / 2, (2.5 - 2) / 2 + SCATTER)
+# What fails the patch test adds its own error, in the middle of a disc of order 3/2: see verify/patch.
+INCONSISTENT = ((1.5 + 2.5) / 2, (2.5 - 1.5) / 2 + SCATTER)
 # Linear triangles: h, next to which h^2 of the lattice, that of the averaged recipes, is 8 % on the coarsest mesh.
 LINEAR = (1, float(np.log(1.08) / (LOG_SPACINGS[0] - LOG_SPACINGS[-1])))
-ORDERS = {"mls": AVERAGED, "t3": LINEAR, "es-t3": AVERAGED, "mls-gauss": AVERAGED}
+ORDERS = {"mls": AVERAGED, "t3": LINEAR, "es-t3": AVERAGED, "mls-gauss": INCONSISTENT}
 # Of the whole disc: four ends of arcs, each of which a mesh makes wrong by half more or less, in square.
 ENDS = 2 * 0.5 / 2 / np.sqrt(4) / WIDTH
 CENTRE = 2 * PRESSURE / np.pi * np.array([np.sin(2 * HALF_ANGLE) - HALF_ANGLE, -np.sin(2 * HALF_ANGLE) - HALF_ANGLE])
@@ -97,13 +99,21 @@ def test_exact_solution() -> None:
                "(2 p/pi) (+-sin 2a - a), rounding")
 
 
+def spacings_inside(engine: dict[str, dict[int, Stresses]]) -> list[float]:
+    """Roots of the mean triangle within half the radius: in coarse meshes it is larger there than along the outline."""
+    def mean_area(stresses: Stresses) -> float:
+        return float(stresses.areas[np.hypot(*stresses.centres.T) < 0.5].mean())
+
+    return [np.sqrt(mean_area(stresses)) for stresses in engine["t3"].values()]
+
+
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_stresses_converge_inside(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
     errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
     order, tolerance = ORDERS[recipe]
-    CASE.check_rate(f"{recipe}: stress within half the radius", spacings(), errors, order, tolerance,
-                    "first order of linear triangles, with 8 % of second; averaged gradients: 2 of the lattice, 5/2 of "
-                    "the outline's band, scatter of ten waves")
+    CASE.check_rate(f"{recipe}: stress within half the radius", spacings_inside(engine), errors, order, tolerance,
+                    "first order of linear triangles, with 8 % of second; averaged gradients: 2 of the lattice (what "
+                    "fails the patch test: 3/2), 5/2 of the outline's band, scatter of ten waves")
     whole = [error(engine[recipe][nodes], 2) for nodes in SIZES]
     CASE.check_rate(f"{recipe}: stress in the whole disc", spacings(), whole, 1, ENDS,
                     "stresses wrong by O(1) in an area of h^2 where the arcs end; first order of linear triangles; "
@@ -163,7 +173,7 @@ def test_picture(engine: dict[str, dict[int, Stresses]]) -> None:
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
         errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
         axes[2].loglog(spacings(), errors, marker=marker, markersize=4, color=colour, linewidth=1.1,
-                       label=f"{recipe}: {observed_order(spacings(), errors):.2f}")
+                       label=f"{recipe}: {observed_order(spacings_inside(engine), errors):.2f}")
     for order, style in ((1, "--"), (2, ":")):
         axes[2].loglog(spacings(), 1e-3 * (np.array(spacings()) / spacings()[-1]) ** order, style, color=COLOURS[6],
                        linewidth=1.0,
