@@ -173,11 +173,12 @@ SIDES_LEVER = np.pi**2 / 4
 
 
 def lever_error(sides: int) -> float:
-    """Of lever_added, relative. As sides pass, sums over nodes for integrals swing levers by d / (4 m^2) in each pass,
-    1.4 SIDES_LEVER / n^2; a first side takes long to pass, until mu g t^2 = 2 pi / n, and counts 3/2 at the end of a
-    straight line; quarters of sides cancel half of it."""
+    """Of lever_added, relative. As sides pass, sums over nodes for integrals swing the mean of (x/a)^2 under the
+    pressure by 0.15 / m^2 either way at most: the disc's lever by d times that, the floor's by twice as much, their
+    mean by the root of both squares over two, d / (6 m^2) = 4/3 SIDES_LEVER / n^2. A first side takes long to pass,
+    until mu g t^2 = 2 pi / n, and counts 3/2 at the end of a straight line; quarters of sides cancel half of it."""
     share = np.sqrt(2 * np.pi / sides / FRICTION) / SLIDES_UNTIL
-    return float(1.4 * 1.5 * share / 2)
+    return float(4 / 3 * 1.5 * share / 2)
 
 
 def test_more_sides() -> None:
@@ -269,12 +270,7 @@ def test_incline(solver: str, degrees: float) -> None:
     CASE.check(Label.EXACT, f"{name}: acceleration over closed form", acceleration / incline.acceleration, 1, small,
                source)
     CASE.check(Label.EXACT, f"{name}: spin over closed form", spin / incline.spin, 1, small, source)
-    if incline.used > 1:
-        return
-    rigid = 2 / 3 * incline.sine  # sliding: the closed form above
-    CASE.check(Label.EXACT, f"{name}: acceleration over that of a rigid floor", acceleration / rigid, 1,
-               small + abs(incline.acceleration / rigid - 1), "a floor that gives way: creep, lever and rim")
-    if solver == "engine":
+    if solver == "engine" and incline.used <= 1:
         CASE.check(Label.EXACT, f"{name}: creep", acceleration / spin - 1, incline.creep - RIM * incline.d, 2 * small,
                    "springs on a parabola of pressure, slipping behind; as the accelerations")
 

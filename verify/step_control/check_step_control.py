@@ -132,7 +132,8 @@ def test_verlet_rejects_beyond_twice_the_tolerance(landing: Run) -> None:
 
 
 def test_steps_at_the_stability_bound(stable: Run) -> None:
-    """The bound counts on all of the block's outline in touch at once: w_b^2 = stiffness x its length / mass. Outputs take equal steps."""
+    """The bound counts on all of the block's outline in touch at once: w_b^2 = stiffness x its length / mass. Outputs
+    take equal steps."""
     later = stable.steps("time") > PERIOD
     largest = SAFETY * 2 / np.sqrt(WHOLE_OUTLINE)
     expected = OUTPUT / np.ceil(OUTPUT / largest)

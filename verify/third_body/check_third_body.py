@@ -37,7 +37,7 @@ SMOOTHED = 10  # samples of forces in a mean
 PAPER = {"peak": 0.5, "plateau": 0.25}
 INTACT, HALF_SHEARED = 1.5e-6, 6e-6  # s, of the paper's snapshots
 PEAK_SCATTER = 0.02  # of the highest friction factors of cycles of stick and slip
-READING, CYCLES = 0.02, 5  # of the paper's curves; of stick and slip on the plateau, 0.3 us each
+READING, CYCLE = 0.02, 3e-7  # of the paper's curves; s, of stick and slip on the plateau
 PAPER_PERIOD, PAPER_END = 87e-6, 3e-6  # m, s: as far as an hour takes it
 FINISHED = ROOT / "results/third_body"  # where `./pliant run cases/third_body.toml` leaves the paper's scene
 
@@ -158,13 +158,13 @@ def paper() -> Layer:
 
 
 @pytest.fixture(scope="module")
-def narrow(small: list[Layer]) -> list[Layer]:
-    return [*small, *([of_the_repository()] if FULL else [])]
+def mini() -> Layer:
+    return of_the_repository()
 
 
 @pytest.fixture(scope="module")
-def layers(narrow: list[Layer], request: pytest.FixtureRequest) -> list[Layer]:
-    return [*narrow, *([request.getfixturevalue("paper")] if FULL else [])]
+def layers(small: list[Layer], request: pytest.FixtureRequest) -> list[Layer]:
+    return [*small, *([request.getfixturevalue(name) for name in ("mini", "paper")] if FULL else [])]
 
 
 def test_forces_balance(small: list[Layer]) -> None:
@@ -200,28 +200,31 @@ def test_normal_force_rises_and_stays(layers: list[Layer]) -> None:
 
 def check_friction(layer: Layer, what: str) -> None:
     scatter = layer.friction(PLATEAU, layer.end).std()
-    tolerance, of = {"plateau": (3 * scatter / math.sqrt(CYCLES), "five cycles of stick and slip"),
+    cycles = (layer.end - PLATEAU) / CYCLE
+    tolerance, of = {"plateau": (3 * scatter / math.sqrt(cycles), f"{cycles:.1f} cycles of stick and slip"),
                      "peak": (3 * PEAK_SCATTER, "one stick-slip peak")}[what]
     CASE.check(Label.INDEPENDENT, f"{layer.name}: friction factor, {what}", getattr(layer, what), PAPER[what],
                tolerance + READING, f"Mollon 2018, figure 9, read to 0.02; three standard errors of {of}")
 
 
-def test_plateau_of_friction(narrow: list[Layer]) -> None:
-    for layer in narrow:
+def test_plateau_of_friction(small: list[Layer]) -> None:
+    for layer in small:
         check_friction(layer, "plateau")
 
 
 @pytest.mark.xfail(strict=True, raises=AssertionError, reason="half of the paper's peak: see README.md")
-def test_peak_of_friction(narrow: list[Layer]) -> None:
-    """Red: it shall stay in sight until it is understood."""
-    check_friction(max(narrow, key=lambda layer: layer.peak), "peak")
+def test_peak_of_friction(small: list[Layer]) -> None:
+    """Red: it shall stay in sight until it is understood. Of the seed that comes nearest."""
+    check_friction(max(small, key=lambda layer: layer.peak), "peak")
 
 
-@pytest.mark.skipif(not FULL, reason="the paper's size")
-@pytest.mark.xfail(strict=True, raises=AssertionError, reason="half of the paper's peak, four fifths of its plateau: see README.md")
+@pytest.mark.skipif(not FULL, reason="long")
+@pytest.mark.xfail(strict=True, raises=AssertionError,
+                   reason="half of the paper's peak, three to four fifths of its plateau: see README.md")
 @pytest.mark.parametrize("what", PAPER)
-def test_friction_of_the_papers_size(paper: Layer, what: str) -> None:
-    check_friction(paper, what)
+@pytest.mark.parametrize("which", ["mini", "paper"])
+def test_friction_of_the_papers_nodes(which: str, what: str, request: pytest.FixtureRequest) -> None:
+    check_friction(request.getfixturevalue(which), what)
 
 
 def test_energy(layers: list[Layer]) -> None:

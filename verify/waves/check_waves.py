@@ -323,7 +323,8 @@ def test_picture_of_convergence(errors: dict) -> None:
     for panel, wave in zip(axes, WAVES.values()):
         curves = [(" ".join(v), SPACINGS, np.abs(errors[wave.name, *v]).tolist()) for v in CONVERGE]
         draw_orders(panel, f"{wave.name}, c = {wave.speed:.3f}", curves, [2])
-        panel.plot(REFERENCE_SPACING, abs(reference_speed(wave) - 1), "kx", markersize=8, label="reference, mls lumped")
+        panel.plot(REFERENCE_SPACING, abs(reference_speed(wave) - 1), "kx", markersize=8,
+                   label="reference, mls lumped")
         node_distance = LENGTH / ELEMENT_COLUMNS / 2
         panel.errorbar(node_distance, abs(finite_element_speed(wave) - 1), [[0], [ELEMENT_ERROR]], fmt="k*", capsize=3,
                        label="finite elements and their error")
