@@ -75,7 +75,8 @@ def test_finite_elements_agree() -> None:
     forces = [by_elements(0.1, 0.49, *choice) for choice in ((SQUARE, 12, 6), (SQUARE, 24, 12), (CUBIC, 12, 6))]
     for name, force in zip(("a finer mesh", "cubic triangles"), forces[1:]):
         CASE.check(Label.INDEPENDENT, f"finite elements: quadratic triangles over {name} at 10 %", forces[0] / force, 1,
-                   ELEMENTS_ERROR, "the contact's edge lies within an element: second order of six edges in the half width")
+                   ELEMENTS_ERROR, "the contact's edge lies within an element: second order of six edges in the half "
+                   "width")
 
 
 @pytest.mark.parametrize("recipe", [recipe for recipe in RECIPES if recipe != "t3"])
