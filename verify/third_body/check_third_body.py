@@ -270,7 +270,7 @@ def test_mixing(layers: list[Layer]) -> None:
 
 
 def test_pictures(layers: list[Layer], doubling: Run) -> None:
-    figure, axes = panels(4, f"Third body, {NODES} nodes a disc: as figures 8 to 10 of Mollon 2018")
+    figure, axes = panels(4, f"Third body, seeds with {NODES} nodes a disc: as figures 8 to 10 of Mollon 2018")
     for layer, colour in zip(layers, COLOURS):
         draw_histories(axes, layer, colour)
     decorate(axes, layers[0])
