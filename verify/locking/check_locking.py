@@ -143,7 +143,7 @@ def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> No
         draw_convergence(panel, runs[poisson], elements[poisson], poisson)
     draw_ratios(axes[2], 100 * np.array(APPROACHES), {recipe: runs[0.49][recipe][168][0].force for recipe in RECIPES},
                 {recipe: rests.force for recipe, rests in references.items()}, elements[0.49], ELEMENTS_ERROR)
-    axes[2].set_title("nu = 0.49, 168 nodes, corner at the pole: over elements, less 1 [%]", fontsize=10, loc="left")
+    axes[2].set_title("nu = 0.49, 168 nodes: over finite elements, less 1 [%]", fontsize=10, loc="left")
     for panel in axes:
         legend(panel)
     save(CASE, figure, "locking")
