@@ -15,6 +15,11 @@ namespace {
 
 constexpr double at_rest = 1e-4;  ///< of the largest frequency: motions without stiffness
 
+/// Bodies that vibrate alike.
+bool alike(const Body& a, const Body& b) {
+  return a.space == b.space && a.placed.scale == b.placed.scale && a.placed.material == b.placed.material;
+}
+
 }  // namespace
 
 Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix kind) {
@@ -32,11 +37,20 @@ Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix ki
 void write_modes(const Scene& scene, MassMatrix kind, const std::filesystem::path& file) {
   const Bodies bodies(scene);
   nlohmann::ordered_json json{{"scene", scene.name}, {"unit", "rad/s"}, {"bodies", nlohmann::json::array()}};
+  std::vector<const Body*> kinds;
   for (const Body& body : bodies.all()) {
     if (!body.compliant()) continue;
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const Body* other) { return alike(*other, body); });
+    if (known != kinds.end()) {
+      auto& like_it = json["bodies"][static_cast<std::size_t>(known - kinds.begin())]["like_it"];
+      like_it = like_it.get<int>() + 1;
+      continue;
+    }
+    kinds.push_back(&body);
     const Vector all = natural_frequencies(bodies, body, kind);
     const auto first = std::upper_bound(all.begin(), all.end(), at_rest * all.maxCoeff());
     json["bodies"].push_back({{"body", body.placed.name},
+                              {"like_it", 0},
                               {"nodes", body.dofs / 2},
                               {"motions_at_rest", first - all.begin()},
                               {"frequencies", std::vector<double>(first, all.end())}});

@@ -24,9 +24,9 @@ class Stresses:
     triangles: np.ndarray  # [cells x 3 x 2] corners at the start, m
 
     def rms(self, difference: np.ndarray, where: np.ndarray) -> float:
-        """Root of the mean of |s|^2 = xx^2 + yy^2 + 2 xy^2 by area, over the cells named by a mask."""
+        """Root of the mean of |s|^2 = xx^2 + yy^2 + 2 xy^2 by area and a mask, or a weight, of the cells."""
         square = difference[:, 0] ** 2 + difference[:, 1] ** 2 + 2 * difference[:, 2] ** 2
-        return float(np.sqrt(np.average(square[where], weights=self.areas[where])))
+        return float(np.sqrt(np.average(square, weights=self.areas * where)))
 
 
 def frames_of(run: Run) -> Frames:

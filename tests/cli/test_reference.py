@@ -182,9 +182,9 @@ def test_natural_frequencies_are_those_of_the_engine(desk) -> None:
     engine = subprocess.run([ENGINE, "modes", "scene.toml", "--count", "1000", "--json", "engine.json"], cwd=desk.folder)
     assert engine.returncode == 0 and not (desk.folder / "results").exists()
     ours, theirs = (json.loads((desk.folder / name).read_text())["bodies"] for name in ("reference.json", "engine.json"))
-    assert len(ours) == 2 and ours[0]["motions_at_rest"] == 3
-    for body in ours:
-        assert body["frequencies"] == pytest.approx(theirs[0]["frequencies"], rel=1e-8)
+    assert len(ours) == len(theirs) == 1 and ours[0]["like_it"] == 1
+    assert ours[0] | {"frequencies": []} == theirs[0] | {"frequencies": []}
+    assert ours[0]["frequencies"] == pytest.approx(theirs[0]["frequencies"], rel=1e-8)
 
 
 def test_natural_frequencies_need_a_compliant_body(desk) -> None:

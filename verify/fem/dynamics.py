@@ -9,7 +9,7 @@ from dolfinx.fem import petsc
 
 from fem.compiled import compile_form
 from fem.solid import Solid
-from fem.statics import Conditions, Minimiser, direct_solver
+from fem.statics import Conditions, direct_solver
 
 
 class Motion:
@@ -80,31 +80,3 @@ class Explicit(Motion):
         self.time += dt
         if not np.isfinite(self.a.x.array).all():
             raise FloatingPointError(f"an element is turned inside out at {self.time:g} s")
-
-
-class Implicit(Motion):
-    """Newmark's method, beta = 1/4, gamma = 1/2: a step is a minimum of potential + 2/dt^2 |u - predicted|^2 by mass.
-
-    Conditions hold displacements; their values may change from step to step.
-    """
-
-    def __init__(self, solid: Solid, potential: ufl.Form, conditions: Conditions = ()) -> None:
-        super().__init__(solid, potential, conditions)
-        self._predicted = fem.Function(solid.space)
-        self._factor = fem.Constant(solid.domain, 1.0)
-        way = self.u - self._predicted
-        inertia = self._factor / 2 * solid.inertia(way, way) * solid.dx
-        self._minimiser = Minimiser(potential + inertia, self.u, conditions)
-
-    def start(self) -> None:
-        """After u and v are set; conditions must hold zero displacements then."""
-        self.update_acceleration()
-
-    def step(self, dt: float) -> None:
-        self._predicted.x.array[:] = self.u.x.array + dt * self.v.x.array + dt**2 / 4 * self.a.x.array
-        self._factor.value = 4 / dt**2
-        self._minimiser.solve()
-        a = 4 / dt**2 * (self.u.x.array - self._predicted.x.array)
-        self.v.x.array[:] += dt / 2 * (self.a.x.array + a)
-        self.a.x.array[:] = a
-        self.time += dt

@@ -16,7 +16,7 @@ from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from motion import Motion, read_motion
 from pictures import COLOURS, MARKERS, draw_ratios, legend, panels, save
-from squeeze import OUTLINE, PAUSE, RECIPES, Rests, Squeeze, both_ways, by_reference
+from squeeze import OUTLINE, PAUSE, RECIPES, Rests, Squeeze, both_ways, by_reference, worst_over_reference
 from verification import FULL, Case, Label, observed_order
 
 CASE = Case(__file__)
@@ -130,11 +130,9 @@ def forces_of_linear_triangles(motion: Motion, poisson: float) -> np.ndarray:
 
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_engine_against_reference(runs: dict, references: dict[str, Rests], recipe: str) -> None:
-    engine, reference = runs[0.49][recipe][168][0], references[recipe]
-    ratio, unrest = engine.force / reference.force, np.sqrt(engine.kinetic / engine.strain)
-    i = int(np.abs(ratio - 1).argmax())
-    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = 0.49: engine over reference, the worst", ratio[i], 1,
-               5 * unrest[i] + 1e-5, "as in plates: amplitude that is left, and 1e-5 the kinks of contact")
+    ratio, allowed = worst_over_reference(runs[0.49][recipe][168][0], references[recipe])
+    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = 0.49: engine over reference, the worst", ratio, 1, allowed,
+               "as in plates: amplitude that is left, and 1e-5 the kinks of contact")
 
 
 def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> None:
