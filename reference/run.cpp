@@ -12,6 +12,8 @@
 #include "core/memory.hpp"
 #include "core/stop_signals.hpp"
 #include "files/folder_lock.hpp"
+#include "files/output_folder.hpp"
+#include "files/text_files.hpp"
 #include "reference/outputs/frames.hpp"
 #include "reference/outputs/probes.hpp"
 #include "reference/progress.hpp"

@@ -26,7 +26,7 @@ struct Arguments {
 Scene load(const Arguments& arguments) {
   if (arguments.scene.empty() && (!arguments.run.resume || arguments.run.out.empty()))
     throw InputError("no scene file is named; only --resume with --out can do without");
-  Scene scene = arguments.scene.empty() ? scene_of_checkpoint(arguments.run.out) : read_scene(arguments.scene);
+  Scene scene = arguments.scene.empty() ? scene_of_folder(arguments.run.out) : read_scene(arguments.scene);
   if (!arguments.until.empty()) scene.time.end = parse_time("--until", arguments.until);
   if (arguments.checkpoint_every == "never")
     scene.checkpoint_period.reset();

@@ -160,9 +160,12 @@ struct FrameFile::Implementation {
       throw OutputError(fmt::format("{}: has {} frames, {} at the checkpoint; it was changed: start anew (--force)",
                                     heavy.string(), there, wanted));
     if (there > wanted) file.shorten_list("/times", wanted);
-    for (const GridTopology& grid : grids)
-      for (int index = count; file.has(frame_group(grid.name, index)); ++index)
-        file.remove(frame_group(grid.name, index));
+    for (const GridTopology& grid : grids) {
+      int end = count;
+      while (file.has(frame_group(grid.name, end))) ++end;
+      // The last first: a kill in between leaves no gap, behind which the next call would not look.
+      while (end > count) file.remove(frame_group(grid.name, --end));
+    }
     file.close();
     write_file_atomically(light, document.text());
   }

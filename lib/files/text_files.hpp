@@ -47,9 +47,4 @@ class CsvFile {
   std::size_t written_ = 0;  ///< bytes of whole rows in the file
 };
 
-/// Prepares an output folder: creates it, or with `overwrite` empties one that a run of this program wrote (it is known
-/// by its summary.json or scene.toml, and holds nothing but kinds of files that a run writes: anything else is never
-/// removed). Throws OutputError when it exists and is not to be overwritten, or cannot be written.
-void prepare_output_folder(const std::filesystem::path& folder, bool overwrite);
-
 }  // namespace pliant

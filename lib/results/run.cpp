@@ -6,14 +6,17 @@
 #include <chrono>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
 #include "core/stop_signals.hpp"
 #include "files/folder_lock.hpp"
+#include "files/output_folder.hpp"
 #include "results/balance_warning.hpp"
 #include "results/checkpoint.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
+#include "scene/text_file.hpp"
 
 namespace pliant {
 namespace {
@@ -104,8 +107,9 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   // Read before the folder is emptied: the scene may lie in it.
   const SceneFiles files(scene.file);
   FolderLock::refuse_taken(options.out);
-  if (!checkpoint) prepare_output_folder(options.out, options.force);
+  if (!checkpoint) check_output_folder(options.out, options.force || options.resume);
   const FolderLock lock(options.out);
+  checkpoint ? remove_temporary_files(options.out) : empty_output_folder(options.out, files.names());
   Recorder recorder(model, options.out, options.quiet, checkpoint ? Opening::resume : Opening::create);
   if (checkpoint) checkpoint->restore(simulation, recorder);
   files.write(options.out);
@@ -127,35 +131,70 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   if (!options.quiet) print_summary(simulation, recorder.figures, options);
 }
 
-}  // namespace
+nlohmann::json summary_in(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  if (!fs::exists(file)) return nlohmann::json::object();
+  return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
+}
 
-void run_scene(const Scene& scene, const RunOptions& options) {
-  const Clock::time_point start = Clock::now();
-  if (options.threads > 0) omp_set_num_threads(options.threads);
-  if (!options.resume) return simulate(scene, options, nullptr, start);
-  const Checkpoint checkpoint(options.out);
+/// Whether the folder's last run left it in order at this checkpoint. One that was killed after its last checkpoint, but
+/// before its summary was written and its lock removed, did not.
+bool ended_in_order(const fs::path& folder, const Checkpoint& checkpoint) {
+  const nlohmann::json summary = summary_in(folder);
+  return summary.is_object() && summary.value("status", "running") != "running" &&
+         summary.value("time", -1.0) == checkpoint.time() && !fs::exists(folder / "run.lock");
+}
+
+/// Whether a run has nothing left to do at a checkpoint, not even to put its folder in order. Says so.
+bool nothing_to_do(const Checkpoint& checkpoint, double end, const RunOptions& options) {
+  if (checkpoint.time() < end) return false;
+  if (checkpoint.time() == end && !ended_in_order(options.out, checkpoint)) return false;
+  if (!options.quiet)
+    fmt::print("{}: has reached t = {:.6g} s already; nothing to do (a later --until goes on)\n", options.out.string(),
+               checkpoint.time());
+  return true;
+}
+
+/// Throws InputError for another scene than the checkpoint's.
+void require_scene_of(const Checkpoint& checkpoint, const Scene& scene, const fs::path& folder) {
   const SceneFiles files(scene.file);
   const std::string difference = scene_difference(checkpoint.scene_text(), files.text());
   if (!difference.empty())
     throw InputError(
         fmt::format("{}: not the scene of the checkpoint in {}: {}; only the end, the title and "
                     "[checkpoint] may change",
-                    scene.file.string(), options.out.string(), difference));
-  files.compare(options.out);
-  if (checkpoint.time() >= scene.time.end) {
-    if (!options.quiet)
-      fmt::print("{}: has reached t = {:.6g} s already; nothing to do (a later --until goes on)\n",
-                 options.out.string(), checkpoint.time());
-    return;
+                    scene.file.string(), folder.string(), difference));
+  files.compare(folder);
+}
+
+}  // namespace
+
+void run_scene(const Scene& scene, const RunOptions& options) {
+  const Clock::time_point start = Clock::now();
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+  if (!options.resume) return simulate(scene, options, nullptr, start);
+  if (killed_before_checkpoint(options.out)) {
+    if (!options.quiet) fmt::print("{}: has no checkpoint yet; starting anew\n", options.out.string());
+    return simulate(scene, options, nullptr, start);
   }
+  const Checkpoint checkpoint(options.out);
+  require_scene_of(checkpoint, scene, options.out);
+  if (nothing_to_do(checkpoint, scene.time.end, options)) return;
   checkpoint.warn_of_other_build();
   simulate(scene, options, &checkpoint, start);
 }
 
-Scene scene_of_checkpoint(const fs::path& folder) {
-  const Checkpoint checkpoint(folder);
+Scene scene_of_folder(const fs::path& folder) {
+  std::string name;
+  if (!killed_before_checkpoint(folder))
+    name = Checkpoint(folder).scene_name();
+  else if (const nlohmann::json summary = summary_in(folder); summary.contains("scene"))
+    name = summary.value("scene", "");
+  else
+    throw OutputError(
+        fmt::format("{}: a run was killed before it wrote anything of use; name its scene file", folder.string()));
   Scene scene = read_scene(folder / "scene.toml");
-  scene.name = checkpoint.scene_name();
+  scene.name = name;
   return scene;
 }
 

@@ -34,6 +34,12 @@ void SceneFiles::compare(const fs::path& folder) const {
                       outline.file.string(), copy.string()));
 }
 
+std::set<std::string> SceneFiles::names() const {
+  std::set<std::string> names{"scene.toml"};
+  for (const Outline& outline : outlines_) names.insert(outline.copy);
+  return names;
+}
+
 void SceneFiles::write(const fs::path& folder) const {
   write_file_atomically(folder / "scene.toml", text_);
   for (const Outline& outline : outlines_) write_file_atomically(folder / outline.copy, outline.content);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,8 @@ class SceneFiles {
   const std::string& text() const { return text_; }
   /// Throws InputError when a copy in the folder holds another outline than the file that the scene names now.
   void compare(const std::filesystem::path& folder) const;
+  /// Names of the files that write makes.
+  std::set<std::string> names() const;
   /// scene.toml and the outlines beside it.
   void write(const std::filesystem::path& folder) const;
 

@@ -12,84 +12,24 @@ import time
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
-from conftest import ENGINE, Desk
+from conftest import Desk
+from kills import EACH_STEP, assert_same, build_preload, changes_of, killed, mend, start, start_preloaded
+from scenes import LAYER, SHORT_LAYER
 
-# Compliant and rigid discs, with friction and cohesion, in a shear across the period.
-LAYER = """\
-[domain]
-period = 6
-[time]
-end = 4
-[materials.soft]
-law = "neo-hookean"
-density = 1
-young = 2.8
-poisson = 0.4
-[materials.hard]
-law = "rigid"
-density = 1
-[shapes.disc]
-kind = "disc"
-diameter = 2
-nodes = 40
-[[grains]]
-shape = "disc"
-packing = { kind = "grid", columns = 3, rows = 3, pitch = 2, row_pitch = 2.01, origin = [1, 0] }
-mix = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
-angle = "random"
-seed = 3
-velocity = { uniform = [0.4, 0], rotation = 0.1 }
-[[walls]]
-name = "lower"
-material = "hard"
-solid = "below"
-level = -1.02
-[[walls]]
-name = "upper"
-material = "hard"
-solid = "above"
-level = 5.04
-thickness = 1
-x = { velocity = [[0, 0.3], [1, 0.6]] }
-y = { pressure = [[0, 0], [2, 0.1]] }
-[[contacts]]
-between = "all"
-law = "mohr-coulomb"
-friction = 0.4
-[[contacts]]
-between = ["soft", "hard"]
-law = "cohesive"
-strength = 0.1
-[[probes]]
-name = "push"
-quantity = "force"
-of = "upper"
-period = 0.01
-[[probes]]
-name = "where"
-quantity = "position"
-of = "grains"
-period = 0.015
-[[probes]]
-name = "books"
-quantity = "energy"
-period = 0.5
-[frames]
-period = 0.5
-fields = ["velocity", "von_mises", "contact_pressure"]
-"""
+
+def whole_run(folder: Path, scene: str, integrator: str) -> Desk:
+    """An uninterrupted run in `whole`, with one thread."""
+    desk = Desk(folder)
+    desk.write(scene.replace("[time]", f'[time]\nintegrator = "{integrator}"'))
+    result = desk.run("--out", "whole", "--threads", "1", "--quiet")
+    assert result.returncode == 0, result.stderr
+    return desk
 
 
 @pytest.fixture(scope="module", params=["verlet", "step-doubling"])
 def whole(request, tmp_path_factory) -> Desk:
-    """An uninterrupted run in `whole`, with one thread."""
-    desk = Desk(tmp_path_factory.mktemp("whole"))
-    desk.write(LAYER.replace("end = 4", f'end = 4\nintegrator = "{request.param}"'))
-    result = desk.run("--out", "whole", "--threads", "1", "--quiet")
-    assert result.returncode == 0, result.stderr
-    return desk
+    return whole_run(tmp_path_factory.mktemp("whole"), LAYER, request.param)
 
 
 @pytest.fixture
@@ -98,40 +38,9 @@ def out(whole) -> str:
     return f"out{len(list(whole.folder.iterdir()))}"
 
 
-def frames_of(folder: Path) -> dict[str, np.ndarray]:
-    arrays: dict[str, np.ndarray] = {}
-    with h5py.File(folder / "frames.h5") as file:
-        file.visititems(lambda name, item: arrays.update({name: item[()]} if isinstance(item, h5py.Dataset) else {}))
-    return arrays
-
-
-def assert_same(desk: Desk, out: str) -> None:
-    one, other = desk.folder / "whole", desk.folder / out
-    for name in ["probes.csv", "steps.csv", "frames.xdmf"]:
-        assert (one / name).read_bytes() == (other / name).read_bytes(), name
-    left, right = frames_of(one), frames_of(other)
-    assert left.keys() == right.keys()
-    assert all(np.array_equal(left[name], right[name]) for name in left)
-    first, second = desk.summary("whole"), desk.summary(out)
-    for key in ["state_hash", "steps", "rejections", "evaluations", "energy", "status", "time"]:
-        assert first[key] == second[key], key
-
-
-def start(desk: Desk, out: str, *options: str, **process) -> subprocess.Popen[str]:
-    return subprocess.Popen([ENGINE, "run", desk.scene, "--out", out, "--quiet", *options], cwd=desk.folder, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, **process)
-
-
-def wait_for_checkpoint(desk: Desk, out: str) -> None:
-    """Until a second checkpoint has replaced the first."""
-    file, seen = desk.folder / out / "checkpoint.bin", set()
-    for _ in range(20000):
-        if file.exists():
-            seen.add(file.stat().st_ino)
-        if len(seen) > 1:
-            return
-        time.sleep(0.001)
-    raise AssertionError("no checkpoint came")
+@pytest.fixture(scope="module")
+def preload(tmp_path_factory) -> Path:
+    return build_preload(tmp_path_factory.mktemp("preload"))
 
 
 @pytest.mark.parametrize("threads", ["1", "2"])
@@ -147,10 +56,8 @@ def test_a_run_that_ended_early_goes_on(whole, out, threads) -> None:
 
 
 @pytest.mark.parametrize("stop, code", [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-def test_a_signal_stops_in_order_and_the_run_goes_on(whole, out, stop, code) -> None:
-    process = start(whole, out, "--checkpoint-every", "0.01 s")
-    wait_for_checkpoint(whole, out)
-    process.send_signal(stop)
+def test_a_signal_stops_in_order_and_the_run_goes_on(whole, out, preload, stop, code) -> None:
+    process = start_preloaded(preload, whole, out, *EACH_STEP, KILL_AFTER_CHECKPOINT=5, KILL_SIGNAL=int(stop))
     output, errors = process.communicate(timeout=60)
     assert process.returncode == code
     assert f"stopped by {stop.name}" in errors and "--resume" in errors and output == ""
@@ -161,23 +68,73 @@ def test_a_signal_stops_in_order_and_the_run_goes_on(whole, out, stop, code) -> 
     assert_same(whole, out)
 
 
-def test_killed_again_and_again(whole, out) -> None:
+def test_killed_again_and_again(whole, out, preload) -> None:
     """Whatever was written after the last checkpoint is cut back, however often the run is killed."""
     options: list[str] = []
     times = [0.0]
     for _ in range(3):
-        process = start(whole, out, "--checkpoint-every", "0.02 s", *options)
-        wait_for_checkpoint(whole, out)
-        process.kill()
-        process.communicate()
+        assert killed(start_preloaded(preload, whole, out, *EACH_STEP, *options, KILL_AFTER_CHECKPOINT=5))
         times.append(whole.summary(out)["checkpoint_time"])
         assert whole.summary(out)["status"] == "running"
         options = ["--resume"]
-    assert times == sorted(times) and times[1] > 0
+    assert times == sorted(set(times))
     result = whole.run("--out", out, "--resume", "--threads", "1", "--quiet")
     assert result.returncode == 0, result.stderr
     assert_same(whole, out)
     assert whole.summary(out)["resumed"] == 3
+
+
+def test_killed_between_the_last_checkpoint_and_the_summary(whole, out, preload) -> None:
+    process = start_preloaded(preload, whole, out, "--checkpoint-every", "never", KILL_AFTER_CHECKPOINT=1)
+    assert killed(process) and whole.summary(out)["status"] == "running"
+    result = whole.run("--out", out, "--resume", "--until", "1.5")
+    assert result.returncode == 0 and "nothing to do" in result.stdout
+    mend(whole, out)
+    assert_same(whole, out)
+    assert "nothing to do" in whole.run("--out", out, "--resume").stdout
+
+
+@pytest.mark.parametrize("integrator, threads", [("verlet", 2), ("step-doubling", 1)])
+def test_every_moment_of_a_kill_is_mended(tmp_path, preload, integrator, threads) -> None:
+    """Before every change of a file at the start and at the end, and now and then in between. Each third is killed once
+    more, while it goes on."""
+    desk = whole_run(tmp_path, SHORT_LAYER, integrator)
+    changes = changes_of(preload, desk, "counted", *EACH_STEP)
+    assert changes > 100
+    for n in [*range(30), *range(30, changes - 15, 13), *range(changes - 15, changes)]:
+        out = f"out{n}"
+        assert killed(start_preloaded(preload, desk, out, *EACH_STEP, KILL_BEFORE=n))
+        if n % 3 == 0 and (desk.folder / out).exists():
+            killed(start_preloaded(preload, desk, out, *EACH_STEP, "--resume", KILL_BEFORE=n // 3))
+        mend(desk, out, threads)
+        assert_same(desk, out)
+
+
+def test_killed_while_it_overwrites(desk, preload) -> None:
+    """The earlier run is whole, or the new one starts anew."""
+    desk.write(SHORT_LAYER)
+    assert desk.run("--out", "whole", "--quiet", "--threads", "1").returncode == 0
+    for n in range(40):
+        assert desk.run("--out", "out", "--quiet", "--force", "--threads", "1").returncode == 0
+        assert killed(start_preloaded(preload, desk, "out", "--force", KILL_BEFORE=n))
+        mend(desk, "out")
+        assert_same(desk, "out")
+
+
+def test_killed_before_a_checkpoint_the_folder_knows_its_scene(whole, out, preload) -> None:
+    """From the first summary on."""
+    changes = changes_of(preload, whole, out, "--checkpoint-every", "never")
+    started_with_a_scene = 0
+    for n in [*range(40), changes // 2]:
+        folder = f"{out}_{n}"
+        assert killed(start_preloaded(preload, whole, folder, "--checkpoint-every", "never", KILL_BEFORE=n))
+        result = whole.engine("run", "--resume", "--out", folder, "--quiet")
+        if (whole.folder / folder / "probes.csv").exists() and result.returncode == 0:
+            started_with_a_scene += 1
+            assert_same(whole, folder)
+        else:
+            assert result.returncode == 4 and ("name its scene file" in result.stderr or "cannot be read" in result.stderr)
+    assert started_with_a_scene > 0
 
 
 def test_whatever_follows_the_checkpoint_is_cut_off(whole, out) -> None:
@@ -304,6 +261,7 @@ def test_a_folder_in_use_is_refused(half) -> None:
     process = start(half, "busy", "--until", "400")
     while not (half.folder / "busy/summary.json").exists():
         time.sleep(0.01)
+    process.send_signal(signal.SIGSTOP)  # however long the others take, it is not at its end
     for option in ["--force", "--resume"]:
         result = half.run("--out", "busy", option, "--quiet")
         assert result.returncode == 4, result.stderr
@@ -339,10 +297,13 @@ def test_a_full_disk_keeps_the_last_good_checkpoint(desk) -> None:
 def test_a_physics_failure_names_the_last_good_checkpoint(desk) -> None:
     soft = LAYER.replace('law = "mohr-coulomb"', 'law = "mohr-coulomb"\nstiffness = 0.1')
     desk.write(soft.replace("end = 4", "end = 40"))
-    result = desk.run("--out", "out", "--checkpoint-every", "0.05 s", "--quiet")
+    result = desk.run("--out", "out", "--checkpoint-every", "never", "--quiet")
+    assert result.returncode == 3 and "no checkpoint yet" in result.stderr
+    half = desk.summary("out")["time"] / 2
+    assert half > 0 and desk.run("--out", "out", "--force", "--until", str(half), "--quiet").returncode == 0
+    result = desk.run("--out", "out", "--resume", "--checkpoint-every", "never", "--quiet")
     assert result.returncode == 3
-    time_named = float(re.search(r"last good checkpoint: t = (\S+) s", result.stderr)[1])
-    assert 0 < time_named <= float(f"{desk.summary('out')['time']:.6g}"), "messages have six digits"
+    assert f"last good checkpoint: t = {half:.6g} s" in result.stderr
     assert json.dumps(desk.summary("out")["status"]).startswith('"failed: contact')
 
 

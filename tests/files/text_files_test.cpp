@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "files/output_folder.hpp"
 #include "temporary_folder.hpp"
 
 // All checks here are EXACT: bytes and messages.
