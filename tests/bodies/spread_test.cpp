@@ -101,10 +101,8 @@ Dofs deformed(const Model& model, std::uint64_t seed) {
     for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
       const auto node = static_cast<std::size_t>(i);
       const Vec2 x = view[node];
-      set_node(
-          places, node,
-          x + 0.1 * Vec2(x.y() * x.y(), -x.x() * x.y()) + 0.002 * Vec2(random.uniform(-1, 1), random.uniform(-1, 1)),
-          q);
+      const Vec2 noise{random.uniform(-1, 1), random.uniform(-1, 1)};
+      set_node(places, node, x + 0.1 * Vec2(x.y() * x.y(), -x.x() * x.y()) + 0.002 * noise, q);
     }
   }
   return q;

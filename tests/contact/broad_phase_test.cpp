@@ -71,8 +71,11 @@ TEST(BroadPhase, EqualsAllPairsWithoutAPeriod) {
 
 TEST(BroadPhase, EqualsAllPairsAroundThePeriod) {
   Random random(2);
-  for (int sample = 0; sample < 50; ++sample)
-    expect_all_pairs(random_boxes(random, 1 + random.below(60), random.below(3), random.uniform(1.5, 6), 0.5));
+  for (int sample = 0; sample < 50; ++sample) {
+    const int count = 1 + random.below(60), walls = random.below(3);
+    const double period = random.uniform(1.5, 6);
+    expect_all_pairs(random_boxes(random, count, walls, period, 0.5));
+  }
 }
 
 // Boxes wider than half the period meet their neighbours on both sides: two images of one pair.

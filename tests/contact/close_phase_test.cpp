@@ -81,9 +81,10 @@ TEST(ClosePhase, MissesNothingOnRandomOutlines) {
     Random random(sample + 11);
     Scene scene = bare_scene();
     scene.contacts = {frictionless(1)};
-    for (int i = 0; i < 2; ++i)
-      add_body(scene, outline_shape("outline", coarse_outline(random, random.below(7))), BodyKind::rigid, {0, 0},
-               random.uniform(0, 6));
+    for (int i = 0; i < 2; ++i) {
+      const Points outline = coarse_outline(random, random.below(7));
+      add_body(scene, outline_shape("outline", outline), BodyKind::rigid, {0, 0}, random.uniform(0, 6));
+    }
     ContactRig rig(scene);
     press_together(rig, random, random.uniform(-0.1, 0.1));
     const Pair pair(rig, {0, 1, 0}, random.uniform(0.01, 0.15));

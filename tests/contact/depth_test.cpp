@@ -22,9 +22,10 @@ TEST(ContactDepth, SeesAWholeSegmentDeep) {
     Random random(sample + 70);
     Scene scene = bare_scene();
     scene.contacts = {frictionless(100)};
-    for (int i = 0; i < 2; ++i)
-      add_body(scene, outline_shape("outline", regular(30 + random.below(30), 1)), BodyKind::rigid, {0, 0},
-               random.uniform(0, 6));
+    for (int i = 0; i < 2; ++i) {
+      const Points outline = regular(30 + random.below(30), 1);
+      add_body(scene, outline_shape("outline", outline), BodyKind::rigid, {0, 0}, random.uniform(0, 6));
+    }
     ContactRig rig(scene);
     press_together(rig, random, random.uniform(0.05, 0.15));
     rig.evaluate();

@@ -49,9 +49,7 @@ constexpr int rule_count = 5;
 bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_b) {
   Scene scene = bare_scene();
   scene.contacts = {rule};
-  for (const int kind : {kind_a, kind_b})
-    add_body(scene, outline_shape("outline", random_outline(random, kind)), BodyKind::rigid, {0, 0},
-             random.uniform(0, 6));
+  for (const int kind : {kind_a, kind_b}) add_random_body(scene, random, kind);
   ContactRig rig(scene);
   press_together(rig, random, random.uniform(-0.02, 0.06));
   rig.evaluate();
@@ -130,9 +128,7 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
         Scene scene = bare_scene();
         const ContactRule& rule = rules[sample % rule_count];
         scene.contacts = {rule};
-        for (const int kind : {kind_a, kind_b})
-          add_body(scene, outline_shape("outline", random_outline(random, kind)), BodyKind::rigid, {0, 0},
-                   random.uniform(0, 6));
+        for (const int kind : {kind_a, kind_b}) add_random_body(scene, random, kind);
         ContactRig rig(scene);
         press_together(rig, random, random.uniform(-0.05, 0.05));
         rig.refresh();
@@ -196,9 +192,7 @@ TEST(ContactSearch, DamageEqualsBruteForceInAMovingHeap) {
 void approach(Random& random, const ContactRule& rule) {
   Scene scene = bare_scene();
   scene.contacts = {rule};
-  for (int i = 0; i < 2; ++i)
-    add_body(scene, outline_shape("outline", random_outline(random, random.below(5))), BodyKind::rigid, {0, 0},
-             random.uniform(0, 6));
+  for (int i = 0; i < 2; ++i) add_random_body(scene, random, random.below(5));
   ContactRig rig(scene);
   press_together(rig, random, 0.04);
   const Vec2 d = 0.15 * rig.contact.skin() * Vec2(rig.rigid(1)[0], rig.rigid(1)[1]).normalized();

@@ -24,7 +24,10 @@ TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
   testing::Random random(4);
   for (const int size : {0, 1, 255, 256, 257, 10000}) {
     std::vector<double> values;
-    for (int i = 0; i < size; ++i) values.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(0, 20)));
+    for (int i = 0; i < size; ++i) {
+      const double digits = random.uniform(-1, 1), power = random.uniform(0, 20);
+      values.push_back(digits * std::pow(10.0, power));
+    }
     const auto total = [&] { return ordered_sum(size, [&](int i) { return values[i]; }); };
     const double one = with_threads(1, total);
     for (const int threads : {2, 3, 7})

@@ -30,7 +30,7 @@ TEST(Clip, random_stars_and_their_parts) {
   Random random(5);
   for (int trial = 0; trial < 20; ++trial) {
     const Points star = random_star(random, 5 + random.below(20), 0.3);
-    const Vec2 cut(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5));
+    const Vec2 cut{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5)};
     double sum = 0;
     for (const Vec2& low : {Vec2(-2, -2), Vec2(cut.x(), -2), Vec2(-2, cut.y()), cut}) {
       const Vec2 high(low.x() < cut.x() ? cut.x() : 2, low.y() < cut.y() ? cut.y() : 2);

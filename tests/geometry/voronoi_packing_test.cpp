@@ -27,7 +27,7 @@ Generators random_generators(int count, double largest_weight) {
   Random random(7);
   Generators all;
   for (int i = 0; i < count; ++i) {
-    all.points.emplace_back(random.uniform(strip.left, strip.right), random.uniform(strip.bottom, strip.top));
+    all.points.push_back({random.uniform(strip.left, strip.right), random.uniform(strip.bottom, strip.top)});
     all.weights.push_back(random.uniform(0, largest_weight));
   }
   return all;
@@ -63,7 +63,7 @@ TEST(PowerDiagram, AgreesWithBruteForce) {
     EXPECT_NEAR(covered_area(cells), strip.area(), 1e-12 * strip.area());
     Random random(3);
     for (int k = 0; k < 500; ++k) {
-      const Vec2 x(random.uniform(strip.left, strip.right), random.uniform(strip.bottom, strip.top));
+      const Vec2 x{random.uniform(strip.left, strip.right), random.uniform(strip.bottom, strip.top)};
       EXPECT_EQ(owner(cells, x), nearest(all, x)) << count << " " << weight;
     }
   }

@@ -200,9 +200,7 @@ TEST(ReferenceContact, EngineAgreesOnRandomOutlines) {
     scene.skin = 1;
     scene.contacts = cases()[sample % 11].rules;
     if (!scene.contacts[0].stiffness) continue;  // needs a compliant body
-    for (int body = 0; body < 2; ++body)
-      add_body(scene, outline_shape("outline", random_outline(random, (sample / 11 + body * (1 + sample / 55)) % 5)),
-               BodyKind::rigid, {0, 0}, random.uniform(0, 6));
+    for (int body = 0; body < 2; ++body) add_random_body(scene, random, (sample / 11 + body * (1 + sample / 55)) % 5);
     Sides sides(scene);
     press_together(sides.rig, random, 0.03);
     compared += compare_states(sides, random, 0.003).contacts > 0;

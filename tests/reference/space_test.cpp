@@ -139,7 +139,7 @@ TEST(ReferenceSpace, change_of_mls_is_the_least) {
   std::vector<Point> other = space.points;
   Random random(4);
   for (Point& point : other)
-    for (Vec2& b : point.gradient) b += Vec2(random.uniform(-1, 1), random.uniform(-1, 1));
+    for (Vec2& b : point.gradient) b += Vec2{random.uniform(-1, 1), random.uniform(-1, 1)};
   make_consistent(other, mesh.nodes, space.outline);
   double product = 0, norm = 0;
   for (std::size_t g = 0; g < other.size(); ++g) {

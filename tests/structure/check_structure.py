@@ -9,6 +9,8 @@ import re
 import sys
 from pathlib import Path
 
+from order_of_draws import disordered_lines
+
 # A folder of lib/ may include itself and the folders after it: arrows point down only.
 ORDER = ["cli", "results", "dynamics", "contact", "boundary", "bodies", "materials", "discretisation", "geometry",
          "files", "scene", "core"]
@@ -139,6 +141,13 @@ def check_words(root: Path, files: list[Path], forbidden: dict[str, str]) -> lis
     return problems
 
 
+def check_draws(root: Path) -> list[str]:
+    return [f"{file.relative_to(root)}:{line}: the compiler chooses which of these random numbers is drawn first: draw them "
+            "one statement after the other, or between braces"
+            for file in files_of(root, {".hpp", ".cpp"}, ["lib", "reference", "tests", "benchmarks"])
+            for line in disordered_lines(read(file))]
+
+
 def check_pragma_once(root: Path) -> list[str]:
     return [f"{file.relative_to(root)}: no #pragma once" for file in files_of(root, {".hpp"}, SOURCE_FOLDERS)
             if "#pragma once" not in read(file)]
@@ -147,7 +156,7 @@ def check_pragma_once(root: Path) -> list[str]:
 def check_tree(root: Path) -> list[str]:
     texts = [file for file in files_of(root, TEXT_SUFFIXES) if file.name != "LICENSE"]
     return [*check_arrows(root), *check_cycles(root), *check_independence(root), *check_lengths(root), *check_pragma_once(root),
-            *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB),
+            *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB), *check_draws(root),
             *check_words(root, texts, FORBIDDEN)]
 
 

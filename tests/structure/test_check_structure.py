@@ -40,6 +40,10 @@ BAD = {
     "no pragma": ("lib/core/twice.hpp", "int f();\n", "#pragma once"),
     "relative include": ("lib/core/near.cpp", '#include "../core/sums.hpp"\n', "root of lib/"),
     "unportable random numbers": ("lib/core/random.cpp", "std::uniform_real_distribution<double> u;\n", "random.cpp:1"),
+    "draws in any order": ("tests/core/x_test.cpp", "void f(Random& random) {\n  g(random.below(3),\n    h(random));\n}\n",
+                           "x_test.cpp:2: the compiler chooses"),
+    "a product of draws": ("tests/core/x_test.cpp", "double f(Random& random) {\n  return random.below(2) * "
+                           "random.below(3);\n}\n", "x_test.cpp:2"),
     "atomic": ("lib/core/atomic.cpp", "\n#pragma omp atomic\n", "atomic.cpp:2"),
     "unordered sum": ("lib/core/sum.cpp", "#pragma omp parallel for reduction(+ : s)\n", "fixed blocks"),
     "path of a machine": ("scripts/plot.py", 'OUT = "/home/' 'me/out"\n', "path of one machine"),
@@ -76,6 +80,18 @@ def test_a_bad_tree_fails(tmp_path: Path, file: str, text: str, message: str) ->
     assert len(output.strip().splitlines()) == 1, output
     assert file in output or "cycle" in output
     assert message in output
+
+
+def test_draws_one_after_the_other_pass(tmp_path: Path) -> None:
+    code, output = check(tmp_path, GOOD | {"tests/core/x_test.cpp": """\
+double f(Random& random) {
+  const double a = random.below(2), b = random.below(3);
+  const Vec2 x{random.below(2), random.below(3)};
+  for (int i = 0; i < random.below(2); ++i) g(random, random.below(2));
+  return g(random, random.below(2));
+}
+"""})
+    assert code == 0, output
 
 
 def test_a_cycle_over_three_files(tmp_path: Path) -> None:

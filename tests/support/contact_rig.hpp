@@ -94,17 +94,27 @@ class ContactRig {
 /// A random body of one of the kinds that contact has to cope with; its size is about 1.
 inline Points random_outline(Random& random, int kind) {
   switch (kind) {
-    case 0:
-      return random_convex(random, 5 + random.below(40), 1, random.uniform(0.4, 1));
+    case 0: {
+      const int count = 5 + random.below(40);
+      return random_convex(random, count, 1, random.uniform(0.4, 1));
+    }
     case 1:
       return refined(random_star(random, 5 + random.below(8), 0.35), 0.15);  // sharp and re-entrant corners
     case 2:
       return refined(random_convex(random, 12, 1.2, 0.15), 0.12);  // flat
     case 3:
       return refined({{-1, 0}, {1, -0.25}, {1.1, 0.25}}, 0.1);  // a wedge of 27 degrees
-    default:
-      return regular(24 + random.below(30), 0.8, random.uniform(0, 1));
+    default: {
+      const int count = 24 + random.below(30);
+      return regular(count, 0.8, random.uniform(0, 1));
+    }
   }
+}
+
+/// A rigid body of random outline, turned at random.
+inline void add_random_body(Scene& scene, Random& random, int kind) {
+  const Points outline = random_outline(random, kind);
+  add_body(scene, outline_shape("outline", outline), BodyKind::rigid, {0, 0}, random.uniform(0, 6));
 }
 
 /// Puts body 1 beside body 0 in a random direction, with its outermost node on the line of approach `depth` inside.
