@@ -18,7 +18,9 @@ ROOT = Path(__file__).parents[2]
 
 STUBS = {
     "dpkg-query": 'for p in $INSTALLED; do printf "ii %s " "$p"; done',
-    "apt-get": 'echo "apt-get $*" >>"$LOG"; case "$*" in *${APT_FAILS:-nothing-fails}*) exit 100 ;; esac',
+    "apt-get": 'echo "apt-get $*" >>"$LOG"; case "$*" in *${APT_FAILS:-nothing-fails}*) exit 100 ;; esac; '
+               '[ "$1" != download ] || for p in "${@:2}"; do touch "$p.deb"; done',
+    "dpkg": 'echo "dpkg $*" >>"$LOG"; mkdir -p "$3/usr/lib"',
     "sudo": 'exec "$@"',
     "cmake": 'echo "cmake $*" >>"$LOG"; mkdir -p build/release; touch build/release/build.ninja; exit ${CMAKE_EXIT:-0}',
     "ninja": 'echo "ninja start" >>"$LOG"; sleep ${NINJA_SECONDS:-0}; echo "ninja end" >>"$LOG"; exit ${NINJA_EXIT:-0}',
@@ -97,12 +99,51 @@ def test_packages_are_looked_for_again_when_the_list_changes(launcher: Launcher)
     assert launcher.calls("apt-get")[-1].endswith(" libnew-dev")
 
 
-def test_fast_compiler_is_optional(launcher: Launcher) -> None:
-    present = " ".join(name for name in all_packages() if name != "libomp-19-dev")
-    result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS="libomp-19-dev")
+def test_openmp_is_unpacked_where_it_would_remove_another(launcher: Launcher) -> None:
+    present = " ".join(name for name in all_packages() if name not in {"clang-19", "libomp-19-dev", "libomp5-19"})
+    result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS="install*libomp-19-dev")
     assert result.returncode == 0
-    assert "--no-remove" in launcher.calls("apt-get")[-1]
-    assert "not installed: libomp-19-dev" in result.stderr
+    install, refused, download = launcher.calls("apt-get")[1:]
+    assert install.endswith(" clang-19") and "--no-remove" in install and "--no-remove" in refused
+    assert download == "apt-get download libomp-19-dev libomp5-19" and len(launcher.calls("dpkg")) == 2
+    assert (launcher.root / "build/openmp/usr/lib").is_dir() and not (launcher.root / "build/openmp.part").exists()
+    assert "not installed: libomp-19-dev" in result.stderr and "unpacking them in build/openmp" in result.stderr
+    assert "g++" not in result.stderr
+
+
+@pytest.mark.parametrize("missing, fails", [("libomp-19-dev", "libomp-19-dev"), ("clang-19", "clang-19")])
+def test_without_the_fast_compiler_its_cost_is_told(launcher: Launcher, missing: str, fails: str) -> None:
+    present = " ".join(name for name in all_packages() if name != missing)
+    result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS=fails)
+    assert result.returncode == 0
+    assert f"not installed: {missing}" in result.stderr
+    assert "g++ builds instead of clang-19: runs take 1.9 times as long" in result.stderr
+    assert not (launcher.root / "build/openmp").exists()
+
+
+def test_what_others_need_does_not_stop_a_run(launcher: Launcher) -> None:
+    """Packages of tests and benchmarks, which are not even asked for."""
+    of_others = {"libgtest-dev", "python3-pytest", "libbenchmark-dev"}
+    present = " ".join(name for name in all_packages() if name not in of_others)
+    assert launcher("run", "a.toml", INSTALLED=present, APT_FAILS="lib").returncode == 0
+    assert not launcher.calls("apt-get")
+    for command, package in [("test", "libgtest-dev"), ("verify", "libgtest-dev"), ("bench", "libbenchmark-dev")]:
+        result = launcher(command, INSTALLED=present, APT_FAILS=package)
+        assert result.returncode == 1 and f"could not install: {package}" in result.stderr
+    assert not launcher.calls("ctest")
+
+
+def test_a_target_that_was_left_out_is_looked_for_again(launcher: Launcher) -> None:
+    ninja = launcher.root / "build/release/build.ninja"
+    launcher("run", "a.toml")
+    configured = len(launcher.calls("cmake"))
+    launcher("run", "a.toml")
+    assert len(launcher.calls("cmake")) == configured
+    launcher("test")
+    assert len(launcher.calls("cmake")) == configured + 1, "configured without packages of the tests"
+    ninja.write_text("build pliant_tests: x\n")
+    launcher("test")
+    assert len(launcher.calls("cmake")) == configured + 1
 
 
 def test_failed_installation_stops(launcher: Launcher) -> None:
@@ -233,6 +274,28 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
     assert launcher.calls("ctest")[0].endswith("-R contact")
     assert "c.d" in result.stdout and "a.b" not in result.stdout
     assert result.stdout.splitlines()[-1] == "1 passed, 1 failed, 0 skipped"
+
+
+def test_unit_tests_alone(launcher: Launcher) -> None:
+    launcher("test", "--units", "--preset", "gcc", "-R", "contact")
+    assert launcher.calls("ctest")[0].endswith("-R contact -L ^unit$") and "build/gcc" in launcher.calls("ctest")[0]
+    result = launcher("build", "--units")
+    assert result.returncode == 1 and "unknown option --units" in result.stderr
+
+
+def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
+    (launcher.root / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci/run", launcher.root / ".ci/run")
+    write_script(launcher.root / "pliant", 'echo "$*" >>"$LOG"; case $* in lint) echo "3 passed";; test) echo "9 passed"; '
+                 'echo "5 passed, 1 failed, 2 skipped"; exit 8;; "test --preset gcc --units") echo "4 passed, 0 failed, 0 skipped";; '
+                 'verify) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
+    result = subprocess.run([launcher.root / ".ci/run"], env=launcher.environment, capture_output=True, text=True)
+    assert result.returncode == 1
+    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "verify"]
+    lines = result.stdout.splitlines()
+    assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
+    assert [line.split()[1] for line in lines[-6:-1]] == ["lint", "test", "gcc", "verify", "all"]
+    assert [line.rsplit(" ", 1)[1] for line in lines[-6:-2]] == ["green", "red", "green", "green"]
 
 
 @pytest.mark.parametrize("command", ["run", "reference", "check", "modes", "plot", "info", "compare", "schema", "shape-functions", "export", "test",
