@@ -159,6 +159,8 @@ def next_step(folder: Path, status: str, checkpoint: dict, reference: bool) -> s
         return f"./pliant plot {folder}, or go on to a later end: ./pliant run --resume --out {folder} --until TIME"
     if status == "running":
         return "wait, or stop it with SIGINT or SIGTERM: it then writes a checkpoint"
+    if not checkpoint and status.startswith("killed"):
+        return f"./pliant run SCENE --resume --out {folder}, which starts anew: there is no checkpoint"
     if not checkpoint:
         return "start anew with --force: there is no checkpoint"
     if status.startswith("failed"):

@@ -49,7 +49,8 @@ def where(desk: Desk, out: str) -> str:
     time_done = desk.summary(out)["time"] if (folder / "summary.json").exists() else 0
     whole = (folder / "steps.csv").read_bytes() == (desk.folder / "whole/steps.csv").read_bytes()
     if whole:
-        return "after the last step, " + ("summary written" if time_done == desk.summary("whole")["end"] else "no summary")
+        summary = "summary written" if time_done == desk.summary("whole")["end"] else "no summary"
+        return f"after the last step, {summary}"
     return "amid the run"
 
 
@@ -60,7 +61,8 @@ def is_late(desk: Desk, out: str) -> bool:
 
 
 def kill_at_random(desk: Desk, out: str, number: int, duration: float, late: bool) -> None:
-    process = start(desk, out, "--threads", str(1 + number % 2), "--checkpoint-every", f"{random.choice([1, 5, 20])} ms")
+    period = f"{random.choice([1, 5, 20])} ms"
+    process = start(desk, out, "--threads", str(1 + number % 2), "--checkpoint-every", period)
     if late:
         while not is_late(desk, out) and process.poll() is None:
             time.sleep(0.0002)
@@ -109,7 +111,10 @@ def main() -> None:
     random.seed(arguments.seed)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        seen = kills_at_changes(folder, build_preload(folder)) if arguments.changes else random_kills(folder, arguments.kills)
+        if arguments.changes:
+            seen = kills_at_changes(folder, build_preload(folder))
+        else:
+            seen = random_kills(folder, arguments.kills)
     for moment, count in sorted(seen.items()):
         print(f"{count:5d}  {moment}")
     print(f"{sum(seen.values()):5d}  kills, all mended: the same bits and summary")

@@ -12,16 +12,16 @@ import numpy as np
 from conftest import ENGINE, Desk
 
 # Figures that the processes taking part decide; the momentum error's is looked at with each line of progress.
-OF_THE_PROCESS = {"preparation_seconds", "wall_seconds", "evaluations_per_second", "peak_memory_bytes", "threads", "resumed",
-                  "momentum_error"}
+OF_THE_PROCESS = {"preparation_seconds", "wall_seconds", "evaluations_per_second", "peak_memory_bytes", "threads",
+                  "resumed", "momentum_error"}
 EACH_STEP = ["--checkpoint-every", "1 ns"]  # a time that every step takes
 
 
 def build_preload(folder: Path) -> Path:
     """kill_at.cpp as a library to be preloaded."""
     library = folder / "kill_at.so"
-    subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", Path(__file__).with_name("kill_at.cpp"), "-o", library],
-                   check=True)
+    source = Path(__file__).with_name("kill_at.cpp")
+    subprocess.run(["g++", "-std=c++20", "-O1", "-shared", "-fPIC", source, "-o", library], check=True)
     return library
 
 

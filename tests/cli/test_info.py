@@ -63,6 +63,8 @@ def test_running_then_killed(desk) -> None:
     lines = info(desk, "out")
     assert lines["status"].startswith("killed") and lines["next"] == "./pliant run --resume --out out"
     assert lines["time"].endswith("of 1 s (0.0 %)")
+    (desk.folder / "out/checkpoint.bin").unlink()
+    assert info(desk, "out")["next"].startswith("./pliant run SCENE --resume --out out, which starts anew")
 
 
 def test_stopped_and_failed_runs_say_what_to_do(half) -> None:

@@ -119,8 +119,8 @@ LONG = SHORT.replace('end = "2 ns"', 'end = "1 us"')
 
 
 def started(desk: Desk, errors: int, *options: str, answers: signal.Signals = signal.SIGINT) -> subprocess.Popen[str]:
-    return subprocess.Popen([REFERENCE, desk.scene, "--out", "out", "--dt", "0.01 ns", *options], cwd=desk.folder, text=True,
-                            stdout=subprocess.PIPE, stderr=errors, stdin=subprocess.DEVNULL,
+    return subprocess.Popen([REFERENCE, desk.scene, "--out", "out", "--dt", "0.01 ns", *options], cwd=desk.folder,
+                            text=True, stdout=subprocess.PIPE, stderr=errors, stdin=subprocess.DEVNULL,
                             preexec_fn=lambda: signal.signal(answers, signal.SIG_DFL))  # ignored in the background
 
 

@@ -133,7 +133,8 @@ def test_killed_before_a_checkpoint_the_folder_knows_its_scene(whole, out, prelo
             started_with_a_scene += 1
             assert_same(whole, folder)
         else:
-            assert result.returncode == 4 and ("name its scene file" in result.stderr or "cannot be read" in result.stderr)
+            assert result.returncode == 4
+            assert "name its scene file" in result.stderr or "cannot be read" in result.stderr
     assert started_with_a_scene > 0
 
 
