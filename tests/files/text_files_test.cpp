@@ -127,6 +127,32 @@ TEST_F(TextFiles, AFolderOfScenesIsNotAResult) {
   EXPECT_EQ(entries(), 2U);
 }
 
+// EXACT: the lock, and what the new run wrote already, stay; files that were never put in place are nobody's.
+TEST_F(TextFiles, EmptyingKeepsTheLockAndWhatIsNamed) {
+  for (const char* name : {"summary.json", "checkpoint.bin", "scene.toml", "run.lock", "checkpoint.bin.17.tmp"})
+    write_file_atomically(folder_ / name, "x");
+  empty_output_folder(folder_, {"scene.toml"});
+  EXPECT_EQ(entries(), 2U);
+  EXPECT_TRUE(fs::exists(folder_ / "run.lock") && fs::exists(folder_ / "scene.toml"));
+}
+
+TEST_F(TextFiles, AKilledRunIsKnownByItsLockOrAnEmptyFolder) {
+  const fs::path out = folder_ / "out";
+  EXPECT_FALSE(killed_before_checkpoint(out)) << "no folder";
+  fs::create_directory(out);
+  EXPECT_TRUE(killed_before_checkpoint(out)) << "before its first file";
+  write_file_atomically(out / "trial.17.tmp", "x");
+  EXPECT_TRUE(killed_before_checkpoint(out));
+  prepare_output_folder(out, false);
+  write_file_atomically(out / "notes.tmp", "somebody's");
+  EXPECT_FALSE(killed_before_checkpoint(out)) << "not a name that a run gives";
+  EXPECT_THROW(prepare_output_folder(out, false), OutputError);
+  write_file_atomically(out / "run.lock", "");
+  EXPECT_TRUE(killed_before_checkpoint(out));
+  write_file_atomically(out / "checkpoint.bin", "x");
+  EXPECT_FALSE(killed_before_checkpoint(out));
+}
+
 TEST_F(TextFiles, AFileIsNoOutputFolder) {
   write_file_atomically(folder_ / "file", "x");
   EXPECT_THROW(prepare_output_folder(folder_ / "file", true), OutputError);
