@@ -1,7 +1,8 @@
 # Before project(): clang++-19 when it and its OpenMP are there and the user named no compiler; else what CMake finds.
 find_program(PLIANT_CLANG clang++-19)
 # Where the package of its OpenMP would push another version out, `./pliant` unpacks it here.
-set(unpacked ${CMAKE_SOURCE_DIR}/build/openmp/usr/lib/llvm-19/lib)
+set(PLIANT_OPENMP ${CMAKE_SOURCE_DIR}/build/openmp CACHE PATH "Where clang's OpenMP is unpacked, if anywhere")
+set(unpacked ${PLIANT_OPENMP}/usr/lib/llvm-19/lib)
 find_file(PLIANT_CLANG_OPENMP libomp.so PATHS ${unpacked} /usr/lib/llvm-19/lib NO_DEFAULT_PATH)
 mark_as_advanced(PLIANT_CLANG PLIANT_CLANG_OPENMP)
 if(NOT DEFINED CMAKE_CXX_COMPILER AND NOT DEFINED ENV{CXX} AND PLIANT_CLANG AND PLIANT_CLANG_OPENMP)

@@ -92,7 +92,8 @@ def copy_sources() -> None:
 
 def build() -> None:
     if not (BUILD / "build.ninja").exists():
-        subprocess.run(["cmake", "--preset", "release"], cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
+        openmp = f"-DPLIANT_OPENMP={ROOT / 'build/openmp'}"  # if it is unpacked there, see cmake/compiler.cmake
+        subprocess.run(["cmake", "--preset", "release", openmp], cwd=SOURCE, check=True, stdout=subprocess.DEVNULL)
     result = subprocess.run(["ninja", "-C", str(BUILD), *PROGRAMS], capture_output=True, text=True)
     if result.returncode != 0:
         raise RuntimeError(f"the copy does not build:\n{result.stdout[-3000:]}")
