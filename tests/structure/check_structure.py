@@ -5,6 +5,7 @@ Run: /usr/bin/python3 tests/structure/check_structure.py .
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from pathlib import Path
@@ -20,11 +21,15 @@ CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
 MAX_LINES = 400
 SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
 
+JUDGED = ["lib", "reference"]  # by what they include
+
 # All of lib/ that the reference solver may share: no mechanics (DESIGN 6). Of core only these.
 SHARED_FOLDERS = ["files", "geometry", "scene"]
 SHARED_CORE = {"errors.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
 
-INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+# What an #include names, in quotes or in brackets; or whatever else stands there, such as a macro.
+INCLUDE = re.compile(r'^\s*(?:#|%:)\s*include(?:_next)?\b\s*(?:"([^"]+)"|<([^>]+)>|(.*))', re.MULTILINE)
+COMMENT = re.compile(r"/\*[^\n]*?\*/")
 
 # Not allowed in lib/: pattern, and why.
 FORBIDDEN_IN_LIB = {
@@ -33,7 +38,7 @@ FORBIDDEN_IN_LIB = {
     r"\b(std::)?s?rand\s*\(": "one hidden state for all: use a seeded generator",
     r"#\s*pragma\s+omp\b.*\b(atomic|critical)\b": "order of additions depends on threads: let each body gather",
     r"#\s*pragma\s+omp\b.*\breduction\s*\(\s*[-+*]": "order of additions depends on threads: sum in fixed blocks",
-    r"#\s*include\s+\"\.\./": "include from the root of lib/",
+    r"#\s*include\s*[\"<]\.\./": "include from the root of lib/",
     r"\busing\s+namespace\s+std\b": "spell std:: out",
 }
 # Not allowed anywhere.
@@ -58,10 +63,31 @@ def read(file: Path) -> str:
     return file.read_text(encoding="utf-8", errors="replace")
 
 
-def included_files(lib: Path, file: Path) -> list[Path]:
-    """Files of lib/ that a file includes; other quoted includes are the compiler's business."""
-    candidates = (lib / name for name in INCLUDE.findall(read(file)))
-    return [candidate for candidate in candidates if candidate.is_file()]
+def includes(file: Path) -> list[tuple[str, str, str]]:
+    return INCLUDE.findall(COMMENT.sub(" ", read(file).replace("\\\n", "")))
+
+
+def included_files(root: Path, file: Path) -> list[Path]:
+    """Files of lib/ and reference/ that a file includes in whichever form: from its own folder or from those that
+    compilers are told to look in, which are lib/ and the root; other includes are the compiler's business."""
+    found = []
+    for name in (quoted or bracketed for quoted, bracketed, _ in includes(file)):
+        candidates = (Path(os.path.normpath(start / name)) for start in (file.parent, root / "lib", root))
+        own = (candidate for candidate in candidates if candidate.is_file()
+               and candidate.is_relative_to(root) and candidate.relative_to(root).parts[0] in JUDGED)
+        found += list(own)[:1]
+    return found
+
+
+def check_forms(root: Path) -> list[str]:
+    """Nothing that is compiled may escape the checks of includes."""
+    problems = []
+    for file in (file for folder in JUDGED for file in sorted((root / folder).rglob("*")) if file.is_file()):
+        if file.suffix not in (".hpp", ".cpp"):
+            problems.append(f"{file.relative_to(root)}: sources of lib/ and reference/ end with .hpp or .cpp")
+        problems += [f"{file.relative_to(root)}: includes {other or 'nothing'}: give a name in quotes or brackets"
+                     for quoted, bracketed, other in includes(file) if not quoted and not bracketed]
+    return problems
 
 
 def check_arrows(root: Path) -> list[str]:
@@ -71,7 +97,9 @@ def check_arrows(root: Path) -> list[str]:
         if folder not in ORDER:
             problems.append(f"{file.relative_to(root)}: folder {folder} has no place in the order {', '.join(ORDER)}")
             continue
-        for included in included_files(lib, file):
+        for included in included_files(root, file):
+            if not included.is_relative_to(lib):
+                continue  # see check_independence
             target = included.relative_to(lib)
             if target.parts[0] in ORDER and ORDER.index(target.parts[0]) < ORDER.index(folder):
                 problems.append(f"{file.relative_to(root)}: includes {target}, but {target.parts[0]} is above {folder}")
@@ -80,14 +108,14 @@ def check_arrows(root: Path) -> list[str]:
 
 def check_cycles(root: Path) -> list[str]:
     """Depth-first search; a file met again while it is still on the path closes a cycle."""
-    lib, problems, done = root / "lib", [], set()
+    problems, done = [], set()
 
     def visit(file: Path, path: list[Path]) -> None:
         if file in path:
-            names = [str(step.relative_to(lib)) for step in path[path.index(file):] + [file]]
+            names = [str(step.relative_to(root)) for step in path[path.index(file):] + [file]]
             problems.append("include cycle: " + " -> ".join(names))
         elif file not in done:
-            for included in included_files(lib, file):
+            for included in included_files(root, file):
                 visit(included, path + [file])
             done.add(file)
 
@@ -99,16 +127,19 @@ def check_cycles(root: Path) -> list[str]:
 def check_independence(root: Path) -> list[str]:
     """Includes of reference/, and what it and the library that it shares are made of."""
     lib, problems = root / "lib", []
-    for file in files_of(root, {".hpp", ".cpp"}, ["reference"]):
-        for included in included_files(lib, file):
-            target = included.relative_to(lib)
-            if target.parts[0] not in SHARED_FOLDERS and not (target.parts[0] == "core" and target.name in SHARED_CORE):
-                problems.append(f"{file.relative_to(root)}: includes {target}: the reference solver shares no mechanics "
+    for file in files_of(root, {".hpp", ".cpp"}, JUDGED):
+        for included in included_files(root, file):
+            name, into_lib = included.relative_to(root), included.is_relative_to(lib)
+            if file.is_relative_to(lib) and not into_lib:
+                problems.append(f"{file.relative_to(root)}: includes {name}: the engine uses nothing of the reference solver")
+            elif not file.is_relative_to(lib) and into_lib and not is_shared(included.relative_to(lib)):
+                problems.append(f"{file.relative_to(root)}: includes {name}: the reference solver shares no mechanics "
                                 "with the engine")
-    for file in files_of(root, {".hpp", ".cpp"}, ["lib"]):
-        problems += [f"{file.relative_to(root)}: includes {name}: the engine uses nothing of the reference solver"
-                     for name in INCLUDE.findall(read(file)) if name.startswith("reference/")]
     return problems + check_link_lines(root)
+
+
+def is_shared(target: Path) -> bool:
+    return target.parts[0] in SHARED_FOLDERS or (target.parts[0] == "core" and target.name in SHARED_CORE)
 
 
 def check_link_lines(root: Path) -> list[str]:
@@ -155,7 +186,8 @@ def check_pragma_once(root: Path) -> list[str]:
 
 def check_tree(root: Path) -> list[str]:
     texts = [file for file in files_of(root, TEXT_SUFFIXES) if file.name != "LICENSE"]
-    return [*check_arrows(root), *check_cycles(root), *check_independence(root), *check_lengths(root), *check_pragma_once(root),
+    return [*check_forms(root), *check_arrows(root), *check_cycles(root), *check_independence(root),
+            *check_lengths(root), *check_pragma_once(root),
             *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB), *check_draws(root),
             *check_words(root, texts, FORBIDDEN)]
 

@@ -25,7 +25,7 @@ GOOD = {
     "lib/contact/pairs.hpp": "#pragma once\n",
     "lib/contact/pairs.cpp": '#include "contact/laws/cohesive.hpp"\n',
     "reference/bodies.cpp": '#include "scene/scene.hpp"\n#include "reference/jet.hpp"\n',
-    "reference/jet.hpp": "#pragma once\n",
+    "reference/jet.hpp": "#pragma once\n#include <vector>\n",
     "CMakeLists.txt": CMAKE,
     "tests/core/sums_test.cpp": '#include "core/sums.hpp"\n',
 }
@@ -38,6 +38,7 @@ BAD = {
     "long file": ("lib/core/long.cpp", "int f();\n" * 401, "401 lines"),
     "long test": ("tests/core/long_test.cpp", "int f();\n" * 401, "401 lines"),
     "no pragma": ("lib/core/twice.hpp", "int f();\n", "#pragma once"),
+    "relative include in brackets": ("lib/core/near.cpp", "#include<../core/sums.hpp>\n", "root of lib/"),
     "relative include": ("lib/core/near.cpp", '#include "../core/sums.hpp"\n', "root of lib/"),
     "unportable random numbers": ("lib/core/random.cpp", "std::uniform_real_distribution<double> u;\n", "random.cpp:1"),
     "draws in any order": ("tests/core/x_test.cpp", "void f(Random& random) {\n  g(random.below(3),\n    h(random));\n}\n",
@@ -49,6 +50,22 @@ BAD = {
     "path of a machine": ("scripts/plot.py", 'OUT = "/home/' 'me/out"\n', "path of one machine"),
     "engine in the reference": ("reference/x.cpp", '#include "contact/pairs.hpp"\n', "shares no mechanics"),
     "core's mathematics in the reference": ("reference/x.hpp", '#pragma once\n#include "core/sums.hpp"\n', "no mechanics"),
+    "engine in the reference, from the root": ("reference/x.cpp", '#include "lib/contact/pairs.hpp"\n', "no mechanics"),
+    "engine in the reference, in brackets": ("reference/x.cpp", "#include <contact/pairs.hpp>\n", "no mechanics"),
+    "engine in the reference, in brackets from the root": ("reference/x.cpp", "#  include <lib/contact/pairs.hpp>\n",
+                                                           "no mechanics"),
+    "engine in the reference, from its folder": ("reference/x.cpp", '#include "../lib/contact/pairs.hpp"\n', "no mechanics"),
+    "engine in the reference, without a space": ("reference/x.cpp", '#include"contact/pairs.hpp"\n', "no mechanics"),
+    "engine in the reference, after a comment": ("reference/x.cpp", '#include /* of */ "contact/pairs.hpp"\n',
+                                                 "no mechanics"),
+    "engine in the reference, over two lines": ("reference/x.cpp", '#include \\\n"contact/pairs.hpp"\n', "no mechanics"),
+    "engine in the reference, by a macro": ("reference/x.cpp", '#define PAIRS "contact/pairs.hpp"\n#include PAIRS\n',
+                                            "in quotes or brackets"),
+    "a source that nobody reads": ("reference/x.inl", '#include "contact/pairs.hpp"\n', "end with .hpp or .cpp"),
+    "arrow up from the root": ("lib/core/up.cpp", '#include "lib/scene/scene.hpp"\n', "scene is above core"),
+    "arrow up in brackets": ("lib/core/up.cpp", "#include <scene/scene.hpp>\n", "scene is above core"),
+    "cycle through its own folder": ("lib/core/sums.hpp", '#pragma once\n#include "sums.hpp"\n', "include cycle"),
+    "reference in the engine, in brackets": ("lib/cli/x.cpp", "#include <reference/jet.hpp>\n", "nothing of the reference"),
     "reference in the engine": ("lib/cli/x.cpp", '#include "reference/jet.hpp"\n', "nothing of the reference"),
     "more than the scene is shared": ("CMakeLists.txt", CMAKE.replace("core files", "core bodies files"),
                                       "PLIANT_SHARED_FOLDERS"),
@@ -98,7 +115,7 @@ def test_a_cycle_over_three_files(tmp_path: Path) -> None:
     ring = {f"lib/core/{a}.hpp": f'#pragma once\n#include "core/{b}.hpp"\n' for a, b in ["ab", "bc", "ca"]}
     code, output = check(tmp_path, GOOD | ring)
     assert code == 1
-    assert "core/a.hpp -> core/b.hpp -> core/c.hpp -> core/a.hpp" in output
+    assert "lib/core/a.hpp -> lib/core/b.hpp -> lib/core/c.hpp -> lib/core/a.hpp" in output
 
 
 def test_a_maximum_over_threads_is_free(tmp_path: Path) -> None:
