@@ -14,7 +14,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # of numpy and dolfinx, before th
 import pytest
 
 from report import report
-from verification import OUT, read_rows, replace_file
+from verification import OUT, commit_of_engine, read_rows, replace_file
 
 BEGIN = "PLIANT_VERIFY_BEGIN"  # of the session, s
 
@@ -77,7 +77,7 @@ class Record:
         ran = {case_of(test) for test in self.seconds}
         for case in ran:
             self._complete(OUT / case)
-        self.cases = [case for case in report.write(OUT) if case.name in ran]
+        self.cases = [case for case in report.write(OUT, ran) if case.name in ran]
 
     def _complete(self, folder: Path) -> None:
         """Adds to the rows of a case how long they took and what is known to be red, and what failed without a row."""
@@ -86,7 +86,7 @@ class Record:
             row["seconds"] = self.seconds.get(row["test"], 0.0)
             row["known"] = "" if row["green"] else self.known.get(row["test"], "")
         red = {row["test"] for row in rows if not row["green"]}
-        failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:])
+        failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:], commit_of_engine())
                     for test, message in self.messages.items() if case_of(test) == folder.name and test not in red]
         folder.mkdir(exist_ok=True)
         replace_file(folder / "checks.json", json.dumps(rows, indent=1) + "\n")
@@ -110,6 +110,9 @@ class Record:
         known = sum(case.known for case in self.cases)
         terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red" +
                                     (f", {known} of them known" if known else ""))
+        if stale := sum(case.stale for case in self.cases):
+            terminalreporter.write_line(f"{stale} by an engine of another commit than the sources, {report.commit()}: "
+                                        f"{commit_of_engine()}")
         terminalreporter.write_line(f"report: {OUT / 'report.html'}; table: {OUT / 'checks.json'}")
 
 

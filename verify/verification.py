@@ -12,6 +12,7 @@ import os
 import subprocess
 from dataclasses import asdict, dataclass
 from enum import Enum
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,7 @@ class Row:
     test: str = ""  # of pytest, in which it was made
     seconds: float = 0.0  # of that test, with the runs that it waited for
     known: str = ""  # why it is red and may stay so: the reason of the test's xfail
+    commit: str = ""  # that the engine was built from
 
     @property
     def used(self) -> float | None:
@@ -146,7 +148,8 @@ class Case:
             raise ValueError(f"{name}: expected {expected}, tolerance {tolerance}, source '{source}'")
         green = bool(abs(value - expected) <= tolerance)
         test = os.environ.get("PYTEST_CURRENT_TEST", "").rpartition(" ")[0]  # without "(call)"
-        self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green, test))
+        self._write_down(Row(Label(label).value, self.name, name, value, expected, tolerance, source, green, test,
+                             commit=commit_of_engine()))
         assert green, f"{Label(label).value} {name}: {value:.6g}, expected {expected:.6g} +- {tolerance:.2g} ({source})"
 
     def check_rate(self, name: str, steps: list[float], errors: list[float], order: float, tolerance: float,
@@ -162,6 +165,16 @@ class Case:
         file = self.out / "checks.json"
         others = [r for r in read_rows(file) if (r["name"], r["test"]) != (row.name, row.test)]
         replace_file(file, json.dumps([*others, asdict(row)], indent=1) + "\n")
+
+
+@cache
+def commit_of_engine() -> str:
+    """That it was built from, as summaries have it; "unknown" when there is no engine, or none that says so."""
+    try:
+        answer = subprocess.run([str(ENGINE), "--version"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    except OSError:
+        return "unknown"
+    return answer.stdout.strip() if answer.returncode == 0 else "unknown"
 
 
 def read_table(file: Path) -> tuple[list[str], np.ndarray]:

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "build_info.hpp"
 #include "cli/check.hpp"
 #include "cli/modes.hpp"
 #include "cli/shape_function.hpp"
@@ -72,6 +73,7 @@ CLI::App* add_modes(CLI::App& app, std::string& scene, ModesRequest& modes) {
 
 int main_program(int argc, char** argv) {
   CLI::App app{"Pliant: rigid and compliant grains in one simulation"};
+  app.set_version_flag("--version", build_commit, "The commit that this program was built from");
   app.require_subcommand(1);
   Arguments arguments;
   CLI::App* run_command = app.add_subcommand("run", "Simulate a scene, e.g. run cases/two_discs.toml --threads 2");

@@ -42,6 +42,10 @@ def test_summary_counts(finished) -> None:  # EXACT
     assert re.fullmatch(r"[0-9a-f]{7,40}(-dirty)?|unknown", summary["commit"])
 
 
+def test_a_program_says_what_it_was_built_from(finished) -> None:  # EXACT
+    assert finished.engine("--version").stdout.strip() == finished.summary("out")["commit"]
+
+
 def test_the_discs_met_and_energy_balances(finished) -> None:  # EXACT: 1 % of the initial energy is the promise
     energy = finished.summary("out")["energy"]
     assert energy["strain"] > 0

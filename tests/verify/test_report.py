@@ -18,8 +18,9 @@ from report import report
 from verification import Row
 
 
-def row(case: str, name: str, value: float, label: str = "EXACT") -> Row:
-    return Row(label, case, name, value, 1.0, 0.1, "theory", abs(value - 1) <= 0.1, f"{case}/check.py::test_{name}", 2.0)
+def row(case: str, name: str, value: float, label: str = "EXACT", commit: str = "") -> Row:
+    return Row(label, case, name, value, 1.0, 0.1, "theory", abs(value - 1) <= 0.1, f"{case}/check.py::test_{name}", 2.0,
+               commit=commit)
 
 
 @pytest.fixture
@@ -42,7 +43,7 @@ def test_red_comes_first(out: Path) -> None:
     report.write(out)
     page = (out / "report.html").read_text()
     assert "3 checks, 1 red" in page and "second/picture.png" in page
-    assert page.index(">wrong<") < page.index(">sound<")
+    assert page.index(">wrong") < page.index(">sound")
     assert page.index('id="second"') < page.index('id="first"')
 
 
@@ -52,6 +53,41 @@ def test_a_run_that_failed_is_red(out: Path) -> None:
     report.write(out)
     assert json.loads((out / "checks.json").read_text())["red"] == 2
     assert "engine &lt;ended&gt; with exit code 3" in (out / "report.html").read_text()
+
+
+NOW, BEFORE_NOW, CHANGED = "0123456789ab", "ba9876543210", "0123456789ab-dirty"
+
+
+@pytest.mark.parametrize("sources, built, ran, stale", [
+    (NOW, NOW, [], 0), (NOW, BEFORE_NOW, [], 1), (NOW, "", [], 1), (NOW, CHANGED, [], 1), (CHANGED, NOW, [], 1),
+    (CHANGED, CHANGED, [], 1), (CHANGED, CHANGED, ["other"], 1), (CHANGED, CHANGED, ["case"], 0),
+    ("unknown", "unknown", [], 1), (NOW, BEFORE_NOW, ["case"], 1)],
+    ids=["of now", "of another commit", "without a commit", "with changes", "before changes", "of some changes",
+         "of another case's session", "of this session", "without git", "by an old engine"])
+def test_rows_of_other_sources_are_marked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sources: str, built: str,
+                                          ran: list[str], stale: int) -> None:
+    """EXACT. Changes that are not committed have no name, so only rows of the session at hand are known to have them."""
+    monkeypatch.setattr(report, "commit", lambda: sources)
+    (tmp_path / "case").mkdir()
+    (tmp_path / "case/checks.json").write_text(json.dumps([asdict(row("case", "sound", 1.0, commit=built))]))
+    report.write(tmp_path, set(ran))
+    result = json.loads((tmp_path / "checks.json").read_text())
+    assert (result["stale"], result["checks"][0]["commit"]) == (stale, built)
+    page = (tmp_path / "report.html").read_text()
+    assert (f"(not of the present sources: {built or 'unknown'})" in page) == bool(stale)
+    assert ("1 not of the present sources" in page) == bool(stale)
+
+
+def test_each_mutation_keeps_the_commit_it_was_judged_at(out: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(report, "commit", lambda: NOW)
+    verdict = {"what": "half", "file": "a.cpp", "killed": True, "killer": "b", "message": "c", "seconds": 1.0}
+    rows = [{**verdict, "name": "old", "what": "old one", "commit": BEFORE_NOW},
+            {**verdict, "name": "new", "what": "new one", "commit": NOW}]
+    (out / "mutations.json").write_text(json.dumps({"written": "today", "rows": rows}))
+    report.write(out)
+    page = (out / "report.html").read_text()
+    assert f"old one <span class=\"stale\">(not of the present sources: {BEFORE_NOW})</span>" in page
+    assert "new one</td>" in page
 
 
 def test_how_much_of_a_tolerance_is_used() -> None:
@@ -76,7 +112,8 @@ BEFORE = [asdict(row("unreadable", "of an earlier run", 1.0))]
 
 
 @pytest.mark.parametrize("options", [[], ["-n", "2", "--dist", "loadfile"]], ids=["alone", "side by side"])
-def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, options: list[str]) -> None:
+def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                     options: list[str]) -> None:
     case = tmp_path / "verify/odd"
     case.mkdir(parents=True)
     for name in ("conftest.py", "pytest.ini", "verification.py", "report"):
@@ -86,6 +123,10 @@ def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, options: li
     (tmp_path / "verify/unreadable/check_unreadable.py").write_text("import no_such_module")
     (tmp_path / "out/unreadable").mkdir(parents=True)
     (tmp_path / "out/unreadable/checks.json").write_text(json.dumps(BEFORE))
+    engine = tmp_path / "engine"
+    engine.write_text("#!/bin/sh\necho 0123456789ab\n")
+    engine.chmod(0o755)
+    monkeypatch.setenv("PLIANT_ENGINE", str(engine))
     result = session(tmp_path / "verify/pytest.ini", *options, tmp_path / "verify", out=tmp_path / "out")
     assert result.returncode == 1
     checks = json.loads((tmp_path / "out/checks.json").read_text())
@@ -93,6 +134,7 @@ def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, options: li
         ("named", False), ("named", True), ("one", True), ("paper", False), ("two", False)]
     assert [(r["name"], r["known"]) for r in checks["checks"] if r["known"]] == [("paper", "the paper differs")]
     assert all(r["seconds"] > 0 for r in checks["checks"])
+    assert {r["commit"] for r in checks["checks"] + checks["failures"]} == {"0123456789ab"}
     assert sorted(failure["test"] for failure in checks["failures"]) == [
         "test_broken", "test_without_a_source", "unreadable/check_unreadable.py"]
     assert (checks["red"], checks["known"]) == (6, 1)

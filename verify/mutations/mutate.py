@@ -162,9 +162,9 @@ def write_down(verdicts: list[Verdict], names: list[str]) -> None:
     OUT.mkdir(parents=True, exist_ok=True)
     file = OUT / "mutations.json"
     known = {row["name"]: row for row in json.loads(file.read_text())["rows"]} if file.exists() else {}
-    known.update({verdict.name: asdict(verdict) for verdict in verdicts})
+    known.update({verdict.name: {**asdict(verdict), "commit": report.commit()} for verdict in verdicts})
     rows = [known[name] for name in names if name in known]
-    replace_file(file, json.dumps({"commit": report.commit(), "written": report.now(), "rows": rows}, indent=1) + "\n")
+    replace_file(file, json.dumps({"written": report.now(), "rows": rows}, indent=1) + "\n")
     report.write(OUT)
 
 

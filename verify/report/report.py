@@ -8,6 +8,7 @@ import subprocess
 from collections import Counter
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from functools import cache
 from pathlib import Path
 
 import jinja2
@@ -26,6 +27,7 @@ class Failure:
     case: str
     test: str
     message: str
+    commit: str = ""  # that the engine was built from
 
 
 @dataclass
@@ -37,6 +39,20 @@ class CaseReport:
     rows: list[Row]
     failures: list[Failure]
     pictures: list[str]  # relative to the report
+    now: bool  # run in the session that writes the report
+
+    def is_stale(self, result: Row | Failure) -> bool:
+        """Whether other sources than the present ones may have made it. Changes that are not committed have no name:
+        only the session at hand is known to have run them."""
+        return result.commit != commit() or not (self.now or is_definite(result.commit))
+
+    @property
+    def stale(self) -> int:
+        return sum(self.is_stale(result) for result in [*self.rows, *self.failures])
+
+    @property
+    def commits(self) -> list[str]:
+        return sorted({result.commit or "unknown" for result in [*self.rows, *self.failures]})
 
     @property
     def seconds(self) -> float:
@@ -60,37 +76,37 @@ class CaseReport:
 class Mutations:
     """What ./pliant verify --mutate found last."""
 
-    commit: str
     written: str
-    rows: list[dict]
+    rows: list[dict]  # each with its commit
 
     @property
     def killed(self) -> int:
         return sum(row["killed"] for row in self.rows)
 
 
-def write(out: Path) -> list[CaseReport]:
-    """Of all cases that ever ran with their results in this folder. Several sessions may end at once."""
+def write(out: Path, ran: set[str] = frozenset()) -> list[CaseReport]:
+    """Of all cases that ever ran with their results in this folder, `ran` just now. Several sessions may end at once."""
     with (out / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        cases = [read_case(out, file.parent) for file in sorted(out.glob("*/checks.json"))]
+        cases = [read_case(out, file.parent, file.parent.name in ran) for file in sorted(out.glob("*/checks.json"))]
         replace_file(out / "checks.json", json.dumps(as_json(cases), indent=1) + "\n")
         replace_file(out / "report.html", as_html(cases, _mutations(out)))
     return cases
 
 
-def read_case(out: Path, folder: Path) -> CaseReport:
+def read_case(out: Path, folder: Path, now: bool) -> CaseReport:
     rows = [Row(**row) for row in read_rows(folder / "checks.json")]
     failures = [Failure(**failure) for failure in read_rows(folder / "failures.json")]
     pictures = sorted(str(file.relative_to(out)) for file in folder.glob("*.png"))
-    return CaseReport(folder.name, _readme(folder.name), sorted(rows, key=lambda row: row.green), failures, pictures)
+    return CaseReport(folder.name, _readme(folder.name), sorted(rows, key=lambda row: row.green), failures, pictures, now)
 
 
 def as_json(cases: list[CaseReport]) -> dict:
     return {"commit": commit(), "written": now(), "totals": totals(cases), "red": sum(case.red for case in cases),
-            "known": sum(case.known for case in cases),
-            "checks": [vars(row) for case in cases for row in case.rows],
-            "failures": [vars(failure) for case in cases for failure in case.failures]}
+            "known": sum(case.known for case in cases), "stale": sum(case.stale for case in cases),
+            "checks": [{**vars(row), "stale": case.is_stale(row)} for case in cases for row in case.rows],
+            "failures": [{**vars(failure), "stale": case.is_stale(failure)} for case in cases
+                         for failure in case.failures]}
 
 
 def as_html(cases: list[CaseReport], mutations: Mutations | None) -> str:
@@ -100,8 +116,8 @@ def as_html(cases: list[CaseReport], mutations: Mutations | None) -> str:
     rows = sum(len(case.rows) for case in cases)
     return environment.get_template("report.html.j2").render(
         cases=cases, commit=commit(), now=now(), labels=list(Label), totals=totals(cases), rows=rows,
-        red=sum(case.red for case in cases), known=sum(case.known for case in cases), mutations=mutations,
-        seconds=sum(case.seconds for case in cases))
+        red=sum(case.red for case in cases), known=sum(case.known for case in cases),
+        stale=sum(case.stale for case in cases), mutations=mutations, seconds=sum(case.seconds for case in cases))
 
 
 def totals(cases: list[CaseReport]) -> dict[str, int]:
@@ -113,9 +129,16 @@ def number(value: float) -> str:
     return "0" if value == 0 else f"{value:.5g}"
 
 
+@cache
 def commit() -> str:
-    result = subprocess.run(["git", "-C", str(CASES), "describe", "--always", "--dirty"], capture_output=True, text=True)
+    """Of the sources, as cmake/build_info.cmake names that of a build."""
+    result = subprocess.run(["git", "-C", str(CASES), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
+                            capture_output=True, text=True)
     return result.stdout.strip() or "unknown"
+
+
+def is_definite(commit: str) -> bool:
+    return commit != "unknown" and not commit.endswith("-dirty")
 
 
 def now() -> str:
@@ -131,4 +154,7 @@ def _readme(case: str) -> str:
 
 def _mutations(out: Path) -> Mutations | None:
     file = out / "mutations.json"
-    return Mutations(**json.loads(file.read_text())) if file.exists() else None
+    if not file.exists():
+        return None
+    found = json.loads(file.read_text())
+    return Mutations(found["written"], [{"commit": "unknown", **row} for row in found["rows"]])
