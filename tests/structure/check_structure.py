@@ -131,7 +131,8 @@ def check_independence(root: Path) -> list[str]:
         for included in included_files(root, file):
             name, into_lib = included.relative_to(root), included.is_relative_to(lib)
             if file.is_relative_to(lib) and not into_lib:
-                problems.append(f"{file.relative_to(root)}: includes {name}: the engine uses nothing of the reference solver")
+                problems.append(f"{file.relative_to(root)}: includes {name}: the engine uses nothing of the reference "
+                                "solver")
             elif not file.is_relative_to(lib) and into_lib and not is_shared(included.relative_to(lib)):
                 problems.append(f"{file.relative_to(root)}: includes {name}: the reference solver shares no mechanics "
                                 "with the engine")
