@@ -55,15 +55,12 @@ class Record:
     def __init__(self) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
         self.messages: dict[str, str] = {}
-        self.known: dict[str, str] = {}
         self.cases: list[report.CaseReport] = []
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.seconds[report.nodeid] += report.duration
         if report.failed:
             self.messages[report.nodeid] = str(report.longrepr)
-        elif report.skipped and hasattr(report, "wasxfail"):
-            self.known[report.nodeid] = report.wasxfail
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
         """A case that cannot be loaded is red: its rows of an earlier run do not stand for it."""
@@ -80,11 +77,10 @@ class Record:
         self.cases = [case for case in report.write(OUT, ran) if case.name in ran]
 
     def _complete(self, folder: Path) -> None:
-        """Adds to the rows of a case how long they took and what is known to be red, and what failed without a row."""
+        """Adds to the rows of a case how long they took, and what failed without a row."""
         rows = read_rows(folder / "checks.json")
         for row in rows:
             row["seconds"] = self.seconds.get(row["test"], 0.0)
-            row["known"] = "" if row["green"] else self.known.get(row["test"], "")
         red = {row["test"] for row in rows if not row["green"]}
         failures = [report.Failure(folder.name, test.split("::")[-1], message.strip()[-2000:], commit_of_engine())
                     for test, message in self.messages.items() if case_of(test) == folder.name and test not in red]
@@ -107,9 +103,7 @@ class Record:
             terminalreporter.write("green " if row.green else "RED   ", green=row.green, red=not row.green)
             terminalreporter.write_line(line)
         share = ", ".join(f"{count} {label}" for label, count in report.totals(self.cases).items())
-        known = sum(case.known for case in self.cases)
-        terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red" +
-                                    (f", {known} of them known" if known else ""))
+        terminalreporter.write_line(f"{len(rows)} checks: {share}; {sum(case.red for case in self.cases)} red")
         if stale := sum(case.stale for case in self.cases):
             terminalreporter.write_line(f"{stale} by an engine of another commit than the sources, {report.commit()}: "
                                         f"{commit_of_engine()}")

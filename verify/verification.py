@@ -54,7 +54,6 @@ class Row:
     green: bool
     test: str = ""  # of pytest, in which it was made
     seconds: float = 0.0  # of that test, with the runs that it waited for
-    known: str = ""  # why it is red and may stay so: the reason of the test's xfail
     commit: str = ""  # that the engine was built from
 
     @property

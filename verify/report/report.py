@@ -6,7 +6,7 @@ import fcntl
 import json
 import subprocess
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from datetime import datetime, timezone
 from functools import cache
 from pathlib import Path
@@ -63,11 +63,6 @@ class CaseReport:
     def red(self) -> int:
         return sum(not row.green for row in self.rows) + len(self.failures)
 
-    @property
-    def known(self) -> int:
-        """Of the red ones: those that do not make the case fail."""
-        return sum(bool(row.known) for row in self.rows)
-
     def count(self, label: Label) -> int:
         return sum(row.label == label.value for row in self.rows)
 
@@ -95,15 +90,20 @@ def write(out: Path, ran: set[str] = frozenset()) -> list[CaseReport]:
 
 
 def read_case(out: Path, folder: Path, now: bool) -> CaseReport:
-    rows = [Row(**row) for row in read_rows(folder / "checks.json")]
-    failures = [Failure(**failure) for failure in read_rows(folder / "failures.json")]
+    rows = [Row(**own_fields(Row, row)) for row in read_rows(folder / "checks.json")]
+    failures = [Failure(**own_fields(Failure, failure)) for failure in read_rows(folder / "failures.json")]
     pictures = sorted(str(file.relative_to(out)) for file in folder.glob("*.png"))
     return CaseReport(folder.name, _readme(folder.name), sorted(rows, key=lambda row: row.green), failures, pictures, now)
 
 
+def own_fields(kind: type, values: dict) -> dict:
+    """Those of its fields; rows of an earlier version may have others."""
+    return {field.name: values[field.name] for field in fields(kind) if field.name in values}
+
+
 def as_json(cases: list[CaseReport]) -> dict:
     return {"commit": commit(), "written": now(), "totals": totals(cases), "red": sum(case.red for case in cases),
-            "known": sum(case.known for case in cases), "stale": sum(case.stale for case in cases),
+            "stale": sum(case.stale for case in cases),
             "checks": [{**vars(row), "stale": case.is_stale(row)} for case in cases for row in case.rows],
             "failures": [{**vars(failure), "stale": case.is_stale(failure)} for case in cases
                          for failure in case.failures]}
@@ -116,8 +116,8 @@ def as_html(cases: list[CaseReport], mutations: Mutations | None) -> str:
     rows = sum(len(case.rows) for case in cases)
     return environment.get_template("report.html.j2").render(
         cases=cases, commit=commit(), now=now(), labels=list(Label), totals=totals(cases), rows=rows,
-        red=sum(case.red for case in cases), known=sum(case.known for case in cases),
-        stale=sum(case.stale for case in cases), mutations=mutations, seconds=sum(case.seconds for case in cases))
+        red=sum(case.red for case in cases), stale=sum(case.stale for case in cases), mutations=mutations,
+        seconds=sum(case.seconds for case in cases))
 
 
 def totals(cases: list[CaseReport]) -> dict[str, int]:
