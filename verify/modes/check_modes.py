@@ -32,11 +32,12 @@ LAST = 8.0  # of the stored roots, w R / c_s
 # dilation d: lambda d |grad u| is at most sqrt(lambda / 2 mu) of the energy (lambda d^2 / 2 + mu |grad u|^2).
 SAME_NODES = SINGLE / H[0] * np.sqrt(49 / 2)
 
-# rms errors of the first ten at nu = 0.4 of a prototype of the method on meshes of its own, its support 9 nodes:
-# recipe, mass, nodes.
-PROTOTYPE = {("mls-gauss 3", "lumped", 168): 5.7e-2, ("mls-gauss 3", "corrected", 168): 0.9e-2,
-             ("mls", "lumped", 168): 4.9e-2, ("mls", "corrected", 168): 0.8e-2, ("t3", "lumped", 168): 1.1e-2,
-             ("es-t3", "corrected", 168): 0.10e-2, ("mls", "lumped", 700): 1.1e-2}
+# rms errors of the first ten at nu = 0.4 in %, 168, 340 and 700 nodes, as README.md has them: lumped, corrected.
+FIGURES = {"mls": ("4.10 2.03 0.96", "0.161 0.111 0.082"), "mls-gauss 1": ("4.19 2.02 0.95", "0.329 0.211 0.129"),
+           "mls-gauss 3": ("4.70 2.33 1.11", "0.582 0.216 0.077"),
+           "mls-gauss 6": ("4.55 2.24 1.07", "0.441 0.120 0.029"), "t3": ("1.15 0.50 0.23", "3.07 1.44 0.68"),
+           "es-t3": ("2.85 1.35 0.64", "0.086 0.014 0.004")}
+LAST_DIGIT = "our own earlier figure, +- half of its last digit: the same meshes, whose nodes rounding alone may move"
 
 
 def scene(recipe: str, mass: str, poisson: float, nodes: int, extra: str = "") -> str:
@@ -68,7 +69,8 @@ def answer_of(words: list, text: str, file: Path, answer: Path) -> dict:
 def errors(recipe: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
     """[COUNT] relative, sorted by frequency."""
     name = named(recipe, mass, poisson, nodes)
-    export = ["--matrices", str(CASE.out / name)] if poisson == 0.4 else []  # see matrices()
+    exported = poisson == 0.4 or nodes == NODES[0]  # see matrices() and residual_of_translations()
+    export = ["--matrices", str(CASE.out / name)] if exported else []
     answer = ask(name, scene(recipe, mass, poisson, nodes), *export)
     CASE.check(Label.EXACT, f"{recipe}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
                answer["motions_at_rest"], 3, 0, "two translations and a rotation; more were mechanisms")
@@ -147,18 +149,24 @@ def test_lumped_mass_is_of_second_order(recipe: str, poisson: float) -> None:
                     "row sums and linear functions; 0.3 for the fourth order in h^2 <= 0.14^2 x 4.8^2")
 
 
-@pytest.mark.parametrize("recipe, mass, nodes", PROTOTYPE)
-def test_figures_of_the_prototype(recipe: str, mass: str, nodes: int) -> None:
-    CASE.check(Label.FROZEN, f"{recipe}, {mass}, {nodes} nodes: rms of the first ten",
-               rms(errors(recipe, mass, 0.4, nodes)), 0, 1.1 * PROTOTYPE[recipe, mass, nodes],
-               "exact roots; our own prototype's error on another mesh of as many nodes, and a tenth")
+@pytest.mark.parametrize("recipe", FIGURES)
+def test_figures_stay(recipe: str) -> None:
+    """On both sides: two errors of opposite sign make those of corrected mass, and one of them alone may change."""
+    for mass, figures in zip(MASSES, FIGURES[recipe]):
+        for nodes, figure in zip(NODES, figures.split()):
+            CASE.check(Label.FROZEN, f"{recipe}, {mass}, {nodes} nodes: rms of the first ten [%]",
+                       100 * rms(errors(recipe, mass, 0.4, nodes)), float(figure), half_a_digit(figure), LAST_DIGIT)
+
+
+def half_a_digit(figure: str) -> float:
+    return 0.5 * 10.0**-len(figure.partition(".")[2])
 
 
 def test_support_of_nine_nodes() -> None:
     answer = ask("support_9", scene("mls", "corrected", 0.4, 700, "\nsupport = 9"))
-    error = rms(np.array(answer["frequencies"]) / frequencies(0.4, COUNT) - 1)
-    CASE.check(Label.FROZEN, "mls with support 9, corrected, 700 nodes: rms", error, 0, 1.1 * 0.06e-2,
-               "the prototype's, whose support that was, and a tenth")
+    error = 100 * rms(np.array(answer["frequencies"]) / frequencies(0.4, COUNT) - 1)
+    CASE.check(Label.FROZEN, "mls with support 9, corrected, 700 nodes: rms of the first ten [%]", error, 0.027,
+               half_a_digit("0.027"), LAST_DIGIT)
 
 
 def matrices(recipe: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
@@ -242,10 +250,35 @@ def test_linear_triangles_of_dolfinx_lock_alike() -> None:
 @pytest.mark.parametrize("poisson", [0.4, 0.49])
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_engine_against_reference(recipe: str, poisson: float) -> None:
-    off = [(1 + errors(recipe, mass, poisson, NODES[0])) / (1 + errors_of_the_reference(recipe, mass, poisson)) - 1
-           for mass in MASSES]
-    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = {poisson}: engine over reference, the worst of both masses",
-               np.abs(off).max(), 0, 1e-8, "differences of forces err by 1e-11 of the largest w^2, 1e3 times the least")
+    off, allowed = [], []
+    for mass in MASSES:
+        engine, reference = (1 + of(recipe, mass, poisson) for of in (coarsest_errors, errors_of_the_reference))
+        off.append(engine / reference - 1)
+        allowed.append(residual_of_translations(recipe, mass, poisson) / (2 * frequencies(poisson, COUNT)**2))
+    worst = np.unravel_index((np.abs(off) / np.array(allowed)).argmax(), np.shape(off))
+    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = {poisson}: engine over reference - 1, the worst of both masses",
+               off[worst[0]][worst[1]], 0, allowed[worst[0]][worst[1]],
+               "differences of forces leave translations a residual, exactly 0; one of as much moves w^2 by no more")
+
+
+def coarsest_errors(recipe: str, mass: str, poisson: float) -> np.ndarray:
+    return errors(recipe, mass, poisson, NODES[0])
+
+
+def residual_of_translations(recipe: str, mass: str, poisson: float) -> float:
+    """|A x| / |x| of the symmetric A = L^T K L, W = L L^T the inverse mass, for translations; the larger of the two. For
+    any x of a frequency w it would be the error of w^2 that the differences of forces make, at most (Weyl)."""
+    coarsest_errors(recipe, mass, poisson)
+    folder = CASE.out / named(recipe, mass, poisson, NODES[0])
+    stiffness = mmread(folder / "disc_stiffness.mtx").toarray()
+    read = mmread(folder / "disc_inverse_mass.mtx")
+    inverse = np.kron(read.toarray() if mass == "corrected" else np.diag(read.diagonal()), np.eye(2))
+    found = []
+    for direction in np.eye(2):
+        translation = np.tile(direction, len(inverse) // 2)
+        force = stiffness @ translation
+        found.append(force @ inverse @ force / (translation @ np.linalg.solve(inverse, translation)))
+    return float(np.sqrt(max(found)))
 
 
 def test_picture() -> None:
