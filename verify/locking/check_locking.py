@@ -14,9 +14,9 @@ from fem.meshes import create
 from fem.plates import Plates, hertz_force, hertz_half_width
 from fem.solid import Material, Solid
 from fem.statics import Minimiser
-from motion import Motion, read_motion
+from motion import SINGLE, Motion, read_motion
 from pictures import COLOURS, MARKERS, draw_ratios, legend, panels, save
-from squeeze import OUTLINE, PAUSE, RECIPES, Rests, Squeeze, both_ways, by_reference, worst_over_reference
+from squeeze import LONG_PAUSE, OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_reference, worst_over_reference
 from verification import FULL, Case, Label, observed_order
 
 CASE = Case(__file__)
@@ -26,8 +26,10 @@ RATIOS = [0.4, 0.49]
 STIFFNESS = 3e3  # of the contact, mu / R
 LINEAR, SQUARE, CUBIC = 1, 2, 3  # degrees of finite elements
 ELEMENTS_ERROR = 3e-4  # of quadratic ones
+# Of forces on the same nodes in frames: as SAME_NODES of modes, of a disc that reaches to x = 3.
+ROUNDED_NODES = 3 * SINGLE / np.sqrt(np.pi / 168) * np.sqrt(49 / 2)
 NEAR_A_PLATE = 0.8  # of the radius: the half width of a contact at 10 % is 0.4, up to 0.92 of it
-FRAMES = f'\n[frames]\nperiod = {PAUSE}\nfields = ["displacement"]\n'
+FRAMES = f'\n[frames]\nperiod = {LONG_PAUSE}\nfields = ["displacement"]\n'
 
 
 def by_elements(approach: float, poisson: float, degree: int, rings: int = 12, edges: int = 6) -> float:
@@ -98,14 +100,16 @@ def test_linear_triangles_lock(runs: dict, elements: dict) -> None:
 def test_linear_triangles_of_dolfinx_lock_alike(facet: bool) -> None:
     """On the engine's own nodes: those near the plates are held where the engine has them, the others find their
     places, and what holds them is the force on a plate."""
-    chosen = replace(squeeze(0.49, "t3", 168), facet=facet)
+    chosen = replace(squeeze(0.49, "t3", 168), facet=facet).at_full_rest()
     run = CASE.engine(f"{chosen.name()}_frames", chosen.scene(CASE) + FRAMES)
     rests = Rests(chosen, run)
-    expected = forces_of_linear_triangles(read_motion(run), 0.49)
+    off = rests.force / forces_of_linear_triangles(read_motion(run), 0.49) - 1
+    allowed = rests.unrest() + ROUNDED_NODES
+    worst = (np.abs(off) / allowed).argmax()
     CASE.check(Label.INDEPENDENT, f"t3, {'facet' if facet else 'corner'} at the poles: force over that of dolfinx's "
-               "linear triangles on these nodes - 1", np.abs(rests.force / expected - 1).max(), 0,
-               np.sqrt((rests.kinetic / rests.stored).max()),
-               "the same triangles; motion that is left moves the force by the root of kinetic over stored energy")
+               "linear triangles on these nodes - 1", off[worst], 0, allowed[worst],
+               "the same triangles; the force of what still moves, from its kinetic energy; nodes in single precision "
+               "turn gradients by 1e-6, energies by that x root of lambda/(2 mu)")
 
 
 def forces_of_linear_triangles(motion: Motion, poisson: float) -> np.ndarray:
@@ -129,10 +133,11 @@ def forces_of_linear_triangles(motion: Motion, poisson: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("recipe", RECIPES)
-def test_engine_against_reference(runs: dict, references: dict[str, Rests], recipe: str) -> None:
-    ratio, allowed = worst_over_reference(runs[0.49][recipe][168][0], references[recipe])
+def test_engine_against_reference(references: dict[str, Rests], recipe: str) -> None:
+    forces = dict(zip(APPROACHES, references[recipe].force))
+    ratio, allowed = worst_over_reference(CASE, squeeze(0.49, recipe, 168), forces)
     CASE.check(Label.INDEPENDENT, f"{recipe}, nu = 0.49: engine over reference, the worst", ratio, 1, allowed,
-               "as in plates: amplitude that is left, and 1e-5 the kinks of contact")
+               "as in plates: the force of what still moves, from its kinetic energy; Newton's method")
 
 
 def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> None:
