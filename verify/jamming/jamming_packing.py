@@ -60,11 +60,22 @@ class Stage:
         return self.network.without_rattlers(np.array(WALLS))
 
     @cached_property
-    def counts(self) -> np.ndarray:
-        """Contacts of each disc with its centre in the region that is no rattler."""
-        counts = self.backbone.counts()[:DISCS]
+    def counted(self) -> np.ndarray:
+        """[discs] whether the centre is in the region, and the disc no rattler."""
         inside = (np.abs(self.outlines.centres()[:DISCS]) < self.half - self.margin).all(axis=1)
-        return counts[inside & (counts > 0)]
+        return inside & (self.backbone.counts()[:DISCS] > 0)
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """Contacts of each disc that is counted."""
+        return self.backbone.counts()[:DISCS][self.counted]
+
+    def by_square(self, across: int) -> tuple[np.ndarray, np.ndarray]:
+        """Sums of those contacts, and how many discs they are, in each of across^2 squares of the region."""
+        reach = self.half - self.margin
+        column, row = ((self.outlines.centres()[:DISCS][self.counted] / reach + 1) / 2 * across).astype(int).T
+        square = row * across + column
+        return np.bincount(square, self.counts, across**2), np.bincount(square, minlength=across**2)
 
     @property
     def coordination(self) -> float:
