@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fields import Stresses, along_outline, stresses_of
+from half_planes import pressures
 from pictures import COLOURS, MARKERS, draw_cells, legend, panels, save
 from verification import FULL, Case, Label, Run, observed_order
 
@@ -140,6 +141,35 @@ def test_error_falls_with_the_penalty(stiffer: list[Stresses]) -> None:
                     abs(order - order_over_penalty(2 / np.pi)),
                     "half-planes and springs share the error as in series; a wave of two nodes is linear between them, "
                     "2/pi of a sine's load")
+
+
+def nodal_errors(ratio: str, stiffer: float = 1) -> np.ndarray:
+    """Of the pressures on the finer face's nodes within a quarter of the width from the middle, over the load."""
+    run = Run(CASE.out / run_name(ratio, FACES[ratio][1], stiffer))
+    places, pressure = along_outline(run, 0, "contact_pressure")
+    face = (np.abs(places[:, 1]) < 0.01) & (np.abs(places[:, 0]) < 0.25)
+    return pressure[face] / PRESSURE - 1
+
+
+def test_what_two_passes_make_of_uniform_pressure(statics: dict, stiffer: list[Stresses]) -> None:
+    """At 2:1 each node of the finer face that has one opposite gets 3/2 of its share, the others 1/2, as long as gaps are
+    equal. They are not, as faces give way, by some d over the stiffness: the error is 1 / (2 + d s), whatever d is."""
+    one, four = (np.abs(nodal_errors("2:1", s)) for s in (1, STIFFER[0]))
+    without_stiffness = (STIFFER[0] - 1) / (STIFFER[0] / one - 1 / four)
+    CASE.check(Label.EXACT, "2:1: error of nodal pressures to no stiffness", without_stiffness.mean(), 0.5,
+               np.ptp(without_stiffness), "the trapezoidal rule on the wrong nodes; from stiffness 1 and 4, straight in the "
+               "inverse; the sides, by which the middle's nodes differ")
+
+
+@pytest.mark.parametrize("ratio", ["3:2", "5:4"])
+def test_nodal_pressures(statics: dict, ratio: str) -> None:
+    """Waves longer than two nodes: half-planes give way to them as to sines."""
+    fine, coarse = map(int, ratio.split(":"))
+    modulus = YOUNG / (1 - POISSON**2)
+    sine, linear = (np.abs(pressures(fine, coarse, 8 * YOUNG, share * modulus) - 1).max() for share in (1, np.pi / 2))
+    CASE.check(Label.INDEPENDENT, f"{ratio}: largest error of nodal pressures", np.abs(nodal_errors(ratio)).max(), sine,
+               linear - sine, "two half-planes under two passes; waves of few nodes are linear between them, at worst "
+               "2/pi of a sine's load")
 
 
 def test_balance_and_both_solvers(statics: dict[str, list[Stresses]]) -> None:
