@@ -88,14 +88,39 @@ double bound_of(Loaded& loaded) {
 
 const ContactRule rules[] = {frictionless(300), mohr_coulomb(300, 0.5, 1), cohesive(300, 1, 0.02, 5)};
 
-// EXACT: an upper bound. It must not be a useless one either: within a factor of 30 in w^2, for two discs in touch at a
-// few nodes. There the floor rules, which stands for contact all around; in the other scenes the factor is 1.5 to 5.
-void expect_bounded(const Scene& scene, const std::string& name) {
+// How loose a bound may be: 2 for neighbours that the fastest motion does not move against each other, and half as much
+// again for nodes within the skin that are not in touch yet.
+constexpr double loosest = 3;
+// Where nothing rubs, discs turn freely; the bound has springs along the faces too, with them turning is the fastest, twice as
+// fast in w^2 as moving aside, and half as much again is for springs along that way.
+constexpr double loosest_where_discs_turn = 3 * loosest;
+
+// EXACT: an upper bound, and not a useless one.
+void expect_bounded(const Scene& scene, const std::string& name, double times = loosest) {
   Loaded loaded(scene);
   const double exact = fastest(loaded), bound = bound_of(loaded);
   EXPECT_LE(exact, bound) << name;
-  EXPECT_GT(exact, bound / 30) << name;
-  ::testing::Test::RecordProperty("bound_over_exact " + name, std::to_string(bound / exact));
+  EXPECT_GT(exact, bound / times) << name;
+}
+
+// w^2 of a rigid disc in touch all around, turning, with springs along its face: k sum l r^2 / I; the largest of all.
+double touched_all_around(const Model& model, double stiffness) {
+  double largest = 0;
+  for (const Body& body : model.bodies) {
+    const OutlineShape& outline = model.outlines[body.outline];
+    double turning = 0;
+    for (int k = 0; k < outline.count; ++k) turning += outline.tributary_length[k] * outline.points[k].squaredNorm();
+    largest = std::max(largest, stiffness * turning / model.rigid_bodies[body.rigid].dof[2].mass);
+  }
+  return largest;
+}
+
+// EXACT: two discs in touch at a few nodes have the bound's floor, which stands for contact all around.
+void expect_the_floor(const Scene& scene, double stiffness) {
+  Loaded loaded(scene);
+  const double bound = bound_of(loaded);
+  EXPECT_LE(fastest(loaded), bound);
+  EXPECT_NEAR(bound / touched_all_around(loaded.model, stiffness), 1, 1e-12);
 }
 
 TEST(StiffnessBound, RigidBodies) {
@@ -105,7 +130,7 @@ TEST(StiffnessBound, RigidBodies) {
       scene.contacts = {rule};
       add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {0, 0});
       add_body(scene, disc_shape("disc", 1, 24), BodyKind::rigid, {std::sqrt(1.47 * 1.47 - y * y), y}, 0.1);
-      expect_bounded(scene, "discs");
+      expect_the_floor(scene, 300);
       Scene blocks = bare_scene();
       blocks.contacts = {rule};
       add_body(blocks, outline_shape("block", rectangle(2, 1, 0.11)), BodyKind::rigid, {0, 0});
@@ -146,7 +171,7 @@ TEST(StiffnessBound, Cluster) {
     add_grain(scene, "disc", BodyKind::rigid, {0, 0}, 0.05);
     for (int i = 0; i < 6; ++i)
       add_grain(scene, "disc", BodyKind::rigid, 0.975 * Vec2(std::cos(i * M_PI / 3), std::sin(i * M_PI / 3)), 0.3 * i);
-    expect_bounded(scene, "cluster");
+    expect_bounded(scene, "cluster", rule.law == ContactLawKind::frictionless ? loosest_where_discs_turn : loosest);
   }
 }
 
