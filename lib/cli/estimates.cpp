@@ -108,6 +108,13 @@ std::vector<std::vector<int>> representatives(const Model& model, const ContactL
   return result;
 }
 
+/// Of its outline, whichever way it turns, m.
+double width_of(const Model& model, const Body& body) {
+  double square = 0;
+  for (const Vec2& p : model.outlines[body.outline].points) square = std::max(square, p.squaredNorm());
+  return 2 * std::sqrt(square);
+}
+
 double largest_until(const History& history, double end) {
   double largest = std::max(std::abs(history.at(0)), std::abs(history.at(end)));
   for (std::size_t i = 0; i < history.time.size() && history.time[i] <= end; ++i)
@@ -139,7 +146,10 @@ std::vector<ContactPair> contact_pairs(const Model& model, const ContactLaws& la
     return std::any_of(pairs.begin(), pairs.end(), [&](const ContactPair& other) { return alike(other, pair); });
   };
   const auto add = [&](int first, int second) {
-    if (first == second || (model.bodies[first].wall && model.bodies[second].wall)) return;
+    const Body &a = model.bodies[first], &b = model.bodies[second];
+    if (a.wall && b.wall) return;
+    // A body as wide as the period touches its own image.
+    if (first == second && !(model.scene.period && width_of(model, a) >= *model.scene.period)) return;
     const ContactPair pair = make_pair_of(model, laws, first, second);
     if (!is_known(pair)) pairs.push_back(pair);
   };

@@ -16,7 +16,7 @@ bool overlap_in_y(const Box& a, const Box& b, double margin) {
   return a.y_min <= b.y_max + margin && b.y_min <= a.y_max + margin;
 }
 
-BodyPair ordered(int a, int b, int images) { return a < b ? BodyPair{a, b, images} : BodyPair{b, a, -images}; }
+BodyPair ordered(int a, int b, int images) { return a <= b ? BodyPair{a, b, images} : BodyPair{b, a, -images}; }
 
 std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>& boxes) {
   std::vector<SweepEntry> entries;
@@ -30,7 +30,8 @@ std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>
   return entries;
 }
 
-/// Pairs of entry i with the entries after it in x, around the period.
+/// Pairs of entry i with the entries after it in x, around the period as often as it reaches: itself is there once more
+/// a period on.
 void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period,
                 double margin, std::vector<BodyPair>& pairs) {
   const SweepEntry& a = entries[i];
@@ -39,8 +40,8 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
     const int lap = static_cast<int>(wrapped / entries.size());
     if (lap > 0 && period == 0) return;
     const SweepEntry& b = entries[wrapped % entries.size()];
-    if (b.x_min + lap * period > a.x_max + margin || lap > 1) return;
-    if (a.body != b.body && overlap_in_y(boxes[a.body], boxes[b.body], margin))
+    if (!(b.x_min + lap * period <= a.x_max + margin)) return;  // so that NaN ends it too
+    if (overlap_in_y(boxes[a.body], boxes[b.body], margin))
       pairs.push_back(ordered(a.body, b.body, a.turn - b.turn + lap));
   }
 }

@@ -12,16 +12,17 @@ struct Box {
   double x_min, x_max, y_min, y_max;
 };
 
-/// Two bodies whose bounding boxes come closer than the margin.
+/// Two bodies, or a body and its own periodic image, whose bounding boxes come closer than the margin.
 struct BodyPair {
-  int first, second;  ///< first < second
-  int images;         ///< periods to add to x of the second
+  int first, second;  ///< first <= second
+  int images;         ///< periods to add to x of the second; positive for a body's own image
   auto operator<=>(const BodyPair&) const = default;
 };
 
 Box bounding_box(const OutlineShape& shape, const Outlines& outlines, int body);
 
-/// Sweep and prune on x, then y, periodic in x (METHOD 4, stage 1). Pairs are sorted. Walls span all x.
+/// Sweep and prune on x, then y, periodic in x (METHOD 4, stage 1). Pairs are sorted. Walls span all x, and meet no
+/// image of theirs.
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin);
 
 }  // namespace pliant

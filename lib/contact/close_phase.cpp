@@ -169,7 +169,6 @@ void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window
       if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(row);
   }
   nodes = near_nodes.arc(candidates.begin);
-  nodes.count = std::min(nodes.count, n);  // a wall seen along more than its period: one image of each node is enough
   segments = near_segments.arc(first_segment);
 }
 
@@ -200,6 +199,9 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
     narrow(sides[slave], rough[slave], scratch, segments.begin, margin, skin, patch.nodes[slave],
            patch.segments[1 - slave]);
+    // Walls meet along the whole period: one image of each node is enough. A body as wide as the period may stand on
+    // two.
+    if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
   }
 }
 

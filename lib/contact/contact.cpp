@@ -158,11 +158,14 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
     const auto from =
         std::lower_bound(old.begin(), old.end(), patch, [](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;
+    const bool two_walls = model_.bodies[patch.first].wall && model_.bodies[patch.second].wall;
     for (int side = 0; side < 2; ++side) {
-      const int n = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline].count;
+      const OutlineShape& shape = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline];
+      const bool images_apart = shape.turn_shift != 0 && !two_walls;  // nodes of a wall under a body: see find_arcs
       for (int i = 0; i < patch.nodes[side].count; ++i) {
-        const int node = patch.nodes[side].begin + i - from->nodes[side].begin, at = node - turn_of(node, n) * n;
-        if (at >= from->nodes[side].count) continue;
+        int at = patch.nodes[side].begin + i - from->nodes[side].begin;
+        if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
+        if (at < 0 || at >= from->nodes[side].count) continue;
         for (int a = 0; a < arrays; ++a) {
           const auto values = ContactHistory::arrays[a].values;
           (next.*values)[patch.record[side] + i] = (history.*values)[from->record[side] + at];
@@ -217,7 +220,7 @@ void ContactSystem::add_self_patches(const Outlines& outlines) {
 /// A limb thinner than contact sees would press its own far side out.
 void ContactSystem::refuse_self_overlap(const Outlines& outlines) const {
   for (const Patch& patch : patches_)
-    if (patch.first == patch.second && overlaps(model_, outlines, patch, skin_, thread_scratch()))
+    if (patch.of_itself() && overlaps(model_, outlines, patch, skin_, thread_scratch()))
       throw InputError(fmt::format(
           "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
           "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
+#include "contact/broad_phase.hpp"
 
 namespace pliant {
 
@@ -19,7 +19,7 @@ struct DeepestNode {
 
 /// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes with all segments of each pair
 /// of bodies: for messages.
-DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std::vector<std::pair<int, int>>& pairs);
+DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std::vector<BodyPair>& pairs);
 
 /// Throws InputError when a body starts deeper inside another than contact can see, a segment length of that other: it would be let through
 /// without a force.

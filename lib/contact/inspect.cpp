@@ -36,7 +36,7 @@ std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outl
       points.push_back({side == 0 ? patch.first : patch.second, side == 0 ? patch.second : patch.first,
                         index - turn_of(index, count) * count, p.gap[lane], c.slip[lane], c.pressure[lane],
                         c.shear[lane], damage[lane], nodes.tributary_length[lane],
-                        Vec2(p.normal_x[lane], p.normal_y[lane])});
+                        Vec2(p.normal_x[lane], p.normal_y[lane]), side});
     }
   };
   std::visit(
@@ -52,7 +52,7 @@ std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outl
 
 Vec2 TouchingPair::normal() const {
   Vec2 sum(0, 0);
-  for (const ContactPoint& point : points) sum += (point.slave == first ? -point.length : point.length) * point.normal;
+  for (const ContactPoint& point : points) sum += (point.side == 0 ? -point.length : point.length) * point.normal;
   const double norm = sum.norm();
   return norm > 0 ? Vec2(sum / norm) : sum;
 }

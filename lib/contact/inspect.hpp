@@ -17,13 +17,15 @@ struct ContactPoint {
   double damage = 0;          ///< 0 whole to 1 torn; NaN for a law without
   double length = 0;          ///< tributary length, m; each of the two passes carries half of the force
   Vec2 normal{0, 0};          ///< of the master, outward
+  int side = 0;               ///< of the pair that the slave is: 0 the first; of a body and its image only this tells
 };
 
-/// Two bodies in touch.
+/// Two bodies, a body and its own periodic image, or parts of one body, in touch.
 struct TouchingPair {
   int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
   std::vector<ContactPoint> points;
+  bool of_itself() const { return first == second && images == 0; }  ///< parts of one body: no pair of grains
 
   /// Mean unit normal of the contact from the first to the second, weighted by length; zero when the normals cancel.
   Vec2 normal() const;

@@ -11,17 +11,21 @@ struct Arc {
   int end() const { return begin + count; }
 };
 
-/// Two bodies that may touch before the next refresh, and the parts of their outlines that can take part. Of a body that may touch itself
-/// (first = second), some nodes, as those of the first, and segments far from them along the outline, as those of the second.
+/// Two bodies, or a body and its own periodic image, that may touch before the next refresh, and the parts of their
+/// outlines that can take part. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
+/// and segments far from them along the outline, as those of the second.
 struct Patch {
   int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
   int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
   ContactLaw law;
-  Arc nodes[2];            ///< that may touch the other body; no node twice
+  Arc nodes[2];            ///< that may touch the other body; no node twice, but images of a wall's
   Arc segments[2];         ///< that the other's nodes may touch
   int record[2] = {0, 0};  ///< first history record of each side's nodes (padded to whole lanes)
   int force[2] = {0, 0};   ///< first entry of each side's force buffer, which begins at node forces(side).begin
+
+  /// Parts of one outline, not of two or of two images.
+  bool of_itself() const { return first == second && images == 0; }
 
   /// All but the law, which follows from the bodies.
   template <class Visitor>

@@ -82,8 +82,8 @@ std::string describe_nan(const Model& model, const Dofs& position, const Dofs& f
 
 std::string describe_lost_contact(const Forces& forces) {
   const Model& model = forces.model();
-  std::vector<std::pair<int, int>> pairs;
-  for (const Patch& patch : forces.contact().patches()) pairs.emplace_back(patch.first, patch.second);
+  std::vector<BodyPair> pairs;
+  for (const Patch& patch : forces.contact().patches()) pairs.push_back({patch.first, patch.second, patch.images});
   const DeepestNode deepest = deepest_node(model, forces.outlines(), pairs);
   return fmt::format(
       "contact between {} and {} is lost: outline node {} of the first, at {}, has a penetration of {:.3g} m, {:.2f} "

@@ -26,7 +26,7 @@ const std::vector<int>& Snapshot::contact_counts() const {
   if (contact_counts_) return *contact_counts_;
   contact_counts_.emplace(model().bodies.size(), 0);
   for (const TouchingPair& pair : contacts()) {
-    if (pair.first == pair.second) continue;
+    if (pair.of_itself()) continue;
     for (int body : {pair.first, pair.second}) ++(*contact_counts_)[body];
   }
   return *contact_counts_;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double deepest = 1.5;  ///< that contact sees, over the master's longest segment
 
-/// A node of one body and a periodic image of another.
+/// A node of one body and a periodic image of another, or of its own.
 struct Encounter {
   int slave = 0, node = 0;    ///< node: of the slave's own outline
   int master = 0, image = 0;  ///< image: 0 for a wall, whose segments are counted on instead
@@ -102,7 +102,8 @@ struct Contacts::Implementation {
     if (outlines[master].wall) return meet_wall(slave, master, law, outward);
     const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - margin) / period));
     const int last = static_cast<int>(std::floor((a.high.x() - b.low.x() + margin) / period));
-    for (int image = first; image <= last; ++image) meet_image(slave, master, image, law, outward, margin);
+    for (int image = first; image <= last; ++image)
+      if (slave != master || image != 0) meet_image(slave, master, image, law, outward, margin);
   }
 
   void meet_image(int slave, int master, int image, const Law& law, double outward, double margin) {

@@ -55,7 +55,8 @@ struct ContactResult {
   double dissipated = 0;  ///< from the last accepted state to this one, J/m
 };
 
-/// All contacts of a scene by brute force: every node of every body against every segment of every other (METHOD 4).
+/// All contacts of a scene by brute force: every node of every body against every segment of every other, and of its
+/// own periodic images (METHOD 4).
 class Contacts {
  public:
   /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for

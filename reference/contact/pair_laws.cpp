@@ -127,7 +127,8 @@ PairLaws::PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlin
   const double largest = largest_stiffness(scene, outlines);
   for (int a = 0; a < bodies_; ++a)
     for (int b = 0; b < bodies_; ++b) {
-      if (a == b) continue;
+      // Of its own kind a body meets only its periodic images, and a wall has none.
+      if (a == b && (!scene.period || outlines[a].wall)) continue;
       const ContactRule* rule = match_rule(scene, party_of(scene, outlines[a]), party_of(scene, outlines[b])).rule;
       if (rule == nullptr) continue;
       const Stiffness pair = Stiffness::of(scene, outlines[a]).with(Stiffness::of(scene, outlines[b]));

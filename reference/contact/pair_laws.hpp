@@ -14,6 +14,7 @@ class PairLaws {
   /// Throws as Contacts does.
   PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlines);
 
+  /// Of a body with itself: with its periodic images.
   const std::optional<Law>& between(int a, int b) const { return laws_[a * bodies_ + b]; }
 
  private:

@@ -11,8 +11,9 @@ namespace {
 
 DeepestNode deepest_in(const Scene& scene) {
   const Bench bench(scene);
-  std::vector<std::pair<int, int>> pairs;
-  for (const Patch& patch : bench.forces.contact().patches()) pairs.emplace_back(patch.first, patch.second);
+  std::vector<BodyPair> pairs;
+  for (const Patch& patch : bench.forces.contact().patches())
+    pairs.push_back({patch.first, patch.second, patch.images});
   return deepest_node(bench.model, bench.forces.outlines(), pairs);
 }
 

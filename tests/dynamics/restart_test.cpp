@@ -65,10 +65,22 @@ Scene fast_blocks() {
   return scene;
 }
 
+/// Two discs that rub against their own periodic images and each other.
+Scene own_images() {
+  Scene scene = empty_scene(1000);
+  scene.period = 1.99;
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("soft", "disc", BodyKind::compliant, {{0.3, 0}}, moving({0, 0.1}, 0.3)),
+                  grains("hard", "disc", BodyKind::rigid, {{1.3, 1.74}}, moving({0, -0.1}, 0.2))};
+  scene.contacts = {rough(100, 0.4)};
+  return scene;
+}
+
 const std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
     {"friction_and_cohesion", friction_and_cohesion},
     {"bonds_and_servo", bonds_and_servo},
-    {"fast_blocks", fast_blocks}};
+    {"fast_blocks", fast_blocks},
+    {"own_images", own_images}};
 
 std::string saved(Simulation& simulation) {
   std::string bytes;

@@ -26,9 +26,9 @@ Samples by_contact(const Snapshot& snapshot, const Selection& selection) {
   return samples;
 }
 
-/// A body that touches itself is no pair.
+/// A body that touches itself is no pair; one that touches its periodic image is.
 bool is_selected(const Selection& selection, const TouchingPair& pair) {
-  if (pair.first == pair.second) return false;
+  if (pair.of_itself()) return false;
   return (selection.chosen[pair.first] && selection.partners[pair.second]) ||
          (selection.chosen[pair.second] && selection.partners[pair.first]);
 }
