@@ -10,9 +10,6 @@ namespace pliant {
 
 Dofs zero_dofs(const Model& model) { return Dofs(model.compliant_size, 3 * model.rigid_bodies.size()); }
 
-namespace {
-
-/// Padding lanes repeat the last body.
 void fill_padding(const Model& model, Dofs& q) {
   for (int b = 0; b < model.lane_batches; ++b) {
     const Batch& batch = model.batches[b];
@@ -20,8 +17,6 @@ void fill_padding(const Model& model, Dofs& q) {
       for (int lane = batch.count; lane < lane_count; ++lane) q.compliant[i][lane] = q.compliant[i][batch.count - 1];
   }
 }
-
-}  // namespace
 
 Dofs initial_positions(const Model& model) {
   Dofs q = zero_dofs(model);

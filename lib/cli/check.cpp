@@ -172,15 +172,24 @@ Stability stability(const Model& model) {
   return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
 }
 
-/// Fastest motion that the scene prescribes, m/s.
+/// Fastest motion of bodies against each other that the scene prescribes, m/s: what all do together uses up no skin.
+/// Walls that nothing drives rest at the start.
 double prescribed_speed(const Scene& scene) {
-  double fastest = 0;
-  for (const Grains& grains : scene.grains) fastest = std::max(fastest, grains.velocity.uniform.norm());
+  Vec2 least = Vec2::Constant(1e300), largest = -least;
+  const auto add = [&](int component, double v) {
+    least[component] = std::min(least[component], v), largest[component] = std::max(largest[component], v);
+  };
+  for (const Grains& grains : scene.grains)
+    for (int c = 0; c < 2; ++c) add(c, grains.velocity.uniform[c]);
   for (const Wall& wall : scene.walls)
-    for (const Drive* drive : {&wall.x, &wall.y})
-      if (drive->mode == Drive::Mode::velocity)
-        for (double v : drive->history.value) fastest = std::max(fastest, std::abs(v));
-  return fastest;
+    for (int c = 0; c < 2; ++c) {
+      const Drive& drive = c == 0 ? wall.x : wall.y;
+      if (drive.mode != Drive::Mode::velocity)
+        add(c, 0);
+      else
+        for (double v : drive.history.value) add(c, v);
+    }
+  return (largest - least).norm();
 }
 
 void print_time_step(const Scene& scene, const Stability& stable, double skin) {
@@ -193,8 +202,10 @@ void print_time_step(const Scene& scene, const Stability& stable, double skin) {
   if (!verlet) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
   const double speed = prescribed_speed(scene);
   if (speed * stable.dt > skin)
-    print_row("", fmt::format("bodies at {} use up the contact skin in {}: a larger [contact] skin allows longer steps",
-                              si(speed, "m/s"), si(skin / speed, "s")));
+    print_row(
+        "",
+        fmt::format("bodies that pass at {} use up the contact skin in {}: a larger [contact] skin allows longer steps",
+                    si(speed, "m/s"), si(skin / speed, "s")));
 }
 
 /// Evaluations of the whole run: counted, or those of the rehearsal and what its pace or the bound makes of the rest.

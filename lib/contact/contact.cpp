@@ -80,14 +80,29 @@ void ContactSystem::warn_of_missed_contacts(const Outlines& outlines) {
 bool ContactSystem::moved_by_the_skin(const Outlines& outlines) {
   const int bodies = static_cast<int>(model_.bodies.size());
   parallel_for(bodies, [&](int b) { motion_[b] = motion_box(model_.outlines[outlines.shape[b]], outlines, b); });
+  const Vec2 drift = common_motion();
   const double largest_own = parallel_max(bodies, 0, [&](int b) {
-    const Box& m = motion_[b];
-    return relative_motion(m, Box{0, 0, 0, 0});
+    Box own = motion_[b];
+    if (model_.bodies[b].wall) own.x_min = own.x_max = drift.x();
+    return relative_motion(own, Box{drift.x(), drift.x(), drift.y(), drift.y()});
   });
   const double largest_pair = parallel_max(static_cast<int>(pairs_.size()), 0, [&](int p) {
     return relative_motion(motion_[pairs_[p].first], motion_[pairs_[p].second]);
   });
   return largest_pair >= skin_ * skin_ || 4 * largest_own >= std::pow((1 + extra_skins) * skin_, 2);
+}
+
+/// Middle of all bodies' motions since the last refresh: only what they move against each other can bring pairs
+/// together that the broad phase left out. A wall lies in wait along all x, whatever its own motion in x.
+Vec2 ContactSystem::common_motion() const {
+  Box all{1e300, -1e300, 1e300, -1e300};
+  for (std::size_t b = 0; b < motion_.size(); ++b) {
+    const Box& m = motion_[b];
+    all.y_min = std::min(all.y_min, m.y_min), all.y_max = std::max(all.y_max, m.y_max);
+    if (model_.bodies[b].wall) continue;
+    all.x_min = std::min(all.x_min, m.x_min), all.x_max = std::max(all.x_max, m.x_max);
+  }
+  return 0.5 * Vec2(all.x_min + all.x_max, all.y_min + all.y_max);
 }
 
 void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock) {

@@ -70,6 +70,7 @@ class ContactSystem {
   };
 
   bool moved_by_the_skin(const Outlines& outlines);
+  Vec2 common_motion() const;
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const Outlines& outlines);
   void find_patches(const Outlines& outlines, const std::vector<Box>& boxes);

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
 
+#include "bodies/body_view.hpp"
 #include "bodies/damping_forces.hpp"
+#include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
@@ -22,6 +24,52 @@ constexpr double internal_margin = 1.05;
 constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.
 constexpr double probe_size = 1e-6;
+
+/// Where the power iterations start: of all bodies of a shape the same, turned as they are, whatever their place in the
+/// list. So neither a scene's order nor its orientation changes its steps.
+std::vector<Lanes> start_directions(const Model& model) {
+  int most_nodes = 0;
+  for (const CompliantShape& shape : model.shapes) most_nodes = std::max(most_nodes, shape.nodes());
+  std::mt19937_64 random(1);
+  Points own(static_cast<std::size_t>(most_nodes));
+  for (Vec2& d : own)
+    for (int c = 0; c < 2; ++c) d[c] = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  Dofs start = zero_dofs(model);
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    const BodyPlaces places(model, body);
+    const double c = std::cos(body.angle), s = std::sin(body.angle);
+    for (int i = 0; i < model.shape_of(body).nodes(); ++i)
+      set_node(places, static_cast<std::size_t>(i), {c * own[i].x() - s * own[i].y(), s * own[i].x() + c * own[i].y()},
+               start);
+  }
+  fill_padding(model, start);
+  return start.compliant;
+}
+
+/// Positions from the body's first node: rounding goes with a body's size then, not with how far it has come.
+std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
+  std::vector<Lanes> result(position, position + 2 * static_cast<std::size_t>(batch.slots));
+  for (std::size_t c = 0; c < 2; ++c) {
+    const Lanes first = batch.layout == Layout::spread ? broadcast(position[c][0]) : position[c];
+    for (std::size_t i = c; i < result.size(); i += 2) result[i] -= first;
+  }
+  return result;
+}
+
+/// Finite-difference step of each body in a batch, in its units.
+Lanes probe_step(const Model& model, const Batch& batch) {
+  return probe_size * (batch.layout == Layout::related ? model.related_shapes[batch.tables].nodal_distance[0]
+                                                       : broadcast(model.shape_of(batch).space.nodal_distance[0]));
+}
+
+/// Divides each body's vector by that of its largest node.
+void normalise(const Batch& batch, Lanes* u) {
+  Lanes square = broadcast(1e-300);
+  for (int i = 0; i < batch.slots; ++i) square = max(square, u[2 * i] * u[2 * i] + u[2 * i + 1] * u[2 * i + 1]);
+  const Lanes scale = sqrt(largest_of_body(batch, square));
+  for (int i = 0; i < 2 * batch.slots; ++i) u[i] /= scale;
+}
 
 /// sum over slots of a_i b_i w_i in each lane.
 template <class Weight>
@@ -61,10 +109,7 @@ double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, cons
 }  // namespace
 
 TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model) {
-  std::mt19937_64 random(1);
-  direction_.resize(model.compliant_size);
-  for (Lanes& d : direction_)
-    for (int lane = 0; lane < lane_count; ++lane) d[lane] = static_cast<double>(random() >> 11) * 0x1p-53 - 0.5;
+  direction_ = start_directions(model);
   internal_.assign(model.batches.size(), Lanes{});
   contact_.assign(model.bodies.size(), 0.0);
   for (const Body& body : model.bodies)
@@ -121,18 +166,14 @@ double TimeStepBound::contact_frequency(const Body& body, const double* stiffnes
 void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) {
   const Batch& batch = model_.batches[b];
   const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
+  const std::vector<Lanes> centred = from_first_node(batch, position);
   std::vector<Lanes> at_rest(size, Lanes{}), probe(size), response(size);
   Lanes* u = &direction_[batch.offset];
-  add_internal_forces(model_, batch, position, at_rest.data());
-  const double step = probe_size * model_.shape_of(batch).space.nodal_distance[0];
+  add_internal_forces(model_, batch, centred.data(), at_rest.data());
+  const Lanes step = probe_step(model_, batch);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Lanes scale = broadcast(1e-300);
-    for (std::size_t i = 0; i < size; ++i) scale = max(scale, abs(u[i]));
-    scale = largest_of_body(batch, scale);
-    for (std::size_t i = 0; i < size; ++i) {
-      u[i] /= scale;
-      probe[i] = position[i] + step * u[i];
-    }
+    normalise(batch, u);
+    for (std::size_t i = 0; i < size; ++i) probe[i] = centred[i] + step * u[i];
     std::fill(response.begin(), response.end(), Lanes{});
     add_internal_forces(model_, batch, probe.data(), response.data());
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
@@ -154,10 +195,7 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
   std::vector<Lanes> response(2 * static_cast<std::size_t>(batch.slots));
   Lanes* v = &viscous_direction_[batch.offset];
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    Lanes scale = broadcast(1e-300);
-    for (std::size_t i = 0; i < response.size(); ++i) scale = max(scale, abs(v[i]));
-    scale = largest_of_body(batch, scale);
-    for (std::size_t i = 0; i < response.size(); ++i) v[i] /= scale;
+    normalise(batch, v);
     std::fill(response.begin(), response.end(), Lanes{});
     add_viscous_forces(model_, batch, position, v, response.data());
     if (model_.corrected_mass) response = corrected(model_, batch, response);

@@ -99,6 +99,13 @@ def test_fast_bodies_are_told_about_the_skin(desk) -> None:
     assert "skin allows" not in checked(desk, BLOCK)["time step"]
 
 
+def test_a_drift_uses_up_no_skin(desk) -> None:
+    alone = TWO_DISCS.replace('["20 m/s", "0 m/s"]', '["90 km/s", "-50 km/s"]')
+    both = alone.replace('"0.1 um"]] }', '"0.1 um"]] }\nvelocity = { uniform = ["90 km/s", "-50 km/s"] }')
+    assert "contact skin" in checked(desk, alone)["time step"]
+    assert "contact skin" not in checked(desk, both)["time step"]
+
+
 def test_forecast_agrees_with_a_run(desk) -> None:
     rows = checked(desk, TWO_DISCS)
     assert desk.run("--out", "out", "--threads", "1", "--quiet").returncode == 0

@@ -1,0 +1,92 @@
+// Candidates stay good until the next refresh, however bodies move together and against each other.
+#include <gtest/gtest.h>
+
+#include "support/contact_rig.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+/// How two rows of small bodies move, each step: both by `drift`, the upper one along the lower by `slide`, and down
+/// from `height` by `fall` until they touch.
+struct Course {
+  Vec2 drift{0, 0};
+  double slide = 0, height = 0.39, fall = 0;
+
+  Vec2 at(int body, int step) const {
+    const Vec2 lower = Vec2(0.43 * (body / 2), 0.2) + step * drift;
+    return body % 2 == 0 ? lower : Vec2(lower + Vec2(step * slide, std::max(0.39, height - step * fall)));
+  }
+};
+
+/// On a floor that drifts in y as they do, or on none.
+Scene two_rows(Random& random, const Course& course, bool floor) {
+  Scene scene = bare_scene();
+  scene.contacts = {frictionless(100)};
+  for (int i = 0; i < 12; ++i)
+    add_body(scene, outline_shape("", regular(8 + random.below(8), 0.2, random.uniform(0, 1))), BodyKind::rigid,
+             course.at(i, 0));
+  if (floor) {
+    scene.period = 3;
+    scene.walls = {flat_wall("floor", Wall::Solid::below, 0.005, 0.15, true)};
+  }
+  return scene;
+}
+
+struct Seen {
+  int evaluations = 0, refreshes = 0, contacts = 0;
+};
+
+/// INDEPENDENT: candidates found just now give the same forces as those found before.
+Seen watch(int sample, const Course& course) {
+  Random random(sample + 400);
+  const bool floor = sample % 2 == 0;
+  const Scene scene = two_rows(random, course, floor);
+  ContactRig rig(scene), fresh(scene);
+  Points before;
+  for (int body = 0; body < 12; ++body) before.push_back(course.at(body, 0));
+  Seen seen;
+  for (int step = 1; step <= 40; ++step) {
+    for (int body = 0; body < 12; ++body) {
+      const Vec2 to = course.at(body, step) + Vec2(random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004));
+      rig.move(body, to - before[body]), fresh.move(body, to - before[body]);
+      before[body] = to;
+    }
+    if (floor) rig.move(12, {0, course.drift.y()}), fresh.move(12, {0, course.drift.y()});
+    ++seen.evaluations, seen.refreshes += rig.evaluate();
+    fresh.refresh(), fresh.evaluate();
+    seen.contacts += rig.totals.contacts;
+    EXPECT_LT(rig.totals.deepest, 1);
+    EXPECT_EQ(rig.totals.contacts, fresh.totals.contacts);
+    for (int body = 0; body < static_cast<int>(rig.model.bodies.size()); ++body)
+      EXPECT_LT((rig.force(body) - fresh.force(body)).norm(), 1e-12) << "orders of sums may differ";
+  }
+  return seen;
+}
+
+TEST(Refresh, misses_no_contact_whatever_moves) {
+  for (const Vec2& drift : {Vec2(0, 0), Vec2(0.5, -0.3)})
+    for (const Course& course :
+         {Course{drift}, Course{drift, 0.04}, Course{drift, 0, 3, 0.1}, Course{drift, -0.1, 1, 0.03}}) {
+      int contacts = 0;
+      for (int sample = 0; sample < 10; ++sample) contacts += watch(sample, course).contacts;
+      EXPECT_GT(contacts, 100);
+    }
+}
+
+/// EXACT: only what bodies do against each other asks for a refresh; a wall's motion along itself is none against what
+/// is far.
+TEST(Refresh, does_not_see_a_drift) {
+  int refreshes = 0, evaluations = 0;
+  for (int sample = 1; sample < 20; sample += 2)
+    for (const double slide : {0.0, 0.01}) {
+      const Seen still = watch(sample, {{0, 0}, slide}), drifting = watch(sample, {{5, -3}, slide});
+      EXPECT_EQ(drifting.refreshes, still.refreshes);
+      refreshes += still.refreshes, evaluations += still.evaluations;
+    }
+  EXPECT_LT(refreshes, evaluations / 2) << "or there is nothing to see";
+}
+
+}  // namespace
+}  // namespace pliant

@@ -1,0 +1,141 @@
+// The same motion seen from elsewhere takes the same steps: bodies listed in another order, all of it in uniform
+// motion, all of it turned.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "support/random.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+constexpr int columns = 5, rows = 4;
+
+/// How a scene is told.
+struct Telling {
+  std::vector<int> order;  ///< of the grains; empty: as they are
+  Vec2 drift{0, 0};        ///< m/s
+  int quarters = 0;        ///< turns by 90 degrees, about the origin
+
+  Vec2 turned(Vec2 x) const {
+    for (int i = 0; i < quarters; ++i) x = Vec2(-x.y(), x.x());
+    return x;
+  }
+};
+
+/// A cloud of compliant and rigid grains of two sizes that falls in upon itself with gravity aside.
+Scene cloud(const Telling& telling) {
+  testing::Random random(4);
+  Scene scene = empty_scene(5);
+  scene.gravity = telling.turned({0, -0.02});
+  scene.materials[0].viscosity = 0.002;
+  scene.shapes = {disc_shape("disc", 1, 60), disc_shape("small", 0.9, 40)};
+  std::vector<Grains> all;
+  for (int i = 0; i < columns; ++i)
+    for (int j = 0; j < rows; ++j) {
+      const Vec2 at(1.03 * i + 0.2 * (j % 2) + random.uniform(0, 0.03), 1.01 * j + random.uniform(0, 0.02));
+      const Vec2 inward = -0.05 * Vec2(i - 0.5 * (columns - 1), j - 0.5 * (rows - 1));
+      const Vec2 velocity = inward + Vec2(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+      const std::string name = "g" + std::to_string(all.size());
+      all.push_back(grains(name, i % 2 == 0 ? "disc" : "small",
+                           (i + j) % 2 == 0 ? BodyKind::compliant : BodyKind::rigid, {telling.turned(at)},
+                           moving(telling.turned(velocity) + telling.drift)));
+      all.back().angle = random.uniform(0, 6) + telling.quarters * M_PI / 2;
+    }
+  if (telling.order.empty()) scene.grains = all;
+  for (const int i : telling.order) scene.grains.push_back(all[static_cast<std::size_t>(i)]);
+  scene.contacts = {contact_rule(ContactLawKind::mohr_coulomb, 0, 0.3)};
+  scene.contacts[0].stiffness.reset();
+  return scene;
+}
+
+struct End {
+  std::int64_t steps = 0, rejections = 0;
+  long refreshes = 0;
+  int contacts = 0;
+  std::vector<Points> outlines;  ///< of the grains in their own order, back where the plain telling has them
+};
+
+End run(const Telling& telling, Integrator integrator) {
+  Scene scene = cloud(telling);
+  scene.time.integrator = integrator;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  End end;
+  while (simulation.state().time < scene.time.end)
+    end.contacts = std::max(end.contacts, simulation.step(scene.time.end).evaluation.contact.contacts);
+  end.steps = simulation.state().steps, end.rejections = simulation.state().rejections;
+  end.refreshes = simulation.forces().contact().refreshes();
+  end.outlines.resize(model.bodies.size());
+  const Telling back{{}, {0, 0}, (4 - telling.quarters) % 4};
+  const Outlines& o = simulation.forces().outlines();
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    for (int i = o.offset[b]; i < o.offset[b] + model.outlines[o.shape[b]].count; ++i)
+      end.outlines[telling.order.empty() ? b : static_cast<std::size_t>(telling.order[b])].push_back(
+          back.turned(Vec2(o.x[i], o.y[i]) - scene.time.end * telling.drift));
+  return end;
+}
+
+double largest_difference(const End& a, const End& b) {
+  double largest = 0;
+  for (std::size_t body = 0; body < a.outlines.size(); ++body)
+    for (std::size_t i = 0; i < a.outlines[body].size(); ++i)
+      largest = std::max(largest, (a.outlines[body][i] - b.outlines[body][i]).norm());
+  return largest;
+}
+
+/// Each step rounds positions as far out as `reach` by 2^-52 of it at most; and the step's bound comes from finite
+/// differences over 1e-6 of the nodal distance, 0.1, which rounding of positions within a body changes by 1e-9, and so
+/// the steps, and the integration's error of less than 1e-3, by 1e-12.
+double tolerance(const End& end, double reach) {
+  return static_cast<double>(end.steps) * reach * std::numeric_limits<double>::epsilon() + 1e-12;
+}
+
+class Invariance : public ::testing::TestWithParam<Integrator> {};
+
+TEST_P(Invariance, same_steps_and_motion) {
+  const End plain = run({}, GetParam());
+  EXPECT_GT(plain.contacts, 20);
+  Telling permuted, moving{{}, {500, -490}}, turned{{}, {0, 0}, 1}, all{{}, {0, 700}, 3};
+  permuted.order.resize(columns * rows);
+  std::iota(permuted.order.begin(), permuted.order.end(), 0);
+  testing::Random random(9);
+  for (int i = columns * rows - 1; i > 0; --i) std::swap(permuted.order[i], permuted.order[random.below(i + 1)]);
+  all.order = permuted.order;
+  const std::pair<const char*, Telling> tellings[] = {
+      {"permuted", permuted}, {"moving", moving}, {"turned", turned}, {"all", all}};
+  for (const auto& [name, telling] : tellings) {
+    SCOPED_TRACE(name);
+    const End end = run(telling, GetParam());
+    EXPECT_EQ(end.steps, plain.steps) << "EXACT";
+    EXPECT_EQ(end.rejections, plain.rejections) << "EXACT";
+    EXPECT_EQ(end.refreshes, plain.refreshes) << "EXACT";
+    const double bound = tolerance(plain, 10 + 5 * telling.drift.norm()), difference = largest_difference(end, plain);
+    EXPECT_LT(difference, bound) << "EXACT: rounding";
+    RecordProperty(name, std::to_string(difference / bound));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Invariance, ::testing::Values(Integrator::verlet, Integrator::step_doubling));
+
+/// EXACT: a periodic layer and its walls, all in motion along the period.
+TEST(Invariance, a_moving_layer_takes_the_same_steps) {
+  const auto run = [](double drift) {
+    Scene scene = small_third_body(1);
+    scene.grains[0].velocity.uniform.x() = drift;
+    for (Wall& wall : scene.walls) wall.x = {Drive::Mode::velocity, {{0}, {drift}}};
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    advance(simulation, 1);
+    return simulation.state();
+  };
+  const State plain = run(0), moved = run(700);
+  EXPECT_EQ(moved.steps, plain.steps);
+  EXPECT_EQ(moved.rejections, plain.rejections);
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests
