@@ -9,6 +9,7 @@
 #include "core/located.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
+#include "geometry/mix_in_turn.hpp"
 #include "geometry/placement.hpp"
 
 namespace pliant {
@@ -20,11 +21,22 @@ int index_of_material(const Scene& scene, const std::string& name) {
   throw InputError(fmt::format("{}: unknown material '{}'", scene.file.string(), name));
 }
 
-/// Entry of the mix that each grain gets: exact shares (largest remainder), randomly placed.
+void require_all(const Grains& grains, const std::vector<int>& choice) {
+  for (std::size_t m = 0; m < grains.mix.size(); ++m)
+    if (std::find(choice.begin(), choice.end(), static_cast<int>(m)) == choice.end())
+      throw InputError(fmt::format(
+          "mix: a share of {} of {} grains is less than one of '{}'; take more grains, or leave that entry out",
+          grains.mix[m].share, choice.size(), grains.mix[m].material));
+}
+
+/// Entry of the mix that each grain gets, [grains]. Throws InputError when one of them gets no grain.
 std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
   std::vector<double> shares;
   for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);
-  return assign_shares(shares, count, random);
+  const std::vector<int> choice = grains.mix_order == MixOrder::in_turn ? mix_in_turn(shares, grains.packing)
+                                                                        : assign_shares(shares, count, random);
+  located(grains.where, [&] { require_all(grains, choice); });
+  return choice;
 }
 
 void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {

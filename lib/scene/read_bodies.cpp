@@ -40,6 +40,24 @@ std::vector<MixEntry> read_mix(TableReader& table, const Scene& scene) {
   return mix;
 }
 
+bool fills_a_region(const Packing& packing) {
+  return packing.kind == PackingKind::random || packing.kind == PackingKind::fourier_voronoi;
+}
+
+void read_mix_order(TableReader& table, Grains& grains) {
+  const Choice<MixOrder> orders{{{"random", MixOrder::random}, {"in turn", MixOrder::in_turn}}};
+  if (!table.has("mix")) {
+    if (table.has("mix_order")) table.fail("mix_order", "there is no 'mix' to be put in an order; remove it");
+    return;
+  }
+  table.optional("mix_order", grains.mix_order, orders);
+  if (grains.mix_order == MixOrder::in_turn && fills_a_region(grains.packing)) {
+    table.fail("mix_order",
+               "this packing puts its grains at random places, which have no order; allowed: \"random\" here, "
+               "\"in turn\" with packings \"hexagonal\", \"grid\" and \"positions\"");
+  }
+}
+
 InitialVelocity read_velocity(TableReader table, const Grains& grains) {
   InitialVelocity velocity;
   table.optional("uniform", velocity.uniform, Vector{"m/s"});
@@ -53,13 +71,15 @@ InitialVelocity read_velocity(TableReader table, const Grains& grains) {
 
 void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
   const bool sizes = grains.size.kind != SizeDistribution::Kind::list || grains.size.factors.size() > 1;
-  const bool filled = grains.packing.kind == PackingKind::random || grains.packing.kind == PackingKind::fourier_voronoi;
+  const bool mixed = grains.mix.size() > 1 && grains.mix_order == MixOrder::random;
   const bool random =
-      grains.mix.size() > 1 || !grains.angle || sizes || filled || scene.shape_shares(grains).size() > 1;
+      mixed || !grains.angle || sizes || fills_a_region(grains.packing) || scene.shape_shares(grains).size() > 1;
   const Integer seed{0, std::numeric_limits<std::int64_t>::max()};
   if (random) table.required("seed", grains.seed, seed);
   if (!random && table.has("seed"))
-    table.fail("seed", "nothing is random here; remove it (a mix, shapes, sizes, a packing or a random angle use it)");
+    table.fail("seed",
+               "nothing is random here; remove it (a mix in random order, shapes, sizes, a packing or a random "
+               "angle use it)");
 }
 
 void read_angle(TableReader& table, Grains& grains) {
@@ -159,6 +179,7 @@ Grains read_grains(TableReader table, const Scene& scene) {
   if (table.has("size")) grains.size = read_size(table.required_table("size"));
   grains.packing = read_packing(table.required_table("packing"), scene, grains);
   grains.mix = read_mix(table, scene);
+  read_mix_order(table, grains);
   read_angle(table, grains);
   read_seed(table, scene, grains);
   if (table.has("velocity")) grains.velocity = read_velocity(table.required_table("velocity"), grains);

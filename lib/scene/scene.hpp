@@ -104,6 +104,12 @@ struct MixEntry {
   double share = 1;  ///< shares of a mix sum to 1
 };
 
+/// How grains get their entries of a mix.
+enum class MixOrder {
+  random,
+  in_turn,  ///< up each column of a lattice, column after column; given positions as listed
+};
+
 /// v(r) = uniform + rotation x r + gradient r, r from the body's own centre.
 struct InitialVelocity {
   Vec2 uniform{0, 0};                                  ///< m/s
@@ -118,6 +124,7 @@ struct Grains {
   SizeDistribution size;
   Packing packing;
   std::vector<MixEntry> mix;  ///< one entry when the scene gives `body` and `material` directly
+  MixOrder mix_order = MixOrder::random;
   std::uint64_t seed = 0;
   std::optional<double> angle = 0.0;  ///< rad; nullopt: each grain turned by a random angle
   InitialVelocity velocity;

@@ -104,6 +104,21 @@ TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
   EXPECT_LT(tangent_error(system, motion, false, 1e-3), 1e-9);
 }
 
+TEST(ReferenceSystem, kinds_in_turn_are_those_of_the_engine) {
+  Scene scene = small_third_body(1);
+  scene.grains[0].mix_order = MixOrder::in_turn;
+  const Model model = build_model(scene);
+  const reference::Bodies bodies(scene);
+  // EXACT: up each of three columns of four, whose grains are numbered along rows.
+  ASSERT_EQ(bodies.all().size(), 14U);
+  for (std::size_t i = 0; i < 12; ++i) {
+    const PlacedBody& body = bodies.all()[i].placed;
+    EXPECT_EQ(body.kind, i / 3 % 2 == 0 ? BodyKind::compliant : BodyKind::rigid) << body.name;
+    EXPECT_EQ(model.bodies[i].kind, body.kind) << body.name;
+    EXPECT_EQ(model.bodies[i].angle, body.angle) << body.name;
+  }
+}
+
 TEST(ReferenceSystem, sums_of_masses) {
   Scene scene = small_third_body(1);
   scene.grains[0].size = {.kind = SizeDistribution::Kind::uniform, .low = 0.8, .high = 1};

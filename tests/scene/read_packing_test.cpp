@@ -58,6 +58,14 @@ TEST(ReadPacking, SeveralShapes) {
   EXPECT_EQ(shares, expected);
 }
 
+TEST(ReadPacking, OrderOfAMix) {
+  EXPECT_EQ(changed({}).grains[0].mix_order, MixOrder::random);
+  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nmix_order = \"random\""}}).grains[0].mix_order, MixOrder::random);
+  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nmix_order = \"in turn\""}}).grains[0].mix_order, MixOrder::in_turn);
+  const Scene unseeded = changed({{"angle = \"random\"\nseed = 7", "mix_order = \"in turn\""}});
+  EXPECT_EQ(unseeded.grains[0].mix_order, MixOrder::in_turn) << "nothing is random, so no seed is needed";
+}
+
 TEST(ReadPacking, FittedShapesKeepTheirDescriptors) {
   const Scene scene =
       changed({{disc, pebble + "\nvariants = \"each\""},
