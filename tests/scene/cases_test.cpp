@@ -42,9 +42,18 @@ TEST(Cases, ThirdBodyIsThatOfTheMethod) {
   EXPECT_FALSE(scene.grains[0].angle);
   EXPECT_EQ(scene.shapes[0].nodes, 168);
   ASSERT_EQ(scene.contacts.size(), 1u);
-  EXPECT_EQ(scene.contacts[0].strength, 200e6);
   EXPECT_FALSE(scene.contacts[0].stiffness);
   EXPECT_FALSE(scene.contacts[0].range);
+}
+
+TEST(Cases, GrainsOfTheThirdBodyAreTakenInTurnAndHold400MPa) {
+  // EXACT: METHOD 8.
+  for (const char* file : {"third_body.toml", "third_body_mini.toml"}) {
+    const Scene scene = read_scene(cases / file);
+    EXPECT_EQ(scene.grains[0].mix_order, MixOrder::in_turn) << file;
+    EXPECT_EQ(scene.grains[0].mix[0].body, BodyKind::compliant) << file;
+    EXPECT_EQ(scene.contacts[0].strength, 400e6) << file;
+  }
 }
 
 TEST(Cases, CapsOfTheThirdBodyContinueTheLattice) {
