@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "core/vec2.hpp"
@@ -14,7 +15,16 @@ struct OutlineShape {
   double spacing = 0;     ///< mean segment length, m
   Points points;          ///< [count], reference coordinates about the centroid (walls: about the line's start)
   std::vector<double> tributary_length;  ///< [count + lane_count], half of the two adjacent segments, m
+  std::vector<double> segment_length;    ///< [count], from each node to the next, m
+  double longest = 0;                    ///< of them, m
+
+  /// Nodes at which the outline turns to the left by more than `corner_turn`: where two faces meet.
+  std::vector<bool> corner;  ///< [count]; empty: there is none
+  bool has_corners() const { return !corner.empty(); }
 };
+
+/// Rounded outlines turn by less from segment to segment; less turned faces push and slide as one.
+constexpr double corner_turn = 35 * std::numbers::pi / 180;
 
 OutlineShape make_outline_shape(const Points& points, double turn_shift);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/facing.hpp"
 #include "contact/self_contact.hpp"
 #include "core/lanes.hpp"
 
@@ -145,10 +146,17 @@ Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
   return select(height < 0.0, -distance, distance);
 }
 
+/// How far to look, m.
+struct Margins {
+  double reach;  ///< of the law, and a skin
+  double skin;
+  double sight;  ///< beyond the nearest segment, for corners: from a foot to a corner, and below the face beyond it
+};
+
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to a depth of the skin, one
 /// inside a skin deeper; to find which face is nearest then, all within two skins of the present reach must be known.
-void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window, int first_segment, double margin,
-            double skin, Arc& nodes, Arc& segments) {
+void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window, int first_segment,
+            const Margins& margins, Arc& nodes, Arc& segments) {
   Span near_nodes, near_segments;
   const int n = slave.shape->count;
   for (int i = 0; i < candidates.count; i += lane_count) {
@@ -159,12 +167,13 @@ void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window
       const Lanes distance = signed_distance(window[row], px, py);
       nearest = select(abs(distance) <= abs(nearest), distance, nearest);
     }
-    const Lanes limit = select(nearest < 0.0, broadcast(std::max(margin, window.depth() + skin)), broadcast(margin));
+    const Lanes limit = select(nearest < 0.0, broadcast(std::max(margins.reach, window.depth() + margins.skin)),
+                               broadcast(margins.reach));
     const LaneBits chosen = first_lanes(candidates.count - i) & (abs(nearest) <= limit);
     if (!any(chosen)) continue;
     for (int lane = 0; lane < lane_count; ++lane)
       if (chosen[lane]) near_nodes.add(i + lane);
-    const Lanes reach = max(-nearest, broadcast(margin)) + 2 * skin;
+    const Lanes reach = max(-nearest, broadcast(margins.reach)) + (2 * margins.skin + margins.sight);
     for (int row = 0; row < window.count(); ++row)
       if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(row);
   }
@@ -188,17 +197,18 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   Box box_b = boxes[patch.second];
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
-  const double depth = std::max(sides[0].longest_segment, sides[1].longest_segment) + 2 * skin;
-  find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch, std::max(margin, depth) + 2 * skin,
-                  rough);
+  const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
+  const Margins margins{margin, skin,
+                        patch.corners ? corner_sight(*sides[0].shape, *sides[1].shape) + longest + skin : 0.0};
+  find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch,
+                  std::max(margin, longest + 2 * skin) + 2 * skin + margins.sight, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return;
   const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
     const Side& master = sides[1 - slave];
     const Arc segments = segments_at(master, rough[1 - slave], two_walls);
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
-    narrow(sides[slave], rough[slave], scratch, segments.begin, margin, skin, patch.nodes[slave],
-           patch.segments[1 - slave]);
+    narrow(sides[slave], rough[slave], scratch, segments.begin, margins, patch.nodes[slave], patch.segments[1 - slave]);
     // Walls meet along the whole period: one image of each node is enough. A body as wide as the period may stand on
     // two.
     if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
@@ -219,7 +229,7 @@ void find_self_patches(const Model& model, const Outlines& outlines, int body, c
     patch.first = patch.second = body;
     patch.part = begin;
     patch.law = law;
-    narrow(side, nodes, scratch, segments.begin, margin, skin, patch.nodes[0], patch.segments[1]);
+    narrow(side, nodes, scratch, segments.begin, {margin, skin, 0}, patch.nodes[0], patch.segments[1]);
     if (patch.nodes[0].count > 0) patches.push_back(patch);
   }
 }

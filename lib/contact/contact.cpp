@@ -136,6 +136,7 @@ void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box
     Patch& patch = found[p];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
+    patch.corners = has_corners(pair.first) || has_corners(pair.second);
     find_arcs(model_, outlines, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
   });
   patches_.clear();

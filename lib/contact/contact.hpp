@@ -78,6 +78,7 @@ class ContactSystem {
   void refuse_self_overlap(const Outlines& outlines) const;
   void measure_lengths(Outlines& outlines) const;
   void lay_out_patches();
+  bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
   /// Calls add(node, entry) for every entry of a body's arcs in the force buffers, in a fixed order.
   template <class Add>

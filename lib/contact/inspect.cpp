@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "contact/pass.hpp"
+#include "contact/facing.hpp"
 #include "contact/response.hpp"
 
 namespace pliant {
@@ -25,8 +25,8 @@ std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outl
                                         const ContactHistory& committed) {
   std::vector<ContactPoint> points;
   MasterWindow window;
-  const auto add_points = [&](const auto& law, const Pass& pass, int side, int i, const SlaveNodes& nodes,
-                              const Projection& p) {
+  const auto add_points = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
+    const Projection& p = at.p;
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     Lanes damage = broadcast(none);
     const Contact c = answer(law, window, p, touching, committed, pass.record + i, damage);
@@ -35,14 +35,13 @@ std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outl
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
       points.push_back({side == 0 ? patch.first : patch.second, side == 0 ? patch.second : patch.first,
                         index - turn_of(index, count) * count, p.gap[lane], c.slip[lane], c.pressure[lane],
-                        c.shear[lane], damage[lane], nodes.tributary_length[lane],
-                        Vec2(p.normal_x[lane], p.normal_y[lane]), side});
+                        c.shear[lane], damage[lane], at.length[lane], Vec2(p.normal_x[lane], p.normal_y[lane]), side});
     }
   };
   std::visit(
       [&](const auto& law) {
-        for_each_projection(model, outlines, patch, skin, law.reach + skin, window,
-                            [&](const auto&... found) { add_points(law, found...); });
+        for_each_facing(model, outlines, patch, skin, law.reach + skin, window,
+                        [&](const auto&... found) { add_points(law, found...); });
       },
       patch.law);
   return points;

@@ -29,7 +29,11 @@ class MasterWindow {
   double longest() const { return longest_; }  ///< segment, m
   double depth() const { return depth_; }      ///< of the contact box below each segment, m
   int outline_count() const { return outline_count_; }
-  /// Numbers of the segments in their outline, in [0, outline_count()).
+  /// Number of a row's segment in its outline, in [0, outline_count()).
+  int number(int row) const {
+    return first_number_ + row - turn_of(first_number_ + row, outline_count_) * outline_count_;
+  }
+  /// The same of eight rows.
   Lanes numbers(Lanes rows) const {
     const double n = outline_count_;
     const Lanes number = first_number_ + rows;

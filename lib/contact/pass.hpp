@@ -4,13 +4,12 @@
 
 #include "bodies/model.hpp"
 #include "contact/patch_forces.hpp"
-#include "contact/projection.hpp"
 
 namespace pliant {
 
 /// One pass: the slave's nodes and the buffers of both sides.
 struct Pass {
-  const OutlineShape* slave;
+  const OutlineShape *slave, *master;
   const double* slave_x;
   const double* slave_y;
   Arc nodes;
@@ -19,6 +18,8 @@ struct Pass {
   int slave_force;                 ///< buffer entry of the first node
   int master_force;                ///< buffer entry of the window's first row
   const double* tributary_length;  ///< [nodes] of the slave, m
+  bool present_lengths;            ///< as the slave's outline is now
+  bool corners;                    ///< of either outline
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
@@ -39,10 +40,12 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
 
 /// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
 inline Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch, int slave_side) {
-  const int slave = slave_side == 0 ? patch.first : patch.second;
+  const int slave = slave_side == 0 ? patch.first : patch.second, master = slave_side == 0 ? patch.second : patch.first;
   const double shift = patch.images * model.scene.period.value_or(0);
   const int offset = outlines.offset[slave], master_side = 1 - slave_side;
+  const bool present_lengths = !outlines.tributary_length.empty();
   return {&model.outlines[outlines.shape[slave]],
+          &model.outlines[outlines.shape[master]],
           &outlines.x[offset],
           &outlines.y[offset],
           patch.nodes[slave_side],
@@ -50,8 +53,10 @@ inline Pass make_pass(const Model& model, const Outlines& outlines, const Patch&
           patch.record[slave_side],
           patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
           patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
-          outlines.tributary_length.empty() ? model.outlines[outlines.shape[slave]].tributary_length.data()
-                                            : &outlines.tributary_length[offset]};
+          present_lengths ? &outlines.tributary_length[offset]
+                          : model.outlines[outlines.shape[slave]].tributary_length.data(),
+          present_lengths,
+          patch.corners};
 }
 
 inline void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side, double skin,
@@ -67,23 +72,6 @@ inline void clear_forces(const Patch& patch, PatchForces& forces) {
   for (int side = 0; side < 2; ++side) {
     std::fill_n(forces.x.begin() + patch.force[side], patch.forces(side).count, 0.0);
     std::fill_n(forces.y.begin() + patch.force[side], patch.forces(side).count, 0.0);
-  }
-}
-
-/// Calls visit(pass, slave side, i, nodes, projection) for each eight slave nodes, from position i on, of which some stand beside the master, at
-/// most `outward` off.
-template <class Visit>
-void for_each_projection(const Model& model, const Outlines& outlines, const Patch& patch, double skin, double outward,
-                         MasterWindow& scratch, Visit&& visit) {
-  for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    for (int i = 0; i < pass.nodes.count; i += lane_count) {
-      const SlaveNodes nodes = load_slaves(pass, i);
-      if (const Projection p = project(scratch, nodes.x, nodes.y, outward); any(p.hit))
-        visit(pass, slave_side, i, nodes, p);
-    }
   }
 }
 

@@ -9,6 +9,7 @@ namespace pliant {
 struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }
+  Arc with_neighbours() const { return count == 0 ? *this : Arc{begin - 1, count + 2}; }
 };
 
 /// Two bodies, or a body and its own periodic image, that may touch before the next refresh, and the parts of their
@@ -18,6 +19,7 @@ struct Patch {
   int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
   int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
+  bool corners = false;       ///< of either outline: see facing.hpp
   ContactLaw law;
   Arc nodes[2];            ///< that may touch the other body; no node twice, but images of a wall's
   Arc segments[2];         ///< that the other's nodes may touch
@@ -30,13 +32,14 @@ struct Patch {
   /// All but the law, which follows from the bodies.
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part);
+    visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part),
+        visitor("corners", corners);
     visitor("nodes", nodes), visitor("segments", segments), visitor("record", record), visitor("force", force);
   }
 
   /// Outline nodes that this patch puts forces on.
   Arc forces(int side) const {
-    const Arc &n = nodes[side], &s = segments[side];
+    const Arc &s = segments[side], n = corners ? nodes[side].with_neighbours() : nodes[side];
     if (s.count == 0) return n;
     if (n.count == 0) return {s.begin, s.count + 1};
     const int begin = n.begin < s.begin ? n.begin : s.begin, end = n.end() > s.end() + 1 ? n.end() : s.end() + 1;

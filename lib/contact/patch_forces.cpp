@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/pass.hpp"
+#include "contact/facing.hpp"
 #include "contact/patch_survey.hpp"
 #include "contact/response.hpp"
 
@@ -24,6 +24,27 @@ void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, La
     const int lane = std::countr_zero(left), at = base + static_cast<int>(row[lane]);
     forces.x[at] += reaction[0][lane], forces.y[at] += reaction[1][lane];
     forces.x[at + 1] += reaction[2][lane], forces.y[at + 1] += reaction[3][lane];
+  }
+}
+
+/// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the length.
+void add_length_forces(const Pass& pass, const Facing& facing, unsigned touching, int i, Lanes energy,
+                       PatchForces& forces) {
+  for (unsigned left = facing.varying & touching; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left), slave = pass.slave_force + i + lane,
+              master = pass.master_force + static_cast<int>(facing.p.row[lane]);
+    const int* corner = facing.corner_row[lane];
+    const int at[Facing::nodes] = {slave - 1,
+                                   slave,
+                                   slave + 1,
+                                   master,
+                                   master + 1,
+                                   pass.master_force + std::max(0, corner[0]),
+                                   pass.master_force + std::max(0, corner[1])};
+    for (int node = 0; node < Facing::nodes; ++node) {
+      const Vec2 force = -0.5 * energy[lane] * facing.gradient[lane][node];
+      forces.x[at[node]] += force.x(), forces.y[at[node]] += force.y();
+    }
   }
 }
 
@@ -84,10 +105,10 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
   const double outward = law.reach + (Law::has_shear ? skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
-    const SlaveNodes nodes = load_slaves(pass, i);
     const LaneBits active = first_lanes(pass.nodes.count - i);
-    const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
-    const Projection p = project(window, nodes.x, nodes.y, outward);
+    const Facing facing = face(pass, window, load_slaves(pass, i), i, outward);
+    const Projection& p = facing.p;
+    const Lanes half_length = select(active, 0.5 * facing.length, Lanes{});
     const Lanes old_place = load(&committed.place[record]), old_slip = load(&committed.slip[record]);
     if (!any(p.hit)) {
       totals.dissipated += half_length * release(law, pass, i, old_slip, committed, trial);
@@ -121,6 +142,8 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
     add_reaction(p, touching, fx, fy, couple, pass.master_force, forces);
     add(&forces.x[pass.slave_force + i], fx);
     add(&forces.y[pass.slave_force + i], fy);
+    if (facing.varying != 0) [[unlikely]]
+      add_length_forces(pass, facing, bits(touching), i, c.energy, forces);
     totals.contacts += std::popcount(bits(touching));
   }
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/pass.hpp"
+#include "contact/facing.hpp"
 #include "contact/slip.hpp"
 
 namespace pliant {
@@ -10,43 +10,44 @@ namespace pliant {
 double touching_length(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
                        MasterWindow& scratch) {
   Lanes length{};
-  for_each_projection(model, outlines, patch, skin, 0, scratch,
-                      [&](const Pass& pass, int, int i, const SlaveNodes& nodes, const Projection& p) {
-                        const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0);
-                        length += select(touching, 0.5 * nodes.tributary_length, Lanes{});
-                      });
+  for_each_facing(model, outlines, patch, skin, 0, scratch, [&](const Pass& pass, int, int i, const Facing& at) {
+    const LaneBits touching = first_lanes(pass.nodes.count - i) & at.p.hit & (at.p.gap < 0.0);
+    length += select(touching, 0.5 * at.length, Lanes{});
+  });
   return sum(length);
 }
 
 void locate_newcomers(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
                       ContactHistory& history, MasterWindow& scratch) {
   if (!std::visit([](const auto& l) { return l.has_shear; }, patch.law)) return;
-  for_each_projection(model, outlines, patch, skin, reach_of(patch.law) + skin, scratch,
-                      [&](const Pass& pass, int, int i, const SlaveNodes&, const Projection& p) {
-                        double* place = &history.place[pass.record + i];
-                        const Lanes old = load(place);
-                        store(place, select(p.hit & (old != old), place_of(p), old));
-                      });
+  for_each_facing(model, outlines, patch, skin, reach_of(patch.law) + skin, scratch,
+                  [&](const Pass& pass, int, int i, const Facing& at) {
+                    const Projection& p = at.p;
+                    double* place = &history.place[pass.record + i];
+                    const Lanes old = load(place);
+                    store(place, select(p.hit & (old != old), place_of(p), old));
+                  });
 }
 
 void make_bonds(const Model& model, const Outlines& outlines, const Patch& patch, double skin, ContactHistory& history,
                 MasterWindow& scratch) {
   const CohesiveFatigue* law = std::get_if<CohesiveFatigue>(&patch.law);
   if (!law) return;
-  for_each_projection(model, outlines, patch, skin, law->bond_gap, scratch,
-                      [&](const Pass& pass, int, int i, const SlaveNodes&, const Projection& p) {
-                        const LaneBits near = first_lanes(pass.nodes.count - i) & p.hit & (p.gap <= law->bond_gap);
-                        store(&history.damage[pass.record + i], select(near, Lanes{}, broadcast(1)));
-                        store(&history.opening[pass.record + i], select(near, max(p.gap, Lanes{}), Lanes{}));
-                      });
+  for_each_facing(model, outlines, patch, skin, law->bond_gap, scratch,
+                  [&](const Pass& pass, int, int i, const Facing& at) {
+                    const Projection& p = at.p;
+                    const LaneBits near = first_lanes(pass.nodes.count - i) & p.hit & (p.gap <= law->bond_gap);
+                    store(&history.damage[pass.record + i], select(near, Lanes{}, broadcast(1)));
+                    store(&history.opening[pass.record + i], select(near, max(p.gap, Lanes{}), Lanes{}));
+                  });
 }
 
 bool overlaps(const Model& model, const Outlines& outlines, const Patch& patch, double skin, MasterWindow& scratch) {
   bool found = false;
-  for_each_projection(model, outlines, patch, skin, 0, scratch,
-                      [&](const Pass& pass, int, int i, const SlaveNodes&, const Projection& p) {
-                        found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
-                      });
+  for_each_facing(model, outlines, patch, skin, 0, scratch, [&](const Pass& pass, int, int i, const Facing& at) {
+    const Projection& p = at.p;
+    found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
+  });
   return found;
 }
 
@@ -54,18 +55,25 @@ void compute_patch_stiffness(const Model& model, const Outlines& outlines, const
                              double skin, double outward, const double (&factor)[2], PatchForces& forces,
                              MasterWindow& scratch) {
   clear_forces(patch, forces);
-  const auto add_stiffness = [&](const Pass& pass, int slave_side, int i, const SlaveNodes& nodes,
-                                 const Projection& p) {
-    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      if (!p.hit[lane]) continue;
-      const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
-      const int at = pass.master_force + static_cast<int>(p.row[lane]);
-      forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
-      forces.x[at] += factor[1 - slave_side] * (1 - p.xi[lane]) * k;
-      forces.x[at + 1] += factor[1 - slave_side] * p.xi[lane] * k;
-    }
+  const auto add = [&](const Pass& pass, int slave_side, int node, const Foot& foot, double length) {
+    const double k = 0.5 * foot.factor * length * stiffness;
+    const int at = pass.master_force + foot.row;
+    forces.x[pass.slave_force + node] += factor[slave_side] * k;
+    forces.x[at] += factor[1 - slave_side] * (1 - foot.xi) * k;
+    forces.x[at + 1] += factor[1 - slave_side] * foot.xi * k;
   };
-  for_each_projection(model, outlines, patch, skin, outward, scratch, add_stiffness);
+  for_each_eight(model, outlines, patch, skin, scratch, [&](const Pass& pass, int slave_side, int i) {
+    const SlaveNodes nodes = load_slaves(pass, i);
+    const Projection p = project(scratch, nodes.x, nodes.y, outward);
+    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
+      const double length = nodes.tributary_length[lane];
+      if (pass.corners)
+        for (const Foot& foot : possible_feet(pass, scratch, p, lane, i, outward))
+          add(pass, slave_side, i + lane, foot, length);
+      else if (p.hit[lane])
+        add(pass, slave_side, i + lane, {static_cast<int>(p.row[lane]), p.xi[lane], 1}, length);
+    }
+  });
 }
 
 }  // namespace pliant

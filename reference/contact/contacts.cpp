@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/errors.hpp"
+#include "reference/contact/corners.hpp"
 #include "reference/contact/law.hpp"
 #include "reference/contact/pair_laws.hpp"
 #include "reference/contact/projection.hpp"
@@ -62,6 +63,7 @@ struct Contacts::Implementation {
     double finest = std::numeric_limits<double>::infinity();
     for (const ContactOutline& outline : outlines) {
       lengths.push_back(tributary_lengths(outline));
+      corners.emplace_back(outline);
       finest = std::min(finest, mean_spacing(outline));
     }
     skin = scene.skin * finest;
@@ -134,23 +136,40 @@ struct Contacts::Implementation {
                     double outward) {
     const PresentBody& on = bodies[encounter.master];
     if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
-    const Projection at = project(point, on.outline.node(nearest.segment), on.outline.node(nearest.segment + 1));
+    const SlaveNode node = slave_node(encounter, point);
+    const Face face{on.outline, corners[encounter.master],
+                    std::min(corners[encounter.slave].longest(), corners[encounter.master].longest())};
+    const std::optional<int> segment = opposing_segment(face, nearest.segment, node, outward);
+    if (!segment) return;
+    const Projection at = project(point, on.outline.node(*segment), on.outline.node(*segment + 1));
     const auto found = accepted.find(encounter);
     ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
     if (initial && law.bonds() && at.gap.value <= law.bond_gap) before.damage = 0;
     ContactMemory& memory = trial[encounter];
     memory.beside = true;
-    memory.segment = nearest.segment;
+    memory.segment = *segment;
     memory.xi = at.xi.value;
     memory.angle = at.angle.value;
+    const NodeLength length = node_length(face, *segment, node);
     if (at.gap.value < law.reach)
-      touch(encounter, nearest.segment, at, law, before, memory);
+      touch(encounter, length, at, law, before, memory);
     else
-      result.dissipated += weight(encounter) * parting_loss(law, before, at.gap.value);
+      result.dissipated += length.value.value / 2 * parting_loss(law, before, at.gap.value);
   }
 
-  void touch(const Encounter& encounter, int segment, const Projection& at, const Law& law, const ContactMemory& before,
-             ContactMemory& memory) {
+  /// `point`: where the master sees it.
+  SlaveNode slave_node(const Encounter& encounter, const Vec2& point) const {
+    const PresentOutline& outline = bodies[encounter.slave].outline;
+    const Corners& own = corners[encounter.slave];
+    const int i = encounter.node;
+    const Vec2 shift = point - outline.node(i);
+    return {outline.node(i - 1) + shift, point,         outline.node(i + 1) + shift,
+            own.length(i - 1),           own.length(i), own.at(i)};
+  }
+
+  void touch(const Encounter& encounter, const NodeLength& whole, const Projection& at, const Law& law,
+             const ContactMemory& before, ContactMemory& memory) {
+    const int segment = memory.segment;
     const PresentBody& on = bodies[encounter.master];
     Motion motion;
     if (before.beside && law.shears()) motion = motion_along(on.outline, before, segment, at);
@@ -158,12 +177,22 @@ struct Contacts::Implementation {
     memory.slip = response.slip;
     memory.damage = response.damage;
     memory.opening = response.opening;
-    const double length = weight(encounter);
-    result.stored += length * response.stored;
-    result.dissipated += length * response.dissipated;
-    ContactElement element = make_element(on.outline, at, motion, response, length);
-    element.node = {outlines[encounter.slave].first + encounter.node, on.outline.index(segment),
-                    on.outline.index(segment + 1)};
+    const Jet<14> length = whole.value * 0.5;  // one of two passes
+    result.stored += length.value * response.stored;
+    result.dissipated += length.value * response.dissipated;
+    ContactElement element = make_element(on.outline, at, motion, response, length.value);
+    const PresentOutline& slave = bodies[encounter.slave].outline;
+    element.node = {slave.index(encounter.node), on.outline.index(segment), on.outline.index(segment + 1)};
+    if (!length.gradient.isZero(0)) {
+      result.lengths.push_back(make_length_element(length, response.stored, element));
+      result.lengths.back().node = {slave.index(encounter.node - 1),
+                                    element.node[0],
+                                    slave.index(encounter.node + 1),
+                                    element.node[1],
+                                    element.node[2],
+                                    on.outline.index(whole.corner[0]),
+                                    on.outline.index(whole.corner[1])};
+    }
     element.body = {encounter.slave, encounter.master};
     element.depth = std::max(0.0, -at.gap.value) / on.longest;
     result.elements.push_back(std::move(element));
@@ -187,7 +216,21 @@ struct Contacts::Implementation {
     return element;
   }
 
+  /// Of the energy length x stored; the element's forces are length x what they are a unit of it.
+  static LengthElement make_length_element(const Jet<14>& length, double stored, const ContactElement& element) {
+    constexpr int own[6] = {2, 3, 6, 7, 8, 9};  // places of the element's coordinates among the fourteen
+    Eigen::Matrix<double, 14, 1> of_unit_length = Eigen::Matrix<double, 14, 1>::Zero();
+    if (length.value > 0)
+      for (int i = 0; i < 6; ++i) of_unit_length[own[i]] = element.force[i] / length.value;
+    LengthElement result;
+    result.force = stored * length.gradient;
+    result.tangent = stored * length.hessian + length.gradient * of_unit_length.transpose() +
+                     of_unit_length * length.gradient.transpose();
+    return result;
+  }
+
   std::vector<ContactOutline> outlines;
+  std::vector<Corners> corners;  ///< [bodies]
   PairLaws laws;
   double period = 0, skin = 0;               ///< m
   std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
@@ -198,6 +241,15 @@ struct Contacts::Implementation {
   std::vector<PresentBody> bodies;
   ContactResult result;
 };
+
+Points forces_on_nodes(const ContactResult& result, std::size_t nodes) {
+  Points forces(nodes, Vec2(0, 0));
+  for (const ContactElement& element : result.elements)
+    for (int i = 0; i < 3; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
+  for (const LengthElement& element : result.lengths)
+    for (int i = 0; i < 7; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
+  return forces;
+}
 
 Contacts::Contacts(const Scene& scene, std::vector<ContactOutline> outlines)
     : implementation_(std::make_unique<Implementation>(scene, std::move(outlines))) {}

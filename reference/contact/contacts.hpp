@@ -49,11 +49,22 @@ struct ContactElement {
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
+/// What the energy of a contact adds where the length that its node stands for changes with the places of seven nodes: see NodeLength.
+struct LengthElement {
+  std::array<int, 7> node;                ///< in the list of all outline nodes
+  Eigen::Matrix<double, 14, 1> force;     ///< residual, N/m
+  Eigen::Matrix<double, 14, 14> tangent;  ///< of `force` and, by the length, of the contact's own forces
+};
+
 struct ContactResult {
   std::vector<ContactElement> elements;
+  std::vector<LengthElement> lengths;
   double stored = 0;      ///< J/m
   double dissipated = 0;  ///< from the last accepted state to this one, J/m
 };
+
+/// Contact forces on the outline nodes, [nodes], N/m.
+Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 
 /// All contacts of a scene by brute force: every node of every body against every segment of every other, and of its
 /// own periodic images (METHOD 4).

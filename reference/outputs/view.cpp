@@ -81,10 +81,7 @@ std::vector<PointStress> View::stresses_of(const Body& body) const {
 const Vector& View::weights_of(const Body& body) const { return internal_of(body).weights(); }
 
 Points View::contact_forces() const {
-  Points forces(static_cast<std::size_t>(bodies().outline_nodes()), Vec2(0, 0));
-  for (const ContactElement& element : this->forces().contacts.elements)
-    for (int i = 0; i < 3; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
-  return forces;
+  return forces_on_nodes(this->forces().contacts, static_cast<std::size_t>(bodies().outline_nodes()));
 }
 
 double View::kinetic_energy(const Body& body) const {

@@ -19,8 +19,9 @@ constexpr double rounding = 2e-12;
 std::pair<double, double> segment_lengths(const ContactRig& rig) {
   std::pair<double, double> result{1e300, 0};
   for (int body = 0; body < static_cast<int>(rig.model.bodies.size()); ++body)
-    for (int k = 0; k + 1 < rig.count(body); ++k) {
-      const double length = (rig.node(body, k + 1) - rig.node(body, k)).norm();
+    for (int k = 0; k < rig.count(body); ++k) {
+      if (rig.model.bodies[body].wall && k + 1 == rig.count(body)) break;  // the last one leads to the next period
+      const double length = (rig.node(body, (k + 1) % rig.count(body)) - rig.node(body, k)).norm();
       result = {std::min(result.first, length), std::max(result.second, length)};
     }
   return result;

@@ -94,21 +94,22 @@ TEST(ContactSlip, HysteresisLoop) {
   EXPECT_NEAR(balance.stored_change, 0, 1e-14);
 }
 
-// RATE: a tip inside one segment of a turning bar, slipping to and fro: forces change direction along the way, and the
+// RATE: a tip inside one segment of a turning bar, far from its corners, slipping to and fro: forces change direction along the way, and the
 // trapezoidal rule errs by O(steps^-2). Kinks where slip turns make single ratios uneven: order over a factor of 8, 2
 // +- 0.25.
 double turning_defect(const ContactRule& rule, int steps) {
   Scene scene = bare_scene();
   scene.contacts = {rule};
-  add_body(scene, outline_shape("bar", rectangle(2, 1, 0.5)), BodyKind::rigid, {0, 0});
+  add_body(scene, outline_shape("bar", rectangle(4, 1, 0.5)), BodyKind::rigid, {0, 0});
   add_body(scene, outline_shape("tip", {{0, 0}, {0.4, 0.5}, {-0.4, 0.5}}), BodyKind::rigid, {0, 0});
   ContactRig rig(scene);
   const auto place = [&](double s) {
     const double angle = 0.6 * s, c = std::cos(angle), n = std::sin(angle);
     const Vec2 on_bar(0.25 + 0.08 * std::sin(5 * s), 0.5 - 0.02 - 0.01 * std::cos(3 * s));
-    rig.rigid(0)[2] = angle;
-    rig.rigid(1)[0] = c * on_bar.x() - n * on_bar.y();
-    rig.rigid(1)[1] = n * on_bar.x() + c * on_bar.y() + 1.0 / 3;  // the tip lies a third below the centroid
+    const Vec2 centroid = on_bar + Vec2(0, 1.0 / 3);  // the tip lies a third below it
+    rig.rigid(0)[2] = rig.rigid(1)[2] = angle;        // together: the tip's length of contact depends on how it stands
+    rig.rigid(1)[0] = c * centroid.x() - n * centroid.y();
+    rig.rigid(1)[1] = n * centroid.x() + c * centroid.y();
     rig.step();
     return rig.dof_forces().rigid;
   };

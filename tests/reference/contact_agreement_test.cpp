@@ -121,7 +121,7 @@ class Sides {
 
   /// INDEPENDENT: two programs. Tolerances: that of VERIFICATION 3a; energies, of order 0.1, the same.
   void expect_agreement() {
-    const Points forces = forces_of(result, outline_points(rig).size());
+    const Points forces = forces_on_nodes(result, outline_points(rig).size());
     double largest = 0, worst = 0;
     std::size_t node = 0;
     for (int body = 0; body < static_cast<int>(rig.model.bodies.size()); ++body)

@@ -15,14 +15,15 @@ namespace pliant::testing {
 
 constexpr double kn = 100;  ///< stiffness in these tests, Pa/m
 
-// A hexagon with an edge of 1 and a needle whose tip alone comes near. Its place on the hexagon is free.
+// A polygon with edges of 1 that turn by 30 degrees, too little for a corner, and a needle whose tip alone comes near. By its reference outline the tip
+// is flat, and no corner either: contact_corners_test.cpp is about those.
 struct Needle {
-  explicit Needle(const ContactRule& rule, int sides = 6) : corners(regular(sides, 1)) {
+  explicit Needle(const ContactRule& rule, int sides = 12) : corners(regular(sides, 0.5 / std::sin(M_PI / sides))) {
     Scene scene = bare_scene();
     scene.contacts = {rule};
-    const Points needle{{0, 0}, {3, 4}, {-3, 4}};
+    const Points needle{{0, 0}, {3, 4}, {-3, 4}}, flat{{0, 0}, {3, 0.5}, {-3, 0.5}};
     reference::ContactOutline first{0, sides, 0, corners, "hard", "polygon", false, BodyKind::rigid}, second = first;
-    second.first = sides, second.count = 3, second.reference = needle, second.name = "needle";
+    second.first = sides, second.count = 3, second.reference = flat, second.name = "needle";
     contacts = std::make_unique<reference::Contacts>(scene, std::vector{first, second});
     x = corners;
     x.insert(x.end(), needle.begin(), needle.end());
@@ -54,13 +55,6 @@ struct Needle {
   std::unique_ptr<reference::Contacts> contacts;
   reference::ContactResult result;
 };
-
-inline Points forces(const reference::ContactResult& result, std::size_t nodes) {
-  Points sum(nodes, Vec2(0, 0));
-  for (const reference::ContactElement& element : result.elements)
-    for (int k = 0; k < 3; ++k) sum[element.node[k]] -= element.force.segment<2>(2 * k);
-  return sum;
-}
 
 inline void shake(Points& x, Random& random, double size) {
   for (Vec2& point : x) point += Vec2{random.uniform(-size, size), random.uniform(-size, size)};

@@ -27,12 +27,4 @@ inline Points outline_points(const ContactRig& rig) {
   return points;
 }
 
-/// Forces on all outline nodes.
-inline Points forces_of(const reference::ContactResult& result, std::size_t nodes) {
-  Points forces(nodes, Vec2(0, 0));
-  for (const reference::ContactElement& element : result.elements)
-    for (int k = 0; k < 3; ++k) forces[element.node[k]] -= element.force.segment<2>(2 * k);
-  return forces;
-}
-
 }  // namespace pliant::testing

@@ -7,10 +7,12 @@
 #include <tuple>
 
 #include "geometry/polygon.hpp"
+#include "reference/contact/corners.hpp"
+#include "reference/contact_pair.hpp"
 #include "support/contact_rig.hpp"
 
 /// Contact of METHOD 4 once more: scalars, all nodes against all segments, no candidates, no windows. Deliberately
-/// slow.
+/// slow. The rules of corners are the reference solver's.
 namespace pliant::testing {
 
 struct OracleLaw {
@@ -98,6 +100,7 @@ struct OraclePoint {
   int segment;  ///< of the master, counted on through its turns
   double height, gap, xi, length;
   Vec2 normal, segment_tangent;
+  reference::NodeLength contact_length;
 
   Vec2 tangent() const { return {-normal.y(), normal.x()}; }
   /// Turn from the segment's normal to the point's.
@@ -113,10 +116,14 @@ class ContactOracle {
     int contacts = 0, outside_truth = 0;
   };
 
-  ContactOracle(const ContactRig& rig, const ContactRule& rule) : rig_(rig), law_{rule} {}
+  ContactOracle(const ContactRig& rig, const ContactRule& rule)
+      : rig_(rig), law_{rule}, outlines_(reference_outlines(rig.model)) {
+    for (const reference::ContactOutline& outline : outlines_) corners_.emplace_back(outline);
+  }
 
   Result evaluate() {
     Result result;
+    points_ = outline_points(rig_);
     trial_.clear();
     const int bodies = static_cast<int>(rig_.model.bodies.size());
     for (int b = 0; b < bodies; ++b) result.force.emplace_back(rig_.count(b), Vec2(0, 0));
@@ -161,11 +168,15 @@ class ContactOracle {
   /// Distance to a segment's nearest point; nothing when the bisectors exclude it. However deep: the engine's limit is none where it is kept.
   std::optional<OraclePoint> on_segment(int body, int k, const Vec2& p) const {
     if (!is_past(body, k, p) || is_past(body, k + 1, p)) return {};
+    return beside(body, k, p);
+  }
+
+  OraclePoint beside(int body, int k, const Vec2& p) const {
     const Vec2 a = node(body, k), b = node(body, k + 1);
     const double length = (b - a).norm();
     const Vec2 t = (b - a) / length, n(t.y(), -t.x());
     const double height = (p - a).dot(n), along = (p - a).dot(t);
-    OraclePoint point{k, height, height, along / length, length, n, t};
+    OraclePoint point{k, height, height, along / length, length, n, t, {}};
     if (along < 0 || along > length) {
       const Vec2 end = along < 0 ? a : b;
       point.xi = along < 0 ? 0 : 1;
@@ -195,12 +206,34 @@ class ContactOracle {
     for (int image = -images; image <= images; ++image)
       for (int k = 0; k < rig_.count(slave); ++k) {
         const Vec2 p = node(slave, k) + Vec2(image * rig_.model.scene.period.value_or(0), 0);
-        const auto point = find(master, p);
+        auto point = find(master, p);
         check_against_truth(master, p, point, result);
+        if (point) point = attend_to_corners(slave, k, master, image, *point);
         const auto memory = committed_.find({slave, k, master, image});
         respond(slave, k, master, image, point, memory == committed_.end() ? nullptr : &memory->second, result);
       }
   }
+
+  reference::SlaveNode slave_node(int slave, int k, int image) const {
+    const Vec2 shift(image * rig_.model.scene.period.value_or(0), 0);
+    return {node(slave, k - 1) + shift,     node(slave, k) + shift,     node(slave, k + 1) + shift,
+            reference_length(slave, k - 1), reference_length(slave, k), corners_[slave].at(k)};
+  }
+
+  /// The same point, one on another face, or none; with the length that it stands for.
+  std::optional<OraclePoint> attend_to_corners(int slave, int k, int master, int image, OraclePoint point) const {
+    const reference::PresentOutline outline(outlines_[master], points_);
+    const reference::Face face{outline, corners_[master],
+                               std::min(corners_[slave].longest(), corners_[master].longest())};
+    const reference::SlaveNode node = slave_node(slave, k, image);
+    const std::optional<int> segment = reference::opposing_segment(face, point.segment, node, reach() + skin());
+    if (!segment) return {};
+    if (*segment != point.segment) point = beside(master, *segment, node.at);
+    point.contact_length = reference::node_length(face, *segment, node);
+    return point;
+  }
+  double reach() const { return law_.rule.law == ContactLawKind::cohesive_fatigue ? *law_.rule.range : law_.reach(); }
+  double skin() const { return law_.kt() > 0 ? rig_.contact.skin() : 0; }
 
   /// Inside a closed master the node must be found, with its true distance to the outline as the penetration.
   void check_against_truth(int master, const Vec2& p, const std::optional<OraclePoint>& point, Result& result) const {
@@ -218,7 +251,7 @@ class ContactOracle {
     if (bonds && old && old->damage < 1) return stretch(key, point, *old, result);
     OracleLaw law = bonds ? OracleLaw{residual_of(law_.rule)} : law_;
     law.h = std::min(shape(slave).spacing, shape(master).spacing);
-    const double weight = weight_of(slave, k);
+    const double weight = point ? 0.5 * point->contact_length.value.value : weight_of(slave, k);
     const double start = old ? old->slip : 0;
     if (!point || point->gap >= law.reach()) {
       // The place is remembered before the touch, so that slip counts from the first step of it.
@@ -231,7 +264,7 @@ class ContactOracle {
     const double most = law.kt() > 0 ? law.shear_limit(point->gap) / law.kt() : 0,
                  slip = std::clamp(tried, -most, most);
     remember(key, *point, slip);
-    result.stored += weight * (law.energy(point->gap) + 0.5 * law.kt() * slip * slip);
+    store(slave, k, master, *point, law.energy(point->gap) + 0.5 * law.kt() * slip * slip, result);
     result.dissipated += weight * 0.5 * law.kt() * (start + slip) * (tried - slip);
     share_force(slave, k, master, *point, weight * law.pressure(point->gap), -weight * law.kt() * slip, result);
   }
@@ -240,7 +273,7 @@ class ContactOracle {
   void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
     const auto [slave, k, master, image] = key;
     const ContactRule& rule = law_.rule;
-    const double weight = weight_of(slave, k);
+    const double weight = point ? 0.5 * point->contact_length.value.value : weight_of(slave, k);
     const OracleBond before{rule, old.damage, old.opening, old.slip};
     if (!point) {
       result.dissipated += weight * before.stored();
@@ -257,10 +290,26 @@ class ContactOracle {
     if (gap < *rule.range) count_contact(*point, result);
     if (torn && gap >= *rule.range) return;
     const OracleLaw left{residual_of(rule)};
-    result.stored += weight * (torn ? left.energy(gap) : squeezed + now.stored());
+    store(slave, k, master, *point, torn ? left.energy(gap) : squeezed + now.stored(), result);
     if (torn) result.dissipated += weight * (squeezed - left.energy(gap));
     share_force(slave, k, master, *point, weight * (torn ? left.pressure(gap) : -before.kn() * pressed - now.tension()),
                 torn ? 0 : -weight * now.shear(), result);
+  }
+
+  /// Energy a length, and the forces by the change of that length.
+  void store(int slave, int k, int master, const OraclePoint& point, double energy, Result& result) const {
+    const int n = rig_.count(slave), m = rig_.count(master);
+    const auto within = [](int i, int count) { return ((i % count) + count) % count; };
+    const auto& [length, corner] = point.contact_length;
+    Vec2* const on[7] = {&result.force[slave][within(k - 1, n)],
+                         &result.force[slave][k],
+                         &result.force[slave][within(k + 1, n)],
+                         &result.force[master][within(point.segment, m)],
+                         &result.force[master][within(point.segment + 1, m)],
+                         &result.force[master][within(corner[0], m)],
+                         &result.force[master][within(corner[1], m)]};
+    for (int i = 0; i < 7; ++i) *on[i] -= 0.5 * energy * length.gradient.segment<2>(2 * i);
+    result.stored += 0.5 * point.contact_length.value.value * energy;
   }
 
   double weight_of(int slave, int k) const {
@@ -324,6 +373,9 @@ class ContactOracle {
 
   const ContactRig& rig_;
   OracleLaw law_;
+  std::vector<reference::ContactOutline> outlines_;
+  std::vector<reference::Corners> corners_;
+  Points points_;  ///< of all outlines, now
   std::map<Key, Memory> committed_, trial_;
 };
 

@@ -1,0 +1,81 @@
+#include "contact/facing.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "contact/faces.hpp"
+
+namespace pliant {
+
+SlaveNode slave_node(const Pass& pass, int index) {
+  const OutlineShape& shape = *pass.slave;
+  const auto place = [&](int at) {
+    const int turn = turn_of(at, shape.count), node = at - turn * shape.count;
+    return Vec2(pass.slave_x[node] + pass.slave_shift + turn * shape.turn_shift, pass.slave_y[node]);
+  };
+  const int n = shape.count, node = index - turn_of(index, n) * n;
+  SlaveNode result{place(index), {place(index - 1), place(index + 1)}, {}, {}, {}, false};
+  for (int side = 0; side < 2; ++side) {
+    const Vec2 along = side == 0 ? Vec2(result.at - result.neighbour[0]) : Vec2(result.neighbour[1] - result.at);
+    result.present[side] = along.norm();
+    result.direction[side] = along / result.present[side];
+    result.length[side] =
+        pass.present_lengths ? result.present[side] : shape.segment_length[side == 0 ? (node + n - 1) % n : node];
+  }
+  result.corner = shape.has_corners() && shape.corner[node];
+  return result;
+}
+
+std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
+                                double outward) {
+  const Vec2 at = slave_node(pass, pass.nodes.begin + i + lane).at;
+  const double near_corner = 2 * std::max(pass.slave->longest, pass.master->longest);
+  std::vector<Foot> feet;
+  bool near = false;
+  for (int row = 0; row < window.count(); ++row) {
+    const MasterSegment& s = window[row];
+    const double along = (at - start(s)).dot(tangent(s)), height = (at - start(s)).dot(outward_of(tangent(s)));
+    near |=
+        pass.master->has_corners() && pass.master->corner[window.number(row)] && (at - start(s)).norm() < near_corner;
+    if (height <= outward && height >= -window.depth() && along >= -outward && along <= s.length + outward)
+      feet.push_back({row, std::clamp(along / s.length, 0.0, 1.0), 2});
+  }
+  if (near) return feet;
+  if (!p.hit[lane]) return {};
+  return {{static_cast<int>(p.row[lane]), p.xi[lane], 1}};
+}
+
+void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing) {
+  const Faces faces(pass, window);
+  const unsigned active = bits(facing.p.hit & first_lanes(pass.nodes.count - i));
+  Lanes rows = facing.p.row;
+  bool moved = false;
+  for (unsigned left = active; left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left), row = static_cast<int>(rows[lane]);
+    const int chosen =
+        pass.master->has_corners() ? faces.choose(slave_node(pass, pass.nodes.begin + i + lane), row, outward) : row;
+    moved |= chosen != row;
+    rows[lane] = chosen;
+  }
+  if (moved) {
+    const SlaveNodes nodes = load_slaves(pass, i);
+    facing.p = beside(window, nodes.x, nodes.y, rows, outward);
+  }
+  for (unsigned left = active & bits(facing.p.hit); left != 0; left &= left - 1) {
+    const int lane = std::countr_zero(left), row = static_cast<int>(rows[lane]);
+    const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
+    if (pass.master->has_corners() && faces.beyond_corner(node, row)) {
+      facing.p.hit[lane] = 0;
+      continue;
+    }
+    const NodeLength length = node_length(node, window, faces, row);
+    facing.length[lane] = length.value;
+    if (!length.varies) continue;
+    facing.varying |= 1U << lane;
+    std::copy(length.gradient.begin(), length.gradient.end(), std::begin(facing.gradient[lane]));
+    std::copy(std::begin(length.corner_row), std::end(length.corner_row), std::begin(facing.corner_row[lane]));
+  }
+}
+
+}  // namespace pliant

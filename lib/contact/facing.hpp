@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "contact/pass.hpp"
+#include "contact/projection.hpp"
+
+namespace pliant {
+
+/// Eight slave nodes beside a master, and the length of contact that each stands for.
+///
+/// Only opposing outlines touch. Near a corner of the master, no further off along the face than a segment of either outline, a node belongs
+/// to that of the two faces that it opposes squarely: a node of a floor that a block has sunk into would else count as beside the block's flank for as
+/// long as that is nearer than the bottom, and lock the block. A node that opposes neither face squarely touches none of them, unless it is a corner
+/// itself: the master's corner is a node of the other pass. Nothing touches beyond a corner.
+///
+/// Each of a node's two segments stands for half its length. Where the segment reaches over the end of the master's face, at a corner, it stands for what
+/// lies before the end: the next node does not touch the face. At a corner of the slave, the segment that opposes the master less than the other counts
+/// less, down to nothing. So two flat faces touch over the length that they share, wherever their nodes are. The energy of a contact is its
+/// length times that of its law, and its forces are the gradient of both.
+struct Facing {
+  /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment, and the corners at the ends of its face.
+  enum Node { before, itself, after, segment_start, segment_end, corner_back, corner_on, nodes };
+
+  Projection p;
+  Lanes length;          ///< m
+  unsigned varying = 0;  ///< one bit a lane: those whose length is not constant
+  // Of varying lanes only:
+  Vec2 gradient[lane_count][nodes];  ///< of the length by the nodes' places
+  int corner_row[lane_count]
+                [2];  ///< of the window, whose first nodes are the corners; -1: the length does not depend on it
+};
+
+/// How far along a face its corner counts, m.
+inline double corner_sight(const OutlineShape& slave, const OutlineShape& master) {
+  return std::min(slave.longest, master.longest);
+}
+
+/// Where a node may touch the master before the next refresh, and how many times its tributary length then counts at most.
+struct Foot {
+  int row;  ///< of the window
+  double xi, factor;
+};
+/// Of one lane of a projection without the rules of corners.
+std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
+                                double outward);
+
+/// Applies the rules of corners to nodes that stand beside the master, from position i of the pass on.
+void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing);
+
+/// From position i of the pass on; at most `outward` off.
+inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNodes& nodes, int i, double outward) {
+  Facing facing;
+  facing.p = project(window, nodes.x, nodes.y, outward);
+  facing.length = nodes.tributary_length;
+  if (pass.corners && any(facing.p.hit)) [[unlikely]]
+    attend_to_corners(pass, window, i, outward, facing);
+  return facing;
+}
+
+/// Calls visit(pass, slave side, i) for each eight slave nodes, from position i on, with the master's window filled.
+template <class Visit>
+void for_each_eight(const Model& model, const Outlines& outlines, const Patch& patch, double skin, MasterWindow& window,
+                    Visit&& visit) {
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (patch.nodes[slave_side].count == 0) continue;
+    const Pass pass = make_pass(model, outlines, patch, slave_side);
+    fill_window(model, outlines, patch, 1 - slave_side, skin, window);
+    for (int i = 0; i < pass.nodes.count; i += lane_count) visit(pass, slave_side, i);
+  }
+}
+
+/// Calls visit(pass, slave side, i, facing) where some of the eight touch the master or would, at most `outward` off.
+template <class Visit>
+void for_each_facing(const Model& model, const Outlines& outlines, const Patch& patch, double skin, double outward,
+                     MasterWindow& window, Visit&& visit) {
+  for_each_eight(model, outlines, patch, skin, window, [&](const Pass& pass, int slave_side, int i) {
+    if (const Facing at = face(pass, window, load_slaves(pass, i), i, outward); any(at.p.hit))
+      visit(pass, slave_side, i, at);
+  });
+}
+
+}  // namespace pliant

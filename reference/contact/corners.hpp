@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "reference/contact/projection.hpp"
+
+namespace pliant::reference {
+
+/// Where an outline turns sharply to the left, by its reference shape: nodes at which two faces meet.
+class Corners {
+ public:
+  explicit Corners(const ContactOutline& outline);
+
+  bool any() const { return any_; }
+  bool at(int node) const { return corner_[within(node)]; }
+  double length(int segment) const { return length_[within(segment)]; }  ///< in the reference shape, m
+  double longest() const { return longest_; }                            ///< segment, m
+
+ private:
+  std::size_t within(int i) const {
+    const int n = static_cast<int>(corner_.size());
+    return static_cast<std::size_t>(((i % n) + n) % n);
+  }
+
+  std::vector<bool> corner_;
+  std::vector<double> length_;
+  double longest_ = 0;
+  bool any_ = false;
+};
+
+/// A node of the slave between its two neighbours, as the master sees it.
+struct SlaveNode {
+  Vec2 before, at, after;
+  double length_before = 0, length_after = 0;  ///< of its segments, as they count, m
+  bool corner = false;
+};
+
+struct Face {
+  const PresentOutline& outline;
+  const Corners& corners;
+  double sight = 0;  ///< how far along a face its corner counts: the lesser of both outlines' longest segments, m
+};
+
+/// Which segment of the master a node touches that stands beside the given one (METHOD 4): near a corner that of a face which it opposes squarely,
+/// beyond a corner none, and of nodes that are no corners themselves none where neither face is opposed squarely.
+std::optional<int> opposing_segment(const Face& master, int segment, const SlaveNode& node, double outward);
+
+/// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its neighbour after, the segment's
+/// two, and the corners before and after it that cut the slave's segments short.
+struct NodeLength {
+  Jet<14> value;  ///< m
+  int corner[2]{
+      0, 0};  ///< nodes of the master, counted on as its segments are; any where the length does not depend on it
+};
+NodeLength node_length(const Face& master, int segment, const SlaveNode& node);
+
+}  // namespace pliant::reference
