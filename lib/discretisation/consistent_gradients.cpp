@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "discretisation/mls.hpp"
 
 namespace pliant {
 namespace {
@@ -55,8 +56,7 @@ class MultiplierSystem {
     factorisation_.compute(assemble(table, static_cast<int>(mesh.nodes.size())));
     const Eigen::VectorXd pivots = factorisation_.vectorD().cwiseAbs();
     if (factorisation_.info() != Eigen::Success || !(pivots.minCoeff() > tolerance * pivots.maxCoeff()))
-      throw InputError(
-          "discretisation: `mls` finds no consistent gradients, its points have too few neighbours; raise `support`");
+      throw TooFewNeighbours("discretisation: `mls` finds no consistent gradients, its points have too few neighbours");
   }
 
   // Adds to the table the least change that adds `lacking` [nodes x 2] to sum_g w_g b_gi.

@@ -62,9 +62,9 @@ InverseMoment inverse_moment(const std::vector<Neighbour>& neighbours, const Vec
   for (const Neighbour& n : neighbours) moment += n.weight * n.basis * n.basis.transpose();
   const Eigen::PartialPivLU<Matrix3d> lu(moment);
   if (neighbours.size() < 3 || !(lu.rcond() > least_condition))
-    throw InputError(
+    throw TooFewNeighbours(
         fmt::format("discretisation: the point ({:.4g}, {:.4g}) (in mean node distances from the centroid) has "
-                    "{} neighbour nodes, not three off one line; raise `support`",
+                    "{} neighbour nodes, not three off one line",
                     x.x(), x.y(), neighbours.size()));
   return {lu.inverse(), 1 / lu.rcond()};
 }

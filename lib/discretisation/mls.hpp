@@ -2,11 +2,17 @@
 
 #include <memory>
 
+#include "core/errors.hpp"
 #include "core/vec2.hpp"
 #include "discretisation/basis.hpp"
 #include "discretisation/node_grid.hpp"
 
 namespace pliant {
+
+/// A mesh whose nodes are too far apart for their supports. The message lacks what to do: whoever knows the mesh adds it.
+struct TooFewNeighbours : InputError {
+  using InputError::InputError;
+};
 
 /// Nodes with the radii of their supports: what moving least squares needs of a mesh.
 struct MlsNodes {
@@ -24,8 +30,8 @@ struct MlsNodes {
 MlsNodes make_mls_nodes(const Points& nodes, int support);
 
 /// Moving least squares at x: linear basis centred at x, cubic spline weight; the gradients are the full derivatives.
-/// Lengths should be of the order of one node distance for good conditioning. Throws InputError when x has not three
-/// neighbours off one line.
+/// Lengths should be of the order of one node distance for good conditioning. Throws TooFewNeighbours when x has not
+/// three off one line.
 ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x);
 
 /// evaluate_mls as the basis of a mesh.

@@ -12,6 +12,7 @@
 #include "discretisation/mls.hpp"
 #include "discretisation/recipes.hpp"
 #include "discretisation/rpim.hpp"
+#include "geometry/polygon.hpp"
 
 namespace pliant {
 namespace {
@@ -79,7 +80,9 @@ Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings) 
   }
 }
 
-Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+namespace {
+
+Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& settings) {
   const double area = polygon_properties(outline_of(mesh)).area;
   const double length = std::sqrt(area / static_cast<double>(mesh.nodes.size()));
   const FieldMesh scaled = nondimensional(mesh, length);
@@ -102,6 +105,39 @@ Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& s
   result.completeness_residual = recipe.completeness_residual;
   give_dimensions(result, length);
   return result;
+}
+
+/// Outlines may be that much finer than the interior: what nodes = N alone gives is 1.22 times finer.
+constexpr double finer_outline = 1.25;
+
+/// Nodes of a mesh of equilateral triangles whose outline has `outline` segments (Euler's formula).
+double isotropic_nodes(const Points& polygon, double outline) {
+  const double spacing = perimeter(polygon) / outline;
+  return 1 + outline / 2 + polygon_properties(polygon).area / (std::sqrt(3.0) / 2 * spacing * spacing);
+}
+
+/// What gives the nodes of a mesh more neighbours.
+std::string more_neighbours(const FieldMesh& mesh) {
+  const Points outline = outline_of(mesh);
+  const int nodes = static_cast<int>(mesh.nodes.size());
+  const double needed = isotropic_nodes(outline, mesh.outline_count / finer_outline);
+  if (nodes >= needed) return "raise `support`";
+  int fitting = mesh.outline_count;
+  while (fitting > 6 && isotropic_nodes(outline, fitting / finer_outline) > nodes) --fitting;
+  return fmt::format(
+      "its {} outline nodes are too fine for {} nodes in all: take outline_nodes = {} or fewer, or nodes = {:.0f} or "
+      "more",
+      mesh.outline_count, nodes, fitting, std::ceil(needed));
+}
+
+}  // namespace
+
+Discretisation discretise(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+  try {
+    return discretised(mesh, settings);
+  } catch (const TooFewNeighbours& error) {
+    throw InputError(fmt::format("{}; {}", error.what(), more_neighbours(mesh)));
+  }
 }
 
 }  // namespace pliant

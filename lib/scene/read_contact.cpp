@@ -91,8 +91,11 @@ void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
   const bool grows_in_shear =
       table.optional("shear_fatigue_rate", rule.shear_fatigue_rate, Quantity{"Pa-1", non_negative});
   const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
+  const Quantity threshold{"Pa", below_strength};
   if (grows || grows_in_shear)
-    table.required("fatigue_threshold", rule.fatigue_threshold, Quantity{"Pa", below_strength});
+    table.required("fatigue_threshold", rule.fatigue_threshold, threshold);
+  else
+    table.optional("fatigue_threshold", rule.fatigue_threshold, threshold);
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ Column<Scalar> functions_at(const Points& nodes, const std::vector<double>& radi
   if (chosen.size() < 3 || functions.empty())
     throw InputError(
         fmt::format("the {} nodes near ({:.3g}, {:.3g}) mean node distances do not determine a linear "
-                    "function there: use a larger `support` or more nodes",
+                    "function there: use fewer outline_nodes, more nodes or a larger `support`",
                     chosen.size(), value_of(x), value_of(y)));
   return functions;
 }

@@ -144,6 +144,9 @@ TEST(ReadScene, ContactSettingsAndLaws) {
   EXPECT_DOUBLE_EQ(bond.fatigue_rate, 1e-9);
   EXPECT_DOUBLE_EQ(bond.shear_fatigue_rate, 1e-9);
   EXPECT_DOUBLE_EQ(bond.fatigue_threshold, 20e6);
+  const Scene without_wear = read_scene(SceneFile(replaced(text, "fatigue_rate = \"1 GPa-1\"\n", "")).path());
+  EXPECT_EQ(without_wear.contacts[0].fatigue_rate, 0);
+  EXPECT_DOUBLE_EQ(without_wear.contacts[0].fatigue_threshold, 20e6) << "known without a rate, to no effect";
   EXPECT_EQ(read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = 30")).path()).contact.refresh_steps, 30);
   const Scene plain = read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = \"safe\"")).path());
   EXPECT_EQ(plain.contact.refresh_steps, 0);
