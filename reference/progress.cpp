@@ -33,6 +33,10 @@ void Progress::show_if_due(const TimeStepping& run, const StepRecord& last, cons
   std::fflush(stderr);
 }
 
+void Progress::say(const std::string& line) {
+  if (detail_ != Detail::none && !line.empty()) fmt::print(stderr, "{}\n", line);
+}
+
 void Progress::finish() {
   if (open_) std::fputc('\n', stderr);
   open_ = false;

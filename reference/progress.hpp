@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "reference/time_stepping.hpp"
 
@@ -18,8 +19,9 @@ class Progress {
   Progress(Detail detail, double end);
   /// Cheap when no line is due.
   void show_if_due(const TimeStepping& run, const StepRecord& last, const Effort& effort);
-  void finish();           ///< leaves the line as it is, for what is printed next
-  double seconds() const;  ///< since construction
+  void say(const std::string& line);  ///< before the first step; nothing when empty
+  void finish();                      ///< leaves the line as it is, for what is printed next
+  double seconds() const;             ///< since construction
 
  private:
   using Clock = std::chrono::steady_clock;

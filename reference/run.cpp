@@ -16,6 +16,7 @@
 #include "files/text_files.hpp"
 #include "reference/outputs/frames.hpp"
 #include "reference/outputs/probes.hpp"
+#include "reference/overlap.hpp"
 #include "reference/progress.hpp"
 #include "scene/text_file.hpp"
 
@@ -25,14 +26,44 @@ namespace {
 /// Share of its energy that a run may make without a warning: well resolved bounces stay below (verify/energy_drift).
 constexpr double made_energy = 0.01;
 
-/// Of strains of 1e-12, which may be rounding, J/m.
+/// Of strains of 1e-12, and of weights at coordinates with rounding, J/m.
 double least_energy(const Bodies& bodies) {
   double energy = 0;
+  const Vec2 gravity = bodies.scene().gravity_at(0);
   for (const Body& body : bodies.all()) {
     const Material& material = bodies.material_of(body);
     if (body.compliant()) energy += 1e-24 * material.young * body.mass / material.density;
+    energy += 1e-13 * body.mass * gravity.cwiseAbs().dot(body.placed.centre.cwiseAbs());
   }
   return energy;
+}
+
+/// What contacts were like in a run.
+struct ContactsSeen {
+  bool any = false;
+  double deepest = 0;  ///< over the master's longest segment
+
+  void add(const Forces& forces) {
+    any |= !forces.contacts.elements.empty();
+    deepest = std::max(deepest, forces.deepest);
+  }
+};
+
+/// Why time steps have made energy, and what to do.
+std::string cause(const ContactsSeen& seen, const Overlap& overlap, double dt, double hht) {
+  constexpr double deep = 0.3, shallow = 0.1;  // over a segment
+  const std::string shorter =
+      fmt::format("give a smaller --dt, such as {:.2g} s{}", dt / 4, hht == 0 ? ", or --hht -0.1" : "");
+  if (overlap.share > deep && overlap.share >= 0.9 * seen.deepest)
+    return fmt::format("'{}' and '{}' overlapped by {:.2g} of a segment at the start: move them apart", overlap.first,
+                       overlap.second, overlap.share);
+  if (seen.deepest > deep)
+    return fmt::format(
+        "contacts got {:.2g} of a segment deep, where forces jump at corners: take a stiffness {:.2g} times as high, "
+        "which leaves {:g} of an impact's, and {}",
+        seen.deepest, std::pow(seen.deepest / shallow, 2), shallow, shorter);
+  return fmt::format("steps of {:.3g} s are long against the vibrations of its {}: {}", dt,
+                     seen.any ? "contacts" : "bodies, which nothing touched", shorter);
 }
 
 /// A run's files.
@@ -42,6 +73,7 @@ class Outputs {
       : system_(system),
         run_(run),
         options_(options),
+        overlap_(find_overlap(system.bodies(), run.forces())),
         progress_(options.quiet     ? Progress::Detail::none
                   : options.verbose ? Progress::Detail::steps
                                     : Progress::Detail::periodic,
@@ -54,6 +86,7 @@ class Outputs {
       spdlog::warn("probe '{}': the reference solver does not measure this quantity", name);
     for (const std::string& name : frames_.left_out())
       spdlog::warn("[frames] fields: the reference solver does not write '{}'", name);
+    progress_.say(advice_on(overlap_));
   }
 
   Effort effort;
@@ -72,6 +105,7 @@ class Outputs {
     effort.bisections += record.bisections, effort.iterations += record.iterations;
     if (run_.books().made() > most_made_) most_made_ = run_.books().made(), most_made_at_ = run_.motion().time;
     const Forces& forces = run_.forces();
+    contacts_seen_.add(forces);
     steps_.row({run_.motion().time, record.dt, record.residual, static_cast<double>(effort.bisections),
                 static_cast<double>(effort.iterations), static_cast<double>(forces.contacts.elements.size()),
                 least_jacobian(forces)});
@@ -98,10 +132,8 @@ class Outputs {
     const double scale = run_.books().scale();
     if (options_.solver.statics || most_made_ <= made_energy * scale + least_energy(system_.bodies())) return;
     spdlog::warn(
-        "the time steps have made energy: up to {:.2g} % of what the scene had or took up, at t = {:.6g} s; steps of "
-        "{:.3g} s are long against the vibrations of its contacts: give a smaller --dt, such as {:.2g} s{}",
-        100 * most_made_ / scale, most_made_at_, longest_step_, longest_step_ / 4,
-        options_.solver.hht == 0 ? ", or --hht -0.1" : "");
+        "the time steps have made energy: up to {:.2g} % of what the scene had or took up, at t = {:.6g} s; {}",
+        100 * most_made_ / scale, most_made_at_, cause(contacts_seen_, overlap_, longest_step_, options_.solver.hht));
   }
 
  private:
@@ -127,6 +159,10 @@ class Outputs {
                       {"dissipated", books.dissipated()},
                       {"external_work", books.external_work()},
                       {"balance_error", books.balance_error()}};
+    json["initial_overlap"] = {{"pairs", overlap_.pairs},
+                               {"depth", overlap_.depth},
+                               {"depth_over_segment", overlap_.share},
+                               {"stored_energy", overlap_.stored}};
     json["factorisation"] = {
         {"analyses", counts.analyses}, {"factorisations", counts.factorisations}, {"seconds", counts.seconds}};
     json["peak_memory_bytes"] = peak_memory_bytes();
@@ -142,6 +178,8 @@ class Outputs {
   const RunOptions& options_;
   double most_made_ = 0, most_made_at_ = 0;  ///< energy, J/m, and when, s
   double longest_step_ = 0;                  ///< s
+  ContactsSeen contacts_seen_;
+  Overlap overlap_;
   Progress progress_;
   ProbeFile probes_;
   FrameOutput frames_;

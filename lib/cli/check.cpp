@@ -153,6 +153,11 @@ void print_contacts(const Model& model, const ContactSystem& contact) {
                                  si(contact.skin(), "m")));
 }
 
+void print_overlap(const Simulation& simulation) {
+  const std::string text = describe(simulation.overlap(), simulation.model());
+  if (!text.empty()) print_row("overlap", text);
+}
+
 /// The bound at the start, whatever the integrator: step doubling does not use it, but cannot go far beyond.
 struct Stability {
   double dt = 0, stiffer_dt = 0;  ///< s; infinite when nothing is stiff
@@ -264,6 +269,7 @@ void print_check(const Scene& scene, int threads) {
   const Stability stable = stability(model);
   Simulation simulation(model);
   print_contacts(model, simulation.forces().contact());
+  print_overlap(simulation);
   print_time_step(scene, stable, simulation.forces().contact().skin());
   const Rehearsal first = rehearse(simulation);
   const Forecast run = forecast(scene, first, stable.dt);

@@ -126,10 +126,9 @@ void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& 
 void Forces::warn_of_depth(const Evaluation& evaluation, double time) {
   if (evaluation.contact.deepest <= deep_penetration || warned_deep_) return;
   warned_deep_ = true;
-  spdlog::warn(
-      "penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); consider a "
-      "higher contact stiffness",
-      evaluation.contact.deepest, time, lost_penetration);
+  spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); {}",
+               evaluation.contact.deepest, time, lost_penetration,
+               time > 0 ? "consider a higher contact stiffness" : "move bodies apart that overlap at the start");
 }
 
 std::vector<double> Forces::stiffness_bound(const std::vector<double>& compliance) {

@@ -23,6 +23,7 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
                                             state_.history, trial, state_.force);
   check_start(start, state_, forces_);
   forces_.warn_of_depth(start, 0);
+  if (start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), forces_.outlines());
   std::swap(state_.history, trial);
   ++state_.evaluations;
   auditor_ = std::make_unique<Auditor>(forces_, state_);
@@ -36,6 +37,12 @@ StepReport Simulation::step(double until) {
   const auto& times = model_.switch_times;
   const auto next = std::upper_bound(times.begin(), times.end(), state_.time);
   if (next != times.end()) until = std::min(until, *next);
+  const StepReport report = integrate(until);
+  statistics_.add(report, state_.time);
+  return report;
+}
+
+StepReport Simulation::integrate(double until) {
   if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) return verlet->step(state_, until);
   return std::get<StepDoubling>(integrator_).step(state_, until);
 }

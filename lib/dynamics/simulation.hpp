@@ -3,9 +3,11 @@
 #include <memory>
 #include <variant>
 
+#include "contact/initial_overlap.hpp"
 #include "dynamics/energy.hpp"
 #include "dynamics/state.hpp"
 #include "dynamics/step_doubling.hpp"
+#include "dynamics/step_statistics.hpp"
 #include "dynamics/verlet.hpp"
 
 namespace pliant {
@@ -24,24 +26,31 @@ class Simulation {
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
   const Forces& forces() const { return forces_; }
+  const InitialOverlap& overlap() const { return overlap_; }
+  const StepStatistics& statistics() const { return statistics_; }
   double largest_dt() const;      ///< stability bound, s; infinite for step-doubling
   std::string governing() const;  ///< what limits the stability bound
 
-  /// Everything that the coming steps and audits depend on: a simulation of the same model that reads it goes on with
-  /// the same bits.
+  /// Everything that the coming steps, audits and diagnoses depend on: a simulation of the same model that reads it
+  /// goes on with the same bits.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("state", state_);
     visitor("forces", forces_);
     visitor("auditor", *auditor_);
+    visitor("statistics", statistics_);
     if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) visitor("verlet", *verlet);
     if (StepDoubling* doubling = std::get_if<StepDoubling>(&integrator_)) visitor("step_doubling", *doubling);
   }
 
  private:
+  StepReport integrate(double until);
+
   const Model& model_;
   State state_;
   Forces forces_;
+  InitialOverlap overlap_;
+  StepStatistics statistics_;
   std::unique_ptr<Auditor> auditor_;
   std::variant<std::monostate, Verlet, StepDoubling> integrator_;
 };

@@ -13,9 +13,12 @@ ProgressLine::ProgressLine(bool quiet)
 
 double ProgressLine::seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-void ProgressLine::begin(const State& state) {
+void ProgressLine::begin(const Simulation& simulation) {
+  const State& state = simulation.state();
   start_time_ = state.time;
   last_evaluations_ = state.evaluations;
+  if (!quiet_ && state.steps == 0 && simulation.overlap().pairs > 0)
+    fmt::print(stderr, "overlap at the start: {}\n", describe(simulation.overlap(), simulation.model()));
 }
 
 bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report, Audit& audit) {

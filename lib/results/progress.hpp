@@ -12,8 +12,8 @@ namespace pliant {
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);
-  /// The state that this process starts from, for speeds and the time left.
-  void begin(const State& state);
+  /// The state that this process starts from, for speeds and time left. A run's first line: bodies that overlap.
+  void begin(const Simulation& simulation);
   /// Cheap when no line is due. Returns the audit it took, if any, through `audit`.
   bool show_if_due(Simulation& simulation, const StepReport& report, Audit& audit);
   void finish() const;

@@ -17,7 +17,7 @@ class Recorder {
  public:
   Recorder(const Model& model, const std::filesystem::path& folder, bool quiet, Opening opening);
 
-  void begin(const State& state) { progress_.begin(state); }
+  void begin(const Simulation& simulation) { progress_.begin(simulation); }
   double next_output(double end) const;
   void record_outputs(Simulation& simulation);
   void record_step(Simulation& simulation, const StepReport& report);

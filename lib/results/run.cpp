@@ -60,7 +60,7 @@ void advance(Run& run) {
   Simulation& simulation = run.simulation;
   const double end = simulation.model().scene.time.end;
   const StopSignals signals;
-  run.recorder.begin(simulation.state());
+  run.recorder.begin(simulation);
   run.recorder.record_outputs(simulation);
   run.recorder.write_summary(simulation, "running");
   while (simulation.state().time < end) {

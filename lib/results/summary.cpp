@@ -36,6 +36,11 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
                     {"dissipated", e.dissipated},
                     {"external_work", e.external_work},
                     {"balance_error", simulation.balance_error(e)}};
+  const InitialOverlap& overlap = simulation.overlap();
+  json["initial_overlap"] = {{"pairs", overlap.pairs},
+                             {"depth", overlap.depth},
+                             {"depth_over_segment", overlap.share},
+                             {"stored_energy", overlap.stored}};
   json["momentum_error"] = std::max(figures.worst_momentum_error, audit.momentum_error);
   json["peak_memory_bytes"] = peak_memory_bytes();
   json["bodies"] = model.bodies.size();

@@ -42,6 +42,7 @@ struct ContactElement {
   Eigen::Matrix<double, 6, 6> tangent;      ///< of `force`, unsymmetric where it slips
   double gap = 0, pressure = 0, shear = 0;  ///< m, Pa, Pa (on the slave along the segment)
   double depth = 0;                         ///< penetration over the master's longest segment
+  double compression = 0;                   ///< of the initial state: energy that penetration stores, J/m
   std::array<int, 2> body{};                ///< whose node, whose segment: numbers of outlines
   /// More columns of the tangent, for nodes of the outline that the slave passed since the last accepted state, as the
   /// way along it depends on them too; empty while it stays on one segment. A node may occur more than once: columns

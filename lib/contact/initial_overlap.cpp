@@ -1,0 +1,128 @@
+#include "contact/initial_overlap.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "contact/pass.hpp"
+#include "contact/response.hpp"
+
+namespace pliant {
+namespace {
+
+/// Shallower ones are rounding of positions, over the longest segment near.
+constexpr double least_share = 1e-9;
+
+/// A node below the other body's outline.
+struct DeepNode {
+  double depth, share, stored;  ///< m, -, J/m
+  Vec2 normal;                  ///< unit, from the first body of the patch to the second
+};
+
+/// What compression stores at a gap below 0, J/m2: all but cohesion's share, which is there at gap 0 too.
+template <class Law>
+Lanes compression(const Law& law, Lanes gap) {
+  if constexpr (keeps_damage<Law>)
+    return law.broken(gap).energy - law.broken(Lanes{}).energy;
+  else
+    return law(gap).energy - law(Lanes{}).energy;
+}
+
+std::vector<DeepNode> deep_nodes(const Model& model, const Outlines& outlines, const Patch& patch, double skin) {
+  std::vector<DeepNode> nodes;
+  MasterWindow window;
+  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const SlaveNodes& slaves,
+                             const Projection& p) {
+    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_share * window.longest());
+    const Lanes stored = 0.5 * slaves.tributary_length * compression(law, p.gap);
+    for (int lane = 0; lane < lane_count; ++lane)
+      if (deep[lane])
+        nodes.push_back({-p.gap[lane], -p.gap[lane] / window.longest(), stored[lane],
+                         (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
+  };
+  const auto look = [&](const auto& law) {
+    for_each_projection(model, outlines, patch, skin, 0, window,
+                        [&](const auto&... found) { add_nodes(law, found...); });
+  };
+  std::visit(look, patch.law);
+  return nodes;
+}
+
+const DeepNode& deepest_of(const std::vector<DeepNode>& nodes) {
+  return *std::max_element(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
+}
+
+/// Along the deepest node's normal: a node leaves a convex body with the line of its own segment. One beside a corner
+/// leaves it through the deepest node's face.
+double separation_along(const Vec2& direction, const std::vector<DeepNode>& nodes) {
+  constexpr double same_face = 0.5;  // cosine between the normals
+  double separation = 0;
+  for (const DeepNode& node : nodes)
+    if (const double rise = node.normal.dot(direction); rise > same_face)
+      separation = std::max(separation, node.depth / rise);
+  return separation;
+}
+
+bool on_one_lattice(const Model& model, int first, int second) {
+  const int set = model.bodies[first].grains;
+  if (set < 0 || model.bodies[second].grains != set) return false;
+  const PackingKind kind = model.scene.grains[set].packing.kind;
+  return kind == PackingKind::hexagonal || kind == PackingKind::grid;
+}
+
+/// Of a lattice: neighbours move apart in proportion to their distance.
+double growth_of(const Model& model, const Patch& patch, double separation, const Vec2& normal) {
+  const Vec2 image(patch.images * model.scene.period.value_or(0), 0);
+  const double distance = (model.bodies[patch.second].centre + image - model.bodies[patch.first].centre).dot(normal);
+  return distance > separation ? 1 + separation / distance : 1;
+}
+
+/// Rounded up to two digits, so that who follows it is on the safe side.
+double rounded_up(double length) {
+  const double digit = std::pow(10.0, std::floor(std::log10(length)) - 1);
+  return std::ceil(length / digit) * digit;
+}
+
+}  // namespace
+
+InitialOverlap initial_overlap(const Model& model, const ContactSystem& contact, const Outlines& outlines) {
+  InitialOverlap overlap;
+  std::pair<int, int> last{-1, -1};
+  for (const Patch& patch : contact.patches()) {
+    const std::vector<DeepNode> nodes = deep_nodes(model, outlines, patch, contact.skin());
+    if (nodes.empty()) continue;
+    const std::pair<int, int> pair{patch.first, patch.second};  // patches with several images stand side by side
+    overlap.pairs += pair != last;
+    last = pair;
+    const DeepNode& deepest = deepest_of(nodes);
+    const double separation = separation_along(deepest.normal, nodes);
+    if (on_one_lattice(model, patch.first, patch.second))
+      overlap.growth = std::max(overlap.growth, growth_of(model, patch, separation, deepest.normal));
+    for (const DeepNode& node : nodes) overlap.stored += node.stored;
+    if (deepest.depth <= overlap.depth) continue;
+    overlap.first = patch.first, overlap.second = patch.second;
+    overlap.depth = deepest.depth, overlap.share = deepest.share, overlap.separation = separation;
+  }
+  return overlap;
+}
+
+std::string remedy(const InitialOverlap& overlap, const Model& model) {
+  if (on_one_lattice(model, overlap.first, overlap.second) && overlap.growth > 1)
+    return fmt::format("take a pitch {:.6g} times as large", 1 + rounded_up(overlap.growth - 1));
+  return fmt::format("move '{}' and '{}' apart by {:.2g} m", model.bodies[overlap.first].name,
+                     model.bodies[overlap.second].name, rounded_up(overlap.separation));
+}
+
+std::string describe(const InitialOverlap& overlap, const Model& model) {
+  if (overlap.pairs == 0) return {};
+  return fmt::format(
+      "{} of bodies, '{}' and '{}' deepest by {:.3g} m, {:.2g} of a segment; {:.3g} J/m stored, which will set them "
+      "moving: {}, unless the scene is meant to start pressed together",
+      overlap.pairs == 1 ? "1 pair" : fmt::format("{} pairs", overlap.pairs), model.bodies[overlap.first].name,
+      model.bodies[overlap.second].name, overlap.depth, overlap.share, overlap.stored, remedy(overlap, model));
+}
+
+}  // namespace pliant

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "reference/system.hpp"
+
+namespace pliant::reference {
+
+/// Bodies that reach into each other at the start. Cohesion at a gap does not count.
+struct Overlap {
+  int pairs = 0;                ///< of bodies
+  double depth = 0, share = 0;  ///< the largest, m, and over the master's longest segment
+  double stored = 0;            ///< in compression, J/m
+  std::string first, second;    ///< the deepest pair
+};
+
+/// `start`: forces of the first motion, before any was accepted.
+Overlap find_overlap(const Bodies& bodies, const Forces& start);
+
+/// In words, with what to do; empty without any.
+std::string advice_on(const Overlap& overlap);
+
+}  // namespace pliant::reference
