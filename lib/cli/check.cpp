@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bodies/initial_state.hpp"
+#include "cli/cautions.hpp"
 #include "cli/estimates.hpp"
 #include "cli/rehearsal.hpp"
 #include "core/memory.hpp"
@@ -158,6 +159,14 @@ void print_overlap(const Simulation& simulation) {
   if (!text.empty()) print_row("overlap", text);
 }
 
+void print_cautions(const Model& model) {
+  const char* heading = "mind";
+  for (const std::string& caution : cautions(model)) {
+    print_row(heading, caution);
+    heading = "";
+  }
+}
+
 /// The bound at the start, whatever the integrator: step doubling does not use it, but cannot go far beyond.
 struct Stability {
   double dt = 0, stiffer_dt = 0;  ///< s; infinite when nothing is stiff
@@ -270,6 +279,7 @@ void print_check(const Scene& scene, int threads) {
   Simulation simulation(model);
   print_contacts(model, simulation.forces().contact());
   print_overlap(simulation);
+  print_cautions(model);
   print_time_step(scene, stable, simulation.forces().contact().skin());
   const Rehearsal first = rehearse(simulation);
   const Forecast run = forecast(scene, first, stable.dt);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
 #include <map>
 
 #include "core/errors.hpp"
@@ -58,6 +60,26 @@ double correction_bound(const ShapeRows& correction, const std::vector<double>& 
       symmetric(static_cast<Eigen::Index>(i), j) = correction.value[e] * std::sqrt(lumped[i] / lumped[j]);
     }
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
+  const Eigen::Index n = static_cast<Eigen::Index>(lumped.size());
+  const Eigen::Map<const Eigen::VectorXd> mass(lumped.data(), n);
+  Eigen::MatrixX2d velocity(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) velocity.row(i) << -mesh.nodes[i].y(), mesh.nodes[i].x();
+  Eigen::MatrixX2d y = velocity;
+  if (!correction.start.empty()) {
+    Eigen::SparseMatrix<double> matrix(n, n);  // D C = 2 D - M
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < n; ++i)
+      for (int e = correction.start[i]; e < correction.start[i + 1]; ++e)
+        entries.emplace_back(i, correction.node[e], lumped[i] * correction.value[e]);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    y = Eigen::ConjugateGradient < Eigen::SparseMatrix<double>,
+    Eigen::Lower | Eigen::Upper > (matrix).solve(mass.asDiagonal() * velocity);
+  }
+  const Points outline(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count);
+  return mass.dot(velocity.cwiseProduct(y).rowwise().sum()) / polygon_properties(outline).polar_moment;
 }
 
 }  // namespace pliant

@@ -15,4 +15,9 @@ ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::
 /// Bound on the largest eigenvalue of C, 2 - min eig(D^-1 M): computed for up to 1000 nodes, else 2, as M is positive semidefinite.
 double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped);
 
+/// Inertia of a rotation about the centroid over that of the polygon, which the consistent mass has: kinetic energy
+/// y.D C y / 2 of the y that moves nodes so (METHOD 2). `correction`: rows of C as mass_correction gives them; without
+/// any C = I.
+double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction);
+
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from pathlib import Path
@@ -129,3 +130,44 @@ def test_lanes_of_different_shapes(desk) -> None:
     rows = checked(desk, case)
     assert rows["lanes"].startswith("of one shape: 0 bodies; of related shapes: 48; spread, each over all lanes: 0")
     assert "lanes" not in checked(desk, case.replace("variants = 48\n", ""))  # one shape
+
+
+def test_rotational_inertia_is_that_of_a_run(desk) -> None:
+    """EXACT: the energy of a disc that starts to spin, over that of its polygon."""
+    spinning = TWO_DISCS.replace('uniform = ["20 m/s", "0 m/s"]', 'rotation = "1 rad/s"')
+    head, one, _ = spinning.replace("nodes = 60", "nodes = {nodes}").split("[[grains]]")
+    rest = "[[contacts]]" + spinning.split("[[contacts]]")[1]
+    alone = f'{head}[[grains]]{one}{rest}[discretisation]\nmass = "{{mass}}"\n'
+    for nodes, mass, excess in (60, "lumped", 6.8), (168, "lumped", 2.3), (60, "corrected", 0.49):  # FROZEN, %
+        text = alone.replace("{nodes}", str(nodes)).replace("{mass}", mass)
+        told = checked(desk, text)["mind"]
+        assert f"up to {excess} % more rotational inertia" in told, told
+        assert ('mass = "corrected" leaves' in told) == (mass == "lumped")
+        assert desk.run("--out", "out", "--until", "1 fs", "--force", "--quiet").returncode == 0
+        sides = round(3.7 * math.sqrt(nodes))
+        turn, radius = 2 * math.pi / sides, 0.5e-6
+        corner = radius * math.sqrt(turn / math.sin(turn))
+        moment = 1200 * sides / 12 * corner**4 * math.sin(turn) * (2 + math.cos(turn))
+        kinetic = desk.summary("out")["energy"]["kinetic"]
+        assert 100 * (kinetic / (moment / 2) - 1) == pytest.approx(excess, abs=0.06)  # as it is rounded
+
+
+def test_facets_and_restitution_are_stated_where_there_are_some(desk) -> None:
+    assert "mind" not in checked(desk, BLOCK)
+    assert "29 facets tilt the normals of a smooth outline by up to 6.2 degrees" in checked(desk, TWO_DISCS)["mind"]
+    bounce = BLOCK.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5")
+    assert "mind" not in checked(desk, bounce)  # nothing rolls
+    disc = 'kind = "disc"\ndiameter = 0.1\nnodes = 60\n'
+    rolls = checked(desk, re.sub(r'kind = "polygon"\n.*\n.*\n', disc, bounce))
+    assert "restitution 0.5 resists rolling" in rolls["mind"]
+
+
+def test_too_fine_an_outline_is_told_how_many_nodes_fit(desk) -> None:
+    fine = TWO_DISCS.replace("nodes = 60", "nodes = 60\noutline_nodes = 48")
+    desk.write(fine)
+    said = desk.engine("check", desk.scene).stderr
+    assert "48 outline nodes are too fine for 60 nodes" in said and "support" not in said, said
+    fewer, more = (re.search(rf"{key} = (\d+) or {word}", said)[1] for key, word in
+                   (("outline_nodes", "fewer"), (" nodes", "more")))
+    for advised in fine.replace("= 48", f"= {fewer}"), fine.replace("nodes = 60", f"nodes = {more}"):
+        checked(desk, advised)

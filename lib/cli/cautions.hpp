@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bodies/model.hpp"
+
+namespace pliant {
+
+/// What polygons and lumped masses change in a scene's mechanics, with figures and what lessens it: a sentence each,
+/// none where it does not apply.
+std::vector<std::string> cautions(const Model& model);
+
+}  // namespace pliant
