@@ -34,6 +34,11 @@ SIDE = math.sqrt(TURN / math.sin(TURN)) * math.sin(TURN / 2)
 ENERGY = 0.5 * 80 * DEPTH**2 * SIDE  # one node of each, weight 1/2
 
 
+@pytest.fixture(autouse=True)
+def one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+
+
 @pytest.mark.parametrize("solver", ["engine", "reference"])
 def test_is_told_of_at_the_start_and_in_the_summary(desk, solver: str) -> None:
     desk.write(DISCS.format(distance=1))
