@@ -1,6 +1,9 @@
 // A compliant body that closes on itself.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "core/errors.hpp"
 #include "support/contact_rig.hpp"
 #include "support/simulations.hpp"
@@ -111,6 +114,103 @@ TEST(SelfContact, an_overlap_later_is_a_contact) {
   }
   rig.step();
   EXPECT_GT(rig.totals.contacts, 0);
+}
+
+/// A turn about the origin and a shift.
+struct RigidMotion {
+  double turn = 0;
+  Vec2 shift{0, 0};
+  Vec2 operator()(const Vec2& x) const { return Eigen::Rotation2Dd(turn) * x + shift; }
+};
+
+/// The clamp, of finite elements, whose nodes stand on the outline itself; and its jaws as rigid bodies of the same outline nodes.
+class Jaws {
+ public:
+  static constexpr double cut = -0.3;  ///< jaws begin to the right of it
+
+  Jaws() : clamp_(clamp_of_elements()), apart_(jaws_alone(clamp_)) {
+    for (int jaw : {0, 1}) {
+      apart_.move(jaw, clamp_.node(0, nodes_[jaw][0]) - apart_.node(jaw, 0));
+      rest_.emplace_back(apart_.rigid(jaw)[0], apart_.rigid(jaw)[1]);
+    }
+    clamp_nodes_ = clamp_.q;
+    step();
+  }
+  void move(const RigidMotion (&motion)[2]) {
+    const Body& body = clamp_.model.bodies[0];
+    const std::size_t offset = clamp_.model.batches[body.batch].offset;
+    for (int i = 0; i < clamp_.model.shape_of(body).nodes(); ++i) {
+      const std::size_t at = offset + 2 * static_cast<std::size_t>(i);
+      const Vec2 X(clamp_nodes_.compliant[at][body.lane], clamp_nodes_.compliant[at + 1][body.lane]);
+      if (X.x() < cut + root(clamp_)) continue;
+      const Vec2 x = motion[X.y() > 0](X);
+      clamp_.q.compliant[at][body.lane] = x.x(), clamp_.q.compliant[at + 1][body.lane] = x.y();
+    }
+    for (int jaw : {0, 1}) {
+      const Vec2 x = motion[jaw](rest_[jaw]);
+      double* position = apart_.rigid(jaw);
+      position[0] = x.x(), position[1] = x.y(), position[2] = motion[jaw].turn;
+    }
+    step();
+  }
+  /// Compares the forces on the jaws' nodes, those near the cut aside. Returns how many of them push.
+  int expect_same_forces() const {
+    int pushing = 0;
+    for (int jaw : {0, 1})
+      for (std::size_t i = 0; i < nodes_[jaw].size(); ++i) {
+        const int k = nodes_[jaw][i];
+        if (clamp_.model.outlines[0].points[k].x() < 0.2 + root(clamp_)) continue;
+        const Vec2 expected = apart_.force(jaw, static_cast<int>(i));
+        EXPECT_LT((clamp_.force(0, k) - expected).norm(), 1e-12) << "EXACT: rounding, node " << k;
+        pushing += expected.norm() > 0.01;
+      }
+    return pushing;
+  }
+  double dissipated() const { return apart_.dissipated; }
+
+ private:
+  static Scene clamp_of_elements() {
+    Scene scene = clamp(true, 0.3);
+    scene.discretisation.recipe = Recipe::es_t3;
+    return scene;
+  }
+  /// Where the clamp's own x = 0 has come to: outlines stand about their centre of area.
+  static double root(const testing::ContactRig& rig) { return rig.model.outlines[0].points[0].x() + 1; }
+  Scene jaws_alone(const testing::ContactRig& rig) {
+    Scene scene = testing::bare_scene();
+    scene.contacts = {testing::mohr_coulomb(300, 0.3)};
+    const Points& outline = rig.model.outlines[0].points;
+    for (int jaw : {0, 1}) {
+      Points points;
+      for (int k = 0; k < static_cast<int>(outline.size()); ++k)
+        if (outline[k].x() > cut + root(rig) && (outline[k].y() > 0) == (jaw == 1))
+          points.push_back(outline[k]), nodes_[jaw].push_back(k);
+      // The cut in segments as long as the others: contact looks as far as the longest.
+      const Vec2 from = points.back(), to = points.front();
+      const int cuts = static_cast<int>(std::ceil((to - from).norm() / 0.13));
+      for (int i = 1; i < cuts; ++i) points.push_back(from + static_cast<double>(i) / cuts * (to - from));
+      testing::add_body(scene, testing::outline_shape("jaw", points), BodyKind::rigid, {0, 0});
+    }
+    return scene;
+  }
+  void step() { clamp_.step(), apart_.step(); }
+
+  std::vector<int> nodes_[2];  ///< [jaws]: numbers of their nodes on the clamp's outline
+  testing::ContactRig clamp_, apart_;
+  Points rest_;
+  Dofs clamp_nodes_;
+};
+
+/// EXACT: the flanks of one body press and rub each other as two bodies do that have those flanks.
+TEST(SelfContact, forces_are_those_between_two_bodies) {
+  Jaws jaws;
+  EXPECT_EQ(jaws.expect_same_forces(), 0) << "apart";
+  // Closed by 0.32 of 0.3, not quite in parallel; then they slide along each other and open again.
+  for (const double slide : {0.0, 0.01, 0.02, 0.01, -0.02, -0.03}) {
+    jaws.move({{0.01, {slide, 0.16}}, {-0.007, {-0.5 * slide, -0.158 + 0.1 * slide}}});
+    EXPECT_GT(jaws.expect_same_forces(), 8) << "slide " << slide;
+  }
+  EXPECT_GT(jaws.dissipated(), 1e-5);
 }
 
 }  // namespace
