@@ -136,6 +136,28 @@ TEST(ContactHistory, PassesTheSeamOfTheOutline) {
   EXPECT_LT(largest_shear, 0.08);
 }
 
+// EXACT: a disc that turns beside one at rest slides alike with each of its facets, in steps of a fortieth of one: also those at the end and the start
+// of its outline. A record that is lost there has to slip anew, two steps to the limit.
+TEST(ContactHistory, FacetsSlideAlikeAllAroundTheOutline) {
+  constexpr int sides = 40, per_facet = 40;
+  Scene scene = bare_scene();
+  scene.contacts = {mohr_coulomb(100, friction)};
+  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, sides), BodyKind::rigid, {1.98 * i, 0});
+  for (const int direction : {1, -1}) {
+    ContactRig rig(scene);
+    std::vector<Vec2> forces;
+    for (int step = 0; step < 3 * sides * per_facet / 2; ++step) {
+      rig.rigid(0)[2] = 0.03 + direction * 2 * M_PI * step / (sides * per_facet);
+      rig.step();
+      forces.push_back(rig.force(1));
+      if (step < 3 * per_facet) continue;
+      ASSERT_LT((forces[step] - forces[step - per_facet]).norm(), 1e-10) << "step " << step;
+    }
+    EXPECT_NEAR(std::abs(forces.back().y() / forces.back().x()), friction, 0.1) << "it slides";
+    EXPECT_GT(rig.contact.refreshes(), sides) << "all around";
+  }
+}
+
 // EXACT, bit by bit: a refresh in place changes nothing.
 TEST(ContactHistory, RefreshInPlaceChangesNothing) {
   ContactRig rig(block_on_floor(0.035));

@@ -178,6 +178,39 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   })) << "bodies touch across the period";
 }
 
+/// A block pressed against another one that is held at first: their dashpot is that of another mass once it is let go.
+Scene let_go() {
+  Scene scene = empty_scene(1000);
+  scene.shapes = {box_shape("block", 1, 1, 0.25)};
+  scene.grains = {grains("left", "block", BodyKind::rigid, {{0, 0}}, moving({0.1, 0})),
+                  grains("right", "block", BodyKind::rigid, {{0.998, 0}})};
+  BoundaryCondition held;
+  held.grains = "right";
+  held.x = held.y = {Drive::Mode::velocity, constant(0)};
+  held.x.window.until = held.y.window.until = 0.01;
+  scene.boundary = {held};
+  scene.contacts[0].restitution = 0.5;
+  return scene;
+}
+
+/// The laws of a save are those of its time, not of the start.
+TEST(RestartWhileTouching, laws_are_those_of_the_time) {
+  const Model model = build_model(let_go());
+  Simulation whole(model), resumed(model);
+  while (whole.state().time < 0.02) whole.step(1000);
+  const std::string bytes = saved(whole);
+  LoadLeaf load(bytes);
+  Walk{load}("simulation", resumed);
+  const long refreshes = whole.forces().contact().refreshes();
+  EXPECT_EQ(refreshes, 2) << "when it was let go: not since";
+  for (int step = 0; step < 20; ++step) {
+    whole.step(1000), resumed.step(1000);
+    ASSERT_EQ(state_hash(resumed.state()), state_hash(whole.state())) << "step " << step;
+  }
+  EXPECT_GT(whole.audit().energy.dissipated, 0) << "the dashpot works";
+  EXPECT_EQ(whole.forces().contact().refreshes(), refreshes) << "else this test says nothing";
+}
+
 std::string name_of(const ::testing::TestParamInfo<Restart::ParamType>& info) {
   return scenes[std::get<0>(info.param)].first +
          (std::get<1>(info.param) == Integrator::verlet ? "_verlet" : "_step_doubling");

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "contact/inspect.hpp"
+#include "results/frame_fields.hpp"
 #include "support/contact_oracle.hpp"
 #include "support/probing.hpp"
 
@@ -113,6 +114,29 @@ TEST(ContactProbes, partners_select) {
   EXPECT_EQ(with("contacts", "floor", ""), 1) << "EXACT";
   const std::vector<double> coordination = measured(simulation, probe_of("coordination", "all"));
   EXPECT_EQ(coordination, (std::vector<double>{1.5, 2, 0.5})) << "EXACT: the lower touches two, the upper rattles";
+}
+
+/// EXACT: a block over the seam of a period, its nodes on those of two walls: each carries kn times the depth over its length, the nodes beside the
+/// seam as well. The lower wall runs one way, the upper one the other.
+TEST(ContactProbes, tractions_of_walls_go_on_across_the_period) {
+  Scene scene = block_on_floor(0.004);
+  scene.grains[0].packing.positions = {{0, 0.246}};
+  scene.walls.push_back(flat_wall("lid", Wall::Solid::above, 0.492, 0.1));
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  const Snapshot snapshot(simulation);
+  const std::vector<double> pressure = outline_field("contact_pressure")(snapshot),
+                            shear = outline_field("contact_shear")(snapshot);
+  const Outlines& o = snapshot.outlines();
+  int pressed = 0;
+  for (int wall : {1, 2})
+    for (int i = o.offset[wall]; i < o.offset[wall] + model.outlines[o.shape[wall]].count; ++i) {
+      if (std::abs(std::remainder(o.x[i], 4)) > 0.35) continue;  // corners of the block
+      EXPECT_NEAR(pressure[i], 0.4, 1e-12) << "x = " << o.x[i] << ", wall " << wall;
+      EXPECT_NEAR(shear[i], 0, 1e-12) << "x = " << o.x[i] << ", wall " << wall;
+      ++pressed;
+    }
+  EXPECT_EQ(pressed, 14) << "seven nodes of either wall";
 }
 
 TEST(ContactProbes, a_node_that_touches_twice_has_its_length_once) {
