@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "bodies/mass_correction.hpp"
+#include "dynamics/accelerations.hpp"
 #include "support/simulations.hpp"
+#include "support/steered.hpp"
 
 namespace pliant::dynamics_tests {
 namespace {
@@ -133,6 +135,86 @@ TEST(CorrectedMass, step_bound_is_that_of_the_corrected_spectrum) {
   const double start = simulation.audit().energy.kinetic;
   advance(simulation, 200);
   EXPECT_LT(simulation.audit().energy.mechanical(), 2 * start) << "EXACT: stable";
+}
+
+/// A swinging disc with both kinds of damping: at the end nearly half of its energy is gone.
+Scene damped() {
+  Scene scene = corrected(free_disc(40, 1e9, stretching(0.3)));
+  scene.materials[0].mass_damping = 0.3;
+  scene.materials[0].viscosity = 0.02;
+  scene.time.tolerance = scene.time.target = 1e300;  // steps are given
+  return scene;
+}
+
+constexpr double damped_end = 1.6;
+
+/// u' = C y and y' = f(u, C y)/D by the classical Runge-Kutta scheme: forces depend on velocities, not on what the state holds.
+State runge_kutta(int steps) {
+  Bench bench(damped());
+  const double h = damped_end / steps;
+  State& state = bench.state;
+  struct Slope {
+    std::vector<Lanes> u, y;
+  };
+  const auto slope = [&](const Slope* before, double share) {
+    State at = state;
+    if (before)
+      for (std::size_t i = 0; i < before->u.size(); ++i) {
+        at.position.compliant[i] += share * h * before->u[i];
+        at.velocity.compliant[i] += share * h * before->y[i];
+      }
+    const Dofs v = material_velocity(bench.model, at.velocity);
+    ContactHistory trial;
+    bench.forces.evaluate({at.position, v, 0}, at.history, trial, at.force);
+    Slope result{v.compliant, at.force.compliant};
+    for_each_dof(
+        bench.model, [&](std::size_t i, Lanes inverse_mass) { result.y[i] *= inverse_mass; },
+        [](std::size_t, const RigidDof&) {});
+    return result;
+  };
+  for (int step = 0; step < steps; ++step) {
+    const Slope a = slope(nullptr, 0), b = slope(&a, 0.5), c = slope(&b, 0.5), d = slope(&c, 1);
+    for (std::size_t i = 0; i < a.u.size(); ++i) {
+      state.position.compliant[i] += h / 6 * (a.u[i] + 2.0 * b.u[i] + 2.0 * c.u[i] + d.u[i]);
+      state.velocity.compliant[i] += h / 6 * (a.y[i] + 2.0 * b.y[i] + 2.0 * c.y[i] + d.y[i]);
+    }
+  }
+  return state;
+}
+
+struct DampedRun {
+  State state;
+  double balance_error = 0;
+};
+
+DampedRun damped_run(Integrator integrator, int steps) {
+  Scene scene = damped();
+  scene.time.integrator = integrator;
+  Steered run(build_model(scene));
+  for (int step = 0; step < steps; ++step) run.step(damped_end / steps);
+  EXPECT_EQ(run.bench.state.steps, steps) << "all of them are stable";
+  const Energies energy = run.auditor.audit(run.bench.state).energy;
+  EXPECT_GT(energy.dissipated, 0.3 * (energy.dissipated + energy.mechanical())) << "else this test says little";
+  return {run.bench.state, run.auditor.balance_error(energy)};
+}
+
+/// RATE, INDEPENDENT: the motion, and its books, go to those of another scheme as the step falls: the paper's by its first order, Verlet by its
+/// second, and by at least the first where dashpots act.
+TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
+  const State truth = runge_kutta(640);
+  ASSERT_LT(distance(runge_kutta(320), truth), 1e-6) << "of fourth order: the finer one is good to a fifteenth of that";
+  const DampedRun coarse = damped_run(GetParam(), 320), fine = damped_run(GetParam(), 640);
+  const double order = observed_order(distance(coarse.state, truth), distance(fine.state, truth)),
+               of_books = observed_order(coarse.balance_error, fine.balance_error);
+  RecordProperty("order", std::to_string(order));
+  RecordProperty("order_of_books", std::to_string(of_books));
+  if (GetParam() == Integrator::step_doubling) {
+    EXPECT_NEAR(order, 1, 0.2);
+    EXPECT_NEAR(of_books, 1, 0.2);
+  } else {
+    EXPECT_GT(order, 0.8);
+    EXPECT_GT(of_books, 0.8);
+  }
 }
 
 }  // namespace

@@ -10,11 +10,11 @@ namespace pliant::dynamics_tests {
 /// One moving degree of freedom of a bench.
 struct Coordinate {
   double* position;
-  const double* force;
-  double inverse_mass;
+  double* force;
+  double inverse_mass;  ///< lumped
 };
 
-inline std::vector<Coordinate> coordinates(Bench& bench, const Dofs& force) {
+inline std::vector<Coordinate> coordinates(Bench& bench, Dofs& force) {
   std::vector<Coordinate> all;
   const Model& model = bench.model;
   for (const Batch& batch : model.batches)
@@ -22,7 +22,7 @@ inline std::vector<Coordinate> coordinates(Bench& bench, const Dofs& force) {
       for (int i = 0; i < 2 * model.shape_of(batch).nodes(); ++i) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
         all.push_back({reinterpret_cast<double*>(&bench.state.position.compliant[at]) + lane,
-                       reinterpret_cast<const double*>(&force.compliant[at]) + lane,
+                       reinterpret_cast<double*>(&force.compliant[at]) + lane,
                        model.shape_of(batch).inverse_unit_mass[i / 2] * batch.inverse_density[lane]});
       }
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
@@ -32,7 +32,7 @@ inline std::vector<Coordinate> coordinates(Bench& bench, const Dofs& force) {
   return all;
 }
 
-/// Largest w^2 of M^-1 K at the bench's state, K = - d force / d position by central differences of all forces, 1/s2.
+/// Largest w^2 of M^-1 K, or W K, at the bench's state, K = - d force / d position by central differences of all forces, 1/s2.
 /// The step is small against penetrations and large against rounding; contacts stay where they are when they are not
 /// at their edge.
 inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
@@ -43,7 +43,11 @@ inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
   Eigen::MatrixXd matrix(n, n);
   const auto forces_into = [&](Eigen::VectorXd& column) {
     bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history, trial, force);
-    for (Eigen::Index i = 0; i < n; ++i) column[i] = *all[i].force * all[i].inverse_mass;
+    for (const Coordinate& c : all) *c.force *= c.inverse_mass;
+    // C D^-1 f with corrected mass. Copied: coordinates point into `force`.
+    const Dofs acceleration = material_velocity(bench.model, force);
+    std::copy(acceleration.compliant.begin(), acceleration.compliant.end(), force.compliant.begin());
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = *all[i].force;
   };
   Eigen::VectorXd plus(n), minus(n);
   for (Eigen::Index j = 0; j < n; ++j) {
