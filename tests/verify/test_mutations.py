@@ -11,7 +11,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "verify/mutations"))
 
-from mutate import Mutation, read_mutations, red_lines
+import mutate
+from mutate import Mutation, Sound, judge, read_mutations, red_lines
+from unit_tests import in_short, unfinished
 
 MUTATIONS = read_mutations()
 
@@ -42,3 +44,38 @@ def test_what_is_red_without_a_mutation_finds_none() -> None:
     row = {"case": "a", "name": "b", "label": "EXACT", "value": 1.0, "expected": 2.0, "tolerance": 0.1, "green": False}
     assert red_lines({"checks": [{**row, "green": True}], "failures": []}) == []
     assert len(red_lines({"checks": [row], "failures": []})) == 1
+
+
+def test_unit_tests_that_fail_crash_or_do_not_end_find_one() -> None:
+    said = """[ RUN      ] A.passes
+[       OK ] A.passes (1 ms)
+[ RUN      ] A.is_skipped
+[  SKIPPED ] A.is_skipped (0 ms)
+[ RUN      ] A.fails/0
+a.cpp:3: Failure
+[  FAILED  ] A.fails/0, where GetParam() = 1 (0 ms)
+[ RUN      ] A.speaks
+a warning[       OK ] A.speaks (2 ms)
+[ RUN      ] B.crashes
+"""
+    assert unfinished(said) == ["A.fails/0", "B.crashes"]
+    assert in_short(["a", "b"]) == "a, b"
+    assert in_short(list("abcdef")) == "a, b, c, d and 2 more"
+
+
+@pytest.mark.parametrize(("check", "tests", "killer"), [
+    (["case: a check\tits value"], ["A.b", "A.is_red_anyway"], "case: a check; unit tests A.b"),
+    ([], ["A.b"], "unit tests A.b"), ([], ["A.is_red_anyway"], "")])
+def test_what_finds_one_is_named(check: list[str], tests: list[str], killer: str, tmp_path: Path,
+                                 monkeypatch: pytest.MonkeyPatch) -> None:
+    source = tmp_path / "a.hpp"
+    source.write_text("one two")
+    built = []
+    monkeypatch.setattr(mutate, "SOURCE", tmp_path)
+    monkeypatch.setattr(mutate, "build", lambda: built.append(source.read_text()))
+    monkeypatch.setattr(mutate, "run_cases", lambda cases, name, *options: check)
+    monkeypatch.setattr(mutate, "red_tests", lambda program, folder: tests)
+    verdict = judge(Mutation("m", "what", "a.hpp", "two", "three", ["case"]), Sound(["case"], ["A.is_red_anyway"]))
+    assert (verdict.killed, verdict.killer) == (bool(killer), killer)
+    assert built == ["one three"]
+    assert source.read_text() == "one two", "as it was"

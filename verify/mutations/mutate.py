@@ -1,10 +1,11 @@
-"""Makes small mistakes of physics, one at a time, in a copy of the code, and shows which check of verify/ finds each.
+"""Makes small mistakes of physics, one at a time, in a copy of the code, and shows which unit tests and which check of verify/ find each.
 
-    ./pliant verify --mutate                  all mutations of mutations.toml: an hour or two
+    ./pliant verify --mutate                  all mutations of mutations.toml: some hours
     ./pliant verify --mutate NAME NAME        these
 
 The copy and its builds are in build/mutants; what was found goes to results/verify/mutations.json and into the report. A mutation counts as found
-when a check is red, or a run ends with an error, that is green without it.
+when a unit test or a check is red, or a run ends with an error, that is green without it. All unit tests and the mutation's own cases are asked, the
+other fast cases when those find nothing.
 """
 
 from __future__ import annotations
@@ -29,19 +30,20 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from report import report
+from unit_tests import in_short, red_tests
 from verification import OUT, ROOT, replace_file
 
 MUTATIONS = Path(__file__).with_name("mutations.toml")
 SCRATCH = ROOT / "build/mutants"
 SOURCE = SCRATCH / "source"
 BUILD = SOURCE / "build/release"
-PROGRAMS = ["pliant_engine", "pliant_reference_solver", "pliant_agreement"]
+PROGRAMS = ["pliant_engine", "pliant_reference_solver", "pliant_agreement", "pliant_tests"]
 LONGEST_RUN = 300  # s; a solver that runs longer than this does not come to an end
 
 
 @dataclass
 class Mutation:
-    """A text that stands once in a file, and what stands there instead. `cases` are tried first, then the fast ones."""
+    """A text that stands once in a file, and what stands there instead. `cases` are tried first, the fast ones if nothing finds it."""
 
     name: str
     what: str
@@ -139,22 +141,37 @@ def fast_cases() -> list[str]:
                   if re.search(r"^CASE = Case\(__file__, .*fast=True", file.read_text(), re.MULTILINE))
 
 
-def judge(mutation: Mutation, sound: list[str]) -> Verdict:
-    """Builds the mutant and looks for a check that finds it."""
+@dataclass
+class Sound:
+    """What is green without a mutation: only this can find one."""
+
+    cases: list[str]
+    red_tests: list[str]
+
+    def unit_tests(self, name: str) -> list[str]:
+        """Those that find a mutation."""
+        return [test for test in red_tests(BUILD / "pliant_tests", SCRATCH / "results" / name) if test not in self.red_tests]
+
+
+def judge(mutation: Mutation, sound: Sound) -> Verdict:
+    """Builds the mutant and looks for tests and a check that find it."""
     start = time.monotonic()
     file = SOURCE / mutation.file
     text = file.read_text()
     file.write_text(mutation.mutated(text))
     try:
         build()
-        red: list[str] = []
-        suspects = [case for case in mutation.cases if case in sound]
-        for cases in (suspects, [case for case in fast_cases() if case in sound and case not in suspects]):
-            red = red or (run_cases(cases, mutation.name, "-x") if cases else [])
+        suspects = [case for case in mutation.cases if case in sound.cases]
+        red = run_cases(suspects, mutation.name, "-x") if suspects else []
+        tests = sound.unit_tests(mutation.name)
+        others = [case for case in fast_cases() if case in sound.cases and case not in suspects]
+        if others and not (red or tests):
+            red = run_cases(others, mutation.name, "-x")
     finally:
         file.write_text(text)
-    killer, message = (red[0].split("\t") if red else ("", ""))
-    return Verdict(mutation.name, mutation.what, mutation.file, bool(red), killer, message, time.monotonic() - start)
+    check, message = (red[0].split("\t") if red else ("", ""))
+    killer = "; ".join(([check] if red else []) + ([f"unit tests {in_short(tests)}"] if tests else []))
+    return Verdict(mutation.name, mutation.what, mutation.file, bool(killer), killer, message, time.monotonic() - start)
 
 
 def write_down(verdicts: list[Verdict], names: list[str]) -> None:
@@ -168,14 +185,16 @@ def write_down(verdicts: list[Verdict], names: list[str]) -> None:
     report.write(OUT)
 
 
-def sound_cases(mutations: list[Mutation]) -> list[str]:
-    """Cases that are green without a mutation: only these can find one."""
+def look_for_sound(mutations: list[Mutation]) -> Sound:
     cases = sorted({case for mutation in mutations for case in mutation.cases} | set(fast_cases()))
-    print(f"the copy without mutations: {len(cases)} cases", flush=True)
+    print(f"the copy without mutations: the unit tests and {len(cases)} cases", flush=True)
+    tests = red_tests(BUILD / "pliant_tests", SCRATCH / "results/none")
+    for test in tests:
+        print(f"  unit test {test} is red without a mutation: left out", flush=True)
     red = {line.split(":")[0] for line in run_cases(cases, "none")}
     for case in sorted(red):
         print(f"  {case} is red without a mutation: left out", flush=True)
-    return [case for case in cases if case not in red]
+    return Sound([case for case in cases if case not in red], tests)
 
 
 def chosen(mutations: list[Mutation], names: list[str]) -> list[Mutation]:
@@ -218,7 +237,7 @@ def judge_all(mutations: list[Mutation], known: list[str]) -> int:
     """Exit code: 1 when one survives. What is found is written down at once."""
     copy_sources()
     build()
-    sound = sound_cases(mutations)
+    sound = look_for_sound(mutations)
     verdicts = []
     for mutation in mutations:
         verdicts.append(judge(mutation, sound))

@@ -1,0 +1,58 @@
+"""The unit tests as judges of a mutation: which of them find it."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import time
+from contextlib import suppress
+from pathlib import Path
+
+LONGEST = 1200  # s, of all tests; a mutant may keep one of them from coming to an end
+
+
+def red_tests(program: Path, folder: Path) -> list[str]:
+    """Names of the tests that fail, crash or do not end. They run in one process a core, each with its share; a crash ends its own share."""
+    folder.mkdir(parents=True, exist_ok=True)
+    shards = os.cpu_count() or 1
+    processes = [start(program, folder, shard, shards) for shard in range(shards)]
+    last = time.monotonic() + LONGEST
+    for process in processes:
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(max(0.0, last - time.monotonic()))
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    said = [output(folder, shard).read_text(errors="replace") for shard in range(shards)]
+    if not any(begun(text) for text in said):
+        raise RuntimeError(f"no unit test ran:\n{said[0][-4000:]}")
+    return [name for text in said for name in unfinished(text)]
+
+
+def output(folder: Path, shard: int) -> Path:
+    return folder / f"unit_tests_{shard}.txt"
+
+
+def start(program: Path, folder: Path, shard: int, shards: int) -> subprocess.Popen:
+    environment = {**os.environ, "GTEST_TOTAL_SHARDS": str(shards), "GTEST_SHARD_INDEX": str(shard),
+                   "OMP_WAIT_POLICY": "passive"}
+    with output(folder, shard).open("w") as file:
+        return subprocess.Popen([str(program), "--gtest_color=no"], cwd=folder, env=environment, stdout=file,
+                                stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def begun(said: str) -> list[str]:
+    return re.findall(r"^\[ RUN      \] (\S+)", said, re.MULTILINE)
+
+
+def unfinished(said: str) -> list[str]:
+    """Tests that began and did not end well, from what a test program says."""
+    well = set(re.findall(r"\[       OK \] (\S+)", said)) | set(re.findall(r"\[  SKIPPED \] (\S+)", said))
+    return [name for name in begun(said) if name not in well]
+
+
+def in_short(names: list[str]) -> str:
+    shown = ", ".join(names[:4])
+    return f"{shown} and {len(names) - 4} more" if len(names) > 4 else shown
