@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "contact/pass.hpp"
+#include "contact/facing.hpp"
 #include "contact/response.hpp"
 
 namespace pliant {
@@ -34,18 +34,17 @@ Lanes compression(const Law& law, Lanes gap) {
 std::vector<DeepNode> deep_nodes(const Model& model, const Outlines& outlines, const Patch& patch, double skin) {
   std::vector<DeepNode> nodes;
   MasterWindow window;
-  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const SlaveNodes& slaves,
-                             const Projection& p) {
+  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
+    const Projection& p = at.p;
     const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_share * window.longest());
-    const Lanes stored = 0.5 * slaves.tributary_length * compression(law, p.gap);
+    const Lanes stored = 0.5 * at.length * compression(law, p.gap);
     for (int lane = 0; lane < lane_count; ++lane)
       if (deep[lane])
         nodes.push_back({-p.gap[lane], -p.gap[lane] / window.longest(), stored[lane],
                          (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
   };
   const auto look = [&](const auto& law) {
-    for_each_projection(model, outlines, patch, skin, 0, window,
-                        [&](const auto&... found) { add_nodes(law, found...); });
+    for_each_facing(model, outlines, patch, skin, 0, window, [&](const auto&... found) { add_nodes(law, found...); });
   };
   std::visit(look, patch.law);
   return nodes;

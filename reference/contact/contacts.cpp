@@ -196,7 +196,7 @@ struct Contacts::Implementation {
     element.body = {encounter.slave, encounter.master};
     element.depth = std::max(0.0, -at.gap.value) / on.longest;
     if (initial && element.depth > 0)
-      element.compression = length * (response.stored - respond(law, before, 0, 0, true).stored);
+      element.compression = length.value * (response.stored - respond(law, before, 0, 0, true).stored);
     result.elements.push_back(std::move(element));
   }
 

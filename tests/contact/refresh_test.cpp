@@ -24,9 +24,10 @@ struct Course {
 Scene two_rows(Random& random, const Course& course, bool floor) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(100)};
-  for (int i = 0; i < 12; ++i)
-    add_body(scene, outline_shape("", regular(8 + random.below(8), 0.2, random.uniform(0, 1))), BodyKind::rigid,
-             course.at(i, 0));
+  for (int i = 0; i < 12; ++i) {
+    const int sides = 8 + random.below(8);
+    add_body(scene, outline_shape("", regular(sides, 0.2, random.uniform(0, 1))), BodyKind::rigid, course.at(i, 0));
+  }
   if (floor) {
     scene.period = 3;
     scene.walls = {flat_wall("floor", Wall::Solid::below, 0.005, 0.15, true)};
@@ -49,7 +50,7 @@ Seen watch(int sample, const Course& course) {
   Seen seen;
   for (int step = 1; step <= 40; ++step) {
     for (int body = 0; body < 12; ++body) {
-      const Vec2 to = course.at(body, step) + Vec2(random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004));
+      const Vec2 to = course.at(body, step) + Vec2{random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004)};
       rig.move(body, to - before[body]), fresh.move(body, to - before[body]);
       before[body] = to;
     }

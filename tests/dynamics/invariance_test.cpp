@@ -36,9 +36,9 @@ Scene cloud(const Telling& telling) {
   std::vector<Grains> all;
   for (int i = 0; i < columns; ++i)
     for (int j = 0; j < rows; ++j) {
-      const Vec2 at(1.03 * i + 0.2 * (j % 2) + random.uniform(0, 0.03), 1.01 * j + random.uniform(0, 0.02));
+      const Vec2 at{1.03 * i + 0.2 * (j % 2) + random.uniform(0, 0.03), 1.01 * j + random.uniform(0, 0.02)};
       const Vec2 inward = -0.05 * Vec2(i - 0.5 * (columns - 1), j - 0.5 * (rows - 1));
-      const Vec2 velocity = inward + Vec2(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+      const Vec2 velocity = inward + Vec2{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)};
       const std::string name = "g" + std::to_string(all.size());
       all.push_back(grains(name, i % 2 == 0 ? "disc" : "small",
                            (i + j) % 2 == 0 ? BodyKind::compliant : BodyKind::rigid, {telling.turned(at)},

@@ -29,10 +29,10 @@ struct Blocks {
     x = lower;
     Random random(sample);
     for (const Vec2& p : upper) x.push_back(Eigen::Rotation2Dd(tilt) * p + Vec2(shift, 0.5 + gap));
-    for (Vec2& p : x) p += Vec2(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
+    for (Vec2& p : x) p += Vec2{random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3)};
     contacts->evaluate(x);
     contacts->accept();
-    for (Vec2& p : x) p += Vec2(random.uniform(-1e-4, 1e-4), random.uniform(-1e-4, 1e-4));
+    for (Vec2& p : x) p += Vec2{random.uniform(-1e-4, 1e-4), random.uniform(-1e-4, 1e-4)};
   }
 
   Eigen::VectorXd residual() {

@@ -45,7 +45,7 @@ struct Compared {
 void compare(ContactRig& rig, reference::Contacts& contacts, Compared& all) {
   EXPECT_FALSE(rig.evaluate());
   const reference::ContactResult result = contacts.evaluate(outline_points(rig));
-  const Points forces = forces_of(result, outline_points(rig).size());
+  const Points forces = forces_on_nodes(result, outline_points(rig).size());
   double largest = 0, worst = 0;
   std::size_t node = 0;
   for (int body = 0; body < 2; ++body)
