@@ -73,6 +73,13 @@ TEST(MohrCoulomb, strength_of_nodes_within_a_face) {
   }
 }
 
+TEST(MohrCoulomb, strength_of_a_face_is_that_of_its_length) {
+  for (const double gap : gaps) {
+    EXPECT_LT((pulled(gap, 0).face - when_pulled_off(gap)).norm(), rounding) << gap;
+    EXPECT_LT((pulled(gap, far).face - when_sheared(gap)).norm(), rounding) << gap;
+  }
+}
+
 // EXACT: what shear has done by the end is the slip beyond the elastic one, times the strength.
 TEST(MohrCoulomb, cohesion_works_without_pressure) {
   ContactRig rig(block_on_bar());

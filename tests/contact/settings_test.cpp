@@ -97,6 +97,13 @@ TEST(CurrentLength, is_half_of_the_two_present_segments) {
   EXPECT_GT(widest, 1.5 * narrowest) << "else one segment would do for the other";
 }
 
+/// EXACT: a face stretched by a tenth carries the pressure on its present length. The face ends midway between nodes of the plate, whose nodes below
+/// it have its length in all.
+TEST(CurrentLength, of_a_stretched_face_carries_its_pressure) {
+  const StretchedBlock block(0.1, [](double x) { return 0.1 * x; });
+  EXPECT_NEAR(block.rig.force(1).y(), block.stiffness * block.depth * 1.1, 1e-12);
+}
+
 /// RATE: what the present length costs in energy, METHOD's 0.05 to 0.3 %; the reference length keeps it to the integrator's error.
 TEST(CurrentLength, costs_energy) {
   const auto error = [](ContactLength length) {
