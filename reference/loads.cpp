@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <set>
 
 #include "core/errors.hpp"
 
@@ -42,12 +44,12 @@ double target(const Drive& drive, double time, double from) {
   return drive.mode == Mode::velocity ? drive.history.integral(from, time) : 0.0;
 }
 
-double target_velocity(const Drive& drive, double time) {
-  if (drive.mode == Mode::displacement) return drive.history.slope(time);
-  return drive.mode == Mode::velocity ? drive.history.at(time) : 0.0;
+double target_velocity(const Drive& drive, const Instant& at) {
+  if (drive.mode == Mode::displacement) return slope(drive.history, at);
+  return drive.mode == Mode::velocity ? drive.history.at(at.time) : 0.0;
 }
 
-bool acts(const OutlineLoad& load, double time) { return load.condition.window.contains(time); }
+bool acts(const OutlineLoad& load, const Instant& at) { return contains(load.condition.window, at); }
 const Drive& drive_of(const OutlineLoad& support, int axis) {
   return axis == 0 ? support.condition.x : support.condition.y;
 }
@@ -95,7 +97,7 @@ Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
     for (int i = 0; i < body.dofs; ++i) {
       const int dof = body.first_dof + i;
       if (body.compliant() || i < 2) heavy_mass_[dof] = mass[dof];
-      if (!body.placed.wall) mass_damping_[dof] = mass[dof] * bodies.material_of(body).mass_damping;
+      if (!body.placed.wall) mass_damping_[dof] = bodies.material_of(body).mass_damping;
     }
   add_walls();
   for (const BoundaryCondition& condition : scene.boundary) {
@@ -167,28 +169,28 @@ Vector Loads::gravity(double time) const {
   return force;
 }
 
-Vector Loads::applied(double time) const {
+Vector Loads::applied(const Instant& at) const {
   Vector force = Vector::Zero(bodies_.dofs());
   for (const RigidLoad& load : rigid_)
-    if (load.loaded(time)) force[load.dof] += load.factor * load.drive.history.at(time);
+    if (load.loaded(at)) force[load.dof] += load.factor * load.drive.history.at(at.time);
   return force;
 }
 
-OutlineResidual Loads::outlines(const Points& x, double time) const {
+OutlineResidual Loads::outlines(const Points& x, const Instant& at) const {
   OutlineResidual result{.residual = Vector::Zero(2 * static_cast<int>(x.size())), .tangent = {}};
   for (const OutlineLoad& load : outline_) {
-    if (!acts(load, time)) continue;
+    if (!acts(load, at)) continue;
     for (const LoadedNode& node : load.nodes) {
       auto residual = result.residual.segment<2>(2 * node.node);
       if (load.condition.kind == Kind::pressure) {
-        const double pressure = load.condition.pressure.at(time);
+        const double pressure = load.condition.pressure.at(at.time);
         const Vec2 force = pressure * pressed(load, node, x);
         residual -= force;
         result.potential -= force.dot(x[node.node]);
         if (load.condition.following) add_following_tangent(node, pressure, result.tangent), result.symmetric = false;
         continue;
       }
-      const Vec2 spring = stretch(load, node, x, time);
+      const Vec2 spring = stretch(load, node, x, at.time);
       const double stiffness = load.stiffness * node.length;
       residual += stiffness * spring;
       result.stored += 0.5 * stiffness * spring.squaredNorm();
@@ -199,59 +201,59 @@ OutlineResidual Loads::outlines(const Points& x, double time) const {
   return result;
 }
 
-double Loads::outline_work(const Points& x0, double t0, const Points& x1, double t1) const {
+double Loads::outline_work(const Points& x0, double t0, const Points& x1, const Instant& t1) const {
   double work = 0;
   for (const OutlineLoad& load : outline_) {
-    const bool before = acts(load, t0), after = acts(load, t1);
+    const bool before = acts(load, {t0}), after = acts(load, t1);
     for (const LoadedNode& node : load.nodes) {
       if (load.condition.kind == Kind::pressure) {
         Vec2 force(0, 0);
         if (before) force += load.condition.pressure.at(t0) * pressed(load, node, x0);
-        if (after) force += load.condition.pressure.at(t1) * pressed(load, node, x1);
+        if (after) force += load.condition.pressure.at(t1.time) * pressed(load, node, x1);
         work += 0.5 * force.dot(x1[node.node] - x0[node.node]);
         continue;
       }
       const double stiffness = load.stiffness * node.length;
-      const Vec2 first = stretch(load, node, x0, t0), last = stretch(load, node, x1, t1);
+      const Vec2 first = stretch(load, node, x0, t0), last = stretch(load, node, x1, t1.time);
       // A moving target stretches its spring; one that sets in or ends brings or takes the spring's energy.
-      if (before) work -= 0.5 * stiffness * (first + last).dot(moved(load, t1) - moved(load, t0));
+      if (before) work -= 0.5 * stiffness * (first + last).dot(moved(load, t1.time) - moved(load, t0));
       if (before != after) work += (after ? 0.5 : -0.5) * stiffness * last.squaredNorm();
     }
   }
   return work;
 }
 
-Vector Loads::dof_damping(double time) const {
-  Vector damping = mass_damping_;
+Vector Loads::load_dashpots(const Instant& at) const {
+  Vector damping = Vector::Zero(bodies_.dofs());
   for (const RigidLoad& load : rigid_)
-    if (load.loaded(time)) damping[load.dof] += load.drive.damping * std::abs(load.factor);
+    if (load.loaded(at)) damping[load.dof] += load.drive.damping * std::abs(load.factor);
   return damping;
 }
 
-Dashpots Loads::dashpots(double time) const {
+Dashpots Loads::dashpots(const Instant& at) const {
   Dashpots result{Vector::Zero(2 * bodies_.outline_nodes()), Vector::Zero(2 * bodies_.outline_nodes())};
   for (const OutlineLoad& load : outline_) {
-    if (load.condition.kind != Kind::support || !acts(load, time)) continue;
+    if (load.condition.kind != Kind::support || !acts(load, at)) continue;
     for (const LoadedNode& node : load.nodes)
       for (int c = 0; c < 2; ++c) {
         if (!holds(load, c)) continue;
         const double coefficient = load.condition.damping * node.length;
         result.coefficient[2 * node.node + c] += coefficient;
-        result.pull[2 * node.node + c] += coefficient * target_velocity(drive_of(load, c), time);
+        result.pull[2 * node.node + c] += coefficient * target_velocity(drive_of(load, c), at);
       }
   }
   return result;
 }
 
-double Loads::dashpot_work(const Vector& v0, double t0, const Vector& v1, double t1) const {
+double Loads::dashpot_work(const Vector& v0, double t0, const Vector& v1, const Instant& t1) const {
   double work = 0;
   for (const OutlineLoad& load : outline_) {
-    if (load.condition.kind != Kind::support || !acts(load, t0)) continue;
-    const Vec2 motion = moved(load, t1) - moved(load, t0);
+    if (load.condition.kind != Kind::support || !acts(load, {t0})) continue;
+    const Vec2 motion = moved(load, t1.time) - moved(load, t0);
     for (const LoadedNode& node : load.nodes)
       for (int c = 0; c < 2; ++c) {
         if (!holds(load, c)) continue;
-        double slip = target_velocity(drive_of(load, c), t0) - v0[2 * node.node + c];
+        double slip = target_velocity(drive_of(load, c), {t0}) - v0[2 * node.node + c];
         if (acts(load, t1)) slip += target_velocity(drive_of(load, c), t1) - v1[2 * node.node + c];
         work += 0.5 * load.condition.damping * node.length * slip * motion[c];
       }
@@ -275,15 +277,20 @@ double Loads::imposed_velocity(int dof, double time) const {
 }
 
 std::vector<double> Loads::switch_times() const {
-  std::vector<double> times;
-  const auto add = [&](const Window& window) {
-    for (const double t : {window.from, window.until})
-      if (std::isfinite(t) && t > 0) times.push_back(t);
+  std::set<double> times;
+  const auto window = [&](const Window& one) { times.insert({one.from, one.until}); };
+  const auto history = [&](const History& one) {
+    if (one.time.size() > 1) times.insert(one.time.begin(), one.time.end());
   };
-  for (const RigidLoad& load : rigid_) add(load.drive.window);
-  for (const OutlineLoad& load : outline_) add(load.condition.window);
-  std::sort(times.begin(), times.end());
-  return times;
+  const auto drive = [&](const Drive& one) { window(one.window), history(one.history); };
+  for (const History& gravity : bodies_.scene().gravity_history) history(gravity);
+  for (const RigidLoad& load : rigid_) drive(load.drive);
+  for (const OutlineLoad& load : outline_) {
+    const BoundaryCondition& condition = load.condition;
+    window(condition.window), history(condition.pressure), drive(condition.x), drive(condition.y);
+  }
+  const auto ahead = times.upper_bound(0.0), never = times.lower_bound(std::numeric_limits<double>::infinity());
+  return {ahead, never};
 }
 
 }  // namespace pliant::reference

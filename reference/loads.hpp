@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "reference/bodies.hpp"
+#include "scene/instant.hpp"
 
 namespace pliant::reference {
 
@@ -14,8 +15,8 @@ struct RigidLoad {
   bool imposed(double time) const {
     return (drive.mode == Drive::Mode::fixed || drive.mode == Drive::Mode::velocity) && drive.window.contains(time);
   }
-  bool loaded(double time) const {
-    return (drive.mode == Drive::Mode::force || drive.mode == Drive::Mode::pressure) && drive.window.contains(time);
+  bool loaded(const Instant& at) const {
+    return (drive.mode == Drive::Mode::force || drive.mode == Drive::Mode::pressure) && contains(drive.window, at);
   }
 };
 
@@ -55,22 +56,25 @@ class Loads {
   explicit Loads(const Bodies& bodies);
 
   /// Forces of histories on the degrees of freedom: [dofs], N/m.
-  Vector applied(double time) const;
+  Vector applied(const Instant& at) const;
   Vector gravity(double time) const;  ///< [dofs], N/m
   /// Pressures and supports.
-  OutlineResidual outlines(const Points& x, double time) const;
+  OutlineResidual outlines(const Points& x, const Instant& at) const;
   /// Work of pressures, and of supports whose targets move, between two times, by the mean of the forces, J/m.
-  double outline_work(const Points& x0, double t0, const Points& x1, double t1) const;
-  /// Damping forces on degrees of freedom are minus this times their velocities.
-  Vector dof_damping(double time) const;
-  Dashpots dashpots(double time) const;
+  double outline_work(const Points& x0, double t0, const Points& x1, const Instant& t1) const;
+  /// Forces of the dashpots beside loads are minus this times the velocities: [dofs].
+  Vector load_dashpots(const Instant& at) const;
+  /// Rates of mass-proportional damping, [dofs], 1/s.
+  const Vector& mass_damping() const { return mass_damping_; }
+  Dashpots dashpots(const Instant& at) const;
   /// Work of the targets on dashpots that act at t0, by the mean of the forces at outline velocities v0 and v1 [2 outline nodes], J/m.
-  double dashpot_work(const Vector& v0, double t0, const Vector& v1, double t1) const;
+  double dashpot_work(const Vector& v0, double t0, const Vector& v1, const Instant& t1) const;
 
   bool imposed(int dof, double time) const;
   /// Position at t1 of a degree of freedom that is imposed from t0 on and was at q0 then.
   double imposed_position(int dof, double q0, double t0, double t1) const;
   double imposed_velocity(int dof, double time) const;
+  /// Points of histories, and when windows open and close: growing, after the start, s.
   std::vector<double> switch_times() const;
 
  private:
@@ -80,7 +84,8 @@ class Loads {
   const RigidLoad* of(int dof) const;
 
   const Bodies& bodies_;
-  Vector heavy_mass_, mass_damping_;  ///< [dofs]; heavy: what gravity acts on
+  Vector heavy_mass_;    ///< [dofs], what gravity acts on
+  Vector mass_damping_;  ///< [dofs], 1/s
   std::vector<RigidLoad> rigid_;
   std::vector<int> load_of_dof_;  ///< [dofs], index in `rigid_`; -1: none
   std::vector<OutlineLoad> outline_;

@@ -36,7 +36,9 @@ double search(const Equations& equations, const Measure& measure, const Vector& 
 
 }  // namespace
 
-Measure::Measure(const Linearisation& start) : stiffness_(start.matrix.diagonal().cwiseAbs()) {
+Measure::Measure(const Linearisation& start)
+    : stiffness_(start.matrix.diagonal().cwiseAbs()), sensitivity_(start.sensitivity) {
+  if (sensitivity_.size() == 0) sensitivity_ = Vector::Zero(stiffness_.size());
   weight_ = stiffness_.cwiseMax(1e-14 * stiffness_.maxCoeff()).cwiseSqrt().cwiseInverse();
 }
 
@@ -46,7 +48,7 @@ double Measure::relative(const Linearisation& at) const {
 }
 
 bool Measure::vanishes(const Linearisation& at, const Vector& x, double tolerance) const {
-  const double floor = rounding * (*this)(x.lpNorm<Eigen::Infinity>() * stiffness_);
+  const double floor = rounding * (*this)(x.lpNorm<Eigen::Infinity>() * stiffness_ + sensitivity_);
   return (*this)(at.residual) <= tolerance * (*this)(at.magnitude) + floor;
 }
 

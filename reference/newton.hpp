@@ -11,7 +11,9 @@ namespace pliant::reference {
 /// A system of equations at one place.
 struct Linearisation {
   Vector residual;
-  Vector magnitude;     ///< sum of the absolute values of what cancels in it
+  Vector magnitude;  ///< sum of the absolute values of what cancels in it
+  Vector
+      sensitivity;  ///< of it to a relative rounding of all that the unknowns are added to; empty: they are added to nothing
   SparseMatrix matrix;  ///< its derivative; empty unless asked for
   bool symmetric = true;
   double potential = 0;    ///< what the residual is the gradient of, where the matrix is symmetric, J/m
@@ -45,7 +47,7 @@ class Measure {
   bool vanishes(const Linearisation& at, const Vector& x, double tolerance) const;
 
  private:
-  Vector weight_, stiffness_;
+  Vector weight_, stiffness_, sensitivity_;
 };
 
 /// Newton's method with a line search that keeps to admissible places. Residuals are measured with the first matrix. `x`: the start, then

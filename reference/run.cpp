@@ -194,8 +194,8 @@ void advance(const System& system, TimeStepping& run, Outputs& outputs, double d
   while (run.motion().time < end) {
     const double now = run.motion().time;
     double until = outputs.next_time(end);
-    for (const double t : switches)
-      if (t > now) until = std::min(until, t);
+    const auto next = std::upper_bound(switches.begin(), switches.end(), now);
+    if (next != switches.end()) until = std::min(until, *next);
     const int parts = std::max(1, static_cast<int>(std::ceil((until - now) / dt * (1 - 1e-9))));
     for (int part = 1; part <= parts; ++part) {
       outputs.record_step(run.step(part == parts ? until : now + (until - now) * part / parts));

@@ -69,7 +69,7 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
 void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
                           Triplets& entries) {
   const Points x = bodies_.outline_positions(motion.q);
-  OutlineResidual outlines = loads_.outlines(x, motion.time);
+  OutlineResidual outlines = loads_.outlines(x, motion.instant());
   forces.boundary = outlines.stored;
   forces.potential += forces.strain + outlines.stored + outlines.potential;
   forces.contacts = contacts_.evaluate(x);
@@ -108,7 +108,7 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
 }
 
 void System::add_applied(const Motion& motion, Forces& forces) const {
-  const Vector applied = loads_.applied(motion.time) + loads_.gravity(motion.time);
+  const Vector applied = loads_.applied(motion.instant()) + loads_.gravity(motion.time);
   forces.residual -= applied;
   forces.potential -= applied.dot(motion.q);
   forces.magnitude += applied.cwiseAbs();
@@ -116,8 +116,8 @@ void System::add_applied(const Motion& motion, Forces& forces) const {
 
 void System::add_dashpots(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
                           Triplets& rates) const {
-  const Vector own = loads_.dof_damping(motion.time);
-  const Dashpots outline = loads_.dashpots(motion.time);
+  const Vector own = loads_.load_dashpots(motion.instant());
+  const Dashpots outline = loads_.dashpots(motion.instant());
   const SparseMatrix back = jacobian.transpose();
   forces.outline_velocity = jacobian * motion.v;
   forces.damping +=

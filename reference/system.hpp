@@ -13,13 +13,15 @@ struct Motion {
   Vector q, v;
   double time = 0;
   bool moves = true;  ///< else it stands still at each time: statics, without any damping
+  bool ends_step = false;
+  Instant instant() const { return {time, ends_step}; }
 };
 
-/// All forces at one motion, as residuals: mass x acceleration + residual = 0.
+/// All forces at one motion, as residuals: mass x acceleration + residual = 0. Without mass-proportional damping, which goes with the mass matrix.
 struct Forces {
   Vector residual;          ///< [dofs]
   Vector magnitude;         ///< [dofs], sum of the absolute values of what cancels in it
-  Vector damping;           ///< [dofs], the part that depends on velocities: dashpots, mass damping, viscosity
+  Vector damping;           ///< [dofs], the part that depends on velocities
   Vector outline_velocity;  ///< [2 x outline nodes], m/s
   SparseMatrix stiffness;   ///< of the residual by positions; empty unless asked for
   SparseMatrix viscosity;   ///< of the residual by velocities; empty unless asked for

@@ -67,7 +67,8 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
       options_(options),
       beta_(0.25 * (1 - options.hht) * (1 - options.hht)),
       gamma_(0.5 - options.hht),
-      mass_(system.bodies().mass(options.mass)) {
+      mass_(system.bodies().mass(options.mass)),
+      switch_times_(system.loads().switch_times()) {
   const Bodies& bodies = system.bodies();
   motion_ = {bodies.initial_positions(), bodies.initial_velocities(), 0};
   motion_.moves = !options.statics;
@@ -75,7 +76,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   for (int i = 0; i < bodies.dofs(); ++i)
     if (system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
   acceleration_ = Vector::Zero(bodies.dofs());
-  forces_ = system.evaluate(motion_, true);
+  forces_ = evaluate(motion_, true);
   if (const std::string trouble = trouble_of(forces_, bodies); !trouble.empty())
     throw PhysicsError(fmt::format("at the start: {}", trouble));
   system.accept();
@@ -109,6 +110,9 @@ void TimeStepping::find_acceleration() {
 StepRecord TimeStepping::step(double until) {
   StepRecord record;
   record.dt = until - motion_.time;
+  const auto next = std::upper_bound(switch_times_.begin(), switch_times_.end(), motion_.time),
+             last = std::lower_bound(next, switch_times_.end(), until);
+  for (const double time : std::vector<double>(next, last)) step(time, 0, record);
   step(until, 0, record);
   return record;
 }
@@ -126,25 +130,39 @@ void TimeStepping::step(double until, int depth, StepRecord& record) {
   step(until, depth + 1, record);
 }
 
-Vector TimeStepping::acceleration_at(double dt, const Vector& q) const {
-  return (q - motion_.q - dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_) / (beta_ * dt * dt);
+/// Mass-proportional damping joins the other forces.
+Forces TimeStepping::evaluate(const Motion& motion, bool tangent) {
+  Forces forces = system_.evaluate(motion, tangent);
+  const Vector& rate = system_.loads().mass_damping();
+  if (!motion.moves || rate.isZero(0)) return forces;
+  const Vector drag = mass_ * rate.cwiseProduct(motion.v);
+  forces.damping += drag, forces.residual += drag, forces.magnitude += drag.cwiseAbs();
+  if (tangent) forces.viscosity += mass_ * rate.asDiagonal();
+  return forces;
 }
 
-Motion TimeStepping::motion_at(double until, const Vector& q) const {
+/// Positions after dt without the acceleration at its end. The unknowns are counted from there: in a short step a difference of positions would lose
+/// the acceleration to rounding. Statics: counted from the origin.
+Vector TimeStepping::predicted(double dt) const {
+  if (options_.statics) return Vector::Zero(motion_.q.size());
+  return motion_.q + dt * motion_.v + dt * dt * (0.5 - beta_) * acceleration_;
+}
+
+Motion TimeStepping::motion_at(double until, const Vector& ahead) const {
   const double dt = until - motion_.time;
-  if (options_.statics) return {q, Vector::Zero(q.size()), until, false};
-  Vector v = motion_.v + dt * ((1 - gamma_) * acceleration_ + gamma_ * acceleration_at(dt, q));
+  if (options_.statics) return {ahead, Vector::Zero(ahead.size()), until, false};
+  Vector v = motion_.v + dt * ((1 - gamma_) * acceleration_ + gamma_ * acceleration_at(dt, ahead));
   for (int i = 0; i < v.size(); ++i)
     if (system_.loads().imposed(i, motion_.time)) v[i] = system_.loads().imposed_velocity(i, until);
-  return {q, std::move(v), until};
+  return {predicted(dt) + ahead, std::move(v), until, true, true};
 }
 
-/// `trial`: the motion and the forces there.
-Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& q, bool tangent,
+/// `ahead`: of the predicted positions. `trial`: the motion and the forces there.
+Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& ahead, bool tangent,
                                       Trial& trial) {
   const double dt = until - motion_.time;
-  trial.motion = motion_at(until, q);
-  trial.forces = system_.evaluate(trial.motion, tangent);
+  trial.motion = motion_at(until, ahead);
+  trial.forces = evaluate(trial.motion, tangent);
   const Forces& forces = trial.forces;
   Linearisation result;
   result.trouble = trouble_of(forces, system_.bodies());
@@ -154,9 +172,10 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
   Vector residual = forces.residual, magnitude = forces.magnitude;
   SparseMatrix matrix = forces.stiffness;
   if (!options_.statics) {
-    const Vector inertia = mass_ * acceleration_at(dt, q);
+    const Vector inertia = mass_ * acceleration_at(dt, ahead);
     residual = inertia + (1 + options_.hht) * residual - options_.hht * forces_.residual;
     magnitude += inertia.cwiseAbs();
+    if (tangent) result.sensitivity = pick * Vector(motion_.q.lpNorm<Eigen::Infinity>() * matrix.diagonal().cwiseAbs());
     if (tangent)
       matrix = mass_ / (beta_ * dt * dt) + (1 + options_.hht) * (matrix + gamma_ / (beta_ * dt) * forces.viscosity);
   }
@@ -170,14 +189,21 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
 }
 
 bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
+  const double dt = until - motion_.time;
   Vector q = motion_.q;
+  // The search starts where bodies stand.
+  Vector ahead = options_.statics ? q : Vector(-dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_);
+  const Vector origin = predicted(dt);
   for (int i = 0; i < q.size(); ++i)
-    if (system_.loads().imposed(i, motion_.time)) q[i] = system_.loads().imposed_position(i, q[i], motion_.time, until);
+    if (system_.loads().imposed(i, motion_.time)) {
+      q[i] = system_.loads().imposed_position(i, q[i], motion_.time, until);
+      ahead[i] = q[i] - origin[i];
+    }
   const SparseMatrix select = selection(free_dofs(motion_.time), system_.bodies().dofs());
-  record.dt = std::min(record.dt, until - motion_.time);
+  record.dt = std::min(record.dt, dt);
   if (moves_too_far(q, record)) return false;
-  Vector free = select.transpose() * q;
-  const Vector start = free, imposed = q - select * free;
+  Vector free = select.transpose() * ahead;
+  const Vector start = free, imposed = ahead - select * free;
   const Equations system = [&](const Vector& x, bool tangent) {
     return equations(until, select, imposed + select * x, tangent, trial);
   };
@@ -194,8 +220,7 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
     if (found) system(free, false);  // the last step that was tried may not be the one taken
   }
   if (!found) return false;
-  trial.acceleration =
-      options_.statics ? Vector::Zero(q.size()) : acceleration_at(until - motion_.time, trial.motion.q);
+  trial.acceleration = options_.statics ? Vector::Zero(q.size()) : acceleration_at(dt, imposed + select * free);
   return true;
 }
 
@@ -230,13 +255,13 @@ void TimeStepping::book(const Trial& trial) {
   const Vector moved = after.q - before.q;
   const Bodies& bodies = system_.bodies();
   books_.work_of_gravity += 0.5 * (loads.gravity(before.time) + loads.gravity(after.time)).dot(moved);
-  books_.work_of_loads += 0.5 * (loads.applied(before.time) + loads.applied(after.time)).dot(moved) +
+  books_.work_of_loads += 0.5 * (loads.applied({before.time}) + loads.applied(after.instant())).dot(moved) +
                           loads.outline_work(bodies.outline_positions(before.q), before.time,
-                                             bodies.outline_positions(after.q), after.time);
+                                             bodies.outline_positions(after.q), after.instant());
   // A dashpot between a node and a moving target takes what both put in.
   if (after.moves) {
     const double by_targets =
-        loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.time);
+        loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.instant());
     books_.work_of_loads += by_targets;
     books_.dissipated_by_damping += by_targets;
   }
@@ -257,6 +282,18 @@ void TimeStepping::accept(const Trial& trial) {
   motion_ = trial.motion;
   acceleration_ = trial.acceleration;
   forces_ = trial.forces;
+  if (std::binary_search(switch_times_.begin(), switch_times_.end(), motion_.time)) pass_switch();
+}
+
+/// Loads jump where windows open and close: the next step starts from their values after that. Springs that come or go bring or take their energy.
+void TimeStepping::pass_switch() {
+  if (options_.statics) return;
+  motion_.ends_step = false;
+  const double stored = forces_.boundary;
+  forces_ = evaluate(motion_, false);
+  find_acceleration();
+  books_.work_of_loads += forces_.boundary - stored;
+  books_.boundary = forces_.boundary;
 }
 
 }  // namespace pliant::reference

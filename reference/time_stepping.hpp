@@ -49,7 +49,7 @@ class TimeStepping {
  public:
   TimeStepping(System& system, const SolverOptions& options);
 
-  /// To a later time; halves the step where it does not converge. Throws PhysicsError with the worst body, the residual and the last good time
+  /// To a later time, with a step to each point of a history and each end of a window on the way; halves steps that do not converge. Throws PhysicsError with the worst body, the residual and the last good time
   /// when even a thousandth of it does not.
   StepRecord step(double until);
 
@@ -66,9 +66,12 @@ class TimeStepping {
   bool try_step(double until, Trial& trial, StepRecord& record);
   void accept(const Trial& trial);
   void book(const Trial& trial);
-  Motion motion_at(double until, const Vector& q) const;
-  Vector acceleration_at(double dt, const Vector& q) const;
-  Linearisation equations(double until, const SparseMatrix& select, const Vector& q, bool tangent, Trial& trial);
+  void pass_switch();
+  Forces evaluate(const Motion& motion, bool tangent);
+  Vector predicted(double dt) const;
+  Motion motion_at(double until, const Vector& ahead) const;
+  Vector acceleration_at(double dt, const Vector& ahead) const { return ahead / (beta_ * dt * dt); }
+  Linearisation equations(double until, const SparseMatrix& select, const Vector& ahead, bool tangent, Trial& trial);
   bool note(const NewtonResult& result, StepRecord& record) const;
   bool moves_too_far(const Vector& q, StepRecord& record) const;
   double largest_motion(const Vector& next) const;
@@ -79,6 +82,7 @@ class TimeStepping {
   SolverOptions options_;
   double beta_, gamma_;
   SparseMatrix mass_;
+  std::vector<double> switch_times_;
   Vector holding_;  ///< static runs: [dofs], masses scaled to the largest stiffness, N/m2 (N)
   Vector arms_;     ///< static runs: [dofs], motion of the outline per unit, 1 or m
   LinearSolver solver_;

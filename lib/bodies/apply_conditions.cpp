@@ -157,25 +157,37 @@ void damp_rigid_grains(Model& model) {
       for (RigidDof& dof : rigid.dof) dof.mass_damping = model.scene.materials[body.material].mass_damping;
 }
 
-std::vector<double> switch_times(const Model& model) {
-  std::vector<double> times;
-  const auto add = [&](const Window& window) {
-    for (const double t : {window.from, window.until})
-      if (t > 0 && std::isfinite(t)) times.push_back(t);
-  };
-  for (const RigidBody& rigid : model.rigid_bodies)
-    for (const RigidDof& dof : rigid.dof) add(dof.window);
-  for (const OutlinePressure& pressure : model.pressures) add(pressure.window);
-  for (const OutlineSupport& support : model.supports) add(support.window);
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  return times;
-}
+/// When loads and imposed motions change their course: of all histories and windows of a scene.
+class SwitchTimes {
+ public:
+  explicit SwitchTimes(const Scene& scene) {
+    for (const Wall& wall : scene.walls) add(wall.x), add(wall.y);
+    for (const History& gravity : scene.gravity_history) add(gravity);
+    for (const BoundaryCondition& condition : scene.boundary) {
+      add(condition.window), add(condition.pressure);
+      add(condition.x), add(condition.y), add(condition.angle);
+    }
+  }
+  /// Growing, after the start.
+  std::vector<double> sorted() && {
+    std::sort(times_.begin(), times_.end());
+    times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+    return std::move(times_);
+  }
 
-bool is_damped(const RigidBody& rigid) {
-  return std::any_of(rigid.dof, rigid.dof + 3,
-                     [](const RigidDof& dof) { return dof.damping > 0 || dof.mass_damping > 0; });
-}
+ private:
+  void add(double t) {
+    if (t > 0 && std::isfinite(t)) times_.push_back(t);
+  }
+  void add(const Window& window) { add(window.from), add(window.until); }
+  /// One entry is a constant.
+  void add(const History& history) {
+    if (history.time.size() > 1) std::for_each(history.time.begin(), history.time.end(), [&](double t) { add(t); });
+  }
+  void add(const Drive& drive) { add(drive.window), add(drive.history); }
+
+  std::vector<double> times_;
+};
 
 }  // namespace
 
@@ -192,12 +204,11 @@ void apply_drive(RigidDof& dof, const Drive& drive, double mass, double pressure
 void apply_conditions(Model& model) {
   apply_scene_conditions(model);
   damp_rigid_grains(model);
-  model.switch_times = switch_times(model);
+  model.switch_times = SwitchTimes(model.scene).sorted();
   model.outline_rates = std::any_of(model.supports.begin(), model.supports.end(),
                                     [](const OutlineSupport& support) { return support.damping > 0; });
-  model.rates = std::any_of(model.rigid_bodies.begin(), model.rigid_bodies.end(), is_damped) ||
-                std::any_of(model.batches.begin(), model.batches.end(),
-                            [](const Batch& batch) { return batch.viscous || batch.mass_damped; });
+  model.rates =
+      std::any_of(model.batches.begin(), model.batches.end(), [](const Batch& batch) { return batch.viscous; });
 }
 
 }  // namespace pliant

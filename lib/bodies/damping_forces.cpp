@@ -69,37 +69,40 @@ double viscous_power(const Model& model, const Batch& batch, const Lanes* positi
   return batch.viscous ? sum(batch.weight * add_viscous_forces(model, batch, positions, velocities, forces)) : 0.0;
 }
 
-double add_mass_damping(const Model& model, const Region& region, const Lanes* velocities, Lanes* forces) {
-  const Batch& batch = model.batches[region.batch];
-  if (!batch.mass_damped) return 0;
-  const Lanes factor = batch.mass_damping * batch.density;
-  return with_nodes(model, batch, [&](const auto& nodes) {
-    Lanes power{};
-    for (int i = 2 * region.first; i < 2 * region.last; ++i) {
-      const Lanes force = factor * nodes.unit_mass[i / 2] * velocities[i];
-      forces[i] -= force;
-      power += force * velocities[i];
-    }
-    return sum(power * batch.weight);
+double drag_coefficient(const RigidDof& dof, const Instant& at) {
+  return dof.mass_damping * dof.mass + (contains(dof.window, at) ? dof.damping : 0.0);
+}
+
+void add_rigid_drag(const RigidBody& rigid, const Instant& at, const double* velocity, double* force) {
+  for (int c = 0; c < 3; ++c) force[c] -= drag_coefficient(rigid.dof[c], at) * velocity[c];
+}
+
+void add_drag(const Model& model, const Instant& at, const Dofs& velocity, Dofs& force) {
+  parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
+    const Region& region = model.regions[r];
+    const Batch& batch = model.batches[region.batch];
+    if (!batch.mass_damped) return;
+    const Lanes factor = batch.mass_damping * batch.density;
+    with_nodes(model, batch, [&](const auto& nodes) {
+      for (int i = 2 * region.first; i < 2 * region.last; ++i) {
+        const std::size_t at_dof = batch.offset + static_cast<std::size_t>(i);
+        force.compliant[at_dof] -= factor * nodes.unit_mass[i / 2] * velocity.compliant[at_dof];
+      }
+    });
   });
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    add_rigid_drag(model.rigid_bodies[r], at, &velocity.rigid[3 * r], &force.rigid[3 * r]);
 }
 
-double add_rigid_damping(const RigidBody& rigid, double time, const double* velocity, double* force) {
-  double power = 0;
-  for (int c = 0; c < 3; ++c) {
-    const RigidDof& dof = rigid.dof[c];
-    const double resistance = dof.mass_damping * dof.mass + (dof.window.contains(time) ? dof.damping : 0.0);
-    force[c] -= resistance * velocity[c];
-    power += resistance * velocity[c] * velocity[c];
-  }
-  return power;
+bool has_drag(const Model& model) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& body) { return has_drag(model, body); });
 }
 
-double damping_rate(const RigidBody& rigid) {
-  double rate = 0;
-  for (const RigidDof& dof : rigid.dof)
-    if (dof.inverse_mass > 0) rate = std::max(rate, dof.mass_damping + dof.damping * dof.inverse_mass);
-  return rate;
+bool has_drag(const Model& model, const Body& body) {
+  if (body.kind == BodyKind::compliant) return model.scene.materials[body.material].mass_damping > 0;
+  const RigidBody& rigid = model.rigid_bodies[body.rigid];
+  return std::any_of(rigid.dof, rigid.dof + 3,
+                     [](const RigidDof& dof) { return dof.damping > 0 || dof.mass_damping > 0; });
 }
 
 }  // namespace pliant

@@ -16,13 +16,18 @@ Lanes add_viscous_forces(const Model& model, const Batch& batch, const Lanes* po
 double viscous_power(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
                      Lanes* forces);
 
-/// Adds - mass_damping m v in a region. Returns what it dissipates, W/m.
-double add_mass_damping(const Model& model, const Region& region, const Lanes* velocities, Lanes* forces);
+/// Drag on a rigid degree of freedom, force over velocity: of its material and of the dashpot beside its load, N s/m2 (N s).
+double drag_coefficient(const RigidDof& dof, const Instant& at);
 
-/// Damping of a rigid body: - (damping + mass_damping m) v on [x, y, angle].
-double add_rigid_damping(const RigidBody& rigid, double time, const double* velocity, double* force);
+/// Adds the drag of a rigid body to its forces on [x, y, angle].
+void add_rigid_drag(const RigidBody& rigid, const Instant& at, const double* velocity, double* force);
 
-/// The largest rate of a rigid body's dashpots, damping / mass, 1/s.
-double damping_rate(const RigidBody& rigid);
+/// Adds what resists the velocity of each degree of freedom by itself, no matter what others do: mass-proportional damping, - c times the momentum, and
+/// the dashpots beside the loads of rigid bodies. `velocity` as a state holds it (bodies/mass_correction.hpp).
+void add_drag(const Model& model, const Instant& at, const Dofs& velocity, Dofs& force);
+
+/// Whether some degree of freedom, or one of a body, ever meets drag.
+bool has_drag(const Model& model);
+bool has_drag(const Model& model, const Body& body);
 
 }  // namespace pliant

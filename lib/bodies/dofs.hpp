@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/lanes.hpp"
+#include "scene/instant.hpp"
 
 namespace pliant {
 
@@ -27,6 +28,8 @@ struct Motion {
   const Dofs& position;
   const Dofs& velocity;  ///< read only by models with forces that depend on it (Model::rates)
   double time = 0;       ///< s
+  bool ends_step = false;
+  Instant instant() const { return {time, ends_step}; }
 };
 
 }  // namespace pliant

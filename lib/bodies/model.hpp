@@ -100,11 +100,12 @@ struct Model {
   std::vector<Body> bodies;        ///< grains in the scene's order, then walls
   std::size_t compliant_size = 0;  ///< length of Dofs::compliant
   bool corrected_mass = false;     ///< states hold momentum over lumped mass: see mass_correction.hpp
-  bool rates = false;              ///< some force depends on velocities: only then are rates formed
-  bool outline_rates = false;      ///< and on those of outline nodes
+  bool rates = false;  ///< some force but drag (damping_forces.hpp) depends on velocities: only then are rates formed
+  bool outline_rates = false;  ///< and on those of outline nodes
   std::vector<OutlinePressure> pressures;
   std::vector<OutlineSupport> supports;
-  std::vector<double> switch_times;  ///< growing, s: when a condition sets in or ends; steps end there
+  std::vector<double>
+      switch_times;  ///< growing, s: points of histories, and when a condition sets in or ends; steps end there
 
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[batch.shape]; }
   const CompliantShape& shape_of(const Body& body) const { return shapes[body.compliant_shape]; }

@@ -1,13 +1,31 @@
 #include "boundary/loads.hpp"
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/node_arrays.hpp"
+#include "boundary/outline_loads.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 
-double applied_load(const RigidDof& dof, double time) {
+namespace {
+
+/// Of the loads on rigid bodies, their dashpots and gravity.
+void add_rigid_load_change(const RigidBody& rigid, const Vec2& g, const Instant& from, const Instant& to,
+                           const double* velocity, double* force) {
+  for (int c = 0; c < 2; ++c) force[c] += rigid.dof[c].mass * g[c];
+  if (!rigid.driven) return;
+  for (int c = 0; c < 3; ++c) {
+    const RigidDof& dof = rigid.dof[c];
+    force[c] += applied_load(dof, to) - applied_load(dof, from) -
+                (drag_coefficient(dof, to) - drag_coefficient(dof, from)) * velocity[c];
+  }
+}
+
+}  // namespace
+
+double applied_load(const RigidDof& dof, const Instant& at) {
   const bool loaded = dof.mode == Drive::Mode::force || dof.mode == Drive::Mode::pressure;
-  return loaded && dof.window.contains(time) ? dof.force_scale * dof.history.at(time) : 0.0;
+  return loaded && contains(dof.window, at) ? dof.force_scale * dof.history.at(at.time) : 0.0;
 }
 
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces) {
@@ -23,11 +41,23 @@ void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes*
   });
 }
 
-void add_rigid_loads(const RigidBody& rigid, const Vec2& g, double time, double* force) {
+void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, double* force) {
   force[0] += rigid.dof[0].mass * g.x();
   force[1] += rigid.dof[1].mass * g.y();
   if (!rigid.driven) return;
-  for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], time);
+  for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], at);
+}
+
+double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force) {
+  const Vec2 g = model.scene.gravity_at(to.time) - model.scene.gravity_at(at.time);
+  if (!g.isZero(0))
+    parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
+      const Region& region = model.regions[r];
+      add_gravity(model, region, g, &force.compliant[model.batches[region.batch].offset]);
+    });
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    add_rigid_load_change(model.rigid_bodies[r], g, at.instant(), to, &at.velocity.rigid[3 * r], &force.rigid[3 * r]);
+  return add_outline_load_change(model, at, to, force);
 }
 
 double imposed_position(const RigidDof& dof, double position, double time, double dt) {
@@ -53,7 +83,7 @@ double external_work(const Model& model, const Dofs& position, const Dofs& next_
         const double v0 = velocity.rigid[i], v1 = next_velocity.rigid[i];
         work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
       } else {
-        work += 0.5 * (applied_load(dof, time) + applied_load(dof, end_time)) * moved;
+        work += 0.5 * (applied_load(dof, {time}) + applied_load(dof, {end_time, true})) * moved;
       }
     }
   }

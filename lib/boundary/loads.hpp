@@ -5,21 +5,25 @@
 
 namespace pliant {
 
-/// Force that a history applies to one rigid degree of freedom at time t, N/m (0 for imposed and free ones).
-double applied_load(const RigidDof& dof, double time);
+/// Force that a history applies to one rigid degree of freedom, N/m (0 for imposed and free ones).
+double applied_load(const RigidDof& dof, const Instant& at);
 
 /// Adds gravity g, m/s2, at the nodes of one region to its batch's forces: [slots x 2].
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces);
 
 /// Adds applied loads and gravity g to a rigid body's force [x, y, moment].
-void add_rigid_loads(const RigidBody& rigid, const Vec2& g, double time, double* force);
+void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, double* force);
+
+/// Adds to the forces of a motion what loads change from its instant to another, on bodies that stand and move as they do: of histories, and of what
+/// sets in or ends. Returns how much more supports' dashpots dissipate, W/m. So forces need no new evaluation where only time goes on.
+double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
 
 /// Where an imposed degree of freedom stands after [t, t + dt], from its position at t: the exact integral of its velocity history.
 double imposed_position(const RigidDof& dof, double position, double time, double dt);
 double imposed_velocity(const RigidDof& dof, double time);
 
 /// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion does the change of
-/// kinetic energy less the work of the other forces. `end_time`: to the bit that of the new forces, as a load may end there. Gravity is booked apart.
+/// kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`: as it ended with. Gravity is booked apart.
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
                      const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
                      double end_time);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "bodies/body_view.hpp"
 #include "bodies/nodal.hpp"
 
 namespace pliant {
@@ -18,11 +19,14 @@ Vec2 following_load(const PartNode& node, int count, At&& at) {
   return 0.5 * Vec2(-along.y(), along.x());
 }
 
+double pressure_of(const OutlinePressure& load, const Instant& at) {
+  return contains(load.window, at) ? load.pressure.at(at.time) : 0.0;
+}
+
 /// Calls action(node, force) for each node under a pressure.
 template <class At, class Action>
-void for_each_load(const OutlinePressure& load, int count, double time, At&& at, Action&& action) {
-  if (!load.window.contains(time)) return;
-  const double pressure = load.pressure.at(time);
+void for_each_load(const OutlinePressure& load, int count, double pressure, At&& at, Action&& action) {
+  if (pressure == 0) return;
   for (std::size_t i = 0; i < load.nodes.size(); ++i)
     action(load.nodes[i].node,
            pressure * (load.dead_load.empty() ? following_load(load.nodes[i], count, at) : load.dead_load[i]));
@@ -32,15 +36,15 @@ void for_each_load(const OutlinePressure& load, int count, double time, At&& at,
 struct TargetMotion {
   Vec2 moved{0, 0}, velocity{0, 0};
 
-  TargetMotion(const OutlineSupport& support, double time) {
+  TargetMotion(const OutlineSupport& support, const Instant& at) {
     for (int c = 0; c < 2; ++c) {
       const Drive& drive = support.drive[c];
       if (drive.mode == Drive::Mode::displacement) {
-        moved[c] = drive.history.at(time);
-        velocity[c] = drive.history.slope(time);
+        moved[c] = drive.history.at(at.time);
+        velocity[c] = slope(drive.history, at);
       } else if (drive.mode == Drive::Mode::velocity) {
-        moved[c] = drive.history.integral(std::max(0.0, support.window.from), time);
-        velocity[c] = drive.history.at(time);
+        moved[c] = drive.history.integral(std::max(0.0, support.window.from), at.time);
+        velocity[c] = drive.history.at(at.time);
       }
     }
   }
@@ -58,18 +62,29 @@ Vec2 stretch(const OutlineSupport& support, std::size_t i, const TargetMotion& t
   return held(support, place - support.start[i] - target.moved);
 }
 
-/// Forces of the supports of one motion on their body, together.
+/// What springs and dashpots of a support exert on one node of its part, N/m2, and what the dashpots dissipate, W/m2.
+struct Pull {
+  Vec2 force{0, 0};
+  double power = 0;
+};
+
+Pull pull_on(const OutlineSupport& support, std::size_t i, const TargetMotion& target, const Vec2& place,
+             const Vec2& velocity) {
+  const Vec2 slip = held(support, velocity - target.velocity);
+  return {-support.stiffness * stretch(support, i, target, place) - support.damping * slip,
+          support.damping * slip.squaredNorm()};
+}
+
+/// Forces of a support on its body, together.
 Vec2 support_resultant(const Model& model, const OutlineSupport& support, const Motion& motion) {
   const Body& body = model.bodies[support.body];
-  const Points position = outline_values(model, body, motion.position);
-  const Points velocity = support.damping > 0 ? outline_values(model, body, motion.velocity) : Points{};
-  const TargetMotion target(support, motion.time);
+  const Points position = outline_values(model, body, motion.position),
+               velocity = outline_values(model, body, motion.velocity);
+  const TargetMotion target(support, motion.instant());
   Vec2 total(0, 0);
   for (std::size_t i = 0; i < support.nodes.size(); ++i) {
     const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
-    Vec2 pull = support.stiffness * stretch(support, i, target, body.centre + position[k]);
-    if (support.damping > 0) pull += support.damping * held(support, velocity[k] - target.velocity);
-    total -= support.length[i] * pull;
+    total += support.length[i] * pull_on(support, i, target, body.centre + position[k], velocity[k]).force;
   }
   return total;
 }
@@ -77,7 +92,7 @@ Vec2 support_resultant(const Model& model, const OutlineSupport& support, const 
 double spring_energy(const Model& model, const OutlineSupport& support, const Dofs& position, double time) {
   const Body& body = model.bodies[support.body];
   const Points at = outline_values(model, body, position);
-  const TargetMotion target(support, time);
+  const TargetMotion target(support, Instant{time});
   double energy = 0;
   for (std::size_t i = 0; i < support.nodes.size(); ++i) {
     const Vec2 place = body.centre + at[static_cast<std::size_t>(support.nodes[i])];
@@ -105,75 +120,115 @@ double pressure_work(const Model& model, const OutlinePressure& load, const Moti
   const Points end = outline_positions(model, body, after.position);
   const int count = static_cast<int>(start.size());
   double work = 0;
-  const auto add = [&](const Points& at, double time) {
+  const auto add = [&](const Points& at, const Instant& instant) {
     for_each_load(
-        load, count, time, [&](int k) { return at[static_cast<std::size_t>(k)]; },
+        load, count, pressure_of(load, instant), [&](int k) { return at[static_cast<std::size_t>(k)]; },
         [&](int k, const Vec2& force) {
           work += 0.5 * force.dot(end[static_cast<std::size_t>(k)] - start[static_cast<std::size_t>(k)]);
         });
   };
-  add(start, before.time);
-  add(end, after.time);
+  add(start, before.instant());
+  add(end, after.instant());
   return work;
 }
 
-/// Work of a support's springs at one end of a step over half of it, as the integrator does it.
-double half_work(const Model& model, const OutlineSupport& support, const Motion& at, const Motion& before,
-                 const Motion& after) {
-  const Body& body = model.bodies[support.body];
-  const Points start = outline_values(model, body, before.position), end = outline_values(model, body, after.position),
-               position = outline_values(model, body, at.position);
-  const TargetMotion target(support, at.time);
-  double work = 0;
-  for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-    const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
-    const Vec2 pull = support.stiffness * stretch(support, i, target, body.centre + position[k]);
-    work -= 0.5 * support.length[i] * pull.dot(end[k] - start[k]);
-  }
-  return work;
-}
-
-/// A support that sets in or ends acts at one end of the step only: what it does there, and the energy that its springs have then.
-double switch_work(const Model& model, const OutlineSupport& support, const Motion& before, const Motion& after) {
-  const bool ends = support.window.contains(before.time);
-  const Motion& at = ends ? before : after;
-  const double energy = spring_energy(model, support, at.position, at.time);
-  return half_work(model, support, at, before, after) + (ends ? -energy : energy);
-}
-
+/// Steps end where windows do, so that a support acts during all of a step or not at all.
 double support_work(const Model& model, const OutlineSupport& support, const Motion& before, const Motion& after) {
-  const bool active = support.window.contains(before.time);
-  if (active != support.window.contains(after.time)) return switch_work(model, support, before, after);
-  const Vec2 moved = TargetMotion(support, after.time).moved - TargetMotion(support, before.time).moved;
-  if (!active || moved.isZero(0)) return 0;
+  if (!contains(support.window, before.instant())) return 0;
+  const Vec2 moved = TargetMotion(support, after.instant()).moved - TargetMotion(support, before.instant()).moved;
+  if (moved.isZero(0)) return 0;
   const Vec2 pull = support_resultant(model, support, before) + support_resultant(model, support, after);
   return 0.5 * pull.dot(moved);
 }
 
+/// Gives forces on outline nodes of one body to its degrees of freedom.
+class OutlineForces {
+ public:
+  OutlineForces(const Model& model, const Body& body, const Motion& motion, Dofs& force)
+      : model_(model), body_(body), motion_(motion), force_(force) {}
+
+  void add(int node, const Vec2& place, const Vec2& f) {
+    if (body_.kind == BodyKind::compliant) return add_to_field(node, f / body_.scale);
+    const std::size_t r = 3 * static_cast<std::size_t>(body_.rigid);
+    const Vec2 arm = place - Vec2(motion_.position.rigid[r], motion_.position.rigid[r + 1]);
+    force_.rigid[r] += f.x();
+    force_.rigid[r + 1] += f.y();
+    force_.rigid[r + 2] += arm.x() * f.y() - arm.y() * f.x();
+  }
+
+ private:
+  void add_to_field(int node, const Vec2& f) {
+    const ShapeRows& rows = model_.shape_of(body_).space.outline_rows;
+    const BodyPlaces places(model_, body_);
+    double* values = reinterpret_cast<double*>(force_.compliant.data());
+    for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
+      double* at = values + places[static_cast<std::size_t>(rows.node[e])];
+      at[0] += rows.value[e] * f.x();
+      at[lane_count] += rows.value[e] * f.y();
+    }
+  }
+
+  const Model& model_;
+  const Body& body_;
+  const Motion& motion_;
+  Dofs& force_;
+};
+
+void add_pressure_change(const Model& model, const OutlinePressure& load, const Motion& at, const Instant& to,
+                         Dofs& force) {
+  const double growth = pressure_of(load, to) - pressure_of(load, at.instant());
+  if (growth == 0) return;
+  const Body& body = model.bodies[load.body];
+  const Points places = outline_positions(model, body, at.position);
+  const auto place = [&](int k) { return places[static_cast<std::size_t>(k)]; };
+  OutlineForces outline(model, body, at, force);
+  for_each_load(load, static_cast<int>(places.size()), growth, place,
+                [&](int k, const Vec2& f) { outline.add(k, place(k), f); });
+}
+
+double add_support_change(const Model& model, const OutlineSupport& support, const Motion& at, const Instant& to,
+                          Dofs& force) {
+  const Body& body = model.bodies[support.body];
+  const Points places = outline_positions(model, body, at.position);
+  const Points velocities = outline_values(model, body, at.velocity);
+  OutlineForces outline(model, body, at, force);
+  double growth = 0;
+  const auto add = [&](const Instant& instant, double sign) {
+    if (!contains(support.window, instant)) return;
+    const TargetMotion target(support, instant);
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
+      const Pull pull = pull_on(support, i, target, places[k], velocities[k]);
+      outline.add(support.nodes[i], places[k], sign * support.length[i] * pull.force);
+      growth += sign * support.length[i] * pull.power;
+    }
+  };
+  add(at.instant(), -1);
+  add(to, 1);
+  return growth;
+}
+
 }  // namespace
 
-OutlineLoads::OutlineLoads(const Model& model, double time, Outlines& outlines) : outlines_(outlines) {
+OutlineLoads::OutlineLoads(const Model& model, const Instant& at, Outlines& outlines) : outlines_(outlines) {
   for (const OutlinePressure& load : model.pressures) {
     const int first = outlines.offset[load.body], count = model.outlines[outlines.shape[load.body]].count;
     for_each_load(
-        load, count, time, [&](int k) { return Vec2(outlines.x[first + k], outlines.y[first + k]); },
+        load, count, pressure_of(load, at), [&](int k) { return Vec2(outlines.x[first + k], outlines.y[first + k]); },
         [&](int k, const Vec2& force) { add(first + k, force); });
   }
   for (const OutlineSupport& support : model.supports)
-    if (support.window.contains(time)) add(support, time);
+    if (contains(support.window, at)) add(support, at);
 }
 
-void OutlineLoads::add(const OutlineSupport& support, double time) {
-  const TargetMotion target(support, time);
+void OutlineLoads::add(const OutlineSupport& support, const Instant& at) {
+  const TargetMotion target(support, at);
   for (std::size_t i = 0; i < support.nodes.size(); ++i) {
     const int k = outlines_.offset[support.body] + support.nodes[i];
-    Vec2 pull = support.stiffness * stretch(support, i, target, {outlines_.x[k], outlines_.y[k]});
-    if (support.damping > 0) {
-      const Vec2 slip = held(support, Vec2(outlines_.velocity_x[k], outlines_.velocity_y[k]) - target.velocity);
-      pull += support.damping * slip;
-      damping_power_ += support.damping * support.length[i] * slip.squaredNorm();
-    }
-    add(k, -support.length[i] * pull);
+    const Vec2 velocity = support.damping > 0 ? Vec2(outlines_.velocity_x[k], outlines_.velocity_y[k]) : Vec2(0, 0);
+    const Pull pull = pull_on(support, i, target, {outlines_.x[k], outlines_.y[k]}, velocity);
+    damping_power_ += support.length[i] * pull.power;
+    add(k, support.length[i] * pull.force);
   }
 }
 
@@ -197,20 +252,27 @@ Vec2 outline_load(const Model& model, int body, const Motion& motion) {
     if (load.body != body) continue;
     const Points at = outline_positions(model, model.bodies[body], motion.position);
     for_each_load(
-        load, static_cast<int>(at.size()), motion.time, [&](int k) { return at[static_cast<std::size_t>(k)]; },
-        [&](int, const Vec2& force) { total += force; });
+        load, static_cast<int>(at.size()), pressure_of(load, motion.instant()),
+        [&](int k) { return at[static_cast<std::size_t>(k)]; }, [&](int, const Vec2& force) { total += force; });
   }
   for (const OutlineSupport& support : model.supports)
-    if (support.body == body && support.window.contains(motion.time))
+    if (support.body == body && contains(support.window, motion.instant()))
       total += support_resultant(model, support, motion);
   return total;
 }
 
-double support_energy(const Model& model, const Dofs& position, double time) {
+double support_energy(const Model& model, const Dofs& position, const Instant& at) {
   double energy = 0;
   for (const OutlineSupport& support : model.supports)
-    if (support.window.contains(time)) energy += spring_energy(model, support, position, time);
+    if (contains(support.window, at)) energy += spring_energy(model, support, position, at.time);
   return energy;
+}
+
+double add_outline_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force) {
+  for (const OutlinePressure& load : model.pressures) add_pressure_change(model, load, at, to, force);
+  double power = 0;
+  for (const OutlineSupport& support : model.supports) power += add_support_change(model, support, at, to, force);
+  return power;
 }
 
 double outline_work(const Model& model, const Motion& before, const Motion& after) {

@@ -15,7 +15,7 @@ namespace pliant {
 class OutlineLoads {
  public:
   /// `outlines`: of the motion, with its velocities where Model::outline_rates.
-  OutlineLoads(const Model& model, double time, Outlines& outlines);
+  OutlineLoads(const Model& model, const Instant& at, Outlines& outlines);
   ~OutlineLoads();
   OutlineLoads(const OutlineLoads&) = delete;
   OutlineLoads& operator=(const OutlineLoads&) = delete;
@@ -24,7 +24,7 @@ class OutlineLoads {
 
  private:
   void add(int index, const Vec2& force);
-  void add(const OutlineSupport& support, double time);
+  void add(const OutlineSupport& support, const Instant& at);
 
   Outlines& outlines_;
   std::vector<std::pair<int, Vec2>> before_;  ///< index of the node and the force it had
@@ -35,11 +35,12 @@ class OutlineLoads {
 Vec2 outline_load(const Model& model, int body, const Motion& motion);
 
 /// Energy in the springs of soft supports, J/m.
-double support_energy(const Model& model, const Dofs& position, double time);
+double support_energy(const Model& model, const Dofs& position, const Instant& at);
 
-/// Work that pressures do and that supports' histories do on their springs and dashpots, from one motion to a later
-/// one, J/m: trapezoidal rule. A support that sets in or ends brings or takes the energy of its springs, as work,
-/// with what its force at the end of the step that it still or already acts at does.
+/// The part of add_load_change (boundary/loads.hpp) that acts on outlines: pressures and supports. Returns the growth of their dashpots' power, W/m.
+double add_outline_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
+
+/// Work that pressures do and that supports' histories do on their springs and dashpots over one step, J/m: trapezoidal rule.
 double outline_work(const Model& model, const Motion& before, const Motion& after);
 
 }  // namespace pliant

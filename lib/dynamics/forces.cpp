@@ -30,7 +30,7 @@ Forces::Forces(const Model& model)
       least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
     stresses_.emplace_back(static_cast<std::size_t>(model.spread_shape_of(model.batches[b]).points()));
-  if (model.rates) damping_power_.resize(model.regions.size() + model.point_chunks.size() + model.rigid_bodies.size());
+  if (model.rates) damping_power_.resize(least_jacobian_.size());
 }
 
 Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
@@ -52,7 +52,7 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
   }
   update_outline_velocities(model_, motion, outlines_);
   result.contact = contact_.forces(outlines_, committed, trial);
-  const OutlineLoads loads(model_, motion.time, outlines_);
+  const OutlineLoads loads(model_, motion.instant(), outlines_);
   result.damping_power = result.contact.damping_power + loads.damping_power();
   lane_forces(motion, force, afterwards);
   if (!stresses_.empty()) spread_forces(motion, force, afterwards);
@@ -60,10 +60,7 @@ Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, Con
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
     outline_force_resultant(model_, rigid, outlines_, &position.rigid[3 * r], &force.rigid[3 * r]);
-    add_rigid_loads(rigid, gravity, motion.time, &force.rigid[3 * r]);
-    if (model_.rates)
-      damping_power_[model_.regions.size() + model_.point_chunks.size() + static_cast<std::size_t>(r)] =
-          add_rigid_damping(rigid, motion.time, &motion.velocity.rigid[3 * r], &force.rigid[3 * r]);
+    add_rigid_loads(rigid, gravity, motion.instant(), &force.rigid[3 * r]);
   });
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -90,8 +87,7 @@ void Forces::lane_forces(const Motion& motion, Dofs& force, const RegionWork& af
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     const Lanes *q = &motion.position.compliant[batch.offset], *v = &motion.velocity.compliant[batch.offset];
     least_jacobian_[b] = least_of(add_internal_forces(model_, batch, q, f));
-    if (model_.rates)
-      damping_power_[b] = viscous_power(model_, batch, q, v, f) + add_mass_damping(model_, region, v, f);
+    if (model_.rates) damping_power_[b] = viscous_power(model_, batch, q, v, f);
     if (afterwards) afterwards(b);
   });
 }
@@ -105,7 +101,7 @@ void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& 
     const Lanes* q = &motion.position.compliant[batch.offset];
     least_jacobian_[model_.lane_batches + c] = spread_stresses(model_, chunk, q, stresses_of(chunk.batch));
     if (batch.viscous)
-      damping_power_[model_.regions.size() + static_cast<std::size_t>(c)] =
+      damping_power_[model_.lane_batches + c] =
           add_viscous_stresses(model_, chunk, q, &motion.velocity.compliant[batch.offset], stresses_of(chunk.batch));
   });
   parallel_for(static_cast<int>(model_.regions.size()) - model_.lane_batches, [&](int i) {
@@ -116,9 +112,6 @@ void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& 
     add_outline_forces(model_, region, outlines_, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_spread_forces(model_, region, stresses_of(region.batch), f);
-    if (model_.rates)
-      damping_power_[r] =
-          add_mass_damping(model_, region, &motion.velocity.compliant[model_.batches[region.batch].offset], f);
     if (afterwards) afterwards(r);
   });
 }

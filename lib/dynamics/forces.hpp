@@ -14,7 +14,7 @@ namespace pliant {
 /// What one force evaluation found.
 struct Evaluation {
   PatchTotals contact;
-  double damping_power = 0;  ///< what forces that depend on velocities dissipate, W/m
+  double damping_power = 0;  ///< what viscosity and the dashpots of contacts and supports dissipate, W/m
   double least_jacobian = 1e300;
   bool refreshed = false;  ///< the contact candidates were rebuilt
   bool sound = true;  ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
@@ -29,14 +29,14 @@ class Forces {
  public:
   explicit Forces(const Model& model);
 
-  /// Total forces of a motion into `force`. `committed` is the contact history to start from, `trial` receives the one that goes
+  /// Forces of a motion into `force`: all but drag (bodies/damping_forces.hpp), which is the integrator's. `committed` is the contact history to start from, `trial` receives the one that goes
   /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions and its history, laid out
   /// anew, keeps its records, so that a rejected trial loses none. Not sound is then a trial that goes further than the skin at once, and one
   /// that starts from another history than the accepted one: that is void, and no forces are computed. `afterwards`, if any, follows the forces of each region.
   Evaluation evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
                       State* accepted = nullptr, const RegionWork& afterwards = {});
 
-  /// Once more at an accepted state. Outlines keep the contact forces of the step that led there: dashpots saw its half step's velocities.
+  /// Once more at an accepted state. Outlines keep the contact forces of the step that led there: dashpots saw the velocities that it predicted.
   Evaluation evaluate_again(const Motion& motion, ContactHistory& history, ContactHistory& scratch, Dofs& force);
 
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
@@ -65,7 +65,7 @@ class Forces {
   void spread_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards);
 
   std::vector<double> least_jacobian_;  ///< [batches of several bodies and chunks of points]
-  std::vector<double> damping_power_;   ///< [regions, chunks of points, rigid bodies], W/m; empty without Model::rates
+  std::vector<double> damping_power_;   ///< of viscosity, as least_jacobian_, W/m; empty without Model::rates
   std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]
   bool warned_deep_ = false;
 };

@@ -1,5 +1,6 @@
 #include "dynamics/integrator.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "bodies/mass_correction.hpp"
@@ -14,7 +15,15 @@ namespace {
 double work_on_outlines(const Model& model, const State& state, const Trial& trial, double end_time) {
   if (model.pressures.empty() && model.supports.empty()) return 0;
   const Dofs before = material_velocity(model, state.velocity), after = material_velocity(model, trial.velocity);
-  return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time});
+  return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time, true});
+}
+
+/// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of the springs that come or go.
+void pass_switch(const Model& model, State& state) {
+  const Instant before{state.time, true}, after{state.time};
+  state.external_work += support_energy(model, state.position, after) - support_energy(model, state.position, before);
+  const Dofs velocity = material_velocity(model, state.velocity);
+  state.damping_power += add_load_change(model, {state.position, velocity, state.time, true}, after, state.force);
 }
 
 }  // namespace
@@ -37,6 +46,8 @@ void take_over(const Model& model, State& state, Trial& trial, double end_time, 
   ++state.steps;
   state.rejections += report.rejections;
   state.evaluations += report.evaluations;
+  state.damping_power = report.evaluation.damping_power;
+  if (std::binary_search(model.switch_times.begin(), model.switch_times.end(), end_time)) pass_switch(model, state);
 }
 
 }  // namespace pliant

@@ -20,7 +20,8 @@ struct StepReport {
   const char* governed_by = "";  ///< what limited dt: "error", "stability", "output", "start"
 };
 
-/// Makes an accepted trial the state at `end_time`: books its work and dissipation, swaps, counts. Only acceptance changes a state, so that a step
+/// Makes an accepted trial the state at `end_time`: books its work and dissipation, swaps, counts. Where loads switch, the state's forces become those
+/// of the next step. Only acceptance changes a state, so that a step
 /// that throws leaves it as it was; a refresh of the contact candidates may have put the history's records in another order.
 void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
                const StepReport& report);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/update_outlines.hpp"
@@ -22,6 +23,8 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   const Evaluation start = forces_.evaluate({state_.position, material_velocity(model, state_.velocity), 0},
                                             state_.history, trial, state_.force);
   check_start(start, state_, forces_);
+  add_drag(model, {0}, state_.velocity, state_.force);
+  state_.damping_power = start.damping_power;
   forces_.warn_of_depth(start, 0);
   if (start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), forces_.outlines());
   std::swap(state_.history, trial);

@@ -18,6 +18,7 @@ struct State {
   double gravity_work = 0;   ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;     ///< by contact laws and by damping, J/m
   double damped = 0;         ///< of that, by forces that depend on velocities, J/m
+  double damping_power = 0;  ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
   Dofs position, velocity, force;
   ContactHistory history;
@@ -32,6 +33,7 @@ struct State {
     visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);
     visitor("damped", damped);
+    visitor("damping_power", damping_power);
     visitor("steps", steps);
     visitor("rejections", rejections);
     visitor("evaluations", evaluations);

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
+#include "dynamics/drag.hpp"
 #include "dynamics/failure.hpp"
 
 namespace pliant {
@@ -64,8 +66,8 @@ LanePair displacement(const ShapeRows& rows, const SpreadShape& shape, const dou
 }  // namespace
 
 StepDoubling::StepDoubling(Forces& forces, const State&)
-    : forces_(forces), model_(forces.model()), wave_time_(wave_time(model_)) {
-  trial_.position = trial_.velocity = trial_.force = zero_dofs(model_);
+    : forces_(forces), model_(forces.model()), drag_(has_drag(forces.model())), wave_time_(wave_time(model_)) {
+  trial_.position = trial_.velocity = trial_.force = start_force_ = zero_dofs(model_);
   difference_.resize(model_.compliant_size);
 }
 
@@ -98,13 +100,14 @@ StepReport StepDoubling::step(State& state, double until) {
 double StepDoubling::try_step(State& state, double end_time, StepReport& report, bool once_more) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double half = 0.5 * report.dt, middle = state.time + half;
-  half_step(state.position, state.velocity, state.force, state.time, half);
-  if (!evaluate(state, middle, state.history, half_history_, report)) return infinity;
+  find_start_force(state, half);
+  half_step(state.position, state.velocity, start_force_, state.time, half);
+  if (!evaluate(state, {middle + 0.5 * half}, state.history, half_history_, report)) return infinity;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
   const double result = error(state, report.dt);
   if (!(result <= model_.scene.time.alpha * model_.scene.time.target)) return result;
-  if (!evaluate(state, end_time, half_history_, trial_.history, report))
+  if (!evaluate(state, {end_time, true}, half_history_, trial_.history, report))
     // A refresh makes the half step's history void: once more with the new candidates.
     return report.evaluation.refreshed && once_more ? try_step(state, end_time, report, false) : infinity;
   report.evaluation.contact.dissipated += slip_work;
@@ -112,12 +115,25 @@ double StepDoubling::try_step(State& state, double end_time, StepReport& report,
   return result;
 }
 
-bool StepDoubling::evaluate(State& state, double time, ContactHistory& from, ContactHistory& to, StepReport& report) {
-  report.evaluation =
-      forces_.evaluate({trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, time}, from, to,
-                       trial_.force, &state);
+/// With the mean of the loads over the half step: they are linear in time, as steps end at the points of histories.
+void StepDoubling::find_start_force(const State& state, double half) {
+  start_force_ = state.force;
+  if (model_.switch_times.empty() || state.time >= model_.switch_times.back()) return;
+  const Dofs velocity = material_velocity(model_, state.velocity);
+  add_load_change(model_, {state.position, velocity, state.time}, {state.time + 0.5 * half}, start_force_);
+}
+
+/// `at`: the time of the loads.
+bool StepDoubling::evaluate(State& state, const Instant& at, ContactHistory& from, ContactHistory& to,
+                            StepReport& report) {
+  report.evaluation = forces_.evaluate(
+      {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, at.time, at.ends_step}, from, to,
+      trial_.force, &state);
   ++report.evaluations;
-  trial_time_ = time;
+  trial_time_ = at.time;
+  if (!drag_) return report.evaluation.sound;
+  add_drag(model_, at, trial_.velocity, trial_.force);
+  report.evaluation.damping_power += drag_power(model_, at, trial_.velocity);
   return report.evaluation.sound;
 }
 
@@ -143,10 +159,10 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
 }
 
 /// u2 - u1 = dt^2/4 a_half - dt^2/2 a at the degrees of freedom.
-void StepDoubling::find_difference(const Region& region, const State& state, double dt) {
+void StepDoubling::find_difference(const Region& region, double dt) {
   const Batch& batch = model_.batches[region.batch];
   Lanes* d = &difference_[batch.offset];
-  const Lanes *start = &state.force.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
+  const Lanes *start = &start_force_.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
   with_nodes(model_, batch, [&](const auto& nodes) {
     for (int i = 2 * region.first; i < 2 * region.last; ++i)
       d[i] = 0.25 * dt * dt * nodes.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
@@ -190,7 +206,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
   double change[3], end[3];
   for (std::size_t c = 0; c < 3; ++c) {
     const RigidDof& dof = body.dof[c];
-    const double a = dof.inverse_mass * state.force.rigid[3 * r + c],
+    const double a = dof.inverse_mass * start_force_.rigid[3 * r + c],
                  a_half = dof.inverse_mass * trial_.force.rigid[3 * r + c];
     change[c] = dof.imposed(state.time) ? 0.0 : 0.25 * dt * dt * (a_half - 2 * a);
     end[c] = trial_.position.rigid[3 * r + c];
@@ -209,7 +225,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 
 double StepDoubling::error(const State& state, double dt) {
   // A spread body's region needs the differences of its neighbours: all first.
-  parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], state, dt); });
+  parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], dt); });
   if (model_.corrected_mass) correct_difference();
   const double compliant =
       parallel_max(static_cast<int>(model_.regions.size()), 0, [&](int r) { return region_error(model_.regions[r]); });

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Stability bound of explicit central differences, dt <= safety x 2/w (sqrt(1 + z^2) - z), body by body (METHOD 6):
-/// w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
+/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (METHOD 6 with z for 2 z, where dashpots see the
+/// velocity of the half step): w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);
@@ -57,7 +57,8 @@ class TimeStepBound {
       contact_floor_;               ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
   std::vector<double> compliance_;  ///< [bodies] w^2 per unit contact stiffness
   std::vector<double> support_;     ///< [bodies] w^2 of soft supports, 1/s2
-  std::vector<double> damping_;     ///< [bodies] largest rate of dashpots and mass-proportional damping, 1/s
+  std::vector<double> damping_;     ///< [bodies] largest rate of supports' dashpots, 1/s
+  std::vector<double> limit_square_;                ///< [bodies] largest stable w^2 dt^2 without dashpots
   std::vector<Lanes> viscous_direction_, viscous_;  ///< as direction_ and internal_, for Kelvin-Voigt: rates, 1/s
   Limit limit_;                                     ///< of all of the above, found when they change: each step asks
 };

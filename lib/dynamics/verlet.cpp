@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
+#include "dynamics/drag.hpp"
 #include "dynamics/failure.hpp"
 
 namespace pliant {
@@ -20,6 +22,8 @@ constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in d
 /// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So a large error fades from
 /// memory over many of their periods only.
 constexpr double fading = 0.99;
+/// Steps shorter than this part of what was wished for are not remembered. Of equal steps to an output none is.
+constexpr double least_share = 0.5;
 
 double controller_factor(double error, double tolerance) {
   if (error == 0) return largest_factor;
@@ -29,8 +33,11 @@ double controller_factor(double error, double tolerance) {
 }  // namespace
 
 Verlet::Verlet(Forces& forces, const State& state)
-    : forces_(forces), model_(forces.model()), bound_(forces.model(), forces.contact().laws()) {
-  trial_.position = trial_.velocity = trial_.force = zero_dofs(model_);
+    : forces_(forces),
+      model_(forces.model()),
+      drag_(has_drag(forces.model())),
+      bound_(forces.model(), forces.contact().laws()) {
+  trial_.position = trial_.velocity = trial_.force = mean_velocity_ = zero_dofs(model_);
   change_.resize(model_.regions.size());
   bound_.update_internal(state.position);
   bound_.update_contact(forces_);
@@ -43,7 +50,7 @@ StepReport Verlet::step(State& state, double until) {
   for (;;) {
     const double largest = largest_dt();  // a rejected trial may have found new contacts
     const double wish = std::min(next_dt, largest);
-    // Equal steps up to the next output: a short one before each would jolt the fastest vibrations time and again.
+    // Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations time and again.
     const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
     const double dt = report.dt = remaining / steps;
     const double end_time = steps > 1 ? state.time + dt : until;
@@ -51,8 +58,8 @@ StepReport Verlet::step(State& state, double until) {
     try_step(state, end_time, report);
     if (report.error <= 2 * tolerance) {
       forces_.warn_of_depth(report.evaluation, end_time);
-      state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
-      // Of the whole step: one cut short to meet an output does not slow the run down.
+      // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that changes as shortly.
+      if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
       next_dt = std::min(wish * controller_factor(state.jerk * wish * wish * wish, tolerance), largest);
       accept(state, end_time, next_dt, report);
       return report;
@@ -67,19 +74,19 @@ double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.
 
 void Verlet::try_step(State& state, double end_time, StepReport& report) {
   predict(state, report.dt);
-  report.evaluation = forces_.evaluate({trial_.position, half_step_velocity(), end_time}, state.history, trial_.history,
-                                       trial_.force, &state, [&](int r) { finish_region(state, report.dt, r); });
-  report.damping_work = report.dt * report.evaluation.damping_power;
+  report.evaluation =
+      forces_.evaluate({trial_.position, trial_.velocity, end_time, true}, state.history, trial_.history, trial_.force,
+                       &state, [&](int r) { finish_region(state, report.dt, r); });
   ++report.evaluations;
   if (report.evaluation.refreshed) bound_.update_contact(forces_);
   report.error = report.evaluation.sound ? error(state, report.dt) : std::numeric_limits<double>::infinity();
 }
 
-/// Positions at the end of the step. Forces that depend on velocities see those of the half step, by which the positions move.
+/// Positions at the end of the step and, for forces that depend on them, velocities there.
 void Verlet::predict(const State& state, double dt) {
-  if (model_.rates || model_.corrected_mass) {
-    predict_half_step_velocity(state, dt);
-    return move_by_half_step_velocity(state, dt);
+  if (drag_ || model_.rates || model_.corrected_mass) {
+    predict_velocities(state, dt);
+    return move_by_mean_velocity(state, dt);
   }
   const double half = 0.5 * dt * dt;
   for_each_dof(
@@ -96,42 +103,58 @@ void Verlet::predict(const State& state, double dt) {
       });
 }
 
-void Verlet::predict_half_step_velocity(const State& state, double dt) {
-  for_each_dof(
-      model_,
-      [&](std::size_t i, Lanes inverse_mass) {
-        trial_.velocity.compliant[i] = state.velocity.compliant[i] + 0.5 * dt * inverse_mass * state.force.compliant[i];
-      },
-      [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed(state.time)
-                                       ? imposed_velocity(dof, state.time + 0.5 * dt)
-                                       : state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * state.force.rigid[i];
-      });
-  if (model_.corrected_mass) half_step_velocity_ = material_velocity(model_, trial_.velocity);
+/// The mean of the step and what it ends with if accelerations stand still but for drag.
+void Verlet::predict_velocities(const State& state, double dt) {
+  parallel_for(static_cast<int>(model_.regions.size()), [&](int r) {
+    const Region& region = model_.regions[r];
+    const Batch& batch = model_.batches[region.batch];
+    const Drag<Lanes> drag = drag_over(dt * batch.mass_damping);
+    with_nodes(model_, batch, [&](const auto& nodes) {
+      for (int i = 2 * region.first; i < 2 * region.last; ++i) {
+        const std::size_t at = batch.offset + static_cast<std::size_t>(i);
+        const Lanes change = dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density) * state.force.compliant[at];
+        mean_velocity_.compliant[at] = state.velocity.compliant[at] + drag.mean * change;
+        trial_.velocity.compliant[at] = state.velocity.compliant[at] + drag.end * change;
+      }
+    });
+  });
+  for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
+    const double x = state.position.rigid[i], v = state.velocity.rigid[i];
+    if (dof.imposed(state.time)) {
+      mean_velocity_.rigid[i] = (imposed_position(dof, x, state.time, dt) - x) / dt;
+      trial_.velocity.rigid[i] = imposed_velocity(dof, state.time + dt);
+      return;
+    }
+    const Drag<double> drag = drag_over(dt * drag_rate(dof, {state.time}));
+    const double change = dt * dof.inverse_mass * state.force.rigid[i];
+    mean_velocity_.rigid[i] = v + drag.mean * change;
+    trial_.velocity.rigid[i] = v + drag.end * change;
+  });
+  if (model_.corrected_mass) trial_.velocity = material_velocity(model_, trial_.velocity);
 }
 
-void Verlet::move_by_half_step_velocity(const State& state, double dt) {
-  const Dofs& velocity = half_step_velocity();
+void Verlet::move_by_mean_velocity(const State& state, double dt) {
+  const Dofs corrected = model_.corrected_mass ? material_velocity(model_, mean_velocity_) : Dofs();
+  const std::vector<Lanes>& velocity = model_.corrected_mass ? corrected.compliant : mean_velocity_.compliant;
   for_each_dof(
       model_,
-      [&](std::size_t i, Lanes) {
-        trial_.position.compliant[i] = state.position.compliant[i] + dt * velocity.compliant[i];
-      },
+      [&](std::size_t i, Lanes) { trial_.position.compliant[i] = state.position.compliant[i] + dt * velocity[i]; },
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i];
         trial_.position.rigid[i] =
-            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * velocity.rigid[i];
+            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * mean_velocity_.rigid[i];
       });
 }
 
 /// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is accepted, because the forces come
-/// out of the cache then.
+/// out of the cache then. Drag joins them at the end: the errors of the step are those of all others, which the step takes for constant.
 void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];
-  const Lanes *old_force = &state.force.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
-  const Lanes* old_velocity = &state.velocity.compliant[batch.offset];
-  Lanes* velocity = &trial_.velocity.compliant[batch.offset];
+  const Lanes* old_force = &state.force.compliant[batch.offset];
+  const Lanes *old_velocity = &state.velocity.compliant[batch.offset], *mean = &mean_velocity_.compliant[batch.offset];
+  Lanes *velocity = &trial_.velocity.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
+  const Lanes z = dt * batch.mass_damping, drag = batch.mass_damping * batch.density;
   const Lanes upper_inverse_density =
       with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
@@ -140,9 +163,16 @@ void Verlet::finish_region(const State& state, double dt, int r) {
       const auto inverse_unit_mass = nodes.inverse_unit_mass[i / 2];
       velocity[i] =
           old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
-      const Lanes change = inverse_unit_mass / nodes.nodal_distance[i / 2] * abs(force[i] - old_force[i]);
-      worst = max(worst, change);
-      any_nan += change;
+      Lanes change = force[i] - old_force[i];
+      if (batch.mass_damped) {
+        const Lanes coefficient = drag * nodes.unit_mass[i / 2];
+        velocity[i] += z * (0.5 * old_velocity[i] - mean[i]);
+        change -= coefficient * old_velocity[i];
+        force[i] -= coefficient * velocity[i];
+      }
+      const Lanes error = inverse_unit_mass / nodes.nodal_distance[i / 2] * abs(change);
+      worst = max(worst, error);
+      any_nan += error;
     }
     const double result = largest(worst * upper_inverse_density);
     change_[r] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
@@ -154,27 +184,44 @@ double Verlet::error(const State& state, double dt) const {
   double compliant = 0;
   for (double change : change_) compliant = std::max(compliant, change);
   double rigid = 0;
-  for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r) {
-    const RigidBody& body = model_.rigid_bodies[r];
-    const auto change = [&](std::size_t c) {
-      if (body.dof[c].imposed(state.time)) return 0.0;
-      return std::abs(trial_.force.rigid[3 * r + c] - state.force.rigid[3 * r + c]) * body.dof[c].inverse_mass;
-    };
-    const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
-    rigid = std::max(rigid, std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing
-                                                 : std::numeric_limits<double>::infinity());
-  }
+  for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r) rigid = std::max(rigid, change_of_rigid(state, r));
   return dt * dt / 6 * std::max(compliant, rigid);
 }
 
-void Verlet::accept(State& state, double end_time, double next_dt, const StepReport& report) {
-  const double half = 0.5 * report.dt;
+/// Largest |a_new - a_old| over the outline's spacing, 1/s2, without drag.
+double Verlet::change_of_rigid(const State& state, std::size_t r) const {
+  const RigidBody& body = model_.rigid_bodies[r];
+  const auto change = [&](std::size_t c) {
+    const RigidDof& dof = body.dof[c];
+    if (dof.imposed(state.time)) return 0.0;
+    const double before =
+        state.force.rigid[3 * r + c] + drag_coefficient(dof, {state.time}) * state.velocity.rigid[3 * r + c];
+    return std::abs(trial_.force.rigid[3 * r + c] - before) * dof.inverse_mass;
+  };
+  const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
+  return std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing : std::numeric_limits<double>::infinity();
+}
+
+/// As finish_region.
+void Verlet::finish_rigid(const State& state, double end_time, double dt) {
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
-    trial_.velocity.rigid[i] =
-        dof.imposed(state.time)
-            ? imposed_velocity(dof, end_time)
-            : state.velocity.rigid[i] + half * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+    const double coefficient = drag_coefficient(dof, {state.time});
+    double& velocity = trial_.velocity.rigid[i];
+    if (dof.imposed(state.time)) {
+      velocity = imposed_velocity(dof, end_time);
+    } else {
+      velocity = state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+      if (coefficient > 0)
+        velocity += dt * coefficient * dof.inverse_mass * (0.5 * state.velocity.rigid[i] - mean_velocity_.rigid[i]);
+    }
+    trial_.force.rigid[i] -= coefficient * velocity;
   });
+}
+
+void Verlet::accept(State& state, double end_time, double next_dt, StepReport& report) {
+  finish_rigid(state, end_time, report.dt);
+  report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
+  if (drag_) report.damping_work += drag_work(model_, {state.time}, report.dt, state.velocity, mean_velocity_);
   take_over(model_, state, trial_, end_time, next_dt, report);
   if (state.steps % bound_period == 0) bound_.update_internal(state.position);
 }

@@ -5,7 +5,9 @@
 
 namespace pliant {
 
-/// Velocity Verlet with a stability bound and a free error control (METHOD 6): one force evaluation a step.
+/// Velocity Verlet with a stability bound and a free error control (METHOD 6): one force evaluation a step. Of second order with forces that depend
+/// on velocities too: drag (dynamics/drag.hpp) slows the motion by its exact exponential, all others see the velocity that the accelerations so far
+/// predict for the end of the step.
 class Verlet {
  public:
   Verlet(Forces& forces, const State& state);
@@ -21,19 +23,21 @@ class Verlet {
  private:
   void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
-  void move_by_half_step_velocity(const State& state, double dt);
-  void predict_half_step_velocity(const State& state, double dt);
+  void predict_velocities(const State& state, double dt);
+  void move_by_mean_velocity(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
   double error(const State& state, double dt) const;
-  void accept(State& state, double end_time, double next_dt, const StepReport& report);
+  void finish_rigid(const State& state, double end_time, double dt);
+  double change_of_rigid(const State& state, std::size_t r) const;
+  void accept(State& state, double end_time, double next_dt, StepReport& report);
   double largest_dt() const;
-  const Dofs& half_step_velocity() const { return model_.corrected_mass ? half_step_velocity_ : trial_.velocity; }
 
   Forces& forces_;
   const Model& model_;
+  const bool drag_;  ///< something meets it
   TimeStepBound bound_;
   Trial trial_;
-  Dofs half_step_velocity_;     ///< with corrected mass only: C y
+  Dofs mean_velocity_;          ///< of the step, with drag, rates or corrected mass only; as a state holds it
   std::vector<double> change_;  ///< [regions], of the acceleration over the nodal distance, 1/s2
 };
 

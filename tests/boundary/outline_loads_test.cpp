@@ -185,7 +185,7 @@ TEST(Support, pulls_back_by_stiffness_times_length_along_the_axes_that_it_holds)
   bottom.x = {Drive::Mode::displacement, constant(0.3)};
   Bench bench(square(bottom));
   EXPECT_LT((total_force(bench) - Vec2(5 * 2 * 0.3, 0)).norm(), 1e-13) << "EXACT";
-  EXPECT_NEAR(support_energy(bench.model, bench.state.position, 0), 0.5 * 5 * 2 * 0.09, 1e-13) << "EXACT";
+  EXPECT_NEAR(support_energy(bench.model, bench.state.position, {0}), 0.5 * 5 * 2 * 0.09, 1e-13) << "EXACT";
   bottom.x.mode = Drive::Mode::free;
   bottom.y = {Drive::Mode::velocity, constant(0.2)};
   Bench later(square(bottom));
@@ -236,7 +236,7 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
     scene.time.end = 6;
     without_error_control(scene, safety);
     const Model model = build_model(scene);
-    EXPECT_EQ(model.switch_times, (std::vector<double>{3, 4})) << "EXACT";
+    EXPECT_EQ(model.switch_times, (std::vector<double>{1, 2, 3, 4})) << "EXACT";
     Simulation simulation(model);
     double worst = 0;
     bool met = false;
@@ -250,16 +250,15 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
     const Energies end = simulation.audit().energy;
     EXPECT_GT(end.dissipated, 0.01);
     EXPECT_GT(end.external_work, 0.1);
-    EXPECT_LT(worst / end.external_work, 0.05 * safety)
-        << "RATE: at a switch half a step (0.07 safety) of force times speed, up to 0.2, over a work of 0.3";
     return worst;
   };
-  const double coarse = imbalance(0.8), fine = imbalance(0.1);
-  EXPECT_GT(observed_order(coarse, fine, 8), 0.8) << "RATE: the half step of a dashpot";
+  const double coarse = imbalance(0.4), middle = imbalance(0.2), fine = imbalance(0.1);
+  EXPECT_NEAR(observed_order(coarse, fine, 4), 2, 0.3) << "RATE: velocity Verlet, dashpots with it";
+  EXPECT_NEAR(observed_order(middle, fine), 2, 0.5) << "RATE";
 }
 
 /// A pulled square is let go at one side while the other holds on: what the books lose over the step of the release, over the energy in the
-/// springs that end. RATE: the square of the step, as a force that ends within one; with the energy of the springs alone it is the first order.
+/// springs that end. RATE: the cube of the step, as in any other; with the energy of the springs alone it is the first order.
 TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
   const auto loss = [](double safety) {
     BoundaryCondition bottom = support_of("square", 5, 0), top = bottom;
@@ -286,7 +285,7 @@ TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
     return std::abs(imbalance() - before) / stored;
   };
   const double coarse = loss(0.8), middle = loss(0.2), fine = loss(0.05);
-  EXPECT_NEAR(observed_order(middle, fine, 4), 2, 0.3);
+  EXPECT_NEAR(observed_order(middle, fine, 4), 3, 0.3);
   EXPECT_LT(coarse, 0.05) << "0.16 with the energy of the springs alone";
 }
 

@@ -145,20 +145,19 @@ TEST(KelvinVoigt, oval_mode_of_a_disc_decays_at_its_rate) {
     const double rate = std::log(damped.size[3] / damped.size[7]) / 4 / half_period;
     const double square = rate * rate + std::pow(std::numbers::pi / half_period, 2);
     EXPECT_NEAR(rate / (viscosity / 2 * square), 1, 0.01)
-        << "EXACT: but for what is left of higher modes, and rate dt/2 of the rate; viscosity " << viscosity;
+        << "EXACT: but for what is left of higher modes; viscosity " << viscosity;
   }
 }
 
-/// All modes decay by exp(- rate t/2), and their frequencies fall by (rate/2w)^2/2 only: less than 0.03 rad until
-/// then, which at an extreme is 4e-4 of it.
+/// All modes decay by exp(- rate t/2). Their extremes come earlier by rate/(2 w^2), in which the decay is (rate/2w)^2, 2e-4 of the oval mode, w = 1.85;
+/// their frequencies fall by half of that, 2e-3 rad until then, by which higher modes of the start are out of step.
 TEST(MassDamping, all_modes_of_a_disc_decay_at_half_its_rate) {
-  const double rate = 0.2;
+  const double rate = 0.05;
   const Ring free = ring(damped_disc(60, 0, 0, 0.4, stretching(1e-3)), 9);
   const Ring damped = ring(damped_disc(60, 0, rate, 0.4, stretching(1e-3)), 9);
   ASSERT_GE(free.size.size(), 5u);
   for (std::size_t k = 0; k < 5; ++k)
-    EXPECT_NEAR(damped.size[k] / free.size[k] / std::exp(-rate * free.time[k] / 2), 1, 2e-3)
-        << "EXACT: 4e-4, and rate dt/2 of the rate";
+    EXPECT_NEAR(damped.size[k] / free.size[k] / std::exp(-rate * free.time[k] / 2), 1, 5e-4) << "EXACT: as above";
 }
 
 Scene sliding_bodies(double mass_damping) {
@@ -170,30 +169,29 @@ Scene sliding_bodies(double mass_damping) {
   return scene;
 }
 
-/// Dashpots see the velocity of the half step before, so v falls by 1 - rate dt a step: an error of rate dt/2 of the
-/// rate.
+/// Exactly by `verlet`. Step doubling, semi-implicit Euler, is of the first order: v falls by 1 - rate h in each half step h.
 TEST(MassDamping, speed_falls_exponentially) {
   const double rate = 0.4;
-  const auto error = [&](double safety) {
+  const auto error = [&](Integrator integrator, double target) {
     Scene scene = sliding_bodies(rate);
-    without_error_control(scene, safety);
+    scene.time.integrator = integrator;
+    scene.time.target = target;
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 3);
     const Eigen::Vector3d v = rigid(simulation.state().velocity, 0);
-    const double exact = std::exp(-3 * rate);
     const Vec2 soft = mass_mean(model, model.bodies[0], simulation.state().velocity);
     EXPECT_NEAR(v[0] / 0.5, v[2] / 1.5, 1e-13) << "EXACT: all degrees of freedom alike";
     EXPECT_NEAR(soft.x(), v[0], 1e-12) << "EXACT: both kinds of body alike";
     EXPECT_NEAR(soft.y(), v[1], 1e-12) << "EXACT";
-    return v[0] / 0.5 - exact;
+    return std::pair(std::abs(v[0] / 0.5 - std::exp(-3 * rate)), 3.0 / static_cast<double>(simulation.state().steps));
   };
-  const double coarse = error(0.8), fine = error(0.2);
-  EXPECT_LT(std::abs(fine), 0.01);
-  EXPECT_NEAR(observed_order(coarse, fine, 4), 1, 0.3) << "RATE";
+  EXPECT_LT(error(Integrator::verlet, 0).first, 1e-12) << "EXACT";
+  const auto [coarse, long_step] = error(Integrator::step_doubling, 1e-4);
+  const auto [fine, short_step] = error(Integrator::step_doubling, 1e-6);
+  EXPECT_NEAR(observed_order(coarse, fine, long_step / short_step), 1, 0.3) << "RATE";
 }
 
-/// What the books miss is half a step of the power at the start.
 TEST(Books, close_for_damped_bodies_as_the_step_falls) {
   for (const auto& [viscosity, mass_damping] : {std::pair(0.05, 0.0), std::pair(0.0, 0.4)}) {
     const auto imbalance = [&](double safety) {
@@ -208,7 +206,7 @@ TEST(Books, close_for_damped_bodies_as_the_step_falls) {
       return simulation.balance_error(energy);
     };
     EXPECT_LT(imbalance(0.8), 0.01) << "EXACT: the promise of 1 %";
-    EXPECT_NEAR(observed_order(imbalance(0.1), imbalance(0.025), 4), 1, 0.3) << "RATE";
+    EXPECT_NEAR(observed_order(imbalance(0.1), imbalance(0.025), 4), 2, 0.3) << "RATE";
   }
 }
 
@@ -227,7 +225,7 @@ double true_largest_dt(Bench& bench) {
   const double c = Eigen::EigenSolver<Eigen::MatrixXd>(rates, false).eigenvalues().real().maxCoeff();
   const double w2 = largest_square_frequency(bench);
   const double z = c / (2 * std::sqrt(w2));
-  return 2 / std::sqrt(w2) * (std::sqrt(1 + z * z) - z);
+  return 2 / std::sqrt(w2) * (std::sqrt(1 + 4 * z * z) - 2 * z);
 }
 
 TEST(Bound, follows_the_rates_of_a_deformed_viscous_disc) {
@@ -260,7 +258,7 @@ double energy_after(double viscosity, double mass_damping, double safety, Mass m
 }
 
 TEST(Bound, is_where_damped_motion_becomes_unstable) {
-  for (const auto& [viscosity, mass_damping] : {std::pair(0.02, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 100.0)}) {
+  for (const auto& [viscosity, mass_damping] : {std::pair(0.02, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 10.0)}) {
     EXPECT_LT(energy_after(viscosity, mass_damping, 1), 1e-12) << "EXACT: stable, " << viscosity;
     EXPECT_LT(energy_after(viscosity, mass_damping, 1, Mass::corrected), 1e-12) << "EXACT: stable, " << viscosity;
     EXPECT_GT(energy_after(viscosity, mass_damping, 1.15), 1e-3)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "dynamics/forces.hpp"
@@ -30,8 +31,11 @@ struct Bench {
   /// Forces at the state's own positions, for states set by hand.
   void evaluate_here() {
     ContactHistory trial;
-    forces.evaluate({state.position, material_velocity(model, state.velocity), state.time}, state.history, trial,
-                    state.force);
+    state.damping_power = forces
+                              .evaluate({state.position, material_velocity(model, state.velocity), state.time},
+                                        state.history, trial, state.force)
+                              .damping_power;
+    add_drag(model, {state.time}, state.velocity, state.force);
     std::swap(state.history, trial);
   }
 

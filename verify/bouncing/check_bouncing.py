@@ -166,10 +166,11 @@ def test_depth(pull: bool) -> None:
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
 def test_dissipation(pull: bool) -> None:
-    """Weight times lost heights of all blocks; books take the half step's velocity for a dashpot."""
+    """Weight times lost heights of all blocks."""
     rule = "may pull" if pull else "may not pull"
     error = [run(pull, safety).balance_error for safety in SAFETIES]
-    CASE.check_rate(f"{rule}: balance of energy", SAFETIES, error, 1, 0.2, "a dashpot's work is booked to first order")
+    CASE.check_rate(f"{rule}: balance of energy", SAFETIES, error, 2, 0.4,
+                    "second order; where in its step a block touches varies the error of each impact")
     of = run(pull, SAFETIES[-1])
     lost = MASS * sum(1 - RESTITUTION[name]**2 for name in ("lively", "fair", "dull"))
     first = of.at("energy.dissipated", np.array([FIRST_OVER]))[0]

@@ -37,8 +37,8 @@ Vec2 applied_force(const Snapshot& snapshot, int b) {
   const Vec2 on_outline = outline_load(snapshot.model(), b, snapshot.motion());
   if (body.kind == BodyKind::compliant) return on_outline;
   const RigidBody& rigid = snapshot.model().rigid_bodies[body.rigid];
-  const double time = snapshot.state().time;
-  return on_outline + Vec2(applied_load(rigid.dof[0], time), applied_load(rigid.dof[1], time));
+  const Instant now = snapshot.motion().instant();
+  return on_outline + Vec2(applied_load(rigid.dof[0], now), applied_load(rigid.dof[1], now));
 }
 
 /// Of the material and of dashpots beside loads; viscosity exerts no force on a body as a whole.
@@ -49,7 +49,7 @@ Vec2 damping_force(const Snapshot& snapshot, int b) {
   if (body.kind == BodyKind::compliant)
     return -model.scene.materials[body.material].mass_damping * body.mass * mean_value(model, body, motion.velocity);
   double force[3] = {0, 0, 0};
-  add_rigid_damping(model.rigid_bodies[body.rigid], motion.time, rigid_values(body, motion.velocity), force);
+  add_rigid_drag(model.rigid_bodies[body.rigid], motion.instant(), rigid_values(body, motion.velocity), force);
   return {force[0], force[1]};
 }
 

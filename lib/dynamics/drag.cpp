@@ -1,0 +1,87 @@
+#include "dynamics/drag.hpp"
+
+#include <cmath>
+
+#include "bodies/damping_forces.hpp"
+#include "bodies/mass_correction.hpp"
+#include "bodies/node_arrays.hpp"
+
+namespace pliant {
+namespace {
+
+/// sum over k of (-z)^k / (k + n)!: what is left of exp(-z) after n terms, over (-z)^n. rest(n) = 1/n! - z rest(n + 1).
+double rest_of_exponential(double z, int n) {
+  double factorial = 1;
+  if (z > 1) {  // upwards from n = 1 nothing cancels then
+    double rest = -std::expm1(-z) / z;
+    for (int k = 1; k < n; ++k) factorial *= k, rest = (1 / factorial - rest) / z;
+    return rest;
+  }
+  for (int k = 2; k <= n; ++k) factorial *= k;
+  double term = 1 / factorial, sum = 0;
+  constexpr int terms = 18;  // 1/18! is rounding
+  for (int k = 1; k <= terms; ++k) sum += term, term *= -z / (n + k);
+  return sum;
+}
+
+/// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without drag, when it is linear in time.
+double spread(double z) {
+  const double mean = rest_of_exponential(z, 2);
+  return (4 * rest_of_exponential(2 * z, 3) - 2 * rest_of_exponential(z, 3)) / (mean * mean) - 1;
+}
+
+/// sum of weight(c) m y . v over all degrees of freedom, v the material velocity of y.
+template <class Weight>
+double weighted_square(const Model& model, const Instant& at, const Dofs& y, Weight&& weight) {
+  const Dofs v = material_velocity(model, y);
+  double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
+    const Region& region = model.regions[r];
+    const Batch& batch = model.batches[region.batch];
+    if (!batch.mass_damped) return 0.0;
+    Lanes factor{}, square{};
+    for (int lane = 0; lane < lane_count; ++lane) factor[lane] = weight(batch.mass_damping[lane]);
+    const Lanes *here = &y.compliant[batch.offset], *moving = &v.compliant[batch.offset];
+    with_nodes(model, batch, [&](const auto& nodes) {
+      for (int i = 2 * region.first; i < 2 * region.last; ++i) square += nodes.unit_mass[i / 2] * (here[i] * moving[i]);
+    });
+    return sum(factor * square * batch.density * batch.weight);
+  });
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const RigidDof& dof = model.rigid_bodies[r].dof[c];
+      total += weight(drag_rate(dof, at)) * dof.mass * y.rigid[3 * r + c] * y.rigid[3 * r + c];
+    }
+  return total;
+}
+
+}  // namespace
+
+Drag<double> drag_over(double z) { return {z, rest_of_exponential(z, 2), rest_of_exponential(z, 1)}; }
+
+Drag<Lanes> drag_over(Lanes z) {
+  Drag<Lanes> result{z};
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const Drag<double> one = drag_over(z[lane]);
+    result.mean[lane] = one.mean;
+    result.end[lane] = one.end;
+  }
+  return result;
+}
+
+double drag_rate(const RigidDof& dof, const Instant& at) {
+  return dof.mass > 0 ? drag_coefficient(dof, at) / dof.mass : 0.0;
+}
+
+double drag_power(const Model& model, const Instant& at, const Dofs& velocity) {
+  return weighted_square(model, at, velocity, [](double c) { return c; });
+}
+
+double drag_work(const Model& model, const Instant& at, double dt, const Dofs& velocity, const Dofs& mean) {
+  Dofs deviation = velocity;
+  for (std::size_t i = 0; i < deviation.compliant.size(); ++i) deviation.compliant[i] -= mean.compliant[i];
+  for (std::size_t i = 0; i < deviation.rigid.size(); ++i) deviation.rigid[i] -= mean.rigid[i];
+  return dt * (weighted_square(model, at, mean, [](double c) { return c; }) +
+               weighted_square(model, at, deviation, [&](double c) { return c * spread(c * dt); }));
+}
+
+}  // namespace pliant
