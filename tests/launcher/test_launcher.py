@@ -117,7 +117,7 @@ def test_without_the_fast_compiler_its_cost_is_told(launcher: Launcher, missing:
     result = launcher("check", "a.toml", INSTALLED=present, APT_FAILS=fails)
     assert result.returncode == 0
     assert f"not installed: {missing}" in result.stderr
-    assert "g++ builds instead of clang-19: runs take 1.9 times as long" in result.stderr
+    assert "g++ builds instead of clang-19: forces take 1.9 times as long" in result.stderr
     assert not (launcher.root / "build/openmp").exists()
 
 
