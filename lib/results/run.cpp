@@ -145,10 +145,11 @@ bool ended_in_order(const fs::path& folder, const Checkpoint& checkpoint) {
          summary.value("time", -1.0) == checkpoint.time() && !fs::exists(folder / "run.lock");
 }
 
-/// Whether a run has nothing left to do at a checkpoint, not even to put its folder in order. Says so.
+/// Whether a run has nothing left to do at a checkpoint, but to remove another's trials to write. Says so.
 bool nothing_to_do(const Checkpoint& checkpoint, double end, const RunOptions& options) {
   if (checkpoint.time() < end) return false;
   if (checkpoint.time() == end && !ended_in_order(options.out, checkpoint)) return false;
+  remove_temporary_files(options.out);  // of a run that was to overwrite this one and was killed before it began
   if (!options.quiet)
     fmt::print("{}: has reached t = {:.6g} s already; nothing to do (a later --until goes on)\n", options.out.string(),
                checkpoint.time());
