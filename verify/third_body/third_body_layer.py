@@ -1,0 +1,118 @@
+"""A run of the third body's scene, and what its probes and frames tell."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from plots.run_data import WALL, Frames
+from third_body_order import Neighbours, bond_order, kept_fraction, like_fraction, neighbours
+from time_means import block_means
+from verification import Run
+
+DIAMETER = 1e-6  # m
+PRESSED = 1e-6  # s, when the pressure is whole and shear begins
+SAMPLING = 5e-9  # s, of forces
+SMOOTHED = 10  # samples of forces in a mean: 50 ns, as the paper's curves are smooth
+PLATEAU = 2.4e-6  # s: 0.35 us after the lattice broke, more than three diameters of slip
+BLOCK = 40  # samples, 0.2 us: four to nine times the correlation time of friction on the plateau
+SHORT_BLOCK = 10  # samples, 50 ns: eight times that of the normal force less the change of momentum
+BREAK = 1e-7  # s: as long as the line of the paper's figure 9 is wide
+AFTERMATH = 3e-7  # s after the peak: friction is that of the broken lattice from BREAK until then
+
+
+@dataclass
+class Layer:
+    name: str
+    run: Run
+    period: float  # m
+
+    @cached_property
+    def frames(self) -> Frames:
+        return Frames(self.run.folder / "frames.h5", self.period)
+
+    @cached_property
+    def grains(self) -> np.ndarray:
+        grid = self.frames.grids["outlines"]
+        return np.unique(grid.body[grid.kind != WALL])
+
+    @cached_property
+    def kinds(self) -> np.ndarray:
+        """[grains] 0 compliant, 1 rigid."""
+        grid = self.frames.grids["outlines"]
+        return np.array([grid.kind[grid.body == grain][0] for grain in self.grains])
+
+    def centres(self, index: int) -> np.ndarray:
+        """[grains x 2] m, means of the outlines."""
+        body = self.frames.grids["outlines"].point_body
+        points = self.frames.positions("outlines", index)[: len(body)]
+        sums = np.stack([np.bincount(body, column) for column in points.T], axis=1)
+        return (sums / np.bincount(body)[:, None])[self.grains]
+
+    @cached_property
+    def neighbours(self) -> list[Neighbours]:
+        """By frame."""
+        return [neighbours(self.centres(i), self.period, DIAMETER) for i in range(len(self.frames.times))]
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """[frames] mean |psi6|."""
+        return np.array([np.nanmean(bond_order(of)) for of in self.neighbours])
+
+    @cached_property
+    def kept(self) -> np.ndarray:
+        """[frames] share of the first neighbours that still are."""
+        return np.array([kept_fraction(self.neighbours[0], of) for of in self.neighbours])
+
+    @cached_property
+    def like(self) -> np.ndarray:
+        """[frames] share of neighbours of one kind."""
+        return np.array([like_fraction(of, self.kinds) for of in self.neighbours])
+
+    def between(self, name: str, start: float, end: float) -> np.ndarray:
+        """A probe's values in start < t <= end."""
+        return self.run.probe(name)[self._within(name, start, end)]
+
+    def times_between(self, name: str, start: float, end: float) -> np.ndarray:
+        return self.run.times(name)[self._within(name, start, end)]
+
+    def _within(self, name: str, start: float, end: float) -> np.ndarray:
+        times = self.run.times(name)
+        return (times > start * (1 + 1e-9)) & (times <= end * (1 + 1e-9))
+
+    @property
+    def end(self) -> float:
+        return float(self.run.times("force_lower.force_y")[-1])
+
+    def friction(self, start: float, end: float) -> np.ndarray:
+        """On the lower wall, positive as the upper one moves."""
+        force_x, force_y = (self.between(f"force_lower.force_{axis}", start, end) for axis in ("x", "y"))
+        return -force_x / force_y
+
+    @cached_property
+    def smooth_friction(self) -> tuple[np.ndarray, np.ndarray]:
+        """Times, s, and friction factors while sheared; means of 50 ns."""
+        weights = np.ones(SMOOTHED) / SMOOTHED
+        times, friction = self.times_between("force_lower.force_y", PRESSED, self.end), self.friction(PRESSED, self.end)
+        return np.convolve(times, weights, "valid"), np.convolve(friction, weights, "valid")
+
+    @property
+    def peak(self) -> float:
+        return float(self.smooth_friction[1].max())
+
+    @property
+    def peak_time(self) -> float:
+        times, friction = self.smooth_friction
+        return float(times[friction.argmax()])
+
+    @property
+    def fall(self) -> float:
+        """Of friction, from its peak to its mean from BREAK to AFTERMATH later."""
+        return self.peak - float(self.friction(self.peak_time + BREAK, self.peak_time + AFTERMATH).mean())
+
+    @property
+    def plateau(self) -> np.ndarray:
+        """Means of blocks."""
+        return block_means(self.friction(PLATEAU, self.end), BLOCK)
