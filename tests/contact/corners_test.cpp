@@ -1,0 +1,127 @@
+// Sharp corners: which faces touch there, over which length, and that nothing locks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "support/contact_rig.hpp"
+
+namespace pliant {
+namespace {
+
+using namespace testing;
+
+constexpr double stiffness = 100, depth = 0.004;
+
+/// A block of unit width over a longer bar, face to face and `depth` inside, shifted along it.
+Scene block_on_bar(const ContactRule& rule, int segments, double bar_spacing, double shift, bool compliant = false) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  add_body(scene, outline_shape("bar", rectangle(2.4, 0.5, bar_spacing)), BodyKind::rigid, {0, 0});
+  add_body(scene,
+           outline_shape("block", rectangle(1, 0.5, 1.0 / segments), compliant ? std::optional(80) : std::nullopt),
+           compliant ? BodyKind::compliant : BodyKind::rigid, {shift, 0.5 - depth});
+  return scene;
+}
+
+const double spacings[] = {0.25, 0.1, 1.0 / 16, 0.037};
+
+/// The length that a bar of half width 1.2 and a block of half width 0.5 share.
+double shared(double shift) { return std::max(0.0, std::min(0.5 + shift, 1.2) - std::max(shift - 0.5, -1.2)); }
+
+// EXACT: flat faces press over the length that they share, wherever their nodes are, aligned or not, and whoever is finer; what they store is that
+// length times the law's energy. Along the faces nothing pulls but the ends: minus the energy a length for each end of the block on the bar, plus
+// one for each end of the bar under the block, so nothing while the block stands on the bar, else that energy, off the bar. Rounding of 40 nodes' forces.
+TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
+  const double energy = 0.5 * stiffness * depth * depth;
+  for (const int segments : {4, 6, 8, 16})
+    for (const double spacing : spacings)
+      for (const double shift : {0.0, 0.1, 0.0317, -0.25, 0.9, -1.03, 1.45, -1.53})
+        for (const bool compliant : {false, true}) {
+          if (compliant && segments > 8) continue;  // too fine for 80 nodes
+          SCOPED_TRACE(fmt::format("{} segments, spacing {}, shift {}, {}", segments, spacing, shift, compliant));
+          ContactRig rig(block_on_bar(frictionless(stiffness), segments, spacing, shift, compliant));
+          rig.evaluate();
+          EXPECT_NEAR(rig.force(1).y(), stiffness * depth * shared(shift), 1e-12);
+          EXPECT_NEAR(rig.totals.stored, energy * shared(shift), 1e-14);
+          const double off = shift > 0.7 ? energy : shift < -0.7 ? -energy : 0;
+          EXPECT_NEAR(rig.force(1).x(), shift > -1.5 ? off : 0, 1e-12);
+        }
+}
+
+// EXACT: the strength of a face is that of its length, for a cohesive one too, which a node beyond a corner would add to.
+TEST(Corners, AFaceIsAsStrongAsItIsLong) {
+  const double strength = 0.5;
+  for (const int segments : {4, 6, 16})
+    for (const double spacing : spacings)
+      for (const double shift : {0.0, 0.0317, 0.62}) {
+        ContactRig rig(block_on_bar(cohesive(stiffness, strength, 0.03, 0), segments, spacing, shift));
+        rig.move(1, {0, depth + strength / stiffness});
+        rig.evaluate();
+        EXPECT_NEAR(-rig.force(1).y(), strength * shared(shift), 1e-12) << segments << " " << spacing << " " << shift;
+      }
+}
+
+// EXACT: a block that slides over a bar, past its nodes and off its end, meets no barrier: the work along the way is the energy's change, and on the
+// bar no step meets more than rounding.
+TEST(Corners, NothingLocks) {
+  for (const double spacing : spacings) {
+    ContactRig rig(block_on_bar(frictionless(stiffness), 8, spacing, -0.6));
+    double largest = 0;
+    for (int step = 0; step < 500; ++step) {
+      rig.step();
+      largest = std::max(largest, std::abs(rig.force(1).x()));
+      rig.move(1, {0.0025, 0});
+    }
+    EXPECT_LT(largest, 1e-12) << spacing;
+  }
+}
+
+// EXACT: a corner that pokes into a flat face presses with its own length, of whose two segments each stands for half; turned until one lies flat,
+// with that one's half alone. Nodes of the face beside the tip are left to it.
+TEST(Corners, ACornerPokesWithItsOwnLength) {
+  constexpr double segment = 0.1;
+  const auto force = [&](double degrees) {
+    Scene scene = bare_scene();
+    scene.contacts = {frictionless(stiffness)};
+    add_body(scene, outline_shape("bar", rectangle(3, 0.5, 0.013)), BodyKind::rigid, {0, 0});
+    const double turn = degrees * M_PI / 180;
+    add_body(scene, outline_shape("block", rectangle(1, 1, segment)), BodyKind::rigid, {0, 0}, turn);
+    ContactRig rig(scene);
+    const double lowest = (std::abs(std::cos(turn)) + std::abs(std::sin(turn))) / 2;
+    rig.move(1, {0.0017, 0.25 + lowest - depth});
+    rig.evaluate();
+    EXPECT_NEAR(rig.force(1).x(), 0, 1e-12);
+    return rig.force(1).y() / (0.5 * stiffness * depth);
+  };
+  EXPECT_NEAR(force(45), segment, 1e-12);
+  EXPECT_NEAR(force(48), segment, 0.25 * segment) << "one of them opposes less";
+  EXPECT_NEAR(force(30), segment / 2, 1e-12) << "that of the flatter segment";
+}
+
+// EXACT: corner against corner, head on and aside, a contact there is, and it pushes them apart; a tip of another angle too.
+TEST(Corners, CornersMeet) {
+  for (const double half_angle : {45.0, 20.0, 60.0})
+    for (const double aside : {0.0, 0.003, -0.006})
+      for (const double turn : {0.0, 0.1}) {
+        SCOPED_TRACE(fmt::format("{} degrees, {} aside, turned by {}", half_angle, aside, turn));
+        Scene scene = bare_scene();
+        scene.contacts = {frictionless(stiffness)};
+        const double wide = std::tan(half_angle * M_PI / 180);
+        add_body(scene, outline_shape("square", rectangle(1, 1, 0.1)), BodyKind::rigid, {0, 0}, M_PI / 4);
+        add_body(scene, outline_shape("tip", {{0, 0}, {wide, 1}, {-wide, 1}}), BodyKind::rigid, {0, 0}, turn);
+        ContactRig rig(scene);
+        update_outlines(rig.model, rig.q, rig.outlines);
+        const Vec2 place(aside, std::sqrt(0.5) - 0.02);
+        rig.move(1, place - rig.node(1, 0));
+        rig.evaluate();
+        EXPECT_GT(rig.totals.contacts, 0);
+        EXPECT_GT(rig.force(1).y(), 0.1 * stiffness * 0.01 * 0.05);
+        EXPECT_LT((rig.force(0) + rig.force(1)).norm(), 1e-14);
+      }
+}
+
+}  // namespace
+}  // namespace pliant
