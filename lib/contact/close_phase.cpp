@@ -228,6 +228,7 @@ void find_self_patches(const Model& model, const Outlines& outlines, int body, c
     Patch patch;
     patch.first = patch.second = body;
     patch.part = begin;
+    patch.corners = side.shape->has_corners();
     patch.law = law;
     narrow(side, nodes, scratch, segments.begin, {margin, skin, 0}, patch.nodes[0], patch.segments[1]);
     if (patch.nodes[0].count > 0) patches.push_back(patch);

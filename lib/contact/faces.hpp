@@ -14,6 +14,9 @@ inline Vec2 tangent(const MasterSegment& s) { return {s.tangent_x, s.tangent_y};
 inline Vec2 start(const MasterSegment& s) { return {s.x, s.y}; }
 inline Vec2 outward_of(const Vec2& tangent) { return {tangent.y(), -tangent.x()}; }
 
+/// Of a segment's length: nodes of aligned faces stand on the line of the other face but for rounding.
+constexpr double tie = 1e-9;
+
 /// A slave node with its two segments: [0] the one before it, [1] the one after it.
 struct SlaveNode {
   Vec2 at, neighbour[2];
@@ -52,12 +55,22 @@ class Faces {
       const int beyond = wrapped(end->row + way);
       if (!in_window(beyond) || node.opposition(tangent(window_[beyond])) < square) continue;
       const int other = beside(node, beyond, way, outward);
-      const bool inside = height(node, row) < 0;
+      const bool inside = height(node, row) < tie * window_[row].length;
       // Outside of the one face it is outside of the body, however deep below the line of the other.
       if (other >= 0 && (inside || height(node, other) >= 0)) return other;
       return inside && node.corner ? row : -1;
     }
     return near && !node.corner ? -1 : row;
+  }
+
+  /// Row of the face beyond a corner that the node may belong to before the next refresh; -1: none.
+  int beyond(const SlaveNode& node, int row, int way, double outward) const {
+    constexpr double nearly_square = 0.7;  // bodies turn by less than 20 degrees between refreshes
+    const std::optional<FaceEnd> end = end_of_face(node, row, way, sight_ + outward);
+    if (!end) return -1;
+    const int other = wrapped(end->row + way);
+    const bool opposed = in_window(other) && node.opposition(tangent(window_[other])) >= nearly_square;
+    return opposed ? beside(node, other, way, outward) : -1;
   }
 
   /// Whether the node lies beyond a corner at an end of the row.

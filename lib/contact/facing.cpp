@@ -29,21 +29,24 @@ SlaveNode slave_node(const Pass& pass, int index) {
 
 std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
                                 double outward) {
-  const Vec2 at = slave_node(pass, pass.nodes.begin + i + lane).at;
-  const double near_corner = 2 * std::max(pass.slave->longest, pass.master->longest);
   std::vector<Foot> feet;
-  bool near = false;
-  for (int row = 0; row < window.count(); ++row) {
-    const MasterSegment& s = window[row];
-    const double along = (at - start(s)).dot(tangent(s)), height = (at - start(s)).dot(outward_of(tangent(s)));
-    near |=
-        pass.master->has_corners() && pass.master->corner[window.number(row)] && (at - start(s)).norm() < near_corner;
-    if (height <= outward && height >= -window.depth() && along >= -outward && along <= s.length + outward)
-      feet.push_back({row, std::clamp(along / s.length, 0.0, 1.0), 2});
+  if (!p.hit[lane]) return feet;
+  const int row = static_cast<int>(p.row[lane]);
+  feet.push_back({row, p.xi[lane], 1});
+  if (!pass.master->has_corners()) return feet;
+  const Faces faces(pass, window);
+  const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
+  for (const int way : {-1, 1}) {
+    // A corner that may come between the node and its neighbour leaves it the rest of the segment.
+    if (faces.end_of_face(node, row, way, std::max(node.present[0], node.present[1]) + outward)) feet[0].factor += 0.5;
+    if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
+      const MasterSegment& s = window[other];
+      const double along = (node.at - start(s)).dot(tangent(s));
+      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), 1.5});
+    }
   }
-  if (near) return feet;
-  if (!p.hit[lane]) return {};
-  return {{static_cast<int>(p.row[lane]), p.xi[lane], 1}};
+  for (Foot& foot : feet) foot.factor = std::max(foot.factor, feet[0].factor);
+  return feet;
 }
 
 void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing) {

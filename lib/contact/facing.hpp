@@ -37,12 +37,12 @@ inline double corner_sight(const OutlineShape& slave, const OutlineShape& master
   return std::min(slave.longest, master.longest);
 }
 
-/// Where a node may touch the master before the next refresh, and how many times its tributary length then counts at most.
+/// Where a node may touch the master before the next refresh, and how many times its tributary length it stands for at most.
 struct Foot {
   int row;  ///< of the window
   double xi, factor;
 };
-/// Of one lane of a projection without the rules of corners.
+/// Of one lane of a projection without the rules of corners, from position i of the pass on.
 std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
                                 double outward);
 

@@ -19,6 +19,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 35 * degree;  ///< the least
 constexpr double square = 0.9;               ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.8;              ///< likewise: from which on a segment does not lie flat on a face
+constexpr double tie = 1e-9;                 ///< of a segment's length: nodes on the line of a face count as inside
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
@@ -103,7 +104,7 @@ std::optional<int> opposing_segment(const Face& master, int segment, const Slave
       if (!end) continue;
       if (!node.corner) result = {};
       if (opposition(master, way < 0 ? *end - 1 : *end, node) < square) continue;
-      const bool inside = height(master, segment, node) < 0;
+      const bool inside = height(master, segment, node) < tie * master.outline.length(segment);
       result = beside_face(master, *end, way, node, outward);
       // Outside of the one face it is outside of the body, however deep below the line of the other.
       if (result && !inside && height(master, *result, node) < 0) result = {};

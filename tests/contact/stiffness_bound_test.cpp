@@ -95,6 +95,10 @@ constexpr double loosest = 3;
 // fast in w^2 as moving aside, and half as much again is for springs along that way.
 constexpr double loosest_where_discs_turn = 3 * loosest;
 
+// A face of 11 segments between corners: either of its end nodes may come to stand for its other half too, and for half as much again of the
+// next one's.
+constexpr double loosest_between_corners = 13.0 / 11 * loosest;
+
 // EXACT: an upper bound, and not a useless one.
 void expect_bounded(const Scene& scene, const std::string& name, double times = loosest) {
   Loaded loaded(scene);
@@ -135,7 +139,7 @@ TEST(StiffnessBound, RigidBodies) {
       blocks.contacts = {rule};
       add_body(blocks, outline_shape("block", rectangle(2, 1, 0.11)), BodyKind::rigid, {0, 0});
       add_body(blocks, outline_shape("plank", rectangle(1.03, 0.2, 0.1)), BodyKind::rigid, {y, 0.59});
-      expect_bounded(blocks, "blocks");
+      expect_bounded(blocks, "blocks", loosest_between_corners);
     }
 }
 

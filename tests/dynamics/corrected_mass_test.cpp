@@ -204,7 +204,9 @@ DampedRun damped_run(Integrator integrator, int steps) {
 TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
   const State truth = runge_kutta(640);
   ASSERT_LT(distance(runge_kutta(320), truth), 1e-6) << "of fourth order: the finer one is good to a fifteenth of that";
-  const DampedRun coarse = damped_run(GetParam(), 320), fine = damped_run(GetParam(), 640);
+  // The paper's scheme has errors of both signs in its books: only below these steps does the first order show.
+  const int steps = GetParam() == Integrator::step_doubling ? 1280 : 320;
+  const DampedRun coarse = damped_run(GetParam(), steps), fine = damped_run(GetParam(), 2 * steps);
   const double order = observed_order(distance(coarse.state, truth), distance(fine.state, truth)),
                of_books = observed_order(coarse.balance_error, fine.balance_error);
   RecordProperty("order", std::to_string(order));

@@ -49,7 +49,7 @@ TEST_P(InspectedPair, agrees_with_the_oracle) {
     EXPECT_EQ(count, expected.contacts) << "INDEPENDENT";
     EXPECT_NEAR(deepest, expected.deepest, 1e-13) << "INDEPENDENT";
     for (int body = 0; body < 2; ++body) {
-      Vec2 sum(0, 0);
+      Vec2 sum = -expected.by_length[body];  // tractions do not show these
       for (const Vec2& f : expected.force[body]) sum += f;
       EXPECT_NEAR((force[body] - sum).norm(), 0, 1e-12) << "INDEPENDENT: the oracle's forces";
     }

@@ -110,7 +110,8 @@ struct OraclePoint {
 class ContactOracle {
  public:
   struct Result {
-    std::vector<Points> force;  ///< [bodies][nodes]
+    std::vector<Points> force;    ///< [bodies][nodes]
+    std::vector<Vec2> by_length;  ///< [bodies], what of their sum is there because lengths of contact change
     double stored = 0, dissipated = 0;
     double deepest = 0;  ///< penetration, m
     int contacts = 0, outside_truth = 0;
@@ -127,6 +128,7 @@ class ContactOracle {
     trial_.clear();
     const int bodies = static_cast<int>(rig_.model.bodies.size());
     for (int b = 0; b < bodies; ++b) result.force.emplace_back(rig_.count(b), Vec2(0, 0));
+    result.by_length.assign(result.force.size(), Vec2(0, 0));
     for (int slave = 0; slave < bodies; ++slave)
       for (int master = 0; master < bodies; ++master)
         if (slave != master) pass(slave, master, result);
@@ -308,7 +310,11 @@ class ContactOracle {
                          &result.force[master][within(point.segment + 1, m)],
                          &result.force[master][within(corner[0], m)],
                          &result.force[master][within(corner[1], m)]};
-    for (int i = 0; i < 7; ++i) *on[i] -= 0.5 * energy * length.gradient.segment<2>(2 * i);
+    for (int i = 0; i < 7; ++i) {
+      const Vec2 force = -0.5 * energy * length.gradient.segment<2>(2 * i);
+      *on[i] += force;
+      result.by_length[i < 3 ? slave : master] += force;
+    }
     result.stored += 0.5 * point.contact_length.value.value * energy;
   }
 
