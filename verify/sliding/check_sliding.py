@@ -14,7 +14,7 @@ from verification import Case, Label, Run
 CASE = Case(__file__, fast=True)
 
 FRICTION, MASS, STIFFNESS = 0.3, 0.5, 1e4
-LENGTH = 0.5 * 5 * 0.25  # in touch: five nodes of the block, half the weight a pass, and no node of the floor
+LENGTH = 1  # in touch: the block's face, whatever nodes of the floor lie under it
 FREQUENCY = np.sqrt(STIFFNESS * LENGTH / MASS)  # of the block on its contact, along as across
 STEP = 0.002
 # Accelerations are differences of speeds of 0.1 to 1 over at least a second; Newton's method stops at 1e-10 of the
@@ -45,18 +45,31 @@ class Start:
         return self.sine - FRICTION * self.cosine * (1 if down else -1)
 
 
+@dataclass(frozen=True)
+class Floor:
+    """Its nodes, and where on them the block starts."""
+
+    name: str
+    spacing: float
+    place: float
+
+
+FLOORS = [Floor("aligned nodes", 0.25, 22.0), Floor("nodes anywhere", 0.25, 22.0437), Floor("finer nodes", 0.11, 22.0437)]
 STARTS = [Start("from rest", 30, 0.0, down=(0.2, 3.9)),
           Start("kicked uphill", 30, -1.0, down=(2.0, 3.9), up=(0.2, 1.2)),
           Start("too flat", 10, 0.2, down=(0.2, 1.5))]
+# Heights of 0.25 round to 5e-17, over depths of 5e-5; some ten nodes, and steps that do not forget.
+NORMAL_ROUNDING = 1e-10
 SOLVERS = ["engine", "reference"]
 
 
 @cache
-def run(start: Start, solver: str) -> Run:
+def run(start: Start, solver: str, floor: Floor = FLOORS[0]) -> Run:
     depth = start.cosine * MASS / (STIFFNESS * LENGTH)
     scene = CASE.scene(degrees=start.degrees, along=start.sine, across=-start.cosine, height=0.25 - depth,
-                       speed=start.speed, dt=STEP)
-    name = f"{start.name.replace(' ', '_')}_{solver}"
+                       speed=start.speed, dt=STEP,
+                       spacing=floor.spacing, place=floor.place)
+    name = f"{start.name}_{floor.name}_{solver}".replace(" ", "_")
     return CASE.engine(name, scene) if solver == "engine" else CASE.reference(name, scene, "--dt", str(STEP))
 
 
@@ -65,21 +78,35 @@ def change(of: Run, column: str, times: tuple[float, float]) -> float:
     return float(after - before)
 
 
+def missing_friction(of: Run, times: tuple[float, float]) -> float:
+    """Share of the friction that is missing: half of a segment of the floor comes under the block with each node, weighs half in the pass of the
+    floor's nodes, and rubs from its second step on. So v dt / (4 L), of the mean speed."""
+    return abs(change(of, "block.displacement_x", times)) / (times[1] - times[0]) * STEP / (4 * LENGTH)
+
+
 @pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("floor", FLOORS, ids=lambda floor: floor.name)
 @pytest.mark.parametrize("start", STARTS, ids=lambda start: start.name)
-def test_slip(start: Start, solver: str) -> None:
+def test_slip(start: Start, floor: Floor, solver: str) -> None:
     """a = g (sin - mu cos) downhill, g (sin + mu cos) while it still goes up; friction's work is its force times the
     way."""
-    of = run(start, solver)
+    of = run(start, solver, floor)
     for way, times in (("down", start.down), ("up", start.up)):
         if times is None:
             continue
         mean = change(of, "motion.velocity_x", times) / (times[1] - times[0])
-        CASE.check(Label.EXACT, f"{start.name}, {solver}: acceleration {way}", mean, start.acceleration(way == "down"),
-                   ROUNDING[solver], "Coulomb; rounding, Newton's residual")
+        missing = missing_friction(of, times)
+        CASE.check(Label.EXACT, f"{start.name}, {floor.name}, {solver}: acceleration {way}", mean,
+                   start.acceleration(way == "down"), ROUNDING[solver] + 1.5 * missing * FRICTION * start.cosine,
+                   "Coulomb; what nodes that come under the block lack in a step, v dt / (4 L), by half for chance")
         work = FRICTION * MASS * start.cosine * abs(change(of, "block.displacement_x", times))
-        CASE.check(Label.EXACT, f"{start.name}, {solver}: friction work {way}",
-                   change(of, "works.dissipated_by_contact", times) / work, 1, ROUNDING[solver], "force times way")
+        CASE.check(Label.EXACT, f"{start.name}, {floor.name}, {solver}: friction work {way}",
+                   change(of, "works.dissipated_by_contact", times) / work, 1, ROUNDING[solver] + 3 * missing,
+                   "force times way; the same, which is missing in the force and in what is booked for the next step")
+        force = of.probe("floor.force_y")[(of.times("floor.force_y") > times[0]) & (of.times("floor.force_y") < times[1])]
+        CASE.check(Label.EXACT, f"{start.name}, {floor.name}, {solver}: spread of the normal force {way}",
+                   np.ptp(force) / np.abs(force).mean(), 0, NORMAL_ROUNDING,
+                   "faces touch over what they share, wherever their nodes are; rounding of depths over the depth")
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -106,8 +133,10 @@ def test_stop(solver: str) -> None:
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_books(solver: str) -> None:
     for start in STARTS:
-        CASE.check(Label.EXACT, f"{start.name}, {solver}: balance of energy", run(start, solver).balance_error, 0, 1e-5,
-                   "elastic energies are 1e-4 of all, and Verlet errs by less than a tenth of them")
+        of = run(start, solver)
+        unbooked = 3 * missing_friction(of, start.down)
+        CASE.check(Label.EXACT, f"{start.name}, {solver}: balance of energy", of.balance_error, 0, 1e-5 + unbooked,
+                   "elastic energies are 1e-4 of all, and Verlet errs by less than a tenth of them; friction as above")
 
 
 def test_picture() -> None:
