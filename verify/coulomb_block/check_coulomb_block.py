@@ -13,8 +13,7 @@ CASE = Case(__file__)
 
 WEIGHT, FRICTION, STIFFNESS = 1.0, 0.3, 1000.0
 SETTLED = 1.0  # s, when the drive sets in
-# Eleven nodes of the block and ten of the floor are in touch, of 0.1 each; a pass counts half.
-LENGTH = 0.5 * (11 + 10) * 0.1
+LENGTH = 1.0  # in touch: the block's face
 RESIDUE = np.exp(-30 * SETTLED)  # of the first oscillation: damping 60 /s, frequency 32.4 /s, so it decays by 30 /s
 ROUNDING = 1e-9  # positions near 1 with 2e-16 of rounding, stiffness 1000, forces of 0.3; Newton stops at 1e-10
 

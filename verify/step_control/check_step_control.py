@@ -10,7 +10,7 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
 
-SQUARED = 1000 * 0.5 * (11 + 10) * 0.1  # w^2, 1/s2: stiffness times length in touch over the mass 1
+SQUARED = 1000.0  # w^2, 1/s2: stiffness times the length in touch, 1, over the mass 1
 OMEGA = np.sqrt(SQUARED)
 DEPTH = 1 / SQUARED  # where weight and springs balance
 AMPLITUDE = 0.8 * DEPTH  # released from rest below that: the block stays in touch
@@ -115,10 +115,12 @@ def test_step_doubling_keeps_the_energy_of_a_disc_to_second_order() -> None:
 def test_error_control_holds_its_tolerance(controlled: Run) -> None:
     """The largest jerk w^3 A decides: dt^2 |da| / (6 d) with |da| = w^3 A dt."""
     time = controlled.steps("time")
-    middle = (time > PERIOD) & (time < 19 * PERIOD)  # not the start's short steps, nor the end's equal ones
+    # Not the start's short steps; and steps are equal parts of what is left until the end, shorter by up to one of the
+    # 630 parts that are left here.
+    middle = (time > PERIOD) & (time < 10 * PERIOD)
     expected = (6 * SPACING * TOLERANCE / (OMEGA**3 * AMPLITUDE)) ** (1 / 3)
     CASE.check(Label.EXACT, "least step over that of the largest jerk", controlled.steps("dt")[middle].min() / expected, 1,
-               0.003, "a step of 0.1/w meets the crest within half of it, 1.3e-3 of the jerk, and averages over it, 4e-4; "
+               0.003 + 1 / 630, "a step of 0.1/w meets the crest within half of it, 1.3e-3 of the jerk, and averages over it, 4e-4; "
                "the energy swings by (w dt/2)^2, 1.3e-3 of the jerk: a third of the sum, twice")
     CASE.check(Label.EXACT, "largest error over the tolerance", controlled.steps("error")[middle].max() / TOLERANCE, 1.05,
                0.05, "the remembered jerk fades by 0.99 a step and meets the next swing 24 steps on, at 0.79 of its crest, "
