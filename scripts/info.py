@@ -155,6 +155,8 @@ def next_step(folder: Path, status: str, checkpoint: dict, reference: bool) -> s
         return f"./pliant plot {folder}, or ./pliant compare with a folder of the engine"
     if reference and status == "running":
         return "wait, or stop it with SIGINT or SIGTERM: results are whole up to there"
+    if reference:
+        return f"start anew with ./pliant reference SCENE --force --out {folder}: this solver writes no checkpoints"
     if status == "finished":
         return f"./pliant plot {folder}, or go on to a later end: ./pliant run --resume --out {folder} --until TIME"
     if status == "running":
