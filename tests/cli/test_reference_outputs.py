@@ -110,9 +110,11 @@ def fields_of(folder: Path) -> Values:
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory) -> dict[str, list[Path]]:
-    """Of both solvers a run in short steps and one in steps half as long."""
+    """Of both solvers a run in short steps and one in steps half as long. The last contacts set in 0.04 before the end:
+    the engine's longest steps, 0.0065 at a safety of 0.1, are short against that. In three steps of twice that length,
+    what changes with the step is where in a step nodes meet: it may vanish by chance, whatever is left."""
     desk = Desk(tmp_path_factory.mktemp("outputs"))
-    for k, (safety, dt) in enumerate([(0.2, "0.004"), (0.1, "0.002")]):
+    for k, (safety, dt) in enumerate([(0.1, "0.004"), (0.05, "0.002")]):
         desk.write(scene(safety))
         assert desk.run("--out", f"engine{k}", "--quiet", "--threads", "1").returncode == 0
         result = desk.reference("--out", f"reference{k}", "--dt", dt)
@@ -122,8 +124,8 @@ def folders(tmp_path_factory) -> dict[str, list[Path]]:
 
 @pytest.mark.parametrize("read", [probes_of, fields_of])
 def test_agrees_with_the_engine(folders: dict[str, list[Path]], read: Callable[[Path], Values]) -> None:
-    """INDEPENDENT: of order one at least where contacts set in and begin to slip, so that half a step changes as much as
-    is left, and twice that is allowed; single precision beside it."""
+    """INDEPENDENT: of order one at least where contacts set in and begin to slip, so that half a step changes no less
+    than what is left, of second order three times that; single precision beside it."""
     (coarse, ours), (rough, theirs) = ([read(folder) for folder in folders[solver]]
                                        for solver in ("reference", "engine"))
     assert list(ours) == list(theirs)
@@ -132,4 +134,4 @@ def test_agrees_with_the_engine(folders: dict[str, list[Path]], read: Callable[[
         left = sum(np.nanmax(np.abs(fine[name] - other[name]), initial=0)
                    for fine, other in ((ours, coarse), (theirs, rough)))
         assert left <= 0.01 * size, f"{name}: steps too long to tell anything"
-        np.testing.assert_allclose(ours[name], value, rtol=0, atol=2 * left + 1e-6 * size, err_msg=name)
+        np.testing.assert_allclose(ours[name], value, rtol=0, atol=left + 1e-6 * size, err_msg=name)
