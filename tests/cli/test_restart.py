@@ -14,7 +14,8 @@ from pathlib import Path
 import h5py
 import pytest
 from conftest import Desk
-from kills import EACH_STEP, assert_same, build_preload, changes_of, killed, mend, start, start_preloaded
+from kills import (EACH_STEP, assert_same, build_preload, changes_of, killed, mend, registrations, start,
+                   start_preloaded)
 from scenes import LAYER, SHORT_LAYER
 
 
@@ -119,6 +120,15 @@ def test_killed_while_it_overwrites(desk, preload) -> None:
         assert killed(start_preloaded(preload, desk, "out", "--force", KILL_BEFORE=n))
         mend(desk, "out")
         assert_same(desk, "out")
+
+
+def test_kills_leave_nothing_to_other_processes(desk, preload) -> None:
+    """While the OpenMP runtime starts, and after."""
+    desk.write(SHORT_LAYER)
+    for n in 0, 20:
+        process = start_preloaded(preload, desk, f"out{n}", KILL_BEFORE=n)
+        assert killed(process)
+        assert registrations(process) == []
 
 
 def test_killed_before_a_checkpoint_the_folder_knows_its_scene(whole, out, preload) -> None:
@@ -268,7 +278,7 @@ def test_a_folder_in_use_is_refused(half) -> None:
         assert result.returncode == 4, result.stderr
     assert "another run is writing" in half.run("--out", "busy", "--force", "--quiet").stderr
     process.kill()
-    process.communicate()
+    assert killed(process)
     assert (half.folder / "busy/run.lock").exists(), "killed: the file stays, its lock does not"
     assert half.run("--out", "busy", "--until", "0.1", "--force", "--quiet").returncode == 0
 
