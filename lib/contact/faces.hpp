@@ -24,6 +24,7 @@ struct SlaveNode {
   double present[2];  ///< lengths now, m
   double length[2];   ///< that count, m: of the reference outline, or now
   bool corner;
+  bool beside_corner[2];  ///< the neighbour is one
 
   /// Cosine between a segment's normal, turned round, and the normal of a tangent on the master.
   double opposition(int side, const Vec2& to) const { return -direction[side].dot(to); }

@@ -15,7 +15,7 @@ SlaveNode slave_node(const Pass& pass, int index) {
     return Vec2(pass.slave_x[node] + pass.slave_shift + turn * shape.turn_shift, pass.slave_y[node]);
   };
   const int n = shape.count, node = index - turn_of(index, n) * n;
-  SlaveNode result{place(index), {place(index - 1), place(index + 1)}, {}, {}, {}, false};
+  SlaveNode result{place(index), {place(index - 1), place(index + 1)}, {}, {}, {}, false, {false, false}};
   for (int side = 0; side < 2; ++side) {
     const Vec2 along = side == 0 ? Vec2(result.at - result.neighbour[0]) : Vec2(result.neighbour[1] - result.at);
     result.present[side] = along.norm();
@@ -23,7 +23,10 @@ SlaveNode slave_node(const Pass& pass, int index) {
     result.length[side] =
         pass.present_lengths ? result.present[side] : shape.segment_length[side == 0 ? (node + n - 1) % n : node];
   }
-  result.corner = shape.has_corners() && shape.corner[node];
+  if (!shape.has_corners()) return result;
+  result.corner = shape.corner[node];
+  result.beside_corner[0] = shape.corner[(node + n - 1) % n];
+  result.beside_corner[1] = shape.corner[(node + 1) % n];
   return result;
 }
 
@@ -38,7 +41,8 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
   const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
   for (const int way : {-1, 1}) {
     // A corner that may come between the node and its neighbour leaves it the rest of the segment.
-    if (faces.end_of_face(node, row, way, std::max(node.present[0], node.present[1]) + outward)) feet[0].factor += 0.5;
+    if (faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
+      feet[0].factor += 0.5;
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
       const MasterSegment& s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));

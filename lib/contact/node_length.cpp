@@ -7,6 +7,8 @@ namespace {
 
 /// Where a segment no longer lies flat on a face at all: 37 degrees.
 constexpr double oblique = 0.8;
+/// Least part along the face, over its length, that a segment counts with.
+constexpr double steepest = 0.25;
 /// Difference of such cosines at which the lesser of a corner's two segments no longer counts: 35 degrees, as of the least corner that lies flat.
 constexpr double lesser = 0.18;
 
@@ -87,22 +89,29 @@ Varying quotient(const Varying& a, const Varying& b) {
   return v;
 }
 
-/// What the segment on one side of the node stands for.
+/// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. With r the way to the corner over
+/// the segment's own part along the face, the last node before the corner (r < 1) has 3/2 r - 1 of the segment more, and the one before that
+/// (1 < r < 2) 1 - r/2. Both together stand for what of the face lies beyond them, and each length goes with the node's place without a jump, to
+/// nothing at the corner, where other faces come near. Segments that do not lie flat on the face have no more than their half. A corner of the
+/// slave keeps its own: nobody else could stand in for it.
 Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, NodeLength& whole) {
   const double length = at.node.length[side];
+  if (at.node.corner) return {0.5 * length};
   const Vec2& neighbour = at.node.neighbour[side];
   const int way = (neighbour - at.node.at).dot(at.t) < 0 ? -1 : 1;
-  const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * at.node.present[side]);
-  if (!end || !faces.is_past(*end, way, neighbour)) return {0.5 * length};
+  const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 3 * at.node.present[side]);
+  if (!end) return {0.5 * length};
+  Varying reach = at.reach(neighbour, Beside::neighbour(side), way);
+  if (const double least = steepest * at.node.present[side]; reach.value < least) reach = {least};
+  const Varying r =
+      quotient(at.reach(faces.corner_place(*end), way < 0 ? Facing::corner_back : Facing::corner_on, way), reach);
+  if (r.value >= 2 || (r.value >= 1 && at.node.beside_corner[side])) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
-  const Varying reach = at.reach(neighbour, Beside::neighbour(side), way),
-                rest = at.reach(faces.corner_place(*end), way < 0 ? Facing::corner_back : Facing::corner_on, way);
-  // All of it that lies before the corner where it lies flat on the face, else no more than the node's half.
-  const Varying part = quotient(rest, reach);
-  if (part.value <= 0.5) return scaled(length, part);
+  const Varying more = r.value < 1 ? scaled(1.5, r, -1) : scaled(-0.5, r, 1);
+  if (more.value <= 0) return scaled(length, more, 0.5 * length);
   const Varying flat = smooth_step(scaled(1 / (square - oblique), at.opposition(side), -oblique / (square - oblique)));
-  return scaled(length, product(flat, scaled(1, part, -0.5)), 0.5 * length);
+  return scaled(length, product(flat, more), 0.5 * length);
 }
 
 /// The lesser opposing segment of a corner counts by this factor.
@@ -123,6 +132,7 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     const Varying length = length_of_side(at, faces, row, side, whole);
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
+  if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
   whole.gradient = total.gradient;
   return whole;

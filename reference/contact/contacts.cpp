@@ -163,8 +163,14 @@ struct Contacts::Implementation {
     const Corners& own = corners[encounter.slave];
     const int i = encounter.node;
     const Vec2 shift = point - outline.node(i);
-    return {outline.node(i - 1) + shift, point,         outline.node(i + 1) + shift,
-            own.length(i - 1),           own.length(i), own.at(i)};
+    return {outline.node(i - 1) + shift,
+            point,
+            outline.node(i + 1) + shift,
+            own.length(i - 1),
+            own.length(i),
+            own.at(i),
+            own.any() && own.at(i - 1),
+            own.any() && own.at(i + 1)};
   }
 
   void touch(const Encounter& encounter, const NodeLength& whole, const Projection& at, const Law& law,

@@ -20,6 +20,7 @@ constexpr double corner_turn = 35 * degree;  ///< the least
 constexpr double square = 0.9;               ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.8;              ///< likewise: from which on a segment does not lie flat on a face
 constexpr double tie = 1e-9;                 ///< of a segment's length: nodes on the line of a face count as inside
+constexpr double steepest = 0.25;            ///< least part along the face that a segment counts with, over its length
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
@@ -134,17 +135,25 @@ NodeLength node_length(const Face& master, int segment, const SlaveNode& node) {
     const int way = onward.value < 0 ? -1 : 1;
     Length part = 0.5 * full;
     std::optional<int> end;
-    if (master.corners.any()) end = face_end(master, segment, node, way, 2 * (own[neighbour] - node.at).norm());
-    if (end && is_past(master, *end, way, own[neighbour])) {
+    if (master.corners.any() && !node.corner)
+      end = face_end(master, segment, node, way, 3 * (own[neighbour] - node.at).norm());
+    if (end) {
       const int number = way < 0 ? 0 : 1;
-      result.corner[number] = *end;
       const Arrow corner = arrow(master.outline.node(*end), 5 + number);
-      const Length share = dot(corner - point[1], chord) / length / onward;
-      part = share.value < 0.5 ? full * share : part + full * (share - 0.5) * ramp(cosine(neighbour), oblique, square);
+      const double least = steepest * (own[neighbour] - node.at).norm();
+      const Length reach = way * onward.value < least ? Length(least) : way < 0 ? -onward : onward;
+      const Length to_corner = dot(corner - point[1], chord) / length, r = (way < 0 ? -to_corner : to_corner) / reach;
+      // The last node before the corner, and the one before that; beyond, a segment counts half as ever.
+      const bool last = r.value < 1,
+                 next_to_last = !last && r.value < 2 && !(neighbour == 0 ? node.corner_before : node.corner_after);
+      const Length more = last ? 1.5 * r - 1 : next_to_last ? 1 - 0.5 * r : Length(0);
+      if (last || next_to_last) result.corner[number] = *end;
+      part += full * (more.value > 0 ? more * ramp(cosine(neighbour), oblique, square) : more);
     }
     if (node.corner) part *= 1 - ramp(cosine(2 - neighbour) - cosine(neighbour), 0, lesser);
     result.value += part;
   }
+  if (result.value.value <= 0) result.value = 0;  // beside a face shorter than the node's own segments
   return result;
 }
 

@@ -32,8 +32,8 @@ class Corners {
 /// A node of the slave between its two neighbours, as the master sees it.
 struct SlaveNode {
   Vec2 before, at, after;
-  double length_before = 0, length_after = 0;  ///< of its segments, as they count, m
-  bool corner = false;
+  double length_before = 0, length_after = 0;                        ///< of its segments, as they count, m
+  bool corner = false, corner_before = false, corner_after = false;  ///< it is one, or its neighbour
 };
 
 struct Face {

@@ -43,6 +43,7 @@ TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
         for (const bool compliant : {false, true}) {
           if (compliant && segments > 8) continue;  // enough
           SCOPED_TRACE(fmt::format("{} segments, spacing {}, shift {}, {}", segments, spacing, shift, compliant));
+          if (shared(shift) < 4.01 * std::max(1.0 / segments, spacing)) continue;  // two nodes for either end
           ContactRig rig(block_on_bar(frictionless(stiffness), segments, spacing, shift, compliant));
           rig.evaluate();
           EXPECT_NEAR(rig.force(1).y(), stiffness * depth * shared(shift), 1e-12);

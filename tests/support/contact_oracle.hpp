@@ -219,7 +219,8 @@ class ContactOracle {
   reference::SlaveNode slave_node(int slave, int k, int image) const {
     const Vec2 shift(image * rig_.model.scene.period.value_or(0), 0);
     return {node(slave, k - 1) + shift,     node(slave, k) + shift,     node(slave, k + 1) + shift,
-            reference_length(slave, k - 1), reference_length(slave, k), corners_[slave].at(k)};
+            reference_length(slave, k - 1), reference_length(slave, k), corners_[slave].at(k),
+            corners_[slave].at(k - 1),      corners_[slave].at(k + 1)};
   }
 
   /// The same point, one on another face, or none; with the length that it stands for.
