@@ -15,10 +15,10 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__)
 
-# Of driven.toml; nodes in touch: eleven of the block and ten of the bench, 0.1 each, a pass counts half.
+# Of driven.toml; in touch: the block's face.
 STRENGTH, STIFFNESS, RANGE, THRESHOLD, RATE_OF_WEAR = 1.0, 1000.0, 0.01, 0.3, 0.4
 CRITICAL = STRENGTH / STIFFNESS
-LENGTH = 0.5 * (11 + 10) * 0.1
+LENGTH = 1.0
 # Out and back twice, to 0.8 and to 0.9 of the critical opening, then off: corners of the velocity, m/s.
 WEARING = [(0, 0), (0.1, 0.002), (0.4, 0.002), (0.6, -0.002), (0.9, -0.002), (1.0, 0), (1.1, 0.00225), (1.4, 0.00225),
            (1.6, -0.00225), (1.9, -0.00225)]
@@ -201,8 +201,8 @@ def pulled() -> Study:
 
 @pytest.mark.parametrize("quantity", [POSITIONS, FORCE, DISSIPATION], ids=lambda q: q.name)
 def test_pulled_bond_converges(pulled: Study, quantity: Quantity) -> None:
-    check_differences(CASE, "pulled", pulled, quantity, 1.25, 0.45,
-                      "the engine's dashpots and wear are of first order, the rest of second: little above the first")
+    check_differences(CASE, "pulled", pulled, quantity, 1.5, 0.7,
+                      "wear is of first order, the rest of second: between them, 0.2 for their scatter")
 
 
 def draw_driven(axes: Axes) -> None:
