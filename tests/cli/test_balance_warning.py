@@ -71,15 +71,15 @@ def run(desk, time: str, displacement: float, place: float = 0.25) -> tuple[str,
 
 
 def test_heating_contacts_are_told_of(desk) -> None:  # EXACT
-    said, error = run(desk, "tolerance = 1\nsafety = 0.9", -2e-3)
-    assert error > 0.05, "12.6 % when written: nodes on and off the other side in step with the time step"
+    said, error = run(desk, "tolerance = 1\nsafety = 1", -2e-3)
+    assert error > 0.01, "5 to 8 %, by rounding, when written: nodes on and off the other side in time with the steps"
     assert said.count("warning") == 1, said
     assert "energy balance at t = 6 s" in said and "gained without cause" in said, said
     assert f"{100 * error:.3g} % of what came in" in said, said
-    assert "safety = 0.4 instead of 0.9" in said, said
+    assert "safety = 0.4 instead of 1" in said, said
 
 
-def test_what_is_advised_helps(desk) -> None:  # EXACT: 0.2 % when written
+def test_what_is_advised_helps(desk) -> None:  # EXACT: 0.34 % when written, whatever the rounding
     said, error = run(desk, "tolerance = 1\nsafety = 0.4", -2e-3)
     assert error < 0.01 and said == ""
 
@@ -145,7 +145,7 @@ def test_a_smaller_target_of_step_doubling_is_no_cure(desk) -> None:  # EXACT
     assert said == "" and error < 0.01
 
 
-# A viscous disc that spins; nothing is near it.
+# A coarse viscous disc that spins, its rim at 1.2 times the speed of shear waves; nothing is near it.
 SPIN = """\
 [time]
 end = 100
@@ -155,17 +155,17 @@ law = "neo-hookean"
 density = 1
 young = 2.8
 poisson = 0.4
-viscosity = 0.1
+viscosity = 0.05
 [shapes.disc]
 kind = "disc"
 diameter = 2
-nodes = 60
+nodes = 20
 [[grains]]
 shape = "disc"
 body = "compliant"
 material = "soft"
 packing = {{ kind = "positions", positions = [[0, 0]] }}
-velocity = {{ rotation = 0.5 }}
+velocity = {{ rotation = 1.2 }}
 [[contacts]]
 between = "all"
 law = "frictionless"
@@ -174,7 +174,7 @@ law = "frictionless"
 
 def test_contacts_are_not_blamed_where_nothing_touches(desk) -> None:  # EXACT
     said, error = told(desk, SPIN.format(time=""))
-    assert error > 0.01, "13 % when written: turned strain rates of steps that are long against the spin"
+    assert error > 0.01, "2.6 % when written, of second order in the step: a step turns the disc by up to 0.2"
     assert "no contact had a part in it" in said and "viscosity" in said, said
     advised = re.search(r"safety = [\d.]+", said)[0]
     said, error = told(desk, SPIN.format(time=advised))
@@ -226,13 +226,14 @@ def test_deep_contacts_are_told_of_stiffness(desk) -> None:  # EXACT
 
 
 def test_overlap_at_the_start_is_told_of(desk) -> None:  # EXACT
-    def blocks(x: float) -> str:
-        return SQUARES.format(stiffness=80, time="", speed=0, spin=0, angle=0, x=x, y=1.2)
+    """A corner 0.15 below the other's right face, and 0.013 below its top: 12 % lost when written, at any safety."""
+    def at_rest(x: float) -> str:
+        return SQUARES.format(stiffness=80, time="", speed=0, spin=0, angle=25, x=x, y=0.4)
 
-    said, error = told(desk, blocks(1.5))
-    assert error > 0.01 and "overlapped by 0.5 of a segment at the start" in said, said
+    said, error = told(desk, at_rest(1.71))
+    assert error > 0.01 and "overlapped by 0.77 of a segment at the start" in said, said
     apart = float(re.search(r"apart by ([\d.e-]+) m", said)[1])
-    assert told(desk, blocks(1.5 + apart)) == ("", 0)
+    assert told(desk, at_rest(1.71 + apart)) == ("", 0)
 
 
 # A block at rest on a floor so stiff that what it stores is rounding of its weight's moment.
