@@ -34,7 +34,7 @@ def study(way: str) -> Study:
 @pytest.mark.parametrize("quantity", [POSITIONS, FORCE, DISSIPATION], ids=lambda q: q.name)
 def test_solvers_converge_to_each_other(way: str, study: Study, quantity: Quantity) -> None:
     if way == "apart" and quantity is DISSIPATION:
-        return  # nothing slips but by a ringing of 1e-3 of what the other way dissipates
+        return  # nothing slips but by a ringing of 1e-2 of what the other way dissipates
     check_differences(CASE, way, study, quantity, 1.5, 0.7,
                       "slip and kinks of the law within steps: between first and second order; 0.2 for their scatter")
 
