@@ -95,9 +95,8 @@ class Faces {
     return FaceEnd{row, way < 0 ? row : row + 1};
   }
 
-  /// Whether a point lies beyond the end of a face. Asked of a node and of its neighbour it answers by the same
-  /// arithmetic, so that of two flat faces whose nodes are aligned no part counts twice or never.
-  [[gnu::noinline]] bool is_past(const FaceEnd& end, int way, const Vec2& point) const {
+  /// Whether a point lies beyond the end of a face.
+  bool is_past(const FaceEnd& end, int way, const Vec2& point) const {
     return way * (point - start(window_[end.corner])).dot(tangent(window_[end.row])) > 0;
   }
 

@@ -15,10 +15,10 @@ namespace pliant {
 /// long as that is nearer than the bottom, and lock the block. A node that opposes neither face squarely touches none of them, unless it is a corner
 /// itself: the master's corner is a node of the other pass. Nothing touches beyond a corner.
 ///
-/// Each of a node's two segments stands for half its length. Where the segment reaches over the end of the master's face, at a corner, it stands for what
-/// lies before the end: the next node does not touch the face. At a corner of the slave, the segment that opposes the master less than the other counts
-/// less, down to nothing. So two flat faces touch over the length that they share, wherever their nodes are. The energy of a contact is its
-/// length times that of its law, and its forces are the gradient of both.
+/// Each of a node's two segments stands for half its length, but for the last two nodes before the end of the master's face, at a corner: they share out what
+/// of the face lies there (node_length.cpp), the last one the less the nearer it comes. At a corner of the slave, the segment that opposes the master
+/// less than the other counts less, down to nothing. So two flat faces touch over the length that they share, wherever their nodes are. The
+/// energy of a contact is its length times that of its law, and its forces are the gradient of both.
 struct Facing {
   /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment, and the corners at the ends of its face.
   enum Node { before, itself, after, segment_start, segment_end, corner_back, corner_on, nodes };

@@ -47,7 +47,7 @@ struct Face {
 std::optional<int> opposing_segment(const Face& master, int segment, const SlaveNode& node, double outward);
 
 /// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its neighbour after, the segment's
-/// two, and the corners before and after it that cut the slave's segments short.
+/// two, and the corners before and after it that are less than two of the slave's segments away.
 struct NodeLength {
   Jet<14> value;  ///< m
   int corner[2]{
