@@ -150,7 +150,7 @@ Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
 struct Margins {
   double reach;  ///< of the law, and a skin
   double skin;
-  double sight;  ///< beyond the nearest segment, for corners: from a foot to a corner, and below the face beyond it
+  double sight;  ///< beyond the nearest segment, for corners: from a foot to a corner, see node_length.cpp
 };
 
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to a depth of the skin, one
@@ -198,8 +198,7 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
-  const Margins margins{margin, skin,
-                        patch.corners ? corner_sight(*sides[0].shape, *sides[1].shape) + longest + skin : 0.0};
+  const Margins margins{margin, skin, patch.corners ? 2 * longest + skin : 0.0};
   find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch,
                   std::max(margin, longest + 2 * skin) + 2 * skin + margins.sight, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return;
@@ -230,7 +229,8 @@ void find_self_patches(const Model& model, const Outlines& outlines, int body, c
     patch.part = begin;
     patch.corners = side.shape->has_corners();
     patch.law = law;
-    narrow(side, nodes, scratch, segments.begin, {margin, skin, 0}, patch.nodes[0], patch.segments[1]);
+    const Margins margins{margin, skin, patch.corners ? 2 * side.longest_segment + skin : 0.0};
+    narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
     if (patch.nodes[0].count > 0) patches.push_back(patch);
   }
 }

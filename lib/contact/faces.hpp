@@ -8,14 +8,9 @@
 
 namespace pliant {
 
-/// Least cosine between a node's own normal, turned round, and that of a face that it opposes squarely: 26 degrees.
-constexpr double square = 0.9;
 inline Vec2 tangent(const MasterSegment& s) { return {s.tangent_x, s.tangent_y}; }
 inline Vec2 start(const MasterSegment& s) { return {s.x, s.y}; }
 inline Vec2 outward_of(const Vec2& tangent) { return {tangent.y(), -tangent.x()}; }
-
-/// Of a segment's length: nodes of aligned faces stand on the line of the other face but for rounding.
-constexpr double tie = 1e-9;
 
 /// A slave node with its two segments: [0] the one before it, [1] the one after it.
 struct SlaveNode {
@@ -28,7 +23,6 @@ struct SlaveNode {
 
   /// Cosine between a segment's normal, turned round, and the normal of a tangent on the master.
   double opposition(int side, const Vec2& to) const { return -direction[side].dot(to); }
-  double opposition(const Vec2& to) const { return std::max(opposition(0, to), opposition(1, to)); }
 };
 
 SlaveNode slave_node(const Pass& pass, int index);
@@ -45,37 +39,17 @@ class Faces {
   Faces(const Pass& pass, const MasterWindow& window)
       : shape_(*pass.master), window_(window), sight_(corner_sight(*pass.slave, *pass.master)) {}
 
-  /// Row of the face that the node belongs to, its own being `row`; -1: none.
-  int choose(const SlaveNode& node, int row, double outward) const {
-    if (node.opposition(tangent(window_[row])) >= square) return row;
-    bool near = false;
-    for (const int way : {-1, 1}) {
-      const std::optional<FaceEnd> end = end_of_face(node, row, way, sight_);
-      if (!end) continue;
-      near = true;
-      const int beyond = wrapped(end->row + way);
-      if (!in_window(beyond) || node.opposition(tangent(window_[beyond])) < square) continue;
-      const int other = beside(node, beyond, way, outward);
-      const bool inside = height(node, row) < tie * window_[row].length;
-      // Outside of the one face it is outside of the body, however deep below the line of the other.
-      if (other >= 0 && (inside || height(node, other) >= 0)) return other;
-      return inside && node.corner ? row : -1;
-    }
-    return near && !node.corner ? -1 : row;
-  }
-
-  /// Row of the face beyond a corner that the node may belong to before the next refresh; -1: none.
+  /// Row of the face beyond the next corner on a way from the row that a node is beside; -1: no corner near, or not beside that face.
   int beyond(const SlaveNode& node, int row, int way, double outward) const {
-    constexpr double nearly_square = 0.7;  // bodies turn by less than 20 degrees between refreshes
-    const std::optional<FaceEnd> end = end_of_face(node, row, way, sight_ + outward);
+    const std::optional<FaceEnd> end = end_of_face(node, row, way, 2 * sight_ + outward);
     if (!end) return -1;
     const int other = wrapped(end->row + way);
-    const bool opposed = in_window(other) && node.opposition(tangent(window_[other])) >= nearly_square;
-    return opposed ? beside(node, other, way, outward) : -1;
+    return in_window(other) ? beside(node, other, way, outward) : -1;
   }
 
   /// Whether the node lies beyond a corner at an end of the row.
   bool beyond_corner(const SlaveNode& node, int row) const {
+    if (!shape_.has_corners()) return false;
     return (ends_at_corner(row, -1) && is_past({row, row}, -1, node.at)) ||
            (ends_at_corner(row, 1) && is_past({row, row + 1}, 1, node.at));
   }
@@ -98,6 +72,11 @@ class Faces {
   /// Whether a point lies beyond the end of a face.
   bool is_past(const FaceEnd& end, int way, const Vec2& point) const {
     return way * (point - start(window_[end.corner])).dot(tangent(window_[end.row])) > 0;
+  }
+
+  double sight() const { return sight_; }
+  double height(const SlaveNode& node, int row) const {
+    return (node.at - start(window_[row])).dot(outward_of(tangent(window_[row])));
   }
 
   Vec2 corner_place(const FaceEnd& end) const { return start(window_[end.corner]); }
@@ -127,10 +106,6 @@ class Faces {
     return beyond_corner(node, row) || h > outward || h < -window_.depth() ? -1 : row;
   }
 
-  double height(const SlaveNode& node, int row) const {
-    return (node.at - start(window_[row])).dot(outward_of(tangent(window_[row])));
-  }
-
   const OutlineShape& shape_;
   const MasterWindow& window_;
   double sight_;  ///< m
@@ -143,6 +118,13 @@ struct NodeLength {
   std::array<Vec2, Facing::nodes> gradient;
   int corner_row[2] = {-1, -1};  ///< as in Facing
 };
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row);
+/// `beyond`: another row is nearer, and a corner lies between the two.
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, bool beyond);
+/// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there.
+struct Foothold {
+  int row;
+  NodeLength length;
+};
+Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, double outward);
 
 }  // namespace pliant

@@ -56,33 +56,26 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
 void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing) {
   const Faces faces(pass, window);
   const unsigned active = bits(facing.p.hit & first_lanes(pass.nodes.count - i));
-  Lanes rows = facing.p.row;
-  bool moved = false;
+  const Lanes nearest = facing.p.row;
+  Lanes rows = nearest;
+  // Who is no longer beside a face has passed its end, where lengths have come to nothing.
+  if (pass.master->has_corners()) facing.length = select(facing.p.hit, facing.length, Lanes{});
   for (unsigned left = active; left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), row = static_cast<int>(rows[lane]);
-    const int chosen =
-        pass.master->has_corners() ? faces.choose(slave_node(pass, pass.nodes.begin + i + lane), row, outward) : row;
-    moved |= chosen != row;
-    rows[lane] = chosen;
-  }
-  if (moved) {
-    const SlaveNodes nodes = load_slaves(pass, i);
-    facing.p = beside(window, nodes.x, nodes.y, rows, outward);
-  }
-  for (unsigned left = active & bits(facing.p.hit); left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), row = static_cast<int>(rows[lane]);
+    const int lane = std::countr_zero(left), row = static_cast<int>(nearest[lane]);
     const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
-    if (pass.master->has_corners() && faces.beyond_corner(node, row)) {
-      facing.p.hit[lane] = 0;
-      continue;
-    }
-    const NodeLength length = node_length(node, window, faces, row);
-    facing.length[lane] = length.value;
+    const auto [chosen, length] = foothold(node, window, faces, row, outward);
+    rows[lane] = faces.beyond_corner(node, chosen) ? -1 : chosen;
+    facing.length[lane] = rows[lane] < 0 ? 0 : length.value;
     if (!length.varies) continue;
     facing.varying |= 1U << lane;
     std::copy(length.gradient.begin(), length.gradient.end(), std::begin(facing.gradient[lane]));
     std::copy(std::begin(length.corner_row), std::end(length.corner_row), std::begin(facing.corner_row[lane]));
   }
+  if (!any(facing.p.hit & (rows != nearest))) return;
+  const SlaveNodes nodes = load_slaves(pass, i);
+  const LaneBits hit = facing.p.hit;
+  facing.p = beside(window, nodes.x, nodes.y, rows, outward);
+  facing.p.hit = facing.p.hit & hit;
 }
 
 }  // namespace pliant

@@ -54,7 +54,7 @@ inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNode
   Facing facing;
   facing.p = project(window, nodes.x, nodes.y, outward);
   facing.length = nodes.tributary_length;
-  if (pass.corners && any(facing.p.hit)) [[unlikely]]
+  if (pass.corners) [[unlikely]]
     attend_to_corners(pass, window, i, outward, facing);
   return facing;
 }

@@ -1,14 +1,15 @@
+#include <algorithm>
 #include <array>
+#include <limits>
 
 #include "contact/faces.hpp"
 
 namespace pliant {
 namespace {
 
-/// Where a segment no longer lies flat on a face at all: 37 degrees.
-constexpr double oblique = 0.8;
-/// Least part along the face, over its length, that a segment counts with.
-constexpr double steepest = 0.25;
+/// Cosines of the angle between a node's normal, turned round, and that of a face: from where on it opposes the face in full, 18 degrees, and to where not
+/// at all, 36 degrees. Less than half of a right angle: no node opposes both faces at a square corner.
+constexpr double square = 0.95, oblique = 0.81;
 /// Difference of such cosines at which the lesser of a corner's two segments no longer counts: 35 degrees, as of the least corner that lies flat.
 constexpr double lesser = 0.18;
 
@@ -30,25 +31,67 @@ struct Varying {
   }
 };
 
-/// One slave node beside one segment of the master.
+/// One slave node beside one segment of the master, at a foot there. What is measured from the foot does not jump where the foot goes from one segment to the next.
 struct Beside {
   const SlaveNode& node;
   const MasterSegment& segment;
   Vec2 t = tangent(segment), n = outward_of(t);
+  double along = (node.at - start(segment)).dot(t), height = (node.at - start(segment)).dot(n);
+  double clamped = std::clamp(along, 0.0, segment.length);
+  Vec2 foot = start(segment) + clamped * t;
+
+  static Facing::Node neighbour(int side) { return side == 0 ? Facing::before : Facing::after; }
+  static Facing::Node corner(int way) { return way < 0 ? Facing::corner_back : Facing::corner_on; }
 
   /// Adds what a turn of the segment's tangent does to a number that changes by `rate` with it.
   void turn_tangent(double rate, Varying& v) const {
     v.gradient[Facing::segment_end] += rate / segment.length * n;
     v.gradient[Facing::segment_start] -= rate / segment.length * n;
   }
-  static Facing::Node neighbour(int side) { return side == 0 ? Facing::before : Facing::after; }
-  /// How far a node lies from the slave's along the segment, on a way, m. `of`: which of the seven it is.
-  Varying reach(const Vec2& place, Facing::Node of, int way) const {
-    const Vec2 edge = place - node.at;
-    Varying v{way * edge.dot(t)};
-    v.gradient[of] = way * t;
-    v.gradient[Facing::itself] = -way * t;
-    turn_tangent(way * edge.dot(n), v);
+  /// Adds what a move of the foot does to a number whose gradient by the foot's place is g.
+  void move_foot(const Vec2& g, Varying& v) const {
+    if (along <= 0) {
+      v.gradient[Facing::segment_start] += g;
+    } else if (along >= segment.length) {
+      v.gradient[Facing::segment_end] += g;
+    } else {
+      const double gt = g.dot(t);
+      v.gradient[Facing::itself] += gt * t;
+      v.gradient[Facing::segment_start] += g - gt * t;
+      turn_tangent(along * g.dot(n) + height * gt, v);
+    }
+  }
+
+  /// From the foot to the corner on a way, over the part in that direction of the segment to one of the node's neighbours; infinite where that leads away.
+  Varying steps_to(const Vec2& place, int way, int side) const {
+    const Vec2 chord = place - foot, edge = node.neighbour[side] - node.at;
+    const double part = edge.dot(chord);
+    if (chord.squaredNorm() == 0) return {};
+    if (part <= 0) return {std::numeric_limits<double>::infinity()};
+    Varying v{chord.squaredNorm() / part};
+    const Vec2 by_chord = (2 * chord - v.value * edge) / part, by_edge = -v.value / part * chord;
+    v.gradient[neighbour(side)] = by_edge;
+    v.gradient[Facing::itself] = -by_edge;
+    v.gradient[corner(way)] = by_chord;
+    move_foot(-by_chord, v);
+    return v;
+  }
+  /// From the foot to the corner on a way, m.
+  Varying distance(const Vec2& place, int way) const {
+    const Vec2 chord = place - foot;
+    Varying v{chord.norm()};
+    if (v.value == 0) return v;
+    v.gradient[corner(way)] = chord / v.value;
+    move_foot(-chord / v.value, v);
+    return v;
+  }
+  /// Of the node below the face, m.
+  Varying depth() const {
+    const Vec2 from = node.at - foot;
+    Varying v{from.norm()};
+    if (v.value == 0) return v;
+    v.gradient[Facing::itself] = from / v.value;
+    move_foot(-from / v.value, v);
     return v;
   }
   Varying opposition(int side) const {
@@ -58,6 +101,20 @@ struct Beside {
     v.gradient[neighbour(side)] = side == 0 ? Vec2(-turn) : turn;
     v.gradient[Facing::itself] = side == 0 ? turn : Vec2(-turn);
     turn_tangent(-u.dot(n), v);
+    return v;
+  }
+  /// Cosine between the normal of the node, by the line between its neighbours, turned round, and that of the face from the foot to the corner on a way.
+  Varying opposition_towards(const Vec2& place, int way) const {
+    const Vec2 chord = place - foot, span = node.neighbour[1] - node.neighbour[0];
+    const double length = chord.norm(), width = span.norm();
+    if (length == 0) return {};
+    const Vec2 to = way / length * chord, u = span / width;
+    Varying v{-u.dot(to)};
+    const Vec2 by_span = (u.dot(to) * u - to) / width, by_chord = way / length * (u.dot(to) * to - u);
+    v.gradient[Facing::after] = by_span;
+    v.gradient[Facing::before] = -by_span;
+    v.gradient[corner(way)] = by_chord;
+    move_foot(-by_chord, v);
     return v;
   }
 };
@@ -83,35 +140,21 @@ Varying product(const Varying& a, const Varying& b) {
   return v;
 }
 
-Varying quotient(const Varying& a, const Varying& b) {
-  Varying v = scaled(1 / b.value, a);
-  for (int i = 0; i < Facing::nodes; ++i) v.gradient[i] -= v.value / b.value * b.gradient[i];
-  return v;
-}
-
-/// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. With r the way to the corner over
-/// the segment's own part along the face, the last node before the corner (r < 1) has 3/2 r - 1 of the segment more, and the one before that
-/// (1 < r < 2) 1 - r/2. Both together stand for what of the face lies beyond them, and each length goes with the node's place without a jump, to
-/// nothing at the corner, where other faces come near. Segments that do not lie flat on the face have no more than their half. A corner of the
-/// slave keeps its own: nobody else could stand in for it.
+/// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. With r the way from the foot to the
+/// corner over the segment's part that way, the last node before the corner (r < 1) has 3/2 r - 1 of the segment more, and the one before
+/// that (1 < r < 2) 1 - r/2. Both together stand for what of the face lies beyond them, and each length goes with the node's place without a
+/// jump, to nothing at the corner, where other faces come near. A corner of the slave keeps its own: nobody else could stand in for it.
 Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, NodeLength& whole) {
   const double length = at.node.length[side];
   if (at.node.corner) return {0.5 * length};
-  const Vec2& neighbour = at.node.neighbour[side];
-  const int way = (neighbour - at.node.at).dot(at.t) < 0 ? -1 : 1;
-  const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 3 * at.node.present[side]);
+  const int way = (at.node.neighbour[side] - at.node.at).dot(at.t) < 0 ? -1 : 1;
+  const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * at.node.present[side]);
   if (!end) return {0.5 * length};
-  Varying reach = at.reach(neighbour, Beside::neighbour(side), way);
-  if (const double least = steepest * at.node.present[side]; reach.value < least) reach = {least};
-  const Varying r =
-      quotient(at.reach(faces.corner_place(*end), way < 0 ? Facing::corner_back : Facing::corner_on, way), reach);
-  if (r.value >= 2 || (r.value >= 1 && at.node.beside_corner[side])) return {0.5 * length};
+  const Varying r = at.steps_to(faces.corner_place(*end), way, side);
+  if (r.value >= (at.node.beside_corner[side] ? 1 : 2)) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
-  const Varying more = r.value < 1 ? scaled(1.5, r, -1) : scaled(-0.5, r, 1);
-  if (more.value <= 0) return scaled(length, more, 0.5 * length);
-  const Varying flat = smooth_step(scaled(1 / (square - oblique), at.opposition(side), -oblique / (square - oblique)));
-  return scaled(length, product(flat, more), 0.5 * length);
+  return scaled(length, r.value < 1 ? scaled(1.5, r, -1) : scaled(-0.5, r, 1), 0.5 * length);
 }
 
 /// The lesser opposing segment of a corner counts by this factor.
@@ -122,9 +165,38 @@ Varying factor_of_lesser(const Beside& at, int side, NodeLength& whole) {
   return scaled(-1, smooth_step(behind), 1);
 }
 
+/// Of a distance: 1 up to half of the limit, 0 from the limit on.
+Varying nearness(const Varying& distance, double limit) {
+  return scaled(-1, smooth_step(scaled(2 / limit, distance, -1)), 1);
+}
+
+/// Near a corner of the master, a node that is none itself touches the faces that it opposes.
+Varying opposed_part(const Beside& at, const Faces& faces, int row, bool beyond, NodeLength& whole) {
+  const double sight = faces.sight();
+  Varying part{1};
+  for (const int way : {-1, 1}) {
+    const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * sight);
+    if (!end) continue;
+    const Vec2 corner = faces.corner_place(*end);
+    const Varying distance = at.distance(corner, way);
+    if (distance.value >= sight) continue;
+    const Varying opposed =
+        smooth_step(scaled(1 / (square - oblique), at.opposition_towards(corner, way), -oblique / (square - oblique)));
+    if (opposed.value == 1) continue;
+    whole.varies = true;
+    whole.corner_row[way < 0 ? 0 : 1] = end->corner;
+    part = product(part, scaled(-1, product(scaled(-1, opposed, 1), nearness(distance, sight)), 1));
+  }
+  if (!beyond) return part;
+  whole.varies = true;
+  return product(part, nearness(at.depth(), 0.5 * sight));
+}
+
+double energy(const NodeLength& length, double height) { return height < 0 ? length.value * height * height : 0; }
+
 }  // namespace
 
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row) {
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, bool beyond) {
   const Beside at{node, window[row]};
   NodeLength whole;
   Varying total;
@@ -132,10 +204,26 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     const Varying length = length_of_side(at, faces, row, side, whole);
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
+  if (!node.corner) total = product(opposed_part(at, faces, row, beyond, whole), total);
   if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
   whole.gradient = total.gradient;
   return whole;
+}
+
+Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, double outward) {
+  Foothold result{row, node_length(node, window, faces, row, false)};
+  const double height = faces.height(node, row);
+  if (node.corner || height >= 0) return result;
+  double most = energy(result.length, height);
+  for (const int way : {-1, 1}) {
+    const int other = faces.beyond(node, row, way, outward);
+    if (other < 0) continue;
+    const NodeLength length = node_length(node, window, faces, other, true);
+    const double stored = energy(length, faces.height(node, other));
+    if (stored > most) most = stored, result = {other, length};
+  }
+  return result;
 }
 
 }  // namespace pliant

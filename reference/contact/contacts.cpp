@@ -83,8 +83,9 @@ struct Contacts::Implementation {
     return std::move(result);
   }
 
-  /// What a node remembers is lost when it is no longer beside the other body.
+  /// What a node remembers is lost when it is no longer beside the other body. Past a corner its length has come to nothing.
   void part(const Encounter& encounter, const ContactMemory& memory) {
+    if (corners[encounter.master].any()) return;
     result.dissipated +=
         weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory, std::nullopt);
   }
@@ -139,18 +140,18 @@ struct Contacts::Implementation {
     const SlaveNode node = slave_node(encounter, point);
     const Face face{on.outline, corners[encounter.master],
                     std::min(corners[encounter.slave].longest(), corners[encounter.master].longest())};
-    const std::optional<int> segment = opposing_segment(face, nearest.segment, node, outward);
-    if (!segment) return;
-    const Projection at = project(point, on.outline.node(*segment), on.outline.node(*segment + 1));
+    const std::optional<Footing> stand = footing(face, nearest.segment, node, outward);
+    if (!stand) return;
+    const auto& [segment, length] = *stand;
+    const Projection at = project(point, on.outline.node(segment), on.outline.node(segment + 1));
     const auto found = accepted.find(encounter);
     ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
     if (initial && law.bonds() && at.gap.value <= law.bond_gap) before.damage = 0;
     ContactMemory& memory = trial[encounter];
     memory.beside = true;
-    memory.segment = *segment;
+    memory.segment = segment;
     memory.xi = at.xi.value;
     memory.angle = at.angle.value;
-    const NodeLength length = node_length(face, *segment, node);
     if (at.gap.value < law.reach)
       touch(encounter, length, at, law, before, memory);
     else

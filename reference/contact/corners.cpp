@@ -12,25 +12,18 @@ struct Arrow {
   Length x, y;
 };
 Arrow operator-(const Arrow& a, const Arrow& b) { return {a.x - b.x, a.y - b.y}; }
+Arrow operator*(const Arrow& a, double factor) { return {a.x * factor, a.y * factor}; }
 Length dot(const Arrow& a, const Arrow& b) { return a.x * b.x + a.y * b.y; }
 Length norm(const Arrow& a) { return sqrt(dot(a, a)); }
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 35 * degree;  ///< the least
-constexpr double square = 0.9;               ///< cosine of the angle by which opposed normals may differ, squarely
-constexpr double oblique = 0.8;              ///< likewise: from which on a segment does not lie flat on a face
-constexpr double tie = 1e-9;                 ///< of a segment's length: nodes on the line of a face count as inside
-constexpr double steepest = 0.25;            ///< least part along the face that a segment counts with, over its length
+constexpr double square = 0.95;              ///< cosine of the angle by which opposed normals may differ, squarely
+constexpr double oblique = 0.81;             ///< likewise: from which on a node does not oppose a face at all
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
   return std::atan2(pliant::cross(before, after), before.dot(after));
-}
-
-/// The better of the cosines between the two normals of a node, turned round, and a segment's.
-double opposition(const Face& master, int segment, const SlaveNode& node) {
-  const Vec2 t = master.outline.tangent(segment);
-  return std::max((node.before - node.at).normalized().dot(t), (node.at - node.after).normalized().dot(t));
 }
 
 double along(const Face& master, int segment, const SlaveNode& node) {
@@ -80,6 +73,99 @@ Length ramp(const Length& x, double low, double high) {
   return u.value < 1 ? u * u * (3 - 2 * u) : Length(1);
 }
 
+/// A node beside a segment, with all that its length depends on as variables.
+class Stand {
+ public:
+  Stand(const Face& master, int segment, const SlaveNode& node)
+      : master_(master),
+        segment_(segment),
+        node_(node),
+        own_{arrow(node.before, 0), arrow(node.at, 1), arrow(node.after, 2)} {
+    const Arrow first = arrow(master.outline.node(segment), 3), second = arrow(master.outline.node(segment + 1), 4);
+    chord_ = second - first;
+    const Length squared = dot(chord_, chord_), part = dot(own_[1] - first, chord_) / squared;
+    if (part.value <= 0)
+      foot_ = first;
+    else if (part.value >= 1)
+      foot_ = second;
+    else
+      foot_ = {first.x + part * chord_.x, first.y + part * chord_.y};
+  }
+
+  NodeLength length(bool beyond) {
+    Length sum = side(0) + side(2);
+    if (!node_.corner) sum *= opposed_part();
+    if (beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / 2);
+    result_.value = sum.value > 0 ? sum : Length(0);  // not positive beside a face shorter than the node's own segments
+    return result_;
+  }
+
+ private:
+  static Arrow arrow(const Vec2& place, int number) { return {{place.x(), 2 * number}, {place.y(), 2 * number + 1}}; }
+
+  Arrow edge(int neighbour) const { return neighbour == 0 ? own_[0] - own_[1] : own_[1] - own_[2]; }
+  /// Between the turned normal of the node's segment towards that neighbour and the normal of a face along `to`.
+  Length cosine(int neighbour, const Arrow& to) const {
+    return dot(edge(neighbour), to) / (norm(edge(neighbour)) * norm(to));
+  }
+  /// From the foot to the corner that ends the face on a way.
+  Arrow to_corner(int end, int way) {
+    const int number = way < 0 ? 0 : 1;
+    result_.corner[number] = end;
+    return arrow(master_.outline.node(end), 5 + number) - foot_;
+  }
+  static Length safe_norm(const Arrow& a) { return a.x.value == 0 && a.y.value == 0 ? Length(0) : norm(a); }
+  /// 1 up to half of the limit, 0 from the limit on.
+  static Length vicinity(const Length& distance, double limit) { return 1 - ramp(distance, limit / 2, limit); }
+
+  /// What the segment towards a neighbour stands for.
+  Length side(int neighbour) {
+    const double full = neighbour == 0 ? node_.length_before : node_.length_after;
+    if (node_.corner)
+      return 0.5 * full * (1 - ramp(cosine(2 - neighbour, chord_) - cosine(neighbour, chord_), 0, lesser));
+    const Arrow onward = neighbour == 0 ? edge(0) : edge(2) * -1;
+    const int way = dot(onward, chord_).value < 0 ? -1 : 1;
+    const auto end = face_end(master_, segment_, node_, way, 2 * norm(onward).value);
+    if (!end) return 0.5 * full;
+    const NodeLength before = result_;
+    const Arrow corner = to_corner(*end, way);
+    const Length squared = dot(corner, corner), part = dot(onward, corner);
+    const Length r = squared.value == 0 ? Length(0) : part.value > 0 ? squared / part : Length(2);
+    if (r.value < 1) return full * (1.5 * r - 0.5);
+    if (r.value < 2 && !(neighbour == 0 ? node_.corner_before : node_.corner_after)) return full * (1.5 - 0.5 * r);
+    result_ = before;
+    return 0.5 * full;
+  }
+
+  /// Near a corner a node that is none itself touches the faces that it opposes.
+  Length opposed_part() {
+    Length part = 1;
+    for (const int way : {-1, 1}) {
+      const auto end = face_end(master_, segment_, node_, way, 2 * master_.sight);
+      if (!end) continue;
+      const NodeLength before = result_;
+      const Arrow corner = to_corner(*end, way);
+      const Length distance = safe_norm(corner);
+      Length opposed = 0;
+      if (distance.value > 0) {
+        const Arrow across = own_[0] - own_[2];  // along a face that the node opposes
+        opposed = ramp(dot(across, corner) * way / (norm(across) * distance), oblique, square);
+      }
+      if (distance.value >= master_.sight || opposed.value == 1)
+        result_ = before;
+      else
+        part *= 1 - (1 - opposed) * vicinity(distance, master_.sight);
+    }
+    return part;
+  }
+
+  const Face& master_;
+  int segment_;
+  const SlaveNode& node_;
+  Arrow own_[3], chord_, foot_;
+  NodeLength result_;
+};
+
 }  // namespace
 
 Corners::Corners(const ContactOutline& outline) {
@@ -96,65 +182,22 @@ Corners::Corners(const ContactOutline& outline) {
   longest_ = *std::max_element(length_.begin(), length_.end());
 }
 
-std::optional<int> opposing_segment(const Face& master, int segment, const SlaveNode& node, double outward) {
-  if (!master.corners.any()) return segment;
-  std::optional<int> result = segment;
-  if (opposition(master, segment, node) < square) {
+std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward) {
+  Footing best{segment, Stand(master, segment, node).length(false)};
+  if (!master.corners.any()) return best;
+  const double own_height = height(master, segment, node);
+  if (!node.corner && own_height < 0) {
+    double most = best.length.value.value * own_height * own_height;
     for (const int way : {-1, 1}) {
-      const std::optional<int> end = face_end(master, segment, node, way, master.sight);
-      if (!end) continue;
-      if (!node.corner) result = {};
-      if (opposition(master, way < 0 ? *end - 1 : *end, node) < square) continue;
-      const bool inside = height(master, segment, node) < tie * master.outline.length(segment);
-      result = beside_face(master, *end, way, node, outward);
-      // Outside of the one face it is outside of the body, however deep below the line of the other.
-      if (result && !inside && height(master, *result, node) < 0) result = {};
-      if (!result && inside && node.corner) result = segment;
-      break;
+      const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
+      const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
+      if (!other || height(master, *other, node) >= 0) continue;
+      const NodeLength length = Stand(master, *other, node).length(true);
+      const double stored = length.value.value * std::pow(height(master, *other, node), 2);
+      if (stored > most) most = stored, best = {*other, length};
     }
   }
-  return result && is_beyond(master, *result, node) ? std::nullopt : result;
-}
-
-NodeLength node_length(const Face& master, int segment, const SlaveNode& node) {
-  const auto arrow = [](const Vec2& place, int number) {
-    return Arrow{{place.x(), 2 * number}, {place.y(), 2 * number + 1}};
-  };
-  const Vec2 own[3] = {node.before, node.at, node.after};
-  const Arrow point[3] = {arrow(own[0], 0), arrow(own[1], 1), arrow(own[2], 2)};
-  const Arrow chord = arrow(master.outline.node(segment + 1), 4) - arrow(master.outline.node(segment), 3);
-  const Length length = norm(chord);
-  const auto cosine = [&](int neighbour) {
-    const Arrow edge = neighbour == 0 ? point[0] - point[1] : point[1] - point[2];
-    return dot(edge, chord) / (norm(edge) * length);
-  };
-  NodeLength result;
-  for (const int neighbour : {0, 2}) {
-    const double full = neighbour == 0 ? node.length_before : node.length_after;
-    const Length onward = dot(point[neighbour] - point[1], chord) / length;
-    const int way = onward.value < 0 ? -1 : 1;
-    Length part = 0.5 * full;
-    std::optional<int> end;
-    if (master.corners.any() && !node.corner)
-      end = face_end(master, segment, node, way, 3 * (own[neighbour] - node.at).norm());
-    if (end) {
-      const int number = way < 0 ? 0 : 1;
-      const Arrow corner = arrow(master.outline.node(*end), 5 + number);
-      const double least = steepest * (own[neighbour] - node.at).norm();
-      const Length reach = way * onward.value < least ? Length(least) : way < 0 ? -onward : onward;
-      const Length to_corner = dot(corner - point[1], chord) / length, r = (way < 0 ? -to_corner : to_corner) / reach;
-      // The last node before the corner, and the one before that; beyond, a segment counts half as ever.
-      const bool last = r.value < 1,
-                 next_to_last = !last && r.value < 2 && !(neighbour == 0 ? node.corner_before : node.corner_after);
-      const Length more = last ? 1.5 * r - 1 : next_to_last ? 1 - 0.5 * r : Length(0);
-      if (last || next_to_last) result.corner[number] = *end;
-      part += full * (more.value > 0 ? more * ramp(cosine(neighbour), oblique, square) : more);
-    }
-    if (node.corner) part *= 1 - ramp(cosine(2 - neighbour) - cosine(neighbour), 0, lesser);
-    result.value += part;
-  }
-  if (result.value.value <= 0) result.value = 0;  // beside a face shorter than the node's own segments
-  return result;
+  return is_beyond(master, best.segment, node) ? std::nullopt : std::optional(best);
 }
 
 }  // namespace pliant::reference

@@ -42,10 +42,6 @@ struct Face {
   double sight = 0;  ///< how far along a face its corner counts: the lesser of both outlines' longest segments, m
 };
 
-/// Which segment of the master a node touches that stands beside the given one (METHOD 4): near a corner that of a face which it opposes squarely,
-/// beyond a corner none, and of nodes that are no corners themselves none where neither face is opposed squarely.
-std::optional<int> opposing_segment(const Face& master, int segment, const SlaveNode& node, double outward);
-
 /// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its neighbour after, the segment's
 /// two, and the corners before and after it that are less than two of the slave's segments away.
 struct NodeLength {
@@ -53,6 +49,15 @@ struct NodeLength {
   int corner[2]{
       0, 0};  ///< nodes of the master, counted on as its segments are; any where the length does not depend on it
 };
-NodeLength node_length(const Face& master, int segment, const SlaveNode& node);
+
+/// Which segment of the master a node touches, and over which length.
+struct Footing {
+  int segment = 0;
+  NodeLength length;
+};
+
+/// Of a node that stands beside the given segment (METHOD 4): that one, or beyond a near corner one of the next face, where the node would store more;
+/// none beyond a corner that ends the face.
+std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward);
 
 }  // namespace pliant::reference

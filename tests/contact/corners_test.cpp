@@ -100,7 +100,7 @@ TEST(Corners, ACornerPokesWithItsOwnLength) {
   };
   EXPECT_NEAR(force(45), segment, 1e-12);
   EXPECT_NEAR(force(48), segment, 0.25 * segment) << "one of them opposes less";
-  EXPECT_NEAR(force(30), segment / 2, 1e-12) << "that of the flatter segment";
+  EXPECT_NEAR(force(37), segment / 2, 1e-12) << "that of the flatter segment";
 }
 
 // EXACT: corner against corner, head on and aside, a contact there is, and it pushes them apart; a tip of another angle too.

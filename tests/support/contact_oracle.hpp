@@ -229,10 +229,10 @@ class ContactOracle {
     const reference::Face face{outline, corners_[master],
                                std::min(corners_[slave].longest(), corners_[master].longest())};
     const reference::SlaveNode node = slave_node(slave, k, image);
-    const std::optional<int> segment = reference::opposing_segment(face, point.segment, node, reach() + skin());
-    if (!segment) return {};
-    if (*segment != point.segment) point = beside(master, *segment, node.at);
-    point.contact_length = reference::node_length(face, *segment, node);
+    const std::optional<reference::Footing> stand = reference::footing(face, point.segment, node, reach() + skin());
+    if (!stand) return {};
+    if (stand->segment != point.segment) point = beside(master, stand->segment, node.at);
+    point.contact_length = stand->length;
     return point;
   }
   double reach() const { return law_.rule.law == ContactLawKind::cohesive_fatigue ? *law_.rule.range : law_.reach(); }
@@ -254,7 +254,7 @@ class ContactOracle {
     if (bonds && old && old->damage < 1) return stretch(key, point, *old, result);
     OracleLaw law = bonds ? OracleLaw{residual_of(law_.rule)} : law_;
     law.h = std::min(shape(slave).spacing, shape(master).spacing);
-    const double weight = point ? 0.5 * point->contact_length.value.value : weight_of(slave, k);
+    const double weight = weight_of(slave, k, master, point);
     const double start = old ? old->slip : 0;
     if (!point || point->gap >= law.reach()) {
       // The place is remembered before the touch, so that slip counts from the first step of it.
@@ -276,7 +276,7 @@ class ContactOracle {
   void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
     const auto [slave, k, master, image] = key;
     const ContactRule& rule = law_.rule;
-    const double weight = point ? 0.5 * point->contact_length.value.value : weight_of(slave, k);
+    const double weight = weight_of(slave, k, master, point);
     const OracleBond before{rule, old.damage, old.opening, old.slip};
     if (!point) {
       result.dissipated += weight * before.stored();
@@ -319,8 +319,10 @@ class ContactOracle {
     result.stored += 0.5 * point.contact_length.value.value * energy;
   }
 
-  double weight_of(int slave, int k) const {
-    return 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
+  /// Past a corner there is none.
+  double weight_of(int slave, int k, int master, const std::optional<OraclePoint>& point) const {
+    if (point) return 0.5 * point->contact_length.value.value;
+    return corners_[master].any() ? 0 : 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
   }
   void count_contact(const OraclePoint& point, Result& result) const {
     ++result.contacts;

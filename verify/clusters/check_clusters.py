@@ -16,8 +16,8 @@ CASE = Case(__file__, cost=2)
 NODES = 168 if FULL else 60
 RAMP = 320.0 if FULL else 80.0  # s, of the push; twice as long a rest follows in the engine
 FASTER = [RAMP / 4, RAMP / 2]
-STEPS = 40  # of the statics
-FEWER = [5, 10, 20]
+STEPS = 48  # of the statics; all even: each ends a step where the push is fastest
+FEWER = [6, 12, 24]
 DIAMETER = 2.0
 CLUSTERS = {"7 compliant": (1, False), "7 mixed": (1, True), "19 compliant": (2, False), "19 mixed": (2, True)}
 # Slip is the sum of length times d(xi). Two ways to one end differ by the area between them: what facets stretch by,
