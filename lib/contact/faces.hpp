@@ -12,6 +12,9 @@ inline Vec2 tangent(const MasterSegment& s) { return {s.tangent_x, s.tangent_y};
 inline Vec2 start(const MasterSegment& s) { return {s.x, s.y}; }
 inline Vec2 outward_of(const Vec2& tangent) { return {tangent.y(), -tangent.x()}; }
 
+/// Of a segment's length: rounding, where corners lie on each other.
+constexpr double tie = 1e-9;
+
 /// A slave node with its two segments: [0] the one before it, [1] the one after it.
 struct SlaveNode {
   Vec2 at, neighbour[2];
@@ -23,6 +26,8 @@ struct SlaveNode {
 
   /// Cosine between a segment's normal, turned round, and the normal of a tangent on the master.
   double opposition(int side, const Vec2& to) const { return -direction[side].dot(to); }
+  /// Of the segment that opposes better.
+  int opposing_side(const Vec2& to) const { return opposition(0, to) > opposition(1, to) ? 0 : 1; }
 };
 
 SlaveNode slave_node(const Pass& pass, int index);
@@ -71,7 +76,8 @@ class Faces {
 
   /// Whether a point lies beyond the end of a face.
   bool is_past(const FaceEnd& end, int way, const Vec2& point) const {
-    return way * (point - start(window_[end.corner])).dot(tangent(window_[end.row])) > 0;
+    const MasterSegment& s = window_[end.row];
+    return way * (point - start(window_[end.corner])).dot(tangent(s)) > tie * s.length;
   }
 
   double sight() const { return sight_; }

@@ -51,6 +51,7 @@ void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, doub
 
 /// From position i of the pass on; at most `outward` off.
 inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNodes& nodes, int i, double outward) {
+  if (pass.corners) outward += 1e-9 * window.longest();  // corners on each other, but for rounding
   Facing facing;
   facing.p = project(window, nodes.x, nodes.y, outward);
   facing.length = nodes.tributary_length;

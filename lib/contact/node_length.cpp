@@ -151,7 +151,7 @@ Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, 
   const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * at.node.present[side]);
   if (!end) return {0.5 * length};
   const Varying r = at.steps_to(faces.corner_place(*end), way, side);
-  if (r.value >= (at.node.beside_corner[side] ? 1 : 2)) return {0.5 * length};
+  if (r.value >= (at.node.beside_corner[side] ? 1 - tie : 2)) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
   return scaled(length, r.value < 1 ? scaled(1.5, r, -1) : scaled(-0.5, r, 1), 0.5 * length);
@@ -192,6 +192,20 @@ Varying opposed_part(const Beside& at, const Faces& faces, int row, bool beyond,
   return product(part, nearness(at.depth(), 0.5 * sight));
 }
 
+/// Corners of the slave that lie beside one of the master, inside but nearer to the flank: where the master's face begins their own goes along with it. They count while
+/// they are hardly below it, since this length ends at once where they go past the corner; those exactly on the corner count at any depth.
+Varying part_on_corner(const Beside& at, double sight, NodeLength& whole) {
+  whole.varies = true;
+  const Varying opposition = at.opposition(at.node.opposing_side(at.t));
+  return product(nearness(at.depth(), 0.005 * sight),
+                 smooth_step(scaled(1 / (square - oblique), opposition, -oblique / (square - oblique))));
+}
+
+/// Whether the side of a corner that opposes a face goes from there along it, not past its beginning.
+bool lies_along(const SlaveNode& node, int way, const Vec2& face) {
+  return way * (node.neighbour[node.opposing_side(face)] - node.at).dot(face) > 0;
+}
+
 double energy(const NodeLength& length, double height) { return height < 0 ? length.value * height * height : 0; }
 
 }  // namespace
@@ -205,6 +219,7 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
   if (!node.corner) total = product(opposed_part(at, faces, row, beyond, whole), total);
+  if (node.corner && beyond) total = product(part_on_corner(at, faces.sight(), whole), total);
   if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
   whole.gradient = total.gradient;
@@ -214,12 +229,13 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
 Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, double outward) {
   Foothold result{row, node_length(node, window, faces, row, false)};
   const double height = faces.height(node, row);
-  if (node.corner || height >= 0) return result;
+  if (height >= (node.corner ? tie * window[row].length : 0)) return result;
+  const bool aligned = node.corner && height > -tie * window[row].length;
   double most = energy(result.length, height);
   for (const int way : {-1, 1}) {
     const int other = faces.beyond(node, row, way, outward);
-    if (other < 0) continue;
-    const NodeLength length = node_length(node, window, faces, other, true);
+    if (other < 0 || (node.corner && !lies_along(node, way, tangent(window[other])))) continue;
+    const NodeLength length = node_length(node, window, faces, other, !aligned);
     const double stored = energy(length, faces.height(node, other));
     if (stored > most) most = stored, result = {other, length};
   }

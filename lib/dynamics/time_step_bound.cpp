@@ -27,8 +27,7 @@ constexpr double probe_size = 1e-6;
 /// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least, 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
 
-/// Where the power iterations start: of all bodies of a shape the same, turned as they are, whatever their place in the
-/// list. So neither a scene's order nor its orientation changes its steps.
+/// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place in the list.
 std::vector<Lanes> start_directions(const Model& model) {
   int most_nodes = 0;
   for (const CompliantShape& shape : model.shapes) most_nodes = std::max(most_nodes, shape.nodes());
@@ -40,10 +39,7 @@ std::vector<Lanes> start_directions(const Model& model) {
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
     const BodyPlaces places(model, body);
-    const double c = std::cos(body.angle), s = std::sin(body.angle);
-    for (int i = 0; i < model.shape_of(body).nodes(); ++i)
-      set_node(places, static_cast<std::size_t>(i), {c * own[i].x() - s * own[i].y(), s * own[i].x() + c * own[i].y()},
-               start);
+    for (int i = 0; i < model.shape_of(body).nodes(); ++i) set_node(places, static_cast<std::size_t>(i), own[i], start);
   }
   fill_padding(model, start);
   return start.compliant;
@@ -58,6 +54,44 @@ std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
   }
   return result;
 }
+
+/// A frame that turns with each body of a batch: its x axis leads from the body's first node to the one that is farthest from it in the reference shape.
+/// Power iterations keep their vectors in it: two iterations an update would not follow a body that spins.
+struct BodyFrame {
+  Lanes cosine, sine;
+
+  BodyFrame(const Model& model, const Batch& batch, const Lanes* position) {
+    const Points& reference = model.shape_of(batch).space.mesh.nodes;
+    const auto farthest = std::max_element(reference.begin(), reference.end(), [&](const Vec2& a, const Vec2& b) {
+      return (a - reference[0]).squaredNorm() < (b - reference[0]).squaredNorm();
+    });
+    const auto node = static_cast<std::size_t>(farthest - reference.begin());
+    Lanes x, y;
+    if (batch.layout == Layout::spread) {
+      const auto& place = model.spread_shape_of(batch).place;
+      const auto* entries = reinterpret_cast<const double*>(position);
+      const auto along = [&](int c) {
+        return broadcast(entries[place[node] + c * lane_count] - entries[place[0] + c * lane_count]);
+      };
+      x = along(0), y = along(1);
+    } else {
+      x = position[2 * node] - position[0], y = position[2 * node + 1] - position[1];
+    }
+    const Lanes length = sqrt(x * x + y * y);
+    cosine = x / length, sine = y / length;
+  }
+
+  void into_space(const Batch& batch, Lanes* u) const { turn(batch, u, sine); }
+  void into_body(const Batch& batch, Lanes* u) const { turn(batch, u, -sine); }
+
+ private:
+  void turn(const Batch& batch, Lanes* u, Lanes s) const {
+    for (int i = 0; i < batch.slots; ++i) {
+      const Lanes x = u[2 * i], y = u[2 * i + 1];
+      u[2 * i] = cosine * x - s * y, u[2 * i + 1] = s * x + cosine * y;
+    }
+  }
+};
 
 /// Finite-difference step of each body in a batch, in its units.
 Lanes probe_step(const Model& model, const Batch& batch) {
@@ -171,6 +205,8 @@ void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) 
   Lanes* u = &direction_[batch.offset];
   add_internal_forces(model_, batch, centred.data(), at_rest.data());
   const Lanes step = probe_step(model_, batch);
+  const BodyFrame frame(model_, batch, position);
+  frame.into_space(batch, u);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     normalise(batch, u);
     for (std::size_t i = 0; i < size; ++i) probe[i] = centred[i] + step * u[i];
@@ -187,6 +223,7 @@ void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) 
         u[i] = response[i] * nodes.inverse_unit_mass[i / 2] * batch.inverse_density;
     });
   }
+  frame.into_body(batch, u);
 }
 
 /// The viscous forces are linear in the velocities, so that each iteration is exact.
@@ -194,6 +231,8 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
   const Batch& batch = model_.batches[b];
   std::vector<Lanes> response(2 * static_cast<std::size_t>(batch.slots));
   Lanes* v = &viscous_direction_[batch.offset];
+  const BodyFrame frame(model_, batch, position);
+  frame.into_space(batch, v);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     normalise(batch, v);
     std::fill(response.begin(), response.end(), Lanes{});
@@ -209,6 +248,7 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
         v[i] = select(damped, -response[i] * nodes.inverse_unit_mass[i / 2], v[i]);
     });
   }
+  frame.into_body(batch, v);
 }
 
 void TimeStepBound::update_internal(const Dofs& position, int iterations) {

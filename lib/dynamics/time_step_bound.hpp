@@ -50,7 +50,7 @@ class TimeStepBound {
   double largest_dt_of(std::size_t body, double contact_factor) const;
 
   const Model& model_;
-  std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant
+  std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant, each in its body's frame
   std::vector<Lanes> internal_;   ///< [batches] w_b^2, 1/s2
   std::vector<double> contact_;   ///< [bodies] w_c^2, 1/s2
   std::vector<double>

@@ -136,6 +136,7 @@ struct Contacts::Implementation {
   void stand_beside(const Encounter& encounter, const Nearest& nearest, const Vec2& point, const Law& law,
                     double outward) {
     const PresentBody& on = bodies[encounter.master];
+    if (corners[encounter.master].any()) outward += 1e-9 * on.longest;  // corners on each other, but for rounding
     if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
     const SlaveNode node = slave_node(encounter, point);
     const Face face{on.outline, corners[encounter.master],

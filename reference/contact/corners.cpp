@@ -20,6 +20,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 35 * degree;  ///< the least
 constexpr double square = 0.95;              ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.81;             ///< likewise: from which on a node does not oppose a face at all
+constexpr double tie = 1e-9;                 ///< of a segment's length: rounding, where corners lie on each other
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
@@ -46,7 +47,9 @@ std::optional<int> face_end(const Face& master, int segment, const SlaveNode& no
 
 /// Whether a point lies past a corner, seen from the face that ends there on that way.
 bool is_past(const Face& master, int corner, int way, const Vec2& point) {
-  return way * (point - master.outline.node(corner)).dot(master.outline.tangent(way < 0 ? corner : corner - 1)) > 0;
+  const int segment = way < 0 ? corner : corner - 1;
+  return way * (point - master.outline.node(corner)).dot(master.outline.tangent(segment)) >
+         tie * master.outline.length(segment);
 }
 
 bool is_beyond(const Face& master, int segment, const SlaveNode& node) {
@@ -64,6 +67,12 @@ std::optional<int> beside_face(const Face& master, int corner, int way, const Sl
   }
   if (is_beyond(master, segment, node) || height(master, segment, node) > outward) return {};
   return segment;
+}
+
+/// Whether the side of a node that opposes a segment better leads from it onwards on that way.
+bool goes_along(const Face& master, int segment, int way, const SlaveNode& node) {
+  const Vec2 t = master.outline.tangent(segment), back = node.before - node.at, on = node.after - node.at;
+  return way * (back.normalized().dot(t) > -on.normalized().dot(t) ? back : on).dot(t) > 0;
 }
 
 /// From 0 at `low` to 1 at `high`, with slope 0 there.
@@ -95,7 +104,11 @@ class Stand {
   NodeLength length(bool beyond) {
     Length sum = side(0) + side(2);
     if (!node_.corner) sum *= opposed_part();
-    if (beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / 2);
+    if (beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / (node_.corner ? 200 : 2));
+    if (beyond && node_.corner) {
+      const Length first = cosine(0, chord_), second = cosine(2, chord_);
+      sum *= ramp(first > second ? first : second, oblique, square);
+    }
     result_.value = sum.value > 0 ? sum : Length(0);  // not positive beside a face shorter than the node's own segments
     return result_;
   }
@@ -131,8 +144,9 @@ class Stand {
     const Arrow corner = to_corner(*end, way);
     const Length squared = dot(corner, corner), part = dot(onward, corner);
     const Length r = squared.value == 0 ? Length(0) : part.value > 0 ? squared / part : Length(2);
-    if (r.value < 1) return full * (1.5 * r - 0.5);
-    if (r.value < 2 && !(neighbour == 0 ? node_.corner_before : node_.corner_after)) return full * (1.5 - 0.5 * r);
+    const bool before_corner = neighbour == 0 ? node_.corner_before : node_.corner_after;
+    if (r.value < (before_corner ? 1 - tie : 1)) return full * (1.5 * r - 0.5);
+    if (r.value < 2 && !before_corner) return full * (1.5 - 0.5 * r);
     result_ = before;
     return 0.5 * full;
   }
@@ -186,13 +200,15 @@ std::optional<Footing> footing(const Face& master, int segment, const SlaveNode&
   Footing best{segment, Stand(master, segment, node).length(false)};
   if (!master.corners.any()) return best;
   const double own_height = height(master, segment, node);
-  if (!node.corner && own_height < 0) {
-    double most = best.length.value.value * own_height * own_height;
+  if (own_height < (node.corner ? tie * master.outline.length(segment) : 0)) {
+    const bool aligned = node.corner && own_height > -tie * master.outline.length(segment);
+    double most = best.length.value.value * std::pow(std::min(own_height, 0.0), 2);
     for (const int way : {-1, 1}) {
       const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
       const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
       if (!other || height(master, *other, node) >= 0) continue;
-      const NodeLength length = Stand(master, *other, node).length(true);
+      if (node.corner && !goes_along(master, *other, way, node)) continue;
+      const NodeLength length = Stand(master, *other, node).length(!aligned);
       const double stored = length.value.value * std::pow(height(master, *other, node), 2);
       if (stored > most) most = stored, best = {*other, length};
     }

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "dynamics/true_spectrum.hpp"
 #include "dynamics/verlet.hpp"
 #include "support/simulations.hpp"
@@ -47,6 +49,22 @@ INSTANTIATE_TEST_SUITE_P(Discs, InternalBound,
                          ::testing::Values(std::pair(40, matrix(1, 0, 0, 1)), std::pair(100, matrix(1, 0, 0, 1)),
                                            std::pair(60, matrix(0.6, 0, 0, 1.2)),
                                            std::pair(60, matrix(1.2, 0.3, -0.1, 0.85))));
+
+// EXACT: a body that turns between updates has the same spectrum, and two more iterations on the same vector, turned along, only come closer to it. Finite
+// differences over 1e-6 round to 1e-9. A vector left behind loses 9 % of w^2 at a turn by 0.4, and an undamped disc that spins blows up.
+TEST(InternalBounds, follow_a_body_that_turns) {
+  Bench bench(free_disc(60, 1));
+  bench.deform(matrix(1.1, 0.2, 0, 0.9));
+  TimeStepBound bound(bench.model, bench.forces.contact().laws());
+  bound.update_internal(bench.state.position);
+  double last = bound.largest_dt();
+  for (int turn = 1; turn <= 20; ++turn) {
+    bench.deform(Eigen::Rotation2Dd(0.4).toRotationMatrix());
+    bound.update_internal(bench.state.position);
+    EXPECT_LE(bound.largest_dt(), last * (1 + 1e-8)) << turn;
+    last = bound.largest_dt();
+  }
+}
 
 /// Bodies already in touch: the bound covers the spectrum of internal and contact forces together.
 Scene two_compliant_discs(const ContactRule& contact) {
