@@ -231,8 +231,8 @@ def draw_rates(axes: Axes, statics: dict[str, list[Stresses]]) -> None:
     for colour, marker, ratio in zip(COLOURS, MARKERS, FACES):
         steps = [spacing(face) for face in FACES[ratio]]
         values = errors(statics, ratio, "all depths")
-        label = "1:1: none" if ratio == "1:1" else f"{ratio}: {observed_order(steps, values):.2f}"
-        axes.loglog(steps, values, marker=marker, markersize=4, color=colour, linewidth=1.1, label=label)
+        axes.loglog(steps, values, marker=marker, markersize=4, color=colour, linewidth=1.1,
+                    label=f"{ratio}: {observed_order(steps, values):.2f}")
     h = np.array([2 / 64, 2 / 8])
     axes.loglog(h, 0.03 * np.sqrt(h / h[1]), "--", color=COLOURS[6], linewidth=1.0, label="slope 1/2")
     axes.set_ylim(3e-6, 0.1)
