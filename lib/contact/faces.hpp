@@ -124,8 +124,9 @@ struct NodeLength {
   std::array<Vec2, Facing::nodes> gradient;
   int corner_row[2] = {-1, -1};  ///< as in Facing
 };
-/// `beyond`: another row is nearer, and a corner lies between the two.
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, bool beyond);
+/// A node's row is its nearest one, or lies beyond a corner from there, or, the node being a corner of the slave, begins where it lies on one of the master.
+enum class Row { nearest, beyond_corner, at_corner };
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, Row kind);
 /// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there.
 struct Foothold {
   int row;

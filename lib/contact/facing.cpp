@@ -39,6 +39,7 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
   if (!pass.master->has_corners()) return feet;
   const Faces faces(pass, window);
   const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
+  if (node.corner) return feet;  // beyond a corner of the master it has its foot there too, on the same node
   for (const int way : {-1, 1}) {
     // A corner that may come between the node and its neighbour leaves it the rest of the segment.
     if (faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))

@@ -171,7 +171,7 @@ Varying nearness(const Varying& distance, double limit) {
 }
 
 /// Near a corner of the master, a node that is none itself touches the faces that it opposes.
-Varying opposed_part(const Beside& at, const Faces& faces, int row, bool beyond, NodeLength& whole) {
+Varying opposed_part(const Beside& at, const Faces& faces, int row, Row kind, NodeLength& whole) {
   const double sight = faces.sight();
   Varying part{1};
   for (const int way : {-1, 1}) {
@@ -187,18 +187,18 @@ Varying opposed_part(const Beside& at, const Faces& faces, int row, bool beyond,
     whole.corner_row[way < 0 ? 0 : 1] = end->corner;
     part = product(part, scaled(-1, product(scaled(-1, opposed, 1), nearness(distance, sight)), 1));
   }
-  if (!beyond) return part;
+  if (kind == Row::nearest) return part;
   whole.varies = true;
   return product(part, nearness(at.depth(), 0.5 * sight));
 }
 
 /// Corners of the slave that lie beside one of the master, inside but nearer to the flank: where the master's face begins their own goes along with it. They count while
 /// they are hardly below it, since this length ends at once where they go past the corner; those exactly on the corner count at any depth.
-Varying part_on_corner(const Beside& at, double sight, NodeLength& whole) {
+Varying part_on_corner(const Beside& at, double sight, Row kind, NodeLength& whole) {
   whole.varies = true;
   const Varying opposition = at.opposition(at.node.opposing_side(at.t));
-  return product(nearness(at.depth(), 0.005 * sight),
-                 smooth_step(scaled(1 / (square - oblique), opposition, -oblique / (square - oblique))));
+  const Varying opposed = smooth_step(scaled(1 / (square - oblique), opposition, -oblique / (square - oblique)));
+  return kind == Row::at_corner ? opposed : product(nearness(at.depth(), 0.005 * sight), opposed);
 }
 
 /// Whether the side of a corner that opposes a face goes from there along it, not past its beginning.
@@ -210,7 +210,7 @@ double energy(const NodeLength& length, double height) { return height < 0 ? len
 
 }  // namespace
 
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, bool beyond) {
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, Row kind) {
   const Beside at{node, window[row]};
   NodeLength whole;
   Varying total;
@@ -218,8 +218,8 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     const Varying length = length_of_side(at, faces, row, side, whole);
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
-  if (!node.corner) total = product(opposed_part(at, faces, row, beyond, whole), total);
-  if (node.corner && beyond) total = product(part_on_corner(at, faces.sight(), whole), total);
+  if (!node.corner) total = product(opposed_part(at, faces, row, kind, whole), total);
+  if (node.corner && kind != Row::nearest) total = product(part_on_corner(at, faces.sight(), kind, whole), total);
   if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
   whole.gradient = total.gradient;
@@ -227,15 +227,15 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
 }
 
 Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, double outward) {
-  Foothold result{row, node_length(node, window, faces, row, false)};
+  Foothold result{row, node_length(node, window, faces, row, Row::nearest)};
   const double height = faces.height(node, row);
   if (height >= (node.corner ? tie * window[row].length : 0)) return result;
-  const bool aligned = node.corner && height > -tie * window[row].length;
+  const Row kind = node.corner && height > -tie * window[row].length ? Row::at_corner : Row::beyond_corner;
   double most = energy(result.length, height);
   for (const int way : {-1, 1}) {
     const int other = faces.beyond(node, row, way, outward);
     if (other < 0 || (node.corner && !lies_along(node, way, tangent(window[other])))) continue;
-    const NodeLength length = node_length(node, window, faces, other, !aligned);
+    const NodeLength length = node_length(node, window, faces, other, kind);
     const double stored = energy(length, faces.height(node, other));
     if (stored > most) most = stored, result = {other, length};
   }

@@ -101,10 +101,11 @@ class Stand {
       foot_ = {first.x + part * chord_.x, first.y + part * chord_.y};
   }
 
-  NodeLength length(bool beyond) {
+  /// `beyond`: where another segment is nearer; `deep`: and the depth below this one does not matter.
+  NodeLength length(bool beyond, bool deep = false) {
     Length sum = side(0) + side(2);
     if (!node_.corner) sum *= opposed_part();
-    if (beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / (node_.corner ? 200 : 2));
+    if (beyond && !deep) sum *= vicinity(norm(own_[1] - foot_), master_.sight / (node_.corner ? 200 : 2));
     if (beyond && node_.corner) {
       const Length first = cosine(0, chord_), second = cosine(2, chord_);
       sum *= ramp(first > second ? first : second, oblique, square);
@@ -208,7 +209,7 @@ std::optional<Footing> footing(const Face& master, int segment, const SlaveNode&
       const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
       if (!other || height(master, *other, node) >= 0) continue;
       if (node.corner && !goes_along(master, *other, way, node)) continue;
-      const NodeLength length = Stand(master, *other, node).length(!aligned);
+      const NodeLength length = Stand(master, *other, node).length(true, aligned);
       const double stored = length.value.value * std::pow(height(master, *other, node), 2);
       if (stored > most) most = stored, best = {*other, length};
     }
