@@ -151,6 +151,9 @@ struct Margins {
   double reach;  ///< of the law, and a skin
   double skin;
   double sight;  ///< beyond the nearest segment, for corners: from a foot to a corner, see node_length.cpp
+
+  Margins(double reach, double skin, bool corners, double longest_segment)
+      : reach(reach), skin(skin), sight(corners ? 2 * longest_segment + skin : 0) {}
 };
 
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to a depth of the skin, one
@@ -198,7 +201,7 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
-  const Margins margins{margin, skin, patch.corners ? 2 * longest + skin : 0.0};
+  const Margins margins(margin, skin, patch.corners, longest);
   find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch,
                   std::max(margin, longest + 2 * skin) + 2 * skin + margins.sight, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return;
@@ -229,7 +232,7 @@ void find_self_patches(const Model& model, const Outlines& outlines, int body, c
     patch.part = begin;
     patch.corners = side.shape->has_corners();
     patch.law = law;
-    const Margins margins{margin, skin, patch.corners ? 2 * side.longest_segment + skin : 0.0};
+    const Margins margins(margin, skin, patch.corners, side.longest_segment);
     narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
     if (patch.nodes[0].count > 0) patches.push_back(patch);
   }

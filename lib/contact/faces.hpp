@@ -12,9 +12,6 @@ inline Vec2 tangent(const MasterSegment& s) { return {s.tangent_x, s.tangent_y};
 inline Vec2 start(const MasterSegment& s) { return {s.x, s.y}; }
 inline Vec2 outward_of(const Vec2& tangent) { return {tangent.y(), -tangent.x()}; }
 
-/// Of a segment's length: rounding, where corners lie on each other.
-constexpr double tie = 1e-9;
-
 /// A slave node with its two segments: [0] the one before it, [1] the one after it.
 struct SlaveNode {
   Vec2 at, neighbour[2];
@@ -44,7 +41,8 @@ class Faces {
   Faces(const Pass& pass, const MasterWindow& window)
       : shape_(*pass.master), window_(window), sight_(corner_sight(*pass.slave, *pass.master)) {}
 
-  /// Row of the face beyond the next corner on a way from the row that a node is beside; -1: no corner near, or not beside that face.
+  /// Row of the face beyond the next corner on a way from the row that a node is beside; -1: no corner near, or not
+  /// beside that face. A corner of the slave may also lie inside a blunt corner, past the beginning of that face.
   int beyond(const SlaveNode& node, int row, int way, double outward) const {
     const std::optional<FaceEnd> end = end_of_face(node, row, way, 2 * sight_ + outward);
     if (!end) return -1;
@@ -85,6 +83,13 @@ class Faces {
     return (node.at - start(window_[row])).dot(outward_of(tangent(window_[row])));
   }
 
+  /// Of a node from a row, or from its end where it stands beyond that; negative inside, m.
+  double gap(const SlaveNode& node, int row) const {
+    const MasterSegment& s = window_[row];
+    const double along = (node.at - start(s)).dot(tangent(s)), over = along - std::clamp(along, 0.0, s.length);
+    return std::copysign(std::hypot(over, height(node, row)), height(node, row));
+  }
+
   Vec2 corner_place(const FaceEnd& end) const { return start(window_[end.corner]); }
 
  private:
@@ -98,7 +103,10 @@ class Faces {
 
   /// Where on the face that begins beyond a corner, with this row, the node stands; -1: not beside it, or too far off.
   int beside(const SlaveNode& node, int row, int way, double outward) const {
-    if (is_past({row, way < 0 ? row + 1 : row}, -way, node.at)) return -1;
+    if (is_past({row, way < 0 ? row + 1 : row}, -way, node.at)) {
+      const double below = -height(node, row);
+      return node.corner && below > 0 && below < window_.depth() ? row : -1;
+    }
     const auto past_bisector = [&](int r) {
       const MasterSegment& s = way < 0 ? window_[r] : window_[r + 1];
       const double from = (node.at - start(s)).dot(Vec2(s.bisector_x, s.bisector_y));
@@ -124,10 +132,12 @@ struct NodeLength {
   std::array<Vec2, Facing::nodes> gradient;
   int corner_row[2] = {-1, -1};  ///< as in Facing
 };
-/// A node's row is its nearest one, or lies beyond a corner from there, or, the node being a corner of the slave, begins where it lies on one of the master.
-enum class Row { nearest, beyond_corner, at_corner };
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, Row kind);
-/// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there.
+/// A node's row is its nearest one, or lies beyond a corner from there, or, the node being a corner of the slave,
+/// begins where it lies on one of the master.
+enum class RowKind { nearest, beyond_corner, at_corner };
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, RowKind kind);
+/// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there: a corner
+/// of the slave the one where it stores less, as it leaves the master through either; any other node where it stores more.
 struct Foothold {
   int row;
   NodeLength length;

@@ -30,6 +30,9 @@ SlaveNode slave_node(const Pass& pass, int index) {
   return result;
 }
 
+/// Of a segment: what a node may stand for more than its own, at a sixth of a segment more than one from a corner.
+constexpr double most_of_share = 0.5 + 17.0 / 216;
+
 std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
                                 double outward) {
   std::vector<Foot> feet;
@@ -43,11 +46,11 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
   for (const int way : {-1, 1}) {
     // A corner that may come between the node and its neighbour leaves it the rest of the segment.
     if (faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
-      feet[0].factor += 0.5;
+      feet[0].factor += most_of_share;
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
       const MasterSegment& s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));
-      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), 1.5});
+      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), 1 + most_of_share});
     }
   }
   for (Foot& foot : feet) foot.factor = std::max(foot.factor, feet[0].factor);
@@ -65,7 +68,7 @@ void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, doub
     const int lane = std::countr_zero(left), row = static_cast<int>(nearest[lane]);
     const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
     const auto [chosen, length] = foothold(node, window, faces, row, outward);
-    rows[lane] = faces.beyond_corner(node, chosen) ? -1 : chosen;
+    rows[lane] = chosen == row && faces.beyond_corner(node, chosen) ? -1 : chosen;
     facing.length[lane] = rows[lane] < 0 ? 0 : length.value;
     if (!length.varies) continue;
     facing.varying |= 1U << lane;

@@ -10,15 +10,17 @@ namespace pliant {
 
 /// Eight slave nodes beside a master, and the length of contact that each stands for.
 ///
-/// Only opposing outlines touch. Near a corner of the master, no further off along the face than a segment of either outline, a node belongs
-/// to that of the two faces that it opposes squarely: a node of a floor that a block has sunk into would else count as beside the block's flank for as
-/// long as that is nearer than the bottom, and lock the block. A node that opposes neither face squarely touches none of them, unless it is a corner
-/// itself: the master's corner is a node of the other pass. Nothing touches beyond a corner.
+/// Only opposing outlines touch. Near a corner of the master a node that is none itself counts as far as it opposes the
+/// face, not at all across it, and of its nearest face and the one beyond the corner it touches the one where it stores
+/// more: a node of a floor that a block has sunk into would else count as beside the block's flank for as long as that
+/// is nearer than the bottom, and lock the block. A corner of the slave touches the one of the two where it stores less,
+/// unless it lies on the master's corner. Nothing touches beyond a corner.
 ///
-/// Each of a node's two segments stands for half its length, but for the last two nodes before the end of the master's face, at a corner: they share out what
-/// of the face lies there (node_length.cpp), the last one the less the nearer it comes. At a corner of the slave, the segment that opposes the master
-/// less than the other counts less, down to nothing. So two flat faces touch over the length that they share, wherever their nodes are. The
-/// energy of a contact is its length times that of its law, and its forces are the gradient of both.
+/// Each of a node's two segments stands for half its length, but for the last two nodes before the end of the master's
+/// face, at a corner: they share out what of the face lies there (node_length.cpp), the last one the less the nearer it
+/// comes. At a corner of the slave, the segment that opposes the master less than the other counts less, down to
+/// nothing. So two flat faces touch over the length that they share, wherever their nodes are. The energy of a contact
+/// is its length times that of its law, and its forces are the gradient of both.
 struct Facing {
   /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment, and the corners at the ends of its face.
   enum Node { before, itself, after, segment_start, segment_end, corner_back, corner_on, nodes };
@@ -31,6 +33,9 @@ struct Facing {
   int corner_row[lane_count]
                 [2];  ///< of the window, whose first nodes are the corners; -1: the length does not depend on it
 };
+
+/// Of a segment's length: rounding, where corners lie on each other.
+constexpr double tie = 1e-9;
 
 /// How far along a face its corner counts, m.
 inline double corner_sight(const OutlineShape& slave, const OutlineShape& master) {
@@ -51,7 +56,7 @@ void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, doub
 
 /// From position i of the pass on; at most `outward` off.
 inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNodes& nodes, int i, double outward) {
-  if (pass.corners) outward += 1e-9 * window.longest();  // corners on each other, but for rounding
+  if (pass.corners) outward += tie * window.longest();
   Facing facing;
   facing.p = project(window, nodes.x, nodes.y, outward);
   facing.length = nodes.tributary_length;

@@ -7,11 +7,16 @@
 namespace pliant {
 namespace {
 
-/// Cosines of the angle between a node's normal, turned round, and that of a face: from where on it opposes the face in full, 18 degrees, and to where not
-/// at all, 36 degrees. Less than half of a right angle: no node opposes both faces at a square corner.
+/// Cosines of the angle between a node's normal, turned round, and that of a face: from where on it opposes the face in
+/// full, 18 degrees, and to where not at all, 36 degrees. Less than half of a right angle: no node opposes both faces
+/// at a square corner.
 constexpr double square = 0.95, oblique = 0.81;
 /// Difference of such cosines at which the lesser of a corner's two segments no longer counts: 35 degrees, as of the least corner that lies flat.
 constexpr double lesser = 0.18;
+
+/// Of the shorter of both outlines' longest segments: the way beyond a corner of the master over which a corner of the
+/// slave takes over from its neighbour.
+constexpr double takeover = 0.1;
 
 /// A number that depends on the seven nodes.
 struct Varying {
@@ -31,7 +36,8 @@ struct Varying {
   }
 };
 
-/// One slave node beside one segment of the master, at a foot there. What is measured from the foot does not jump where the foot goes from one segment to the next.
+/// One slave node beside one segment of the master, at a foot there. What is measured from the foot does not jump where
+/// the foot goes from one segment to the next.
 struct Beside {
   const SlaveNode& node;
   const MasterSegment& segment;
@@ -62,7 +68,8 @@ struct Beside {
     }
   }
 
-  /// From the foot to the corner on a way, over the part in that direction of the segment to one of the node's neighbours; infinite where that leads away.
+  /// From the foot to the corner on a way, over the part in that direction of the segment to one of the node's
+  /// neighbours; infinite where that leads away.
   Varying steps_to(const Vec2& place, int way, int side) const {
     const Vec2 chord = place - foot, edge = node.neighbour[side] - node.at;
     const double part = edge.dot(chord);
@@ -103,7 +110,8 @@ struct Beside {
     turn_tangent(-u.dot(n), v);
     return v;
   }
-  /// Cosine between the normal of the node, by the line between its neighbours, turned round, and that of the face from the foot to the corner on a way.
+  /// Cosine between the normal of the node, by the line between its neighbours, turned round, and that of the face from
+  /// the foot to the corner on a way.
   Varying opposition_towards(const Vec2& place, int way) const {
     const Vec2 chord = place - foot, span = node.neighbour[1] - node.neighbour[0];
     const double length = chord.norm(), width = span.norm();
@@ -140,21 +148,51 @@ Varying product(const Varying& a, const Varying& b) {
   return v;
 }
 
-/// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. With r the way from the foot to the
-/// corner over the segment's part that way, the last node before the corner (r < 1) has 3/2 r - 1 of the segment more, and the one before
-/// that (1 < r < 2) 1 - r/2. Both together stand for what of the face lies beyond them, and each length goes with the node's place without a
-/// jump, to nothing at the corner, where other faces come near. A corner of the slave keeps its own: nobody else could stand in for it.
+/// How far a cosine between opposing normals says that they oppose: 0 to 1.
+Varying opposed(const Varying& cosine) {
+  return smooth_step(scaled(1 / (square - oblique), cosine, -oblique / (square - oblique)));
+}
+
+/// What the last two nodes before a corner of the master stand for, r of their segments from it, in segments, the half
+/// behind each included. Two in line, s and 1 + s from the corner, share the 1.5 + s that they have.
+Varying share_before_corner(const Varying& r) {
+  const double s = r.value < 1 ? r.value : r.value - 1, last = s * s * (3.5 - 2 * s), slope = s * (7 - 6 * s);
+  Varying v = scaled(r.value < 1 ? slope : 1 - slope, r);
+  v.value = r.value < 1 ? last : 1.5 + s - last;
+  return v;
+}
+
+/// What the neighbour of a slave's corner stands for while that comes onto the face past the master's corner, r steps
+/// from the neighbour: half a segment more goes over to the corner.
+Varying share_beside_corner(const Beside& at, const Vec2& corner, int way, const Varying& r, double width) {
+  const Varying distance = at.distance(corner, way);
+  Varying past = scaled(distance.value / (r.value * r.value), r, -distance.value / r.value);
+  past.add(1 - 1 / r.value, distance);
+  return scaled(-0.5, smooth_step(scaled(1 / width, past)), 1.5);
+}
+
+/// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. The
+/// last two nodes before the corner share what of the face lies there, as far as they oppose it; each length goes with
+/// the node's place without a jump, to nothing at the corner, where other faces come near. A corner of the slave keeps
+/// its own: nobody else could stand in for it.
 Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, NodeLength& whole) {
   const double length = at.node.length[side];
   if (at.node.corner) return {0.5 * length};
   const int way = (at.node.neighbour[side] - at.node.at).dot(at.t) < 0 ? -1 : 1;
   const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * at.node.present[side]);
   if (!end) return {0.5 * length};
-  const Varying r = at.steps_to(faces.corner_place(*end), way, side);
-  if (r.value >= (at.node.beside_corner[side] ? 1 - tie : 2)) return {0.5 * length};
+  const Vec2 corner = faces.corner_place(*end);
+  const Varying r = at.steps_to(corner, way, side);
+  const bool own_corner = at.node.beside_corner[side] && r.value > 1 - tie;  // is on the face too
+  if (r.value >= 2 || (own_corner && r.value < 1 + tie)) return {0.5 * length};
+  const Varying share =
+      own_corner ? share_beside_corner(at, corner, way, r, takeover * faces.sight()) : share_before_corner(r);
+  if (own_corner && share.value <= 1) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
-  return scaled(length, r.value < 1 ? scaled(1.5, r, -1) : scaled(-0.5, r, 1), 0.5 * length);
+  const Varying part = opposed(at.opposition_towards(corner, way));
+  return r.value < 1 ? scaled(length, product(share, scaled(1.0 / 3, part, 2.0 / 3)), -0.5 * length)
+                     : scaled(length, product(part, scaled(1, share, -1)), 0.5 * length);
 }
 
 /// The lesser opposing segment of a corner counts by this factor.
@@ -171,7 +209,7 @@ Varying nearness(const Varying& distance, double limit) {
 }
 
 /// Near a corner of the master, a node that is none itself touches the faces that it opposes.
-Varying opposed_part(const Beside& at, const Faces& faces, int row, Row kind, NodeLength& whole) {
+Varying opposed_part(const Beside& at, const Faces& faces, int row, RowKind kind, NodeLength& whole) {
   const double sight = faces.sight();
   Varying part{1};
   for (const int way : {-1, 1}) {
@@ -180,25 +218,15 @@ Varying opposed_part(const Beside& at, const Faces& faces, int row, Row kind, No
     const Vec2 corner = faces.corner_place(*end);
     const Varying distance = at.distance(corner, way);
     if (distance.value >= sight) continue;
-    const Varying opposed =
-        smooth_step(scaled(1 / (square - oblique), at.opposition_towards(corner, way), -oblique / (square - oblique)));
-    if (opposed.value == 1) continue;
+    const Varying across = scaled(-1, opposed(at.opposition_towards(corner, way)), 1);
+    if (across.value == 0) continue;
     whole.varies = true;
     whole.corner_row[way < 0 ? 0 : 1] = end->corner;
-    part = product(part, scaled(-1, product(scaled(-1, opposed, 1), nearness(distance, sight)), 1));
+    part = product(part, scaled(-1, product(across, nearness(distance, sight)), 1));
   }
-  if (kind == Row::nearest) return part;
+  if (kind == RowKind::nearest) return part;
   whole.varies = true;
   return product(part, nearness(at.depth(), 0.5 * sight));
-}
-
-/// Corners of the slave that lie beside one of the master, inside but nearer to the flank: where the master's face begins their own goes along with it. They count while
-/// they are hardly below it, since this length ends at once where they go past the corner; those exactly on the corner count at any depth.
-Varying part_on_corner(const Beside& at, double sight, Row kind, NodeLength& whole) {
-  whole.varies = true;
-  const Varying opposition = at.opposition(at.node.opposing_side(at.t));
-  const Varying opposed = smooth_step(scaled(1 / (square - oblique), opposition, -oblique / (square - oblique)));
-  return kind == Row::at_corner ? opposed : product(nearness(at.depth(), 0.005 * sight), opposed);
 }
 
 /// Whether the side of a corner that opposes a face goes from there along it, not past its beginning.
@@ -206,11 +234,12 @@ bool lies_along(const SlaveNode& node, int way, const Vec2& face) {
   return way * (node.neighbour[node.opposing_side(face)] - node.at).dot(face) > 0;
 }
 
-double energy(const NodeLength& length, double height) { return height < 0 ? length.value * height * height : 0; }
+/// What a node stores under a linear penalty, but for a factor that all faces share.
+double energy(const NodeLength& length, double gap) { return gap < 0 ? length.value * gap * gap : 0; }
 
 }  // namespace
 
-NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, Row kind) {
+NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, RowKind kind) {
   const Beside at{node, window[row]};
   NodeLength whole;
   Varying total;
@@ -219,7 +248,10 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
   if (!node.corner) total = product(opposed_part(at, faces, row, kind, whole), total);
-  if (node.corner && kind != Row::nearest) total = product(part_on_corner(at, faces.sight(), kind, whole), total);
+  if (node.corner && kind == RowKind::at_corner) {
+    whole.varies = true;
+    total = product(opposed(at.opposition(node.opposing_side(at.t))), total);
+  }
   if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
   whole.gradient = total.gradient;
@@ -227,17 +259,19 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
 }
 
 Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, double outward) {
-  Foothold result{row, node_length(node, window, faces, row, Row::nearest)};
-  const double height = faces.height(node, row);
-  if (height >= (node.corner ? tie * window[row].length : 0)) return result;
-  const Row kind = node.corner && height > -tie * window[row].length ? Row::at_corner : Row::beyond_corner;
-  double most = energy(result.length, height);
+  Foothold result{row, node_length(node, window, faces, row, RowKind::nearest)};
+  const double height = faces.height(node, row), rounding = tie * window[row].length;
+  if (height >= (node.corner ? rounding : 0)) return result;
+  const bool at_corner = node.corner && height > -rounding, least = node.corner && !at_corner;
+  const RowKind kind = at_corner ? RowKind::at_corner : node.corner ? RowKind::nearest : RowKind::beyond_corner;
+  double stored = energy(result.length, faces.gap(node, row));
   for (const int way : {-1, 1}) {
     const int other = faces.beyond(node, row, way, outward);
-    if (other < 0 || (node.corner && !lies_along(node, way, tangent(window[other])))) continue;
+    if (other < 0 || faces.height(node, other) >= 0) continue;
+    if (at_corner && !lies_along(node, way, tangent(window[other]))) continue;
     const NodeLength length = node_length(node, window, faces, other, kind);
-    const double stored = energy(length, faces.height(node, other));
-    if (stored > most) most = stored, result = {other, length};
+    const double there = energy(length, faces.gap(node, other));
+    if (least ? there < stored : there > stored) stored = there, result = {other, length};
   }
   return result;
 }

@@ -27,7 +27,8 @@ constexpr double probe_size = 1e-6;
 /// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least, 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
 
-/// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place in the list.
+/// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
+/// in the list.
 std::vector<Lanes> start_directions(const Model& model) {
   int most_nodes = 0;
   for (const CompliantShape& shape : model.shapes) most_nodes = std::max(most_nodes, shape.nodes());
@@ -55,8 +56,9 @@ std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
   return result;
 }
 
-/// A frame that turns with each body of a batch: its x axis leads from the body's first node to the one that is farthest from it in the reference shape.
-/// Power iterations keep their vectors in it: two iterations an update would not follow a body that spins.
+/// A frame that turns with each body of a batch: its x axis leads from the body's first node to the one that is
+/// farthest from it in the reference shape. Power iterations keep their vectors in it: two iterations an update would
+/// not follow a body that spins.
 struct BodyFrame {
   Lanes cosine, sine;
 

@@ -83,7 +83,8 @@ struct Contacts::Implementation {
     return std::move(result);
   }
 
-  /// What a node remembers is lost when it is no longer beside the other body. Past a corner its length has come to nothing.
+  /// What a node remembers is lost when it is no longer beside the other body. Past a corner its length has come to
+  /// nothing.
   void part(const Encounter& encounter, const ContactMemory& memory) {
     if (corners[encounter.master].any()) return;
     result.dissipated +=
@@ -136,7 +137,7 @@ struct Contacts::Implementation {
   void stand_beside(const Encounter& encounter, const Nearest& nearest, const Vec2& point, const Law& law,
                     double outward) {
     const PresentBody& on = bodies[encounter.master];
-    if (corners[encounter.master].any()) outward += 1e-9 * on.longest;  // corners on each other, but for rounding
+    if (corners[encounter.master].any()) outward += tie * on.longest;
     if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
     const SlaveNode node = slave_node(encounter, point);
     const Face face{on.outline, corners[encounter.master],

@@ -20,7 +20,7 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double corner_turn = 35 * degree;  ///< the least
 constexpr double square = 0.95;              ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.81;             ///< likewise: from which on a node does not oppose a face at all
-constexpr double tie = 1e-9;                 ///< of a segment's length: rounding, where corners lie on each other
+constexpr double takeover = 0.1;             ///< of a sight: past the master's corner, from the slave's neighbour to it
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
@@ -57,10 +57,12 @@ bool is_beyond(const Face& master, int segment, const SlaveNode& node) {
          (master.corners.at(segment + 1) && is_past(master, segment + 1, 1, node.at));
 }
 
-/// The segment of the face beyond a corner that the node stands beside.
+/// The segment of the face beyond a corner that the node stands beside. One that is a corner itself may also stand inside
+/// a blunt corner, past the beginning of that face.
 std::optional<int> beside_face(const Face& master, int corner, int way, const SlaveNode& node, double outward) {
   int segment = way < 0 ? corner - 1 : corner;
-  if (is_past(master, corner, -way, node.at)) return {};
+  if (is_past(master, corner, -way, node.at))
+    return node.corner && height(master, segment, node) < 0 ? std::optional(segment) : std::nullopt;
   for (int next = segment + (way < 0 ? 0 : 1); !master.corners.at(next); next += way, segment += way) {
     const Vec2 halving = master.outline.tangent(next - 1) + master.outline.tangent(next);
     if (((node.at - master.outline.node(next)).dot(halving) < 0) != (way < 0)) break;
@@ -82,6 +84,9 @@ Length ramp(const Length& x, double low, double high) {
   return u.value < 1 ? u * u * (3 - 2 * u) : Length(1);
 }
 
+/// Its nearest segment, one beyond a corner from there, or one that begins at the corner on which the node lies.
+enum class Place { nearest, beyond, on_corner };
+
 /// A node beside a segment, with all that its length depends on as variables.
 class Stand {
  public:
@@ -101,15 +106,14 @@ class Stand {
       foot_ = {first.x + part * chord_.x, first.y + part * chord_.y};
   }
 
-  /// `beyond`: where another segment is nearer; `deep`: and the depth below this one does not matter.
-  NodeLength length(bool beyond, bool deep = false) {
+  /// From the segment; negative inside, m.
+  double gap() const { return std::copysign(norm(own_[1] - foot_).value, height(master_, segment_, node_)); }
+
+  NodeLength length(Place place) {
     Length sum = side(0) + side(2);
     if (!node_.corner) sum *= opposed_part();
-    if (beyond && !deep) sum *= vicinity(norm(own_[1] - foot_), master_.sight / (node_.corner ? 200 : 2));
-    if (beyond && node_.corner) {
-      const Length first = cosine(0, chord_), second = cosine(2, chord_);
-      sum *= ramp(first > second ? first : second, oblique, square);
-    }
+    if (!node_.corner && place == Place::beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / 2);
+    if (place == Place::on_corner) sum *= flatness();
     result_.value = sum.value > 0 ? sum : Length(0);  // not positive beside a face shorter than the node's own segments
     return result_;
   }
@@ -145,11 +149,34 @@ class Stand {
     const Arrow corner = to_corner(*end, way);
     const Length squared = dot(corner, corner), part = dot(onward, corner);
     const Length r = squared.value == 0 ? Length(0) : part.value > 0 ? squared / part : Length(2);
-    const bool before_corner = neighbour == 0 ? node_.corner_before : node_.corner_after;
-    if (r.value < (before_corner ? 1 - tie : 1)) return full * (1.5 * r - 0.5);
-    if (r.value < 2 && !before_corner) return full * (1.5 - 0.5 * r);
-    result_ = before;
-    return 0.5 * full;
+    const bool own_corner = (neighbour == 0 ? node_.corner_before : node_.corner_after) && r.value > 1 - tie;
+    const Length rest = own_corner ? norm(corner) * (1 - 1 / r) : Length(0);  // from that corner to the master's
+    const double width = takeover * master_.sight;
+    if (r.value >= 2 || (own_corner && (r.value < 1 + tie || rest.value >= width))) {
+      result_ = before;
+      return 0.5 * full;
+    }
+    const Length opposed = opposition(corner, way);
+    if (own_corner) return full * (0.5 + 0.5 * opposed * (1 - ramp(rest, 0, width)));
+    if (r.value < 1) return full * (last_share(r) * (2 + opposed) / 3 - 0.5);
+    return full * (0.5 + opposed * (r - 0.5 - last_share(r - 1)));
+  }
+
+  /// Of the last node before a corner, in segments, and with it of the one before that: both share 3/2 and what lies
+  /// between the last one and the corner.
+  static Length last_share(const Length& r) { return r * r * (3.5 - 2 * r); }
+
+  /// How far a node that is no corner opposes the face towards the corner there.
+  Length opposition(const Arrow& corner, int way) const {
+    if (safe_norm(corner).value == 0) return 0;
+    const Arrow across = own_[0] - own_[2];  // along a face that the node opposes
+    return ramp(dot(across, corner) * way / (norm(across) * norm(corner)), oblique, square);
+  }
+
+  /// How far the flatter side of a corner goes along with the segment.
+  Length flatness() const {
+    const Length first = cosine(0, chord_), second = cosine(2, chord_);
+    return ramp(first > second ? first : second, oblique, square);
   }
 
   /// Near a corner a node that is none itself touches the faces that it opposes.
@@ -161,11 +188,7 @@ class Stand {
       const NodeLength before = result_;
       const Arrow corner = to_corner(*end, way);
       const Length distance = safe_norm(corner);
-      Length opposed = 0;
-      if (distance.value > 0) {
-        const Arrow across = own_[0] - own_[2];  // along a face that the node opposes
-        opposed = ramp(dot(across, corner) * way / (norm(across) * distance), oblique, square);
-      }
+      const Length opposed = opposition(corner, way);
       if (distance.value >= master_.sight || opposed.value == 1)
         result_ = before;
       else
@@ -198,23 +221,29 @@ Corners::Corners(const ContactOutline& outline) {
 }
 
 std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward) {
-  Footing best{segment, Stand(master, segment, node).length(false)};
+  Stand nearest(master, segment, node);
+  Footing best{segment, nearest.length(Place::nearest)};
   if (!master.corners.any()) return best;
-  const double own_height = height(master, segment, node);
-  if (own_height < (node.corner ? tie * master.outline.length(segment) : 0)) {
-    const bool aligned = node.corner && own_height > -tie * master.outline.length(segment);
-    double most = best.length.value.value * std::pow(std::min(own_height, 0.0), 2);
+  const double own_height = height(master, segment, node), rounding = tie * master.outline.length(segment);
+  const auto energy = [](const NodeLength& length, double gap) { return length.value.value * gap * gap; };
+  if (own_height < (node.corner ? rounding : 0)) {
+    const bool on_corner = node.corner && own_height > -rounding;
+    double stored = energy(best.length, std::min(nearest.gap(), 0.0));
     for (const int way : {-1, 1}) {
       const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
       const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
       if (!other || height(master, *other, node) >= 0) continue;
-      if (node.corner && !goes_along(master, *other, way, node)) continue;
-      const NodeLength length = Stand(master, *other, node).length(true, aligned);
-      const double stored = length.value.value * std::pow(height(master, *other, node), 2);
-      if (stored > most) most = stored, best = {*other, length};
+      if (on_corner && !goes_along(master, *other, way, node)) continue;
+      Stand there(master, *other, node);
+      const NodeLength length = there.length(on_corner     ? Place::on_corner
+                                             : node.corner ? Place::nearest
+                                                           : Place::beyond);
+      const double stored_there = energy(length, there.gap());
+      if (node.corner && !on_corner ? stored_there < stored : stored_there > stored)
+        stored = stored_there, best = {*other, length};
     }
   }
-  return is_beyond(master, best.segment, node) ? std::nullopt : std::optional(best);
+  return best.segment == segment && is_beyond(master, segment, node) ? std::nullopt : std::optional(best);
 }
 
 }  // namespace pliant::reference

@@ -29,6 +29,9 @@ class Corners {
   bool any_ = false;
 };
 
+/// Of a segment's length: rounding, where corners lie on each other.
+constexpr double tie = 1e-9;
+
 /// A node of the slave between its two neighbours, as the master sees it.
 struct SlaveNode {
   Vec2 before, at, after;
@@ -56,8 +59,8 @@ struct Footing {
   NodeLength length;
 };
 
-/// Of a node that stands beside the given segment (METHOD 4): that one, or beyond a near corner one of the next face, where the node would store more;
-/// none beyond a corner that ends the face.
+/// Of a node that stands beside the given segment (METHOD 4): that one, or beyond a near corner one of the next face,
+/// where the node would store more; none beyond a corner that ends the face.
 std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward);
 
 }  // namespace pliant::reference

@@ -55,7 +55,9 @@ PlateErrors plate_errors(int nodes) {
   Simulation simulation(model);
   const double first = mean_force(simulation, 0.05) / force_at_5_percent - 1;
   const double second = mean_force(simulation, 0.1) / force_at_10_percent - 1;
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-3) << "EXACT: 1 % is promised";
+  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 0.01)
+      << "EXACT: what a run warns of; nodes that touch and leave in time with the steps: 1e-6 to 3e-3, as rounding has "
+         "it";
   return {first, second};
 }
 

@@ -36,8 +36,10 @@ TEST(InitialOverlap, discs_a_diameter_apart) {
   EXPECT_NE(text.find("apart by 0.0029 m"), std::string::npos) << text;
 }
 
-// RATE: rigid corners that start deep in each other, a fourth of a segment and more, are pushed apart by what is stored there and no more. Forces turn where nodes change
-// their faces, which costs a step there, of either sign: at most what a run warns of, and a tenth of it with a fortieth of the step. When the face that a node touches changed at once they gained seven times what was stored, whatever the step.
+// RATE: rigid corners that start deep in each other, a fourth of a segment and more, are pushed apart by what is stored
+// there and no more. Forces turn where nodes change their faces, which costs a step there, of either sign: at most what
+// a run warns of, and a tenth of it with a fortieth of the step. When the face that a node touches changed at once they
+// gained seven times what was stored, whatever the step.
 TEST(InitialOverlap, of_corner_in_corner_sets_free_what_it_stores) {
   const auto balance = [](double safety) {
     Scene scene = with(many_sided_disc("disc", 2, 8), {{0, 0}});

@@ -12,7 +12,7 @@ namespace pliant::dynamics_tests {
 namespace {
 
 /// A clamp about 2 in size, its slot 0.3 wide, that an initial velocity closes; nothing else is there.
-Scene clamp(bool self_contact, double friction = 0) {
+Scene clamp(bool self_contact, double friction = 0, double safety = 0.4) {
   Scene scene = empty_scene(4);
   ShapeSpec shape = box_shape("clamp", 2, 2, 0.13);
   shape.points = {{-1, -1}, {1, -1}, {1, -0.15}, {-0.4, -0.15}, {-0.4, 0.15}, {1, 0.15}, {1, 1}, {-1, 1}};
@@ -22,7 +22,7 @@ Scene clamp(bool self_contact, double friction = 0) {
   scene.grains = {grains("clamp", "clamp", BodyKind::compliant, {{0, 0}}, closing)};
   scene.contacts = {friction > 0 ? rough(300, friction) : smooth(300)};
   scene.contact.self_contact = self_contact;
-  scene.time.safety = 0.4;
+  scene.time.safety = safety;
   return scene;
 }
 
@@ -74,7 +74,8 @@ TEST(SelfContact, with_friction) {
   const Closing with = close(clamp(true, 0.3));
   EXPECT_GT(with.dissipated, 1e-7);
   EXPECT_LT(with.momentum, 1e-12) << "EXACT";
-  EXPECT_LT(with.balance, 1e-3) << "RATE";
+  EXPECT_LT(with.balance, 1e-2) << "EXACT: what a run warns of";
+  EXPECT_LT(close(clamp(true, 0.3, 0.1)).balance, 1e-3) << "RATE: a sixteenth of that, where slips set in at any time";
 }
 
 /// EXACT: a body that is never near itself moves on, bit by bit, as if it could not touch itself.

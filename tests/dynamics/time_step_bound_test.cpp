@@ -50,8 +50,9 @@ INSTANTIATE_TEST_SUITE_P(Discs, InternalBound,
                                            std::pair(60, matrix(0.6, 0, 0, 1.2)),
                                            std::pair(60, matrix(1.2, 0.3, -0.1, 0.85))));
 
-// EXACT: a body that turns between updates has the same spectrum, and two more iterations on the same vector, turned along, only come closer to it. Finite
-// differences over 1e-6 round to 1e-9. A vector left behind loses 9 % of w^2 at a turn by 0.4, and an undamped disc that spins blows up.
+// EXACT: a body that turns between updates has the same spectrum, and two more iterations on the same vector, turned
+// along, only come closer to it; on one left behind they do not, and an undamped disc that spins blows up. Finite
+// differences over 1e-6 round to 1e-9.
 TEST(InternalBounds, follow_a_body_that_turns) {
   Bench bench(free_disc(60, 1));
   bench.deform(matrix(1.1, 0.2, 0, 0.9));

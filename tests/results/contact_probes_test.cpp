@@ -147,9 +147,9 @@ TEST(ContactProbes, a_node_that_touches_twice_has_its_length_once) {
   Simulation simulation(model);
   Probe floor = probe_of("contact_length", "floor");
   floor.with = "all";
-  // EXACT: both bottoms, less what the node at 2 stands for under one of them, 0.045 from its corner: 3/2 of that, as the
-  // last node before it.
-  EXPECT_NEAR(measured(simulation, floor)[0], 2 - 1.5 * 0.045, 1e-12);
+  // EXACT: both bottoms, less what the node at 2 stands for under one of them, 0.045 and so s = 0.45 segments from its
+  // corner: s^2 (7/2 - 2 s) segments, as the last node before it.
+  EXPECT_NEAR(measured(simulation, floor)[0], 2 - 0.1 * 0.45 * 0.45 * (3.5 - 0.9), 1e-12);
   EXPECT_EQ(measured_vector(simulation, probe_of("contacts", "floor")), Vec2(2, 20)) << "EXACT: one of them twice";
 }
 
