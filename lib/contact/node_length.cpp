@@ -17,6 +17,9 @@ constexpr double lesser = 0.18;
 /// Of the shorter of both outlines' longest segments: the way beyond a corner of the master over which a corner of the
 /// slave takes over from its neighbour.
 constexpr double takeover = 0.1;
+/// Of the same: so deep corners of the slave no longer touch the face that they go along with when the flank is nearer;
+/// half of it they do in full. So corners that lie on each other but for little touch both at any offset.
+constexpr double shallow = 0.005;
 
 /// A number that depends on the seven nodes.
 struct Varying {
@@ -162,13 +165,21 @@ Varying share_before_corner(const Varying& r) {
   return v;
 }
 
+/// Of a distance: 1 up to half of the limit, 0 from the limit on.
+Varying nearness(const Varying& distance, double limit) {
+  return scaled(-1, smooth_step(scaled(2 / limit, distance, -1)), 1);
+}
+
 /// What the neighbour of a slave's corner stands for while that comes onto the face past the master's corner, r steps
-/// from the neighbour: half a segment more goes over to the corner.
-Varying share_beside_corner(const Beside& at, const Vec2& corner, int way, const Varying& r, double width) {
+/// from the neighbour: half a segment more goes over to the corner. Where both are hardly below the face, the corner has
+/// it at once.
+Varying share_beside_corner(const Beside& at, const Vec2& corner, int way, const Varying& r, double sight) {
   const Varying distance = at.distance(corner, way);
   Varying past = scaled(distance.value / (r.value * r.value), r, -distance.value / r.value);
   past.add(1 - 1 / r.value, distance);
-  return scaled(-0.5, smooth_step(scaled(1 / width, past)), 1.5);
+  const Varying left = scaled(-1, smooth_step(scaled(1 / (takeover * sight), past)), 1),
+                deep = scaled(-1, nearness(at.depth(), shallow * sight), 1);
+  return scaled(0.5, product(left, deep), 1);
 }
 
 /// What the segment on one side of the node stands for: half of its length, but near the end of the master's face. The
@@ -185,8 +196,7 @@ Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, 
   const Varying r = at.steps_to(corner, way, side);
   const bool own_corner = at.node.beside_corner[side] && r.value > 1 - tie;  // is on the face too
   if (r.value >= 2 || (own_corner && r.value < 1 + tie)) return {0.5 * length};
-  const Varying share =
-      own_corner ? share_beside_corner(at, corner, way, r, takeover * faces.sight()) : share_before_corner(r);
+  const Varying share = own_corner ? share_beside_corner(at, corner, way, r, faces.sight()) : share_before_corner(r);
   if (own_corner && share.value <= 1) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
@@ -201,11 +211,6 @@ Varying factor_of_lesser(const Beside& at, int side, NodeLength& whole) {
   behind.add(1 / lesser, at.opposition(1 - side)).add(-1 / lesser, at.opposition(side));
   whole.varies |= behind.value > 0 && behind.value < 1;
   return scaled(-1, smooth_step(behind), 1);
-}
-
-/// Of a distance: 1 up to half of the limit, 0 from the limit on.
-Varying nearness(const Varying& distance, double limit) {
-  return scaled(-1, smooth_step(scaled(2 / limit, distance, -1)), 1);
 }
 
 /// Near a corner of the master, a node that is none itself touches the faces that it opposes.
@@ -248,9 +253,10 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
     total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
   }
   if (!node.corner) total = product(opposed_part(at, faces, row, kind, whole), total);
-  if (node.corner && kind == RowKind::at_corner) {
+  if (node.corner && kind != RowKind::nearest) {
     whole.varies = true;
     total = product(opposed(at.opposition(node.opposing_side(at.t))), total);
+    if (kind == RowKind::beyond_corner) total = product(nearness(at.depth(), shallow * faces.sight()), total);
   }
   if (total.value <= 0) total = {};  // beside a face shorter than the node's own segments
   whole.value = total.value;
@@ -262,16 +268,19 @@ Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces
   Foothold result{row, node_length(node, window, faces, row, RowKind::nearest)};
   const double height = faces.height(node, row), rounding = tie * window[row].length;
   if (height >= (node.corner ? rounding : 0)) return result;
-  const bool at_corner = node.corner && height > -rounding, least = node.corner && !at_corner;
-  const RowKind kind = at_corner ? RowKind::at_corner : node.corner ? RowKind::nearest : RowKind::beyond_corner;
+  const RowKind kind = node.corner && height > -rounding ? RowKind::at_corner : RowKind::beyond_corner;
   double stored = energy(result.length, faces.gap(node, row));
   for (const int way : {-1, 1}) {
     const int other = faces.beyond(node, row, way, outward);
     if (other < 0 || faces.height(node, other) >= 0) continue;
-    if (at_corner && !lies_along(node, way, tangent(window[other]))) continue;
+    const auto stored_there = [&](const NodeLength& length) { return energy(length, faces.gap(node, other)); };
+    if (node.corner && kind != RowKind::at_corner) {
+      const NodeLength length = node_length(node, window, faces, other, RowKind::nearest);
+      if (const double less = stored_there(length); less < stored) stored = less, result = {other, length};
+    }
+    if (node.corner && !lies_along(node, way, tangent(window[other]))) continue;
     const NodeLength length = node_length(node, window, faces, other, kind);
-    const double there = energy(length, faces.gap(node, other));
-    if (least ? there < stored : there > stored) stored = there, result = {other, length};
+    if (const double more = stored_there(length); more > stored) stored = more, result = {other, length};
   }
   return result;
 }

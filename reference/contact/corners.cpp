@@ -21,6 +21,7 @@ constexpr double corner_turn = 35 * degree;  ///< the least
 constexpr double square = 0.95;              ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.81;             ///< likewise: from which on a node does not oppose a face at all
 constexpr double takeover = 0.1;             ///< of a sight: past the master's corner, from the slave's neighbour to it
+constexpr double shallow = 0.005;            ///< of a sight: no deeper do corners touch a face when a flank is nearer
 constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
@@ -112,8 +113,9 @@ class Stand {
   NodeLength length(Place place) {
     Length sum = side(0) + side(2);
     if (!node_.corner) sum *= opposed_part();
-    if (!node_.corner && place == Place::beyond) sum *= vicinity(norm(own_[1] - foot_), master_.sight / 2);
-    if (place == Place::on_corner) sum *= flatness();
+    if (place == Place::beyond)
+      sum *= vicinity(safe_norm(own_[1] - foot_), master_.sight * (node_.corner ? shallow : 0.5));
+    if (node_.corner && place != Place::nearest) sum *= flatness();
     result_.value = sum.value > 0 ? sum : Length(0);  // not positive beside a face shorter than the node's own segments
     return result_;
   }
@@ -157,7 +159,10 @@ class Stand {
       return 0.5 * full;
     }
     const Length opposed = opposition(corner, way);
-    if (own_corner) return full * (0.5 + 0.5 * opposed * (1 - ramp(rest, 0, width)));
+    if (own_corner) {
+      const Length deep = 1 - vicinity(safe_norm(own_[1] - foot_), shallow * master_.sight);
+      return full * (0.5 + 0.5 * opposed * deep * (1 - ramp(rest, 0, width)));
+    }
     if (r.value < 1) return full * (last_share(r) * (2 + opposed) / 3 - 0.5);
     return full * (0.5 + opposed * (r - 0.5 - last_share(r - 1)));
   }
@@ -233,14 +238,15 @@ std::optional<Footing> footing(const Face& master, int segment, const SlaveNode&
       const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
       const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
       if (!other || height(master, *other, node) >= 0) continue;
-      if (on_corner && !goes_along(master, *other, way, node)) continue;
+      if (node.corner && !on_corner) {
+        Stand there(master, *other, node);
+        const NodeLength length = there.length(Place::nearest);
+        if (const double less = energy(length, there.gap()); less < stored) stored = less, best = {*other, length};
+      }
+      if (node.corner && !goes_along(master, *other, way, node)) continue;
       Stand there(master, *other, node);
-      const NodeLength length = there.length(on_corner     ? Place::on_corner
-                                             : node.corner ? Place::nearest
-                                                           : Place::beyond);
-      const double stored_there = energy(length, there.gap());
-      if (node.corner && !on_corner ? stored_there < stored : stored_there > stored)
-        stored = stored_there, best = {*other, length};
+      const NodeLength length = there.length(on_corner ? Place::on_corner : Place::beyond);
+      if (const double more = energy(length, there.gap()); more > stored) stored = more, best = {*other, length};
     }
   }
   return best.segment == segment && is_beyond(master, segment, node) ? std::nullopt : std::optional(best);

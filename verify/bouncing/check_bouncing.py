@@ -20,6 +20,10 @@ STIFFNESS, MASS, HALF = 1e5, 0.5, 0.25
 LENGTH = 1.0  # in touch: the block's face
 FREQUENCY = float(np.sqrt(STIFFNESS * LENGTH / MASS))  # w, of the block on its contact
 SAFETIES = [0.1, 0.05, 0.025]
+# Where in its step a block touches is chance: over twelve starts logarithms of the balance error have a standard
+# deviation of 0.3 at each safety. Three times that of the slope through means of three.
+STARTS = [0, 2e-3, 4e-3]
+SLOPE_SCATTER = float(3 * np.sqrt(2) * 0.3 / np.sqrt(len(STARTS)) / np.log(SAFETIES[0] / SAFETIES[-1]))
 CLEAR = 0.03  # higher blocks touch in no two samples
 LEAST = 0.05  # heights compared
 FIRST_OVER = 1.9  # all met the floor once, at sqrt(2); the dullest flies for 2 x 0.3 sqrt(2) = 0.85 then
@@ -82,9 +86,10 @@ def heights(name: str, pull: bool) -> list[float]:
 
 
 @cache
-def run(pull: bool, safety: float) -> Run:
-    scene = CASE.scene(pull=str(pull).lower(), safety=safety, stiffness=STIFFNESS, end=6.5, period=0.01)
-    return CASE.engine(f"{'pull' if pull else 'no_pull'}_{safety:g}", scene)
+def run(pull: bool, safety: float, raised: float = 0) -> Run:
+    scene = CASE.scene(pull=str(pull).lower(), safety=safety, stiffness=STIFFNESS, end=6.5, period=0.01,
+                       top=1 + HALF + raised)
+    return CASE.engine(f"{'pull' if pull else 'no_pull'}_{safety:g}_{1000 * raised:g}", scene)
 
 
 def measured(name: str, pull: bool, safety: float) -> list[float]:
@@ -152,7 +157,7 @@ def test_heights(name: str, pull: bool) -> None:
 def test_depth(pull: bool) -> None:
     """Each rule has its own damping ratio for the same restitution: the depth tells them apart."""
     finest, rule, period = SAFETIES[-1], "may pull" if pull else "may not pull", 2e-4
-    scene = CASE.scene(pull=str(pull).lower(), safety=finest, stiffness=STIFFNESS, end=1.5, period=period)
+    scene = CASE.scene(pull=str(pull).lower(), safety=finest, stiffness=STIFFNESS, end=1.5, period=period, top=1 + HALF)
     of = CASE.engine(f"depth_{'pull' if pull else 'no_pull'}", scene)
     for name in DAMPED:
         z, deepest = damping_ratio(RESTITUTION[name], pull), HALF - of.probe(f"{name}.position_y").min()
@@ -168,8 +173,8 @@ def test_depth(pull: bool) -> None:
 def test_dissipation(pull: bool) -> None:
     """Weight times lost heights of all blocks."""
     rule = "may pull" if pull else "may not pull"
-    error = [run(pull, safety).balance_error for safety in SAFETIES]
-    CASE.check_rate(f"{rule}: balance of energy", SAFETIES, error, 2, 0.4,
+    error = [np.sqrt(np.mean([run(pull, safety, raised).balance_error**2 for raised in STARTS])) for safety in SAFETIES]
+    CASE.check_rate(f"{rule}: balance of energy, rms of three starts", SAFETIES, error, 2, SLOPE_SCATTER,
                     "second order; where in its step a block touches varies the error of each impact")
     of = run(pull, SAFETIES[-1])
     lost = MASS * sum(1 - RESTITUTION[name]**2 for name in ("lively", "fair", "dull"))

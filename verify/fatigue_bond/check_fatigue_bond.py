@@ -201,8 +201,9 @@ def pulled() -> Study:
 
 @pytest.mark.parametrize("quantity", [POSITIONS, FORCE, DISSIPATION], ids=lambda q: q.name)
 def test_pulled_bond_converges(pulled: Study, quantity: Quantity) -> None:
-    check_differences(CASE, "pulled", pulled, quantity, 1.5, 0.7,
-                      "wear is of first order, the rest of second: between them, 0.2 for their scatter")
+    check_differences(CASE, "pulled", pulled, quantity, 2, 1.2,
+                      "between the first order of wear, in which solvers may differ, and the third, which coarse steps "
+                      "show of the rest; 0.2 for their scatter")
 
 
 def draw_driven(axes: Axes) -> None:
