@@ -104,8 +104,8 @@ class Faces {
   /// Where on the face that begins beyond a corner, with this row, the node stands; -1: not beside it, or too far off.
   int beside(const SlaveNode& node, int row, int way, double outward) const {
     if (is_past({row, way < 0 ? row + 1 : row}, -way, node.at)) {
-      const double below = -height(node, row);
-      return node.corner && below > 0 && below < window_.depth() ? row : -1;
+      const double h = height(node, row);
+      return node.corner && h <= outward && h >= -window_.depth() ? row : -1;
     }
     const auto past_bisector = [&](int r) {
       const MasterSegment& s = way < 0 ? window_[r] : window_[r + 1];
@@ -132,12 +132,13 @@ struct NodeLength {
   std::array<Vec2, Facing::nodes> gradient;
   int corner_row[2] = {-1, -1};  ///< as in Facing
 };
-/// A node's row is its nearest one, or lies beyond a corner from there, or, the node being a corner of the slave,
-/// begins where it lies on one of the master.
+/// How a row counts: as the nearest one does; as one beyond a corner from there, where the node is not deep; or, for a
+/// corner of the slave on the line of its nearest row, as one that begins there.
 enum class RowKind { nearest, beyond_corner, at_corner };
 NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, RowKind kind);
 /// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there: a corner
-/// of the slave the one where it stores less, as it leaves the master through either; any other node where it stores more.
+/// of the slave the one where it stores less, as it leaves the master through either, unless it is hardly deep; any other
+/// node where it stores more.
 struct Foothold {
   int row;
   NodeLength length;

@@ -42,15 +42,15 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
   if (!pass.master->has_corners()) return feet;
   const Faces faces(pass, window);
   const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
-  if (node.corner) return feet;  // beyond a corner of the master it has its foot there too, on the same node
+  const double more = most_of_share * 2 * std::max(node.length[0], node.length[1]) / (node.length[0] + node.length[1]);
   for (const int way : {-1, 1}) {
     // A corner that may come between the node and its neighbour leaves it the rest of the segment.
-    if (faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
-      feet[0].factor += most_of_share;
+    if (!node.corner && faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
+      feet[0].factor += more;
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
       const MasterSegment& s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));
-      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), 1 + most_of_share});
+      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), node.corner ? 1 : 1 + more});
     }
   }
   for (Foot& foot : feet) foot.factor = std::max(foot.factor, feet[0].factor);

@@ -197,7 +197,7 @@ Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, 
   const bool own_corner = at.node.beside_corner[side] && r.value > 1 - tie;  // is on the face too
   if (r.value >= 2 || (own_corner && r.value < 1 + tie)) return {0.5 * length};
   const Varying share = own_corner ? share_beside_corner(at, corner, way, r, faces.sight()) : share_before_corner(r);
-  if (own_corner && share.value <= 1) return {0.5 * length};
+  if (own_corner && (share.value <= 1 || at.height >= 0)) return {0.5 * length};
   whole.varies = true;
   whole.corner_row[way < 0 ? 0 : 1] = end->corner;
   const Varying part = opposed(at.opposition_towards(corner, way));
@@ -268,20 +268,20 @@ Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces
   Foothold result{row, node_length(node, window, faces, row, RowKind::nearest)};
   const double height = faces.height(node, row), rounding = tie * window[row].length;
   if (height >= (node.corner ? rounding : 0)) return result;
-  const RowKind kind = node.corner && height > -rounding ? RowKind::at_corner : RowKind::beyond_corner;
   double stored = energy(result.length, faces.gap(node, row));
-  for (const int way : {-1, 1}) {
+  const auto try_face = [&](int way, RowKind kind, bool less) {
     const int other = faces.beyond(node, row, way, outward);
-    if (other < 0 || faces.height(node, other) >= 0) continue;
-    const auto stored_there = [&](const NodeLength& length) { return energy(length, faces.gap(node, other)); };
-    if (node.corner && kind != RowKind::at_corner) {
-      const NodeLength length = node_length(node, window, faces, other, RowKind::nearest);
-      if (const double less = stored_there(length); less < stored) stored = less, result = {other, length};
-    }
-    if (node.corner && !lies_along(node, way, tangent(window[other]))) continue;
+    if (other < 0 || faces.height(node, other) >= 0) return;
+    if (node.corner && !less && (faces.beyond_corner(node, other) || !lies_along(node, way, tangent(window[other]))))
+      return;
     const NodeLength length = node_length(node, window, faces, other, kind);
-    if (const double more = stored_there(length); more > stored) stored = more, result = {other, length};
-  }
+    const double there = energy(length, faces.gap(node, other));
+    if (less ? there < stored : there > stored) stored = there, result = {other, length};
+  };
+  const bool at_corner = node.corner && height > -rounding;
+  if (node.corner && !at_corner)
+    for (const int way : {-1, 1}) try_face(way, RowKind::nearest, true);
+  for (const int way : {-1, 1}) try_face(way, at_corner ? RowKind::at_corner : RowKind::beyond_corner, false);
   return result;
 }
 

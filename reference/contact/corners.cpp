@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace pliant::reference {
@@ -154,7 +155,8 @@ class Stand {
     const bool own_corner = (neighbour == 0 ? node_.corner_before : node_.corner_after) && r.value > 1 - tie;
     const Length rest = own_corner ? norm(corner) * (1 - 1 / r) : Length(0);  // from that corner to the master's
     const double width = takeover * master_.sight;
-    if (r.value >= 2 || (own_corner && (r.value < 1 + tie || rest.value >= width))) {
+    const bool above = height(master_, segment_, node_) >= 0;
+    if (r.value >= 2 || (own_corner && (r.value < 1 + tie || rest.value >= width || above))) {
       result_ = before;
       return 0.5 * full;
     }
@@ -234,20 +236,21 @@ std::optional<Footing> footing(const Face& master, int segment, const SlaveNode&
   if (own_height < (node.corner ? rounding : 0)) {
     const bool on_corner = node.corner && own_height > -rounding;
     double stored = energy(best.length, std::min(nearest.gap(), 0.0));
-    for (const int way : {-1, 1}) {
-      const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
-      const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
-      if (!other || height(master, *other, node) >= 0) continue;
-      if (node.corner && !on_corner) {
+    const auto compare = [&](Place place, auto&& better) {
+      for (const int way : {-1, 1}) {
+        const auto end = face_end(master, segment, node, way, 2 * master.sight + outward);
+        const auto other = end ? beside_face(master, *end, way, node, outward) : std::nullopt;
+        if (!other || height(master, *other, node) >= 0) continue;
+        if (node.corner && place != Place::nearest &&
+            (is_beyond(master, *other, node) || !goes_along(master, *other, way, node)))
+          continue;
         Stand there(master, *other, node);
-        const NodeLength length = there.length(Place::nearest);
-        if (const double less = energy(length, there.gap()); less < stored) stored = less, best = {*other, length};
+        const NodeLength length = there.length(place);
+        if (const double e = energy(length, there.gap()); better(e, stored)) stored = e, best = {*other, length};
       }
-      if (node.corner && !goes_along(master, *other, way, node)) continue;
-      Stand there(master, *other, node);
-      const NodeLength length = there.length(on_corner ? Place::on_corner : Place::beyond);
-      if (const double more = energy(length, there.gap()); more > stored) stored = more, best = {*other, length};
-    }
+    };
+    if (node.corner && !on_corner) compare(Place::nearest, std::less<>());
+    compare(on_corner ? Place::on_corner : Place::beyond, std::greater<>());
   }
   return best.segment == segment && is_beyond(master, segment, node) ? std::nullopt : std::optional(best);
 }

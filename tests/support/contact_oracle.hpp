@@ -362,7 +362,12 @@ class ContactOracle {
     const Vec2 before = node(master, corner) - node(master, corner - 1),
                after = node(master, corner + 1) - node(master, corner);
     const double turn = std::atan2(cross(before, after), before.dot(after));
-    return at.height * turn > 0 ? at.gap * turn : 2 * at.height * std::tan(turn / 2);
+    if (at.height * turn > 0) return at.gap * turn;
+    if (turn < 35 * M_PI / 180) return 2 * at.height * std::tan(turn / 2);
+    // Inside a sharp corner the mean of the heights over both faces: nodes change faces there off the bisector.
+    const Vec2 from =
+        node(master, at.segment) - node(master, corner) + at.xi * at.length * at.segment_tangent + at.gap * at.normal;
+    return (cross(from, before.normalized()) + cross(from, after.normalized())) * std::tan(turn / 2);
   }
 
   /// Force on the node; the reaction on the segment's two nodes has the same sum and moment, and splits the normal part
