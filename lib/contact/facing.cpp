@@ -38,7 +38,7 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
   std::vector<Foot> feet;
   if (!p.hit[lane]) return feet;
   const int row = static_cast<int>(p.row[lane]);
-  feet.push_back({row, p.xi[lane], 1});
+  feet.push_back({row, p.xi[lane], 1, false});
   if (!pass.master->has_corners()) return feet;
   const Faces faces(pass, window);
   const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
@@ -50,10 +50,12 @@ std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, co
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
       const MasterSegment& s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));
-      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), node.corner ? 1 : 1 + more});
+      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), node.corner ? 1 : 1 + more, true});
     }
   }
-  for (Foot& foot : feet) foot.factor = std::max(foot.factor, feet[0].factor);
+  double most = 0;
+  for (const Foot& foot : feet) most = std::max(most, foot.factor);
+  for (Foot& foot : feet) foot.factor = most;
   return feet;
 }
 

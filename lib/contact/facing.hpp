@@ -46,6 +46,7 @@ inline double corner_sight(const OutlineShape& slave, const OutlineShape& master
 struct Foot {
   int row;  ///< of the window
   double xi, factor;
+  bool instead;  ///< of the one before: never both at a time
 };
 /// Of one lane of a projection without the rules of corners, from position i of the pass on.
 std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,

@@ -58,7 +58,7 @@ void compute_patch_stiffness(const Model& model, const Outlines& outlines, const
   const auto add = [&](const Pass& pass, int slave_side, int node, const Foot& foot, double length) {
     const double k = 0.5 * foot.factor * length * stiffness;
     const int at = pass.master_force + foot.row;
-    forces.x[pass.slave_force + node] += factor[slave_side] * k;
+    if (!foot.instead) forces.x[pass.slave_force + node] += factor[slave_side] * k;
     forces.x[at] += factor[1 - slave_side] * (1 - foot.xi) * k;
     forces.x[at + 1] += factor[1 - slave_side] * foot.xi * k;
   };
@@ -71,7 +71,7 @@ void compute_patch_stiffness(const Model& model, const Outlines& outlines, const
         for (const Foot& foot : possible_feet(pass, scratch, p, lane, i, outward))
           add(pass, slave_side, i + lane, foot, length);
       else if (p.hit[lane])
-        add(pass, slave_side, i + lane, {static_cast<int>(p.row[lane]), p.xi[lane], 1}, length);
+        add(pass, slave_side, i + lane, {static_cast<int>(p.row[lane]), p.xi[lane], 1, false}, length);
     }
   });
 }
