@@ -83,13 +83,6 @@ class Faces {
     return (node.at - start(window_[row])).dot(outward_of(tangent(window_[row])));
   }
 
-  /// Of a node from a row, or from its end where it stands beyond that; negative inside, m.
-  double gap(const SlaveNode& node, int row) const {
-    const MasterSegment& s = window_[row];
-    const double along = (node.at - start(s)).dot(tangent(s)), over = along - std::clamp(along, 0.0, s.length);
-    return std::copysign(std::hypot(over, height(node, row)), height(node, row));
-  }
-
   Vec2 corner_place(const FaceEnd& end) const { return start(window_[end.corner]); }
 
  private:

@@ -70,6 +70,7 @@ void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, doub
     const int lane = std::countr_zero(left), row = static_cast<int>(nearest[lane]);
     const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
     const auto [chosen, length] = foothold(node, window, faces, row, outward);
+    // A face other than the nearest one was chosen from inside, within a blunt corner also past its beginning.
     rows[lane] = chosen == row && faces.beyond_corner(node, chosen) ? -1 : chosen;
     facing.length[lane] = rows[lane] < 0 ? 0 : length.value;
     if (!length.varies) continue;

@@ -239,8 +239,10 @@ bool lies_along(const SlaveNode& node, int way, const Vec2& face) {
   return way * (node.neighbour[node.opposing_side(face)] - node.at).dot(face) > 0;
 }
 
-/// What a node stores under a linear penalty, but for a factor that all faces share.
-double energy(const NodeLength& length, double gap) { return gap < 0 ? length.value * gap * gap : 0; }
+/// What a node stores under a linear penalty beside a segment, but for a factor that all faces share.
+double energy(const NodeLength& length, const Beside& at) {
+  return at.height < 0 ? length.value * (at.node.at - at.foot).squaredNorm() : 0;
+}
 
 }  // namespace
 
@@ -268,14 +270,14 @@ Foothold foothold(const SlaveNode& node, const MasterWindow& window, const Faces
   Foothold result{row, node_length(node, window, faces, row, RowKind::nearest)};
   const double height = faces.height(node, row), rounding = tie * window[row].length;
   if (height >= (node.corner ? rounding : 0)) return result;
-  double stored = energy(result.length, faces.gap(node, row));
+  double stored = energy(result.length, Beside{node, window[row]});
   const auto try_face = [&](int way, RowKind kind, bool less) {
     const int other = faces.beyond(node, row, way, outward);
     if (other < 0 || faces.height(node, other) >= 0) return;
     if (node.corner && !less && (faces.beyond_corner(node, other) || !lies_along(node, way, tangent(window[other]))))
       return;
     const NodeLength length = node_length(node, window, faces, other, kind);
-    const double there = energy(length, faces.gap(node, other));
+    const double there = energy(length, Beside{node, window[other]});
     if (less ? there < stored : there > stored) stored = there, result = {other, length};
   };
   const bool at_corner = node.corner && height > -rounding;

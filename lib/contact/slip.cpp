@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec2.hpp"
+#include "contact/faces.hpp"
 
 namespace pliant {
 namespace {
@@ -19,26 +19,22 @@ constexpr double folded = -0.5;
 
 double angle_of(double fan) { return std::asin(std::clamp(fan, -1.0, 1.0)); }
 
-/// Tangent of half of 35 degrees: within sharper convex corners a node may pass from face to face elsewhere than on the
-/// bisector (node_length.cpp).
-constexpr double sharp = 0.315;
-
 double height_over(const MasterSegment& s, const Vec2& position) {
-  return (position - Vec2(s.x, s.y)).dot(Vec2(s.tangent_y, -s.tangent_x));
+  return (position - start(s)).dot(outward_of(tangent(s)));
 }
 
 /// Way around the corner at a row's first node, of a node at a position, height over its row and gap. Where the wedges
 /// open, outside a convex corner or inside a re-entrant one, the node runs around it at the distance of the gap; where
-/// they close, the faces' ends are cut off on both sides, inside a sharp corner at the mean of its heights over both: who
-/// changes the face at rest has gone no way.
+/// they close, the faces' ends are cut off on both sides; inside a sharp corner, where nodes also change faces off the
+/// bisector (node_length.cpp), at the mean of its heights over both: who changes the face at rest has gone no way.
 double corner(const MasterSegment& before, const MasterSegment& after, const Vec2& position, double height,
               double gap) {
   const double sine = before.tangent_x * after.tangent_y - before.tangent_y * after.tangent_x;
   const double cosine = before.tangent_x * after.tangent_x + before.tangent_y * after.tangent_y;
   const double turn = std::atan2(sine, cosine);
   if (height * turn > 0) return gap * turn;
-  const double half = std::tan(0.5 * turn);
-  return half * (half < sharp ? 2 * height : height_over(before, position) + height_over(after, position));
+  const double twice = turn < corner_turn ? 2 * height : height_over(before, position) + height_over(after, position);
+  return twice * std::tan(0.5 * turn);
 }
 
 /// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between refreshes and stay on it.

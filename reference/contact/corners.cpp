@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace pliant::reference {
 namespace {
@@ -17,13 +16,11 @@ Arrow operator*(const Arrow& a, double factor) { return {a.x * factor, a.y * fac
 Length dot(const Arrow& a, const Arrow& b) { return a.x * b.x + a.y * b.y; }
 Length norm(const Arrow& a) { return sqrt(dot(a, a)); }
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double corner_turn = 35 * degree;  ///< the least
-constexpr double square = 0.95;              ///< cosine of the angle by which opposed normals may differ, squarely
-constexpr double oblique = 0.81;             ///< likewise: from which on a node does not oppose a face at all
-constexpr double takeover = 0.1;             ///< of a sight: past the master's corner, from the slave's neighbour to it
-constexpr double shallow = 0.005;            ///< of a sight: no deeper do corners touch a face when a flank is nearer
-constexpr double lesser = 0.18;              ///< difference of such cosines from which a corner's other segment is idle
+constexpr double square = 0.95;    ///< cosine of the angle by which opposed normals may differ, squarely
+constexpr double oblique = 0.81;   ///< likewise: from which on a node does not oppose a face at all
+constexpr double takeover = 0.1;   ///< of a sight: past the master's corner, from the slave's neighbour to it
+constexpr double shallow = 0.005;  ///< of a sight: no deeper do corners touch a face when a flank is nearer
+constexpr double lesser = 0.18;    ///< difference of such cosines from which a corner's other segment is idle
 
 double turn(const Vec2& before, const Vec2& after) {
   return std::atan2(pliant::cross(before, after), before.dot(after));

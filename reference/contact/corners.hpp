@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <optional>
 
 #include "reference/contact/projection.hpp"
@@ -28,6 +29,9 @@ class Corners {
   double longest_ = 0;
   bool any_ = false;
 };
+
+/// The least turn of an outline that is a corner, to the left.
+constexpr double corner_turn = 35 * std::numbers::pi / 180;
 
 /// Of a segment's length: rounding, where corners lie on each other.
 constexpr double tie = 1e-9;

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "reference/contact/corners.hpp"
 
 namespace pliant::reference {
 namespace {
@@ -34,7 +35,7 @@ class Way {
     const Jet<6> turn = around ? 2 * atan(half_tangent) : 2 * half_tangent, &distance = around ? now.gap : now.height;
     add(distance * turn.value);
     for (int k = 0; k < 3; ++k) depends(i - 1 + k, distance.value * turn.gradient.segment<2>(2 * k));
-    if (around || half_tangent.value < std::tan(sharp / 2)) return;
+    if (around || half_tangent.value < std::tan(corner_turn / 2)) return;
     const Vec2 foot = master_.node(segment_) + now.xi.value * now.length.value * master_.tangent(segment_);
     const Vec2 at = foot + now.gap.value * Vec2(std::cos(now.angle.value) * outward(segment_) +
                                                 std::sin(now.angle.value) * master_.tangent(segment_));
@@ -61,8 +62,6 @@ class Way {
   }
 
   Vec2 outward(int i) const { return {master_.tangent(i).y(), -master_.tangent(i).x()}; }
-
-  static constexpr double sharp = 35 * std::numbers::pi / 180;
 
   const PresentOutline& master_;
   int segment_;

@@ -363,7 +363,7 @@ class ContactOracle {
                after = node(master, corner + 1) - node(master, corner);
     const double turn = std::atan2(cross(before, after), before.dot(after));
     if (at.height * turn > 0) return at.gap * turn;
-    if (turn < 35 * M_PI / 180) return 2 * at.height * std::tan(turn / 2);
+    if (turn < reference::corner_turn) return 2 * at.height * std::tan(turn / 2);
     // Inside a sharp corner the mean of the heights over both faces: nodes change faces there off the bisector.
     const Vec2 from =
         node(master, at.segment) - node(master, corner) + at.xi * at.length * at.segment_tangent + at.gap * at.normal;
