@@ -33,30 +33,38 @@ SlaveNode slave_node(const Pass& pass, int index) {
 /// Of a segment: what a node may stand for more than its own, at a sixth of a segment more than one from a corner.
 constexpr double most_of_share = 0.5 + 17.0 / 216;
 
-std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
-                                double outward) {
-  std::vector<Foot> feet;
-  if (!p.hit[lane]) return feet;
+void Footholds::may_touch(int row, double xi) {
+  for (const Share& carries : {Share{row, 1 - xi}, Share{row + 1, xi}}) {
+    const auto known = std::ranges::find(shares, carries.row, &Share::row);
+    if (known == shares.end())
+      shares.push_back(carries);
+    else
+      known->share = std::max(known->share, carries.share);
+  }
+}
+
+Footholds possible_footholds(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
+                             double outward) {
+  Footholds result;
+  if (!p.hit[lane]) return result;
   const int row = static_cast<int>(p.row[lane]);
-  feet.push_back({row, p.xi[lane], 1, false});
-  if (!pass.master->has_corners()) return feet;
+  result.may_touch(row, p.xi[lane]);
+  if (!pass.master->has_corners()) return result;
   const Faces faces(pass, window);
   const SlaveNode node = slave_node(pass, pass.nodes.begin + i + lane);
   const double more = most_of_share * 2 * std::max(node.length[0], node.length[1]) / (node.length[0] + node.length[1]);
   for (const int way : {-1, 1}) {
     // A corner that may come between the node and its neighbour leaves it the rest of the segment.
     if (!node.corner && faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
-      feet[0].factor += more;
+      result.factor += more;
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
       const MasterSegment& s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));
-      feet.push_back({other, std::clamp(along / s.length, 0.0, 1.0), node.corner ? 1 : 1 + more, true});
+      result.may_touch(other, std::clamp(along / s.length, 0.0, 1.0));
+      if (!node.corner) result.factor = std::max(result.factor, 1 + more);
     }
   }
-  double most = 0;
-  for (const Foot& foot : feet) most = std::max(most, foot.factor);
-  for (Foot& foot : feet) foot.factor = most;
-  return feet;
+  return result;
 }
 
 void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing) {

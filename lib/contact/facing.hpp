@@ -42,15 +42,20 @@ inline double corner_sight(const OutlineShape& slave, const OutlineShape& master
   return std::min(slave.longest, master.longest);
 }
 
-/// Where a node may touch the master before the next refresh, and how many times its tributary length it stands for at most.
-struct Foot {
-  int row;  ///< of the window
-  double xi, factor;
-  bool instead;  ///< of the one before: never both at a time
+/// What a slave node may touch before the next refresh: one face of the master, or of several now one and now another.
+struct Footholds {
+  /// Of a node of the master, by its row in the window: the most that it carries of the slave's force.
+  struct Share {
+    int row;
+    double share;
+  };
+  std::vector<Share> shares;
+  double factor = 1;  ///< how many times its tributary length the slave stands for at most
+  void may_touch(int row, double xi);
 };
 /// Of one lane of a projection without the rules of corners, from position i of the pass on.
-std::vector<Foot> possible_feet(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
-                                double outward);
+Footholds possible_footholds(const Pass& pass, const MasterWindow& window, const Projection& p, int lane, int i,
+                             double outward);
 
 /// Applies the rules of corners to nodes that stand beside the master, from position i of the pass on.
 void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, double outward, Facing& facing);

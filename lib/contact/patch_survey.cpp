@@ -55,24 +55,26 @@ void compute_patch_stiffness(const Model& model, const Outlines& outlines, const
                              double skin, double outward, const double (&factor)[2], PatchForces& forces,
                              MasterWindow& scratch) {
   clear_forces(patch, forces);
-  const auto add = [&](const Pass& pass, int slave_side, int node, const Foot& foot, double length) {
-    const double k = 0.5 * foot.factor * length * stiffness;
-    const int at = pass.master_force + foot.row;
-    if (!foot.instead) forces.x[pass.slave_force + node] += factor[slave_side] * k;
-    forces.x[at] += factor[1 - slave_side] * (1 - foot.xi) * k;
-    forces.x[at + 1] += factor[1 - slave_side] * foot.xi * k;
-  };
   for_each_eight(model, outlines, patch, skin, scratch, [&](const Pass& pass, int slave_side, int i) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(scratch, nodes.x, nodes.y, outward);
-    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      const double length = nodes.tributary_length[lane];
-      if (pass.corners)
-        for (const Foot& foot : possible_feet(pass, scratch, p, lane, i, outward))
-          add(pass, slave_side, i + lane, foot, length);
-      else if (p.hit[lane])
-        add(pass, slave_side, i + lane, {static_cast<int>(p.row[lane]), p.xi[lane], 1, false}, length);
-    }
+    const auto add = [&](int lane, double times) {
+      const double k = 0.5 * times * nodes.tributary_length[lane] * stiffness;
+      forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
+      return factor[1 - slave_side] * k;
+    };
+    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane)
+      if (pass.corners) {
+        const Footholds footholds = possible_footholds(pass, scratch, p, lane, i, outward);
+        if (footholds.shares.empty()) continue;
+        const double k = add(lane, footholds.factor);
+        for (const auto& [row, share] : footholds.shares) forces.x[pass.master_force + row] += share * k;
+      } else if (p.hit[lane]) {
+        const double k = add(lane, 1);
+        const int at = pass.master_force + static_cast<int>(p.row[lane]);
+        forces.x[at] += (1 - p.xi[lane]) * k;
+        forces.x[at + 1] += p.xi[lane] * k;
+      }
   });
 }
 

@@ -213,5 +213,28 @@ TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
     }
 }
 
+// EXACT: a corner of a heavy block in the tip of a light soft bar, whose end node the corner presses from one face of the tip or from the other: a bound,
+// and no looser than elsewhere, as it never does from both.
+TEST(StiffnessBound, CornerInASoftCorner) {
+  Random random(11);
+  double closest = 0;
+  for (int sample = 0; sample < 60; ++sample) {
+    Scene scene = bare_scene();
+    scene.contacts = {rules[sample % 3]};
+    scene.contacts[0].stiffness = 3e4;
+    add_body(scene, outline_shape("bar", rectangle(0.6, 0.3, 0.1), 28), BodyKind::compliant, {0, 0});
+    const double turn = random.uniform(-0.7, 0.7);
+    const Vec2 inside{random.uniform(0.001, 0.02), random.uniform(0.001, 0.02)};
+    const Vec2 corner = Vec2(0.3, 0.15) - inside;
+    const Vec2 centre = corner + Eigen::Rotation2D(turn) * Vec2(0.5, 0.5);
+    add_body(scene, outline_shape("block", rectangle(1, 1, 1)), BodyKind::rigid, centre, turn);
+    Loaded loaded(scene);
+    const double exact = fastest(loaded), bound = bound_of(loaded);
+    EXPECT_LE(exact, bound) << sample;
+    closest = std::max(closest, exact / bound);
+  }
+  EXPECT_GT(closest, 1 / loosest);
+}
+
 }  // namespace
 }  // namespace pliant
