@@ -4,7 +4,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "dynamics/simulation.hpp"
 
 namespace pliant {
@@ -35,41 +35,42 @@ BENCHMARK(internal_forces)->Unit(benchmark::kMillisecond);
 
 void outlines(benchmark::State& state) {
   const Simulation& simulation = third_body();
-  Outlines outlines = make_outlines(simulation.model());
-  for (auto _ : state) update_outlines(simulation.model(), simulation.state().position, outlines);
+  OutlineField place(simulation.model().outline_offset.back());
+  for (auto _ : state) place_outlines(simulation.model(), simulation.state().position, place);
 }
 BENCHMARK(outlines)->Unit(benchmark::kMillisecond);
 
 void contact_refresh(benchmark::State& state) {
   const Simulation& simulation = third_body();
-  Outlines outlines = simulation.forces().outlines();
+  const Outlines& outlines = simulation.state().outlines;
   ContactSystem contact(simulation.model());
   ContactHistory history;
-  for (auto _ : state) contact.refresh(outlines, history);
+  for (auto _ : state) contact.find_candidates(outlines, history);
 }
 BENCHMARK(contact_refresh)->Unit(benchmark::kMillisecond);
 
 void contact_forces(benchmark::State& state) {
   const Simulation& simulation = third_body();
-  Outlines outlines = simulation.forces().outlines();
+  const Outlines& outlines = simulation.state().outlines;
   ContactSystem contact(simulation.model());
   ContactHistory committed, trial;
-  contact.refresh(outlines, committed);
+  OutlineField force;
+  contact.find_candidates(outlines, committed);
   int nodes = 0;
   for (const Patch& patch : contact.patches()) nodes += patch.nodes[0].count + patch.nodes[1].count;
   state.counters["records"] = nodes;
   state.counters["patches"] = static_cast<double>(contact.patches().size());
-  for (auto _ : state) state.counters["contacts"] = contact.forces(outlines, committed, trial).contacts;
+  for (auto _ : state) state.counters["contacts"] = contact.forces(outlines, committed, trial, force).contacts;
 }
 BENCHMARK(contact_forces)->Unit(benchmark::kMillisecond);
 
 void whole_evaluation(benchmark::State& state) {
   const Simulation& simulation = third_body();
-  const State& now = simulation.state();
+  State now = simulation.state();
+  now.memory = {};
   Forces forces(simulation.model());
-  ContactHistory committed, trial;
-  Dofs force = zero_dofs(simulation.model());
-  for (auto _ : state) forces.evaluate({now.position, now.velocity, now.time}, committed, trial, force);
+  Trial trial(simulation.model());
+  for (auto _ : state) evaluate_at(forces, now, trial);
 }
 BENCHMARK(whole_evaluation)->Unit(benchmark::kMillisecond);
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "bodies/initial_state.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "core/errors.hpp"
 #include "core/located.hpp"
 
@@ -22,10 +22,10 @@ struct Segment {
   Vec2 normal{0, 0};  ///< outward, of the segment's length
 };
 
-std::vector<Segment> segments_of(const Outlines& outlines, int body, int count) {
+std::vector<Segment> segments_of(const Model& model, const OutlineField& outlines, int body) {
   std::vector<Segment> result;
-  for (int i = outlines.offset[body]; i < outlines.offset[body] + count; ++i) {
-    const Vec2 a(outlines.x[i], outlines.y[i]), b(outlines.x[i + 1], outlines.y[i + 1]);
+  for (int i = model.outline_offset[body]; i < model.outline_end(body); ++i) {
+    const Vec2 a = outlines.at(i), b = outlines.at(i + 1);
     result.push_back({0.5 * (a + b), {(b - a).y(), -(b - a).x()}});
   }
   return result;
@@ -56,8 +56,11 @@ bool contains(const OutlinePart& part, const Segment& segment, const Vec2& centr
 /// One body as a condition meets it.
 class Target {
  public:
-  Target(const Model& model, const Outlines& outlines, const BoundaryCondition& condition, int body)
-      : outlines_(outlines), body_(body), segments_(segments_of(outlines, body, count_of(model, body))) {
+  Target(const Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int body)
+      : outlines_(outlines),
+        first_(model.outline_offset[body]),
+        body_(body),
+        segments_(segments_of(model, outlines, body)) {
     for (const Segment& segment : segments_)
       chosen_.push_back(contains(condition.part, segment, model.bodies[body].centre));
     const int count = static_cast<int>(segments_.size());
@@ -83,17 +86,15 @@ class Target {
   OutlineSupport support(const BoundaryCondition& condition, double young) const {
     OutlineSupport result{body_, condition.window, {}, {}, 0, condition.damping, {}, {condition.x, condition.y}};
     for (const PartNode& node : nodes_) {
-      const int at = outlines_.offset[body_] + node.node;
       result.nodes.push_back(node.node);
       result.length.push_back(length(node));
-      result.start.emplace_back(outlines_.x[at], outlines_.y[at]);
+      result.start.push_back(outlines_.at(first_ + node.node));
     }
     result.stiffness = condition.stiffness.value_or(auto_stiffness_factor * young / mean_spacing());
     return result;
   }
 
  private:
-  static int count_of(const Model& model, int body) { return model.outlines[model.bodies[body].outline].count; }
   const Segment& before(const PartNode& node) const {
     return segments_[node.node == 0 ? segments_.size() - 1 : static_cast<std::size_t>(node.node) - 1];
   }
@@ -110,8 +111,8 @@ class Target {
     return total / static_cast<double>(segments_.size());
   }
 
-  const Outlines& outlines_;
-  int body_;
+  const OutlineField& outlines_;
+  int first_, body_;
   std::vector<Segment> segments_;
   std::vector<bool> chosen_;  ///< [segments]
   std::vector<PartNode> nodes_;
@@ -124,7 +125,7 @@ void apply_drives(RigidBody& rigid, const BoundaryCondition& condition) {
   rigid.driven = true;
 }
 
-void apply(Model& model, const Outlines& outlines, const BoundaryCondition& condition, int index) {
+void apply(Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int index) {
   const Body& body = model.bodies[index];
   if (condition.kind == BoundaryCondition::Kind::drive) return apply_drives(model.rigid_bodies[body.rigid], condition);
   const Target target(model, outlines, condition, index);
@@ -136,8 +137,7 @@ void apply(Model& model, const Outlines& outlines, const BoundaryCondition& cond
 
 void apply_scene_conditions(Model& model) {
   if (model.scene.boundary.empty()) return;
-  Outlines outlines = make_outlines(model);
-  update_outlines(model, initial_positions(model), outlines);
+  const OutlineField outlines = placed_outlines(model, initial_positions(model));
   for (const BoundaryCondition& condition : model.scene.boundary) {
     int number = 0;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {

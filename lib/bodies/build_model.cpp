@@ -101,6 +101,7 @@ class Builder {
     for (const PlacedBody& body : placed)
       if (body.wall) add_wall(body);
     make_batches(model_, options_.least_sparse_nodes);
+    lay_out_outlines();
     model_.corrected_mass = !model_.groups.empty() && model_.scene.discretisation.mass == Mass::corrected;
     apply_conditions(model_);
     model_.outline_rates |= depends_on_rates(model_.scene);
@@ -180,6 +181,15 @@ class Builder {
     apply_drive(rigid.dof[2], Drive{}, body.mass, 0);
     model_.rigid_bodies.push_back(rigid);
     model_.bodies.push_back(std::move(body));
+  }
+
+  void lay_out_outlines() {
+    int next = 0;
+    for (const Body& body : model_.bodies) {
+      model_.outline_offset.push_back(next);
+      next += model_.outlines[body.outline].count + lane_count;
+    }
+    model_.outline_offset.push_back(next);
   }
 
   BuildOptions options_;

@@ -57,9 +57,7 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
       const InitialVelocity& field = model.scene.grains[body.grains].velocity;
       v.rigid[3 * r] = field.uniform.x(), v.rigid[3 * r + 1] = field.uniform.y(), v.rigid[3 * r + 2] = field.rotation;
     }
-    for (int c = 0; c < 3; ++c)
-      if (const RigidDof& dof = rigid.dof[c]; dof.imposed(0))
-        v.rigid[3 * r + c] = dof.mode == Drive::Mode::velocity ? dof.history.at(0) : 0.0;
+    for (int c = 0; c < 3; ++c) v.rigid[3 * r + c] = rigid.dof[c].velocity_after(0, 0, v.rigid[3 * r + c]);
   }
   return reduced_momentum(model, v);
 }

@@ -65,6 +65,23 @@ struct RigidDof {
   double inverse_mass = 0;  ///< 0 when the motion is imposed all the time
   bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }  ///< at some time
   bool imposed(double time) const { return imposed() && window.contains(time); }
+
+  // What becomes of it in a step that begins at `time`: what is imposed there, the exact integral of its history, or else what the caller says of a
+  // free motion.
+  double position_after(double time, double dt, double x, double free) const {
+    if (!imposed(time)) return free;
+    return mode == Drive::Mode::velocity ? x + history.integral(time, time + dt) : x;
+  }
+  double velocity_after(double time, double end, double free) const {
+    return imposed(time) ? imposed_velocity(end) : free;
+  }
+  double acceleration_of(double time, double force) const {
+    if (!imposed(time)) return inverse_mass * force;
+    return mode == Drive::Mode::velocity ? history.slope(time) : 0;
+  }
+  /// What forces do to it.
+  double inverse_mass_at(double time) const { return imposed(time) ? 0 : inverse_mass; }
+  double imposed_velocity(double time) const { return mode == Drive::Mode::velocity ? history.at(time) : 0; }
 };
 
 struct RigidBody {
@@ -97,9 +114,10 @@ struct Model {
   std::vector<SpreadShape> spread_shapes;
   std::vector<Chunk> point_chunks, outline_chunks;  ///< of all spread bodies
   std::vector<RigidBody> rigid_bodies;
-  std::vector<Body> bodies;        ///< grains in the scene's order, then walls
-  std::size_t compliant_size = 0;  ///< length of Dofs::compliant
-  bool corrected_mass = false;     ///< states hold momentum over lumped mass: see mass_correction.hpp
+  std::vector<Body> bodies;         ///< grains in the scene's order, then walls
+  std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
+  std::size_t compliant_size = 0;   ///< length of Dofs::compliant
+  bool corrected_mass = false;      ///< states hold momentum over lumped mass: see mass_correction.hpp
   bool rates = false;  ///< some force but drag (damping_forces.hpp) depends on velocities: only then are rates formed
   bool outline_rates = false;  ///< and on those of outline nodes
   std::vector<OutlinePressure> pressures;
@@ -107,6 +125,8 @@ struct Model {
   std::vector<double>
       switch_times;  ///< growing, s: points of histories, and when a condition sets in or ends; steps end there
 
+  const OutlineShape& outline_of(int body) const { return outlines[bodies[body].outline]; }
+  int outline_end(int body) const { return outline_offset[body] + outline_of(body).count; }  ///< without copies
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[batch.shape]; }
   const CompliantShape& shape_of(const Body& body) const { return shapes[body.compliant_shape]; }
   const SpreadShape& spread_shape_of(const Batch& batch) const { return spread_shapes[batch.tables]; }

@@ -28,24 +28,30 @@ constexpr double corner_turn = 35 * std::numbers::pi / 180;
 
 OutlineShape make_outline_shape(const Points& points, double turn_shift);
 
-/// Current outlines of all bodies, one after another; each body's nodes are followed by lane_count cyclic copies.
-/// Both kinds of body show this one face to contact (METHOD 1).
-struct Outlines {
-  std::vector<int> shape;                      ///< [bodies], index of the outline shape
-  std::vector<int> offset;                     ///< [bodies + 1], first node of a body
-  std::vector<double> x, y;                    ///< [nodes and copies], m
-  std::vector<double> force_x, force_y;        ///< [nodes and copies], contact force, N/m; 0 in the copies
-  std::vector<double> x_refresh, y_refresh;    ///< positions at the last contact refresh
-  std::vector<double> velocity_x, velocity_y;  ///< [nodes and copies], m/s; empty without Model::outline_rates
-  std::vector<double> tributary_length;        ///< [nodes and copies], present, m; empty: that of the shapes holds
+/// A vector at every outline node of all bodies: those of one body after another, from Model::outline_offset on, each followed by lane_count
+/// cyclic copies.
+struct OutlineField {
+  std::vector<double> x, y;  ///< [nodes and copies]
+
+  OutlineField() = default;
+  explicit OutlineField(int nodes) : x(static_cast<std::size_t>(nodes), 0.0), y(x) {}
+  Vec2 at(int index) const { return {x[static_cast<std::size_t>(index)], y[static_cast<std::size_t>(index)]}; }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("x", x), visitor("y", y);
-    visitor("force_x", force_x), visitor("force_y", force_y);
-    visitor("x_refresh", x_refresh), visitor("y_refresh", y_refresh);
-    visitor("tributary_length", tributary_length);
-    visitor("velocity_x", velocity_x), visitor("velocity_y", velocity_y);
+  }
+};
+
+/// All outlines in motion: what bodies of either kind see of each other (METHOD 1).
+struct Outlines {
+  OutlineField position;                 ///< m
+  OutlineField velocity;                 ///< m/s; empty without Model::outline_rates
+  std::vector<double> tributary_length;  ///< [nodes and copies], present, m; empty: that of the shapes holds
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("position", position), visitor("velocity", velocity), visitor("tributary_length", tributary_length);
   }
 };
 

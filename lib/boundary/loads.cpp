@@ -60,14 +60,6 @@ double add_load_change(const Model& model, const Motion& at, const Instant& to, 
   return add_outline_load_change(model, at, to, force);
 }
 
-double imposed_position(const RigidDof& dof, double position, double time, double dt) {
-  return dof.mode == Drive::Mode::velocity ? position + dof.history.integral(time, time + dt) : position;
-}
-
-double imposed_velocity(const RigidDof& dof, double time) {
-  return dof.mode == Drive::Mode::velocity ? dof.history.at(time) : 0.0;
-}
-
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
                      const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
                      double end_time) {

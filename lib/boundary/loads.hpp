@@ -18,10 +18,6 @@ void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, d
 /// sets in or ends. Returns how much more supports' dashpots dissipate, W/m. So forces need no new evaluation where only time goes on.
 double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
 
-/// Where an imposed degree of freedom stands after [t, t + dt], from its position at t: the exact integral of its velocity history.
-double imposed_position(const RigidDof& dof, double position, double time, double dt);
-double imposed_velocity(const RigidDof& dof, double time);
-
 /// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion does the change of
 /// kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`: as it ended with. Gravity is booked apart.
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,

@@ -210,40 +210,30 @@ double add_support_change(const Model& model, const OutlineSupport& support, con
 
 }  // namespace
 
-OutlineLoads::OutlineLoads(const Model& model, const Instant& at, Outlines& outlines) : outlines_(outlines) {
+bool has_outline_loads(const Model& model) { return !model.pressures.empty() || !model.supports.empty(); }
+
+double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force) {
+  const OutlineField& place = outlines.position;
+  const auto add = [&](int index, const Vec2& f) { force.x[index] += f.x(), force.y[index] += f.y(); };
   for (const OutlinePressure& load : model.pressures) {
-    const int first = outlines.offset[load.body], count = model.outlines[outlines.shape[load.body]].count;
+    const int first = model.outline_offset[load.body], count = model.outline_of(load.body).count;
     for_each_load(
-        load, count, pressure_of(load, at), [&](int k) { return Vec2(outlines.x[first + k], outlines.y[first + k]); },
-        [&](int k, const Vec2& force) { add(first + k, force); });
+        load, count, pressure_of(load, at), [&](int k) { return place.at(first + k); },
+        [&](int k, const Vec2& f) { add(first + k, f); });
   }
-  for (const OutlineSupport& support : model.supports)
-    if (contains(support.window, at)) add(support, at);
-}
-
-void OutlineLoads::add(const OutlineSupport& support, const Instant& at) {
-  const TargetMotion target(support, at);
-  for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-    const int k = outlines_.offset[support.body] + support.nodes[i];
-    const Vec2 velocity = support.damping > 0 ? Vec2(outlines_.velocity_x[k], outlines_.velocity_y[k]) : Vec2(0, 0);
-    const Pull pull = pull_on(support, i, target, {outlines_.x[k], outlines_.y[k]}, velocity);
-    damping_power_ += support.length[i] * pull.power;
-    add(k, support.length[i] * pull.force);
+  double damping_power = 0;
+  for (const OutlineSupport& support : model.supports) {
+    if (!contains(support.window, at)) continue;
+    const TargetMotion target(support, at);
+    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
+      const int k = model.outline_offset[support.body] + support.nodes[i];
+      const Vec2 velocity = support.damping > 0 ? outlines.velocity.at(k) : Vec2(0, 0);
+      const Pull pull = pull_on(support, i, target, place.at(k), velocity);
+      damping_power += support.length[i] * pull.power;
+      add(k, support.length[i] * pull.force);
+    }
   }
-}
-
-OutlineLoads::~OutlineLoads() {
-  for (auto entry = before_.rbegin(); entry != before_.rend(); ++entry) {
-    outlines_.force_x[entry->first] = entry->second.x();
-    outlines_.force_y[entry->first] = entry->second.y();
-  }
-}
-
-void OutlineLoads::add(int index, const Vec2& force) {
-  double &x = outlines_.force_x[index], &y = outlines_.force_y[index];
-  before_.emplace_back(index, Vec2(x, y));
-  x += force.x();
-  y += force.y();
+  return damping_power;
 }
 
 Vec2 outline_load(const Model& model, int body, const Motion& motion) {

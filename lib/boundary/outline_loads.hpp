@@ -1,6 +1,5 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "bodies/dofs.hpp"
@@ -9,27 +8,12 @@
 
 namespace pliant {
 
-/// Forces of pressures and soft supports, on the outlines for as long as this lives: they go to the bodies the way of
-/// contact forces, and what reads contact forces from the outlines afterwards sees those alone. Free for scenes
-/// without.
-class OutlineLoads {
- public:
-  /// `outlines`: of the motion, with its velocities where Model::outline_rates.
-  OutlineLoads(const Model& model, const Instant& at, Outlines& outlines);
-  ~OutlineLoads();
-  OutlineLoads(const OutlineLoads&) = delete;
-  OutlineLoads& operator=(const OutlineLoads&) = delete;
+/// Whether pressures or soft supports act on any outline.
+bool has_outline_loads(const Model& model);
 
-  double damping_power() const { return damping_power_; }  ///< of the supports' dashpots, W/m
-
- private:
-  void add(int index, const Vec2& force);
-  void add(const OutlineSupport& support, const Instant& at);
-
-  Outlines& outlines_;
-  std::vector<std::pair<int, Vec2>> before_;  ///< index of the node and the force it had
-  double damping_power_ = 0;
-};
+/// Adds the forces of pressures and soft supports on outline nodes, N/m: they go to the bodies the way of contact forces. `outlines`: of the motion,
+/// with its velocities where Model::outline_rates. Returns the power of the supports' dashpots, W/m.
+double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force);
 
 /// What pressures and supports together exert on one body, N/m.
 Vec2 outline_load(const Model& model, int body, const Motion& motion);

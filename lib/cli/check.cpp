@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "bodies/initial_state.hpp"
+#include "bodies/place_outlines.hpp"
 #include "cli/cautions.hpp"
 #include "cli/estimates.hpp"
 #include "cli/rehearsal.hpp"
@@ -175,14 +176,15 @@ struct Stability {
 constexpr double stiffer = 10;
 
 Stability stability(const Model& model) {
-  Forces forces(model);
   const Dofs position = initial_positions(model);
-  Dofs force = zero_dofs(model);
-  ContactHistory history, trial;
-  forces.evaluate({position, initial_velocities(model, position), 0}, history, trial, force);
-  TimeStepBound bound(model, forces.contact().laws());
+  Outlines outlines;
+  show_outlines(model, {position, initial_velocities(model, position), 0}, outlines);
+  ContactSystem contact(model);
+  ContactHistory history;
+  contact.find_candidates(outlines, history);
+  TimeStepBound bound(model, contact.laws());
   bound.update_internal(position);
-  bound.update_contact(forces);
+  bound.update_contact(contact);
   return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
 }
 

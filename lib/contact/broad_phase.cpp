@@ -48,10 +48,10 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
 
 }  // namespace
 
-Box bounding_box(const OutlineShape& shape, const Outlines& outlines, int body) {
-  const int offset = outlines.offset[body];
-  const auto [x_min, x_max] = std::minmax_element(&outlines.x[offset], &outlines.x[offset] + shape.count);
-  const auto [y_min, y_max] = std::minmax_element(&outlines.y[offset], &outlines.y[offset] + shape.count);
+Box bounding_box(const Model& model, const OutlineField& place, int body) {
+  const int offset = model.outline_offset[body], count = model.outline_of(body).count;
+  const auto [x_min, x_max] = std::minmax_element(&place.x[offset], &place.x[offset] + count);
+  const auto [y_min, y_max] = std::minmax_element(&place.y[offset], &place.y[offset] + count);
   return {*x_min, *x_max, *y_min, *y_max};
 }
 

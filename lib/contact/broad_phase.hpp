@@ -19,7 +19,7 @@ struct BodyPair {
   auto operator<=>(const BodyPair&) const = default;
 };
 
-Box bounding_box(const OutlineShape& shape, const Outlines& outlines, int body);
+Box bounding_box(const Model& model, const OutlineField& place, int body);
 
 /// Sweep and prune on x, then y, periodic in x (METHOD 4, stage 1). Pairs are sorted. Walls span all x, and meet no
 /// image of theirs.

@@ -95,9 +95,9 @@ Arc select_arc(const Side& side, const Box& box, const Vec2& d, double least) {
   return {begin, end - begin + 1};
 }
 
-Side make_side(const Model& model, const Outlines& outlines, int body, double shift) {
-  const OutlineShape& shape = model.outlines[outlines.shape[body]];
-  Side side{&shape, &outlines.x[outlines.offset[body]], &outlines.y[outlines.offset[body]], shift, 0, 0, 0};
+Side make_side(const Model& model, const OutlineField& outlines, int body, double shift) {
+  const OutlineShape& shape = model.outline_of(body);
+  Side side{&shape, &outlines.x[model.outline_offset[body]], &outlines.y[model.outline_offset[body]], shift, 0, 0, 0};
   side.longest_segment = longest_segment(shape, side.x, side.y);
   return side;
 }
@@ -193,8 +193,8 @@ Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
 
 }  // namespace
 
-void find_arcs(const Model& model, const Outlines& outlines, const std::vector<Box>& boxes, Patch& patch, double margin,
-               double skin, MasterWindow& scratch) {
+void find_arcs(const Model& model, const OutlineField& outlines, const std::vector<Box>& boxes, Patch& patch,
+               double margin, double skin, MasterWindow& scratch) {
   const double shift = patch.images * model.scene.period.value_or(0);
   Side sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
   Box box_b = boxes[patch.second];
@@ -217,7 +217,7 @@ void find_arcs(const Model& model, const Outlines& outlines, const std::vector<B
   }
 }
 
-void find_self_patches(const Model& model, const Outlines& outlines, int body, const ContactLaw& law, double margin,
+void find_self_patches(const Model& model, const OutlineField& outlines, int body, const ContactLaw& law, double margin,
                        double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
   const Side side = make_side(model, outlines, body, 0);
   const int n = side.shape->count;

@@ -19,13 +19,11 @@ namespace {
 /// The broad phase looks further than the skin, so that bodies that it leaves out need no watching pair by pair.
 constexpr double extra_skins = 4;
 
-Box motion_box(const OutlineShape& shape, const Outlines& outlines, int body) {
-  const int offset = outlines.offset[body];
+Box motion_box(const OutlineField& before, const OutlineField& now, int offset, int count) {
   Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
   // The last lanes may reach into the cyclic copies, which move as their originals.
-  for (int i = offset; i < offset + shape.count; i += lane_count) {
-    const Lanes dx = load(&outlines.x[i]) - load(&outlines.x_refresh[i]),
-                dy = load(&outlines.y[i]) - load(&outlines.y_refresh[i]);
+  for (int i = offset; i < offset + count; i += lane_count) {
+    const Lanes dx = load(&now.x[i]) - load(&before.x[i]), dy = load(&now.y[i]) - load(&before.y[i]);
     x_min = min(x_min, dx), x_max = max(x_max, dx);
     y_min = min(y_min, dy), y_max = max(y_max, dy);
   }
@@ -57,9 +55,9 @@ ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(model) {
   motion_.resize(model.bodies.size());
 }
 
-bool ContactSystem::refresh_needed(const Outlines& outlines, const RunClock& clock) {
-  if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return true;
-  return has_fixed_refresh(model_.scene.contact) ? period_is_over(clock) : moved_by_the_skin(outlines);
+bool ContactSystem::candidates_hold(const OutlineField& place, const RunClock& clock) {
+  if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
+  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !moved_by_the_skin(place);
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {
@@ -68,8 +66,8 @@ bool ContactSystem::period_is_over(const RunClock& clock) const {
   return clock.time >= refreshed_.time + settings.refresh_period;
 }
 
-void ContactSystem::warn_of_missed_contacts(const Outlines& outlines) {
-  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !moved_by_the_skin(outlines)) return;
+void ContactSystem::warn_of_missed_contacts(const OutlineField& place) {
+  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !moved_by_the_skin(place)) return;
   warned_ = true;
   spdlog::warn(
       "bodies move further than the contact skin, {:.3g} m, from one contact refresh to the next: contacts can be "
@@ -77,9 +75,11 @@ void ContactSystem::warn_of_missed_contacts(const Outlines& outlines) {
       skin_);
 }
 
-bool ContactSystem::moved_by_the_skin(const Outlines& outlines) {
+bool ContactSystem::moved_by_the_skin(const OutlineField& place) {
   const int bodies = static_cast<int>(model_.bodies.size());
-  parallel_for(bodies, [&](int b) { motion_[b] = motion_box(model_.outlines[outlines.shape[b]], outlines, b); });
+  parallel_for(bodies, [&](int b) {
+    motion_[b] = motion_box(found_at_.position, place, model_.outline_offset[b], model_.outline_of(b).count);
+  });
   const Vec2 drift = common_motion();
   const double largest_own = parallel_max(bodies, 0, [&](int b) {
     Box own = motion_[b];
@@ -105,31 +105,30 @@ Vec2 ContactSystem::common_motion() const {
   return 0.5 * Vec2(all.x_min + all.x_max, all.y_min + all.y_max);
 }
 
-void ContactSystem::refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock) {
-  warn_of_missed_contacts(outlines);
+void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+  warn_of_missed_contacts(outlines.position);
+  found_at_ = outlines;
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
   refreshed_ = clock;
   const int bodies = static_cast<int>(model_.bodies.size());
   std::vector<Box> boxes(model_.bodies.size());
-  parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_.outlines[outlines.shape[b]], outlines, b); });
+  parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model_, outlines.position, b); });
   pairs_ = broad_phase(model_, boxes, broad_margin_);
   const std::vector<Patch> old = std::move(patches_);
-  find_patches(outlines, boxes);
-  if (model_.scene.contact.self_contact) add_self_patches(outlines);
+  find_patches(boxes);
+  if (model_.scene.contact.self_contact) add_self_patches();
   lay_out_patches();
   carry_history(old, history);
-  if (start) refuse_self_overlap(outlines);
+  if (start) refuse_self_overlap();
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     locate_newcomers(model_, outlines, patches_[p], skin_, history, thread_scratch());
     if (start) make_bonds(model_, outlines, patches_[p], skin_, history, thread_scratch());
   });
-  outlines.x_refresh = outlines.x;
-  outlines.y_refresh = outlines.y;
   fresh_ = true;
   ++refreshes_;
 }
 
-void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box>& boxes) {
+void ContactSystem::find_patches(const std::vector<Box>& boxes) {
   std::vector<Patch> found(pairs_.size());
   parallel_for_uneven(static_cast<int>(pairs_.size()), 64, [&](int p) {
     const BodyPair& pair = pairs_[p];
@@ -137,7 +136,7 @@ void ContactSystem::find_patches(const Outlines& outlines, const std::vector<Box
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.corners = has_corners(pair.first) || has_corners(pair.second);
-    find_arcs(model_, outlines, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
+    find_arcs(model_, found_at_.position, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
   });
   patches_.clear();
   for (const Patch& patch : found)
@@ -192,20 +191,22 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
   history = std::move(next);
 }
 
-PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial) {
-  for (const auto& [values, of_strangers] : ContactHistory::arrays) (trial.*values).resize((committed.*values).size());
+PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
+                                  OutlineField& force) {
+  for (const auto& [values, of_strangers] : ContactHistory::arrays) (to.*values).resize((from.*values).size());
   // Patches whose laws keep no damage leave their records alone.
-  trial.damage = committed.damage;
-  trial.opening = committed.opening;
-  measure_lengths(outlines);
+  to.damage = from.damage;
+  to.opening = from.opening;
+  force.x.resize(outlines.position.x.size());
+  force.y.resize(outlines.position.x.size());
   const int count = static_cast<int>(patches_.size());
   parallel_for(count, [&](int p) {
-    totals_[p] = compute_patch(model_, outlines, patches_[p], skin_, committed, trial, forces_, thread_scratch());
+    totals_[p] = compute_patch(model_, outlines, patches_[p], skin_, from, to, forces_, thread_scratch());
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    const int n = model_.outlines[outlines.shape[b]].count;
-    double* x = &outlines.force_x[outlines.offset[b]];
-    double* y = &outlines.force_y[outlines.offset[b]];
+    const int n = model_.outline_of(b).count;
+    double* x = &force.x[model_.outline_offset[b]];
+    double* y = &force.y[model_.outline_offset[b]];
     std::fill_n(x, n, 0.0);
     std::fill_n(y, n, 0.0);
     for_each_force(b, n, [&](int node, int entry) { x[node] += forces_.x[entry], y[node] += forces_.y[entry]; });
@@ -221,26 +222,26 @@ PatchTotals ContactSystem::forces(Outlines& outlines, const ContactHistory& comm
   return total;
 }
 
-void ContactSystem::add_self_patches(const Outlines& outlines) {
+void ContactSystem::add_self_patches() {
   const std::size_t pairs = pairs_.size();
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     pairs_.push_back({b, b, 0});  // watched as any pair: the body's parts may move by the skin against each other
     const ContactLaw law = laws_.between(b, b, refreshed_.time);
-    find_self_patches(model_, outlines, b, law, reach_of(law) + skin_, skin_, patches_, thread_scratch());
+    find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, patches_, thread_scratch());
   }
   if (pairs_.size() > pairs)
     std::sort(patches_.begin(), patches_.end(), [](const Patch& a, const Patch& b) { return key(a) < key(b); });
 }
 
 /// A limb thinner than contact sees would press its own far side out.
-void ContactSystem::refuse_self_overlap(const Outlines& outlines) const {
+void ContactSystem::refuse_self_overlap() const {
   for (const Patch& patch : patches_)
-    if (patch.of_itself() && overlaps(model_, outlines, patch, skin_, thread_scratch()))
+    if (patch.of_itself() && overlaps(model_, found_at_, patch, skin_, thread_scratch()))
       throw InputError(fmt::format(
           "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
           "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",
-          model_.bodies[patch.first].name, model_.outlines[outlines.shape[patch.first]].spacing + skin_));
+          model_.bodies[patch.first].name, model_.outline_of(patch.first).spacing + skin_));
 }
 
 }  // namespace pliant

@@ -24,25 +24,26 @@ class ContactSystem {
  public:
   explicit ContactSystem(const Model& model);
 
-  /// True when some close pair may have moved by the skin since the last refresh, or always before the first. With a fixed period: when
-  /// it is over; contacts that come earlier are missed. Also when laws change: see ContactLaws::era.
-  bool refresh_needed(const Outlines& outlines, const RunClock& clock = {});
-  /// Rebuilds the patches and carries the history, that of the outlines' positions, over to them; newcomers get their places.
+  /// False when some close pair may have moved by the skin since the candidates were found, or always before the first time. With a fixed period:
+  /// when it is over; contacts that come earlier are missed. Also when laws change: see ContactLaws::era.
+  bool candidates_hold(const OutlineField& place, const RunClock& clock = {});
+  /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
-  void refresh(Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
+  void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
 
-  /// Contact forces into outlines.force_x, force_y; the new history goes to `trial`.
-  PatchTotals forces(Outlines& outlines, const ContactHistory& committed, ContactHistory& trial);
+  /// Contact forces on outline nodes, N/m, from one history into another.
+  PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
 
-  /// [outline nodes] upper bound of the contact stiffness that each node may feel until the next refresh, N/m2; weighted so that the bound of a
-  /// pair is that of its two bodies taken alone (METHOD 6). `compliance` [bodies]: largest w^2 a body shows per unit contact stiffness.
-  std::vector<double> stiffness_bound(Outlines& outlines, const std::vector<double>& compliance);
+  /// [outline nodes] upper bound of the contact stiffness that each node may feel until the candidates are found anew, N/m2, seen from where they
+  /// were found; weighted so that the bound of a pair is that of its two bodies taken alone (METHOD 6). `compliance` [bodies]: largest w^2 a body
+  /// shows per unit contact stiffness.
+  std::vector<double> stiffness_bound(const std::vector<double>& compliance) const;
 
   /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
 
   /// [outline nodes] least damage of each node's bonds; 1: it has none.
-  std::vector<double> nodal_damage(const Outlines& outlines, const ContactHistory& history) const;
+  std::vector<double> nodal_damage(const ContactHistory& history) const;
 
   const ContactLaws& laws() const { return laws_; }
   const std::vector<Patch>& patches() const { return patches_; }
@@ -54,6 +55,7 @@ class ContactSystem {
   void visit(Visitor&& visitor) {
     visitor("pairs", pairs_);
     visitor("patches", patches_);
+    visitor("found_at", found_at_);
     visitor("fresh", fresh_);
     visitor("warned", warned_);
     visitor("refreshed", refreshed_);
@@ -69,14 +71,13 @@ class ContactSystem {
     int begin, count, force;  ///< outline node of the first entry (not reduced), entries, place in the buffers
   };
 
-  bool moved_by_the_skin(const Outlines& outlines);
+  bool moved_by_the_skin(const OutlineField& place);
   Vec2 common_motion() const;
   bool period_is_over(const RunClock& clock) const;
-  void warn_of_missed_contacts(const Outlines& outlines);
-  void find_patches(const Outlines& outlines, const std::vector<Box>& boxes);
-  void add_self_patches(const Outlines& outlines);
-  void refuse_self_overlap(const Outlines& outlines) const;
-  void measure_lengths(Outlines& outlines) const;
+  void warn_of_missed_contacts(const OutlineField& place);
+  void find_patches(const std::vector<Box>& boxes);
+  void add_self_patches();
+  void refuse_self_overlap() const;
   void lay_out_patches();
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
@@ -101,7 +102,8 @@ class ContactSystem {
   int records_ = 0;
   PatchForces forces_;
   std::vector<PatchTotals> totals_;  ///< [patches]
-  std::vector<Box> motion_;          ///< [bodies], box of the outline nodes' displacements since the refresh
+  Outlines found_at_;                ///< where the candidates were found
+  std::vector<Box> motion_;          ///< [bodies], box of the outline nodes' displacements since then
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0;

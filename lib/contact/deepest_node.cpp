@@ -10,9 +10,9 @@
 namespace pliant {
 namespace {
 
-Vec2 node_at(const Model& model, const Outlines& outlines, int body, int node) {
-  const OutlineShape& shape = model.outlines[outlines.shape[body]];
-  const int turn = turn_of(node, shape.count), at = outlines.offset[body] + node - turn * shape.count;
+Vec2 node_at(const Model& model, const OutlineField& outlines, int body, int node) {
+  const OutlineShape& shape = model.outline_of(body);
+  const int turn = turn_of(node, shape.count), at = model.outline_offset[body] + node - turn * shape.count;
   return {outlines.x[at] + turn * shape.turn_shift, outlines.y[at]};
 }
 
@@ -42,10 +42,10 @@ Vec2 lever(const Vec2& point, const Vec2& node, double period) {
   return r;
 }
 
-Nearest nearest_segment(const Model& model, const Outlines& outlines, int master, const Vec2& point,
+Nearest nearest_segment(const Model& model, const OutlineField& outlines, int master, const Vec2& point,
                         double period = 0) {
   Nearest nearest;
-  const int count = model.outlines[outlines.shape[master]].count;
+  const int count = model.outline_of(master).count;
   for (int s = 0; s < count; ++s) {
     const Vec2 a = node_at(model, outlines, master, s), b = node_at(model, outlines, master, s + 1);
     const double length = (b - a).norm();
@@ -68,11 +68,11 @@ bool is_clear(const Box& box, const OutlineShape& shape, const Vec2& x, double p
          std::abs(from_middle.y()) > 0.5 * (box.y_max - box.y_min);
 }
 
-void look_at(const Model& model, const Outlines& outlines, const Sight& sight, DeepestNode& deepest) {
+void look_at(const Model& model, const OutlineField& outlines, const Sight& sight, DeepestNode& deepest) {
   const auto [slave, master, shift, period] = sight;
-  const OutlineShape& shape = model.outlines[outlines.shape[master]];
-  const Box box = bounding_box(shape, outlines, master);
-  const int nodes = model.outlines[outlines.shape[slave]].count;
+  const OutlineShape& shape = model.outline_of(master);
+  const Box box = bounding_box(model, outlines, master);
+  const int nodes = model.outline_of(slave).count;
   for (int node = 0; node < nodes; ++node) {
     const Vec2 position = node_at(model, outlines, slave, node), seen = position - Vec2(shift, 0);
     if (is_clear(box, shape, seen, period)) continue;
@@ -83,15 +83,15 @@ void look_at(const Model& model, const Outlines& outlines, const Sight& sight, D
 }
 
 /// Mean of a body's outline nodes.
-Vec2 middle_of(const Model& model, const Outlines& outlines, int body) {
-  const int count = model.outlines[outlines.shape[body]].count;
+Vec2 middle_of(const Model& model, const OutlineField& outlines, int body) {
+  const int count = model.outline_of(body).count;
   Vec2 sum(0, 0);
   for (int node = 0; node < count; ++node) sum += node_at(model, outlines, body, node);
   return sum / count;
 }
 
 /// Of two bodies on the same spot no node is deep, but their middles are.
-bool share_a_middle(const Model& model, const Outlines& outlines, const BodyPair& pair) {
+bool share_a_middle(const Model& model, const OutlineField& outlines, const BodyPair& pair) {
   if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return false;
   const Vec2 middle = middle_of(model, outlines, pair.first), seen = middle - Vec2(sight_of(model, pair).shift, 0);
   const Nearest own = nearest_segment(model, outlines, pair.first, middle),
@@ -100,10 +100,10 @@ bool share_a_middle(const Model& model, const Outlines& outlines, const BodyPair
 }
 
 /// Pairs whose boxes meet, and every body with every wall: what is behind a wall's surface lies in the wall.
-std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const Outlines& outlines) {
+std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineField& outlines) {
   std::vector<Box> boxes;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    boxes.push_back(bounding_box(model.outlines[outlines.shape[b]], outlines, static_cast<int>(b)));
+    boxes.push_back(bounding_box(model, outlines, static_cast<int>(b)));
   std::vector<BodyPair> pairs;
   for (const BodyPair& p : broad_phase(model, boxes, 0))
     if (!model.bodies[p.first].wall && !model.bodies[p.second].wall) pairs.push_back(p);
@@ -116,7 +116,7 @@ std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const Outlines&
 
 }  // namespace
 
-DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std::vector<BodyPair>& pairs) {
+DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const std::vector<BodyPair>& pairs) {
   DeepestNode deepest;
   for (const BodyPair& pair : pairs) {
     const Sight sight = sight_of(model, pair);
@@ -126,7 +126,7 @@ DeepestNode deepest_node(const Model& model, const Outlines& outlines, const std
   return deepest;
 }
 
-void refuse_deep_overlap(const Model& model, const Outlines& outlines) {
+void refuse_deep_overlap(const Model& model, const OutlineField& outlines) {
   const auto refuse = [&](int a, int b, const std::string& how) {
     const std::string other = a == b ? "its own periodic image" : fmt::format("'{}'", model.bodies[b].name);
     throw InputError(fmt::format("'{}' and {} overlap at the start {}; move them apart or make them smaller",

@@ -42,19 +42,18 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
 inline Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch, int slave_side) {
   const int slave = slave_side == 0 ? patch.first : patch.second, master = slave_side == 0 ? patch.second : patch.first;
   const double shift = patch.images * model.scene.period.value_or(0);
-  const int offset = outlines.offset[slave], master_side = 1 - slave_side;
+  const int offset = model.outline_offset[slave], master_side = 1 - slave_side;
   const bool present_lengths = !outlines.tributary_length.empty();
-  return {&model.outlines[outlines.shape[slave]],
-          &model.outlines[outlines.shape[master]],
-          &outlines.x[offset],
-          &outlines.y[offset],
+  return {&model.outline_of(slave),
+          &model.outline_of(master),
+          &outlines.position.x[offset],
+          &outlines.position.y[offset],
           patch.nodes[slave_side],
           slave_side == 0 ? 0.0 : shift,
           patch.record[slave_side],
           patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
           patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
-          present_lengths ? &outlines.tributary_length[offset]
-                          : model.outlines[outlines.shape[slave]].tributary_length.data(),
+          present_lengths ? &outlines.tributary_length[offset] : model.outline_of(slave).tributary_length.data(),
           present_lengths,
           patch.corners};
 }
@@ -63,8 +62,8 @@ inline void fill_window(const Model& model, const Outlines& outlines, const Patc
                         MasterWindow& window) {
   const int master = master_side == 0 ? patch.first : patch.second;
   const double shift = master_side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0);
-  const int offset = outlines.offset[master];
-  window.fill(model.outlines[outlines.shape[master]], &outlines.x[offset], &outlines.y[offset],
+  const int offset = model.outline_offset[master];
+  window.fill(model.outline_of(master), &outlines.position.x[offset], &outlines.position.y[offset],
               patch.segments[master_side], shift, skin);
 }
 

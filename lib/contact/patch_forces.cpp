@@ -148,11 +148,12 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
   }
 }
 
-void look_up_velocities(const Outlines& outlines, const Patch& patch, int slave_side, Pass& pass) {
-  const int slave = outlines.offset[slave_side == 0 ? patch.first : patch.second],
-            master = outlines.offset[slave_side == 0 ? patch.second : patch.first];
-  pass.slave_vx = &outlines.velocity_x[slave], pass.slave_vy = &outlines.velocity_y[slave];
-  pass.master_vx = &outlines.velocity_x[master], pass.master_vy = &outlines.velocity_y[master];
+void look_up_velocities(const Model& model, const OutlineField& velocity, const Patch& patch, int slave_side,
+                        Pass& pass) {
+  const int slave = model.outline_offset[slave_side == 0 ? patch.first : patch.second],
+            master = model.outline_offset[slave_side == 0 ? patch.second : patch.first];
+  pass.slave_vx = &velocity.x[slave], pass.slave_vy = &velocity.y[slave];
+  pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
 /// Both passes of a patch. What a law does not need is neither kept nor added up.
@@ -168,7 +169,8 @@ PatchTotals compute_passes(const Law& law, const Model& model, const Outlines& o
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (patch.nodes[slave_side].count == 0) continue;
     Pass pass = make_pass(model, outlines, patch, slave_side);
-    if constexpr (has_dashpot<Law>) look_up_velocities(outlines, patch, slave_side, pass), pass.damping = damping;
+    if constexpr (has_dashpot<Law>)
+      look_up_velocities(model, outlines.velocity, patch, slave_side, pass), pass.damping = damping;
     fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
     compute_pass(law, pass, scratch, skin, committed, trial, forces, totals);
   }

@@ -52,15 +52,14 @@ bool overlaps(const Model& model, const Outlines& outlines, const Patch& patch, 
 }
 
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
-                             double skin, double outward, const double (&factor)[2], PatchForces& forces,
+                             double skin, double outward, const double (&factor)[2], std::vector<double>& entries,
                              MasterWindow& scratch) {
-  clear_forces(patch, forces);
   for_each_eight(model, outlines, patch, skin, scratch, [&](const Pass& pass, int slave_side, int i) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(scratch, nodes.x, nodes.y, outward);
     const auto add = [&](int lane, double times) {
       const double k = 0.5 * times * nodes.tributary_length[lane] * stiffness;
-      forces.x[pass.slave_force + i + lane] += factor[slave_side] * k;
+      entries[pass.slave_force + i + lane] += factor[slave_side] * k;
       return factor[1 - slave_side] * k;
     };
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane)
@@ -68,12 +67,12 @@ void compute_patch_stiffness(const Model& model, const Outlines& outlines, const
         const Footholds footholds = possible_footholds(pass, scratch, p, lane, i, outward);
         if (footholds.shares.empty()) continue;
         const double k = add(lane, footholds.factor);
-        for (const auto& [row, share] : footholds.shares) forces.x[pass.master_force + row] += share * k;
+        for (const auto& [row, share] : footholds.shares) entries[pass.master_force + row] += share * k;
       } else if (p.hit[lane]) {
         const double k = add(lane, 1);
         const int at = pass.master_force + static_cast<int>(p.row[lane]);
-        forces.x[at] += (1 - p.xi[lane]) * k;
-        forces.x[at + 1] += p.xi[lane] * k;
+        entries[at] += (1 - p.xi[lane]) * k;
+        entries[at + 1] += p.xi[lane] * k;
       }
   });
 }

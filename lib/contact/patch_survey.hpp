@@ -26,10 +26,10 @@ void make_bonds(const Model& model, const Outlines& outlines, const Patch& patch
 /// Whether some node of the patch stands inside the other outline.
 bool overlaps(const Model& model, const Outlines& outlines, const Patch& patch, double skin, MasterWindow& scratch);
 
-/// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch within `outward`, written in the place
-/// of the forces' x: half the tributary length times the stiffness, shared by the two segment nodes on the master.
+/// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch within `outward`, added to the
+/// entries of the patch's nodes as forces have them: half the tributary length times the stiffness, shared by the two segment nodes on the master.
 void compute_patch_stiffness(const Model& model, const Outlines& outlines, const Patch& patch, double stiffness,
-                             double skin, double outward, const double (&factor)[2], PatchForces& forces,
+                             double skin, double outward, const double (&factor)[2], std::vector<double>& entries,
                              MasterWindow& scratch);
 
 }  // namespace pliant

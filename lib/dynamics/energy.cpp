@@ -45,7 +45,7 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
   return total;
 }
 
-Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(zero_dofs(forces.model())) {
+Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), scratch_(forces.model()) {
   gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
 }
@@ -71,10 +71,10 @@ Audit Auditor::audit(const State& state) {
   const Model& model = forces_.model();
   warn_of_strain(state);
   Audit result;
-  // The same forces once more: the history stands still at an accepted state, so nothing slips.
-  ContactHistory history = state.history;
-  const Evaluation evaluation = forces_.evaluate_again(
-      {state.position, material_velocity(model, state.velocity), state.time}, history, scratch_, force_);
+  // The same forces once more: the memory stands still at an accepted state, so nothing slips.
+  const Evaluation evaluation =
+      forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time}, state.outlines,
+                       state.memory, {scratch_.force, scratch_.contact_force, scratch_.memory});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);
@@ -87,7 +87,7 @@ Audit Auditor::audit(const State& state) {
   result.energy.dissipated = state.dissipated;
   result.energy.external_work =
       state.external_work + state.gravity_work + constant_gravity_moment(state.position) - gravity_start_;
-  result.momentum_error = std::max(contact_imbalance(), internal_imbalance(state.position));
+  result.momentum_error = std::max(contact_imbalance(state), internal_imbalance(state.position));
   return result;
 }
 
@@ -102,16 +102,17 @@ double Auditor::balance_error(const Energies& energy) const {
 
 /// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but a force's
 /// lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a period.
-double Auditor::contact_imbalance() const {
+double Auditor::contact_imbalance(const State& state) const {
   const Model& model = forces_.model();
-  const Outlines& o = forces_.outlines();
+  const OutlineField &at = state.outlines.position, &force = state.contact_force;
   double fx = 0, fy = 0, moment = 0, magnitude = 0, lever = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (int i = o.offset[b]; i < o.offset[b] + model.outlines[o.shape[b]].count; ++i) {
-      fx += o.force_x[i], fy += o.force_y[i];
-      moment += o.x[i] * o.force_y[i] - o.y[i] * o.force_x[i];
-      magnitude += std::hypot(o.force_x[i], o.force_y[i]);
-      lever += std::abs(o.x[i] * o.force_y[i]) + std::abs(o.y[i] * o.force_x[i]);
+    for (int i = model.outline_offset[b]; i < model.outline_offset[b] + model.outline_of(static_cast<int>(b)).count;
+         ++i) {
+      fx += force.x[i], fy += force.y[i];
+      moment += at.x[i] * force.y[i] - at.y[i] * force.x[i];
+      magnitude += std::hypot(force.x[i], force.y[i]);
+      lever += std::abs(at.x[i] * force.y[i]) + std::abs(at.y[i] * force.x[i]);
     }
   const double linear = ratio(std::hypot(fx, fy), magnitude);
   return model.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "dynamics/forces.hpp"
-#include "dynamics/state.hpp"
+#include "dynamics/trial.hpp"
 
 namespace pliant {
 
@@ -49,13 +48,12 @@ class Auditor {
   void warn_of_strain(const State& state);
   double constant_gravity_moment(const Dofs& position) const;
   double internal_imbalance(const Dofs& position) const;
-  double contact_imbalance() const;
+  double contact_imbalance(const State& state) const;
 
   Forces& forces_;
   double gravity_start_ = 0;
   double energy_start_ = 0;
-  Dofs force_;
-  ContactHistory scratch_;
+  Trial scratch_;
   bool warned_of_strain_ = false;
 };
 

@@ -80,11 +80,11 @@ std::string describe_nan(const Model& model, const Dofs& position, const Dofs& f
   return {};
 }
 
-std::string describe_lost_contact(const Forces& forces) {
+std::string describe_lost_contact(const Forces& forces, const OutlineField& place_of_nodes) {
   const Model& model = forces.model();
   std::vector<BodyPair> pairs;
   for (const Patch& patch : forces.contact().patches()) pairs.push_back({patch.first, patch.second, patch.images});
-  const DeepestNode deepest = deepest_node(model, forces.outlines(), pairs);
+  const DeepestNode deepest = deepest_node(model, place_of_nodes, pairs);
   return fmt::format(
       "contact between {} and {} is lost: outline node {} of the first, at {}, has a penetration of {:.3g} m, {:.2f} "
       "of a segment length; raise the contact stiffness or remove initial overlaps",
@@ -92,18 +92,19 @@ std::string describe_lost_contact(const Forces& forces) {
       deepest.depth, deepest.depth / deepest.segment_length);
 }
 
-/// What an evaluation at these positions found wrong; empty when nothing is.
-std::string describe(const Evaluation& evaluation, const Dofs& position, const Dofs& force, const Forces& forces) {
-  if (!(evaluation.least_jacobian > 0)) return describe_inversion(forces.model(), position);
-  const std::string nan = describe_nan(forces.model(), position, force);
-  return !nan.empty() || evaluation.sound ? nan : describe_lost_contact(forces);
+/// What an evaluation found wrong with a trial or a state; empty when nothing is.
+template <class Tried>
+std::string describe(const Evaluation& evaluation, const Tried& tried, const Forces& forces) {
+  if (!(evaluation.least_jacobian > 0)) return describe_inversion(forces.model(), tried.position);
+  const std::string nan = describe_nan(forces.model(), tried.position, tried.force);
+  return !nan.empty() || evaluation.sound ? nan : describe_lost_contact(forces, tried.outlines.position);
 }
 
 }  // namespace
 
 void check_time_step(const FailedStep& step, const State& accepted, const Forces& forces) {
   if (step.next_dt >= least_share * step.largest_dt) return;
-  std::string cause = describe(step.report.evaluation, step.trial.position, step.trial.force, forces);
+  std::string cause = describe(step.report.evaluation, step.trial, forces);
   if (cause.empty())
     cause = fmt::format(
         "the motion cannot be followed: the error estimate is still {:.3g}; look at the frames before, and at loads, "
@@ -112,12 +113,12 @@ void check_time_step(const FailedStep& step, const State& accepted, const Forces
   throw PhysicsError(fmt::format(
       "{}; at t = {:.6g} s, time step {:.3g} s (at most {:.3g} s: {}; trials rejected: {}); last good state: step {}, "
       "t = {:.6g} s",
-      cause, step.time, step.report.dt, step.largest_dt, step.governed_by, step.report.rejections, accepted.steps,
+      cause, step.trial.time, step.report.dt, step.largest_dt, step.governed_by, step.report.rejections, accepted.steps,
       accepted.time));
 }
 
 void check_start(const Evaluation& evaluation, const State& start, const Forces& forces) {
-  const std::string cause = describe(evaluation, start.position, start.force, forces);
+  const std::string cause = describe(evaluation, start, forces);
   if (!cause.empty()) throw PhysicsError(fmt::format("{}; at the start, t = {:.6g} s", cause, start.time));
 }
 

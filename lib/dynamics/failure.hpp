@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/trial.hpp"
 
 namespace pliant {
 
@@ -11,11 +11,10 @@ namespace pliant {
 /// Trials that came to nothing.
 struct FailedStep {
   const StepReport& report;  ///< of the last trial
-  const Trial& trial;        ///< at the positions of the last evaluation
-  double time;               ///< of these positions, s
-  double next_dt;            ///< what would have to be tried next, s
-  double largest_dt;         ///< what limits dt when no error does, s
-  std::string governed_by;   ///< and its reason
+  const Trial& trial;
+  double next_dt;           ///< what would have to be tried next, s
+  double largest_dt;        ///< what limits dt when no error does, s
+  std::string governed_by;  ///< and its reason
 };
 
 /// Throws PhysicsError when next_dt has fallen under 1e-9 of largest_dt: what the last trial met (a grain turned inside out, a number that is

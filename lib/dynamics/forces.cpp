@@ -7,7 +7,7 @@
 
 #include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 #include "core/parallel.hpp"
@@ -25,7 +25,6 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 
 Forces::Forces(const Model& model)
     : model_(model),
-      outlines_(make_outlines(model)),
       contact_(model),
       least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
@@ -33,57 +32,42 @@ Forces::Forces(const Model& model)
   if (model.rates) damping_power_.resize(least_jacobian_.size());
 }
 
-Evaluation Forces::evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
-                            State* accepted, const RegionWork& afterwards) {
-  const Dofs& position = motion.position;
-  Evaluation result;
-  update_outlines(model_, position, outlines_);
-  const RunClock clock{motion.time, accepted ? accepted->steps : 0};
-  if (contact_.refresh_needed(outlines_, clock)) {
-    if (accepted) update_outlines(model_, accepted->position, outlines_);
-    contact_.refresh(outlines_, accepted ? accepted->history : committed, clock);
-    if (accepted) update_outlines(model_, position, outlines_);
-    result.refreshed = true;
-    result.sound = !contact_.refresh_needed(outlines_, clock);
-    if (accepted && &accepted->history != &committed) {
-      result.sound = false;
-      return result;
-    }
-  }
-  update_outline_velocities(model_, motion, outlines_);
-  result.contact = contact_.forces(outlines_, committed, trial);
-  const OutlineLoads loads(model_, motion.instant(), outlines_);
-  result.damping_power = result.contact.damping_power + loads.damping_power();
-  lane_forces(motion, force, afterwards);
-  if (!stresses_.empty()) spread_forces(motion, force, afterwards);
-  const Vec2 gravity = model_.scene.gravity_at(motion.time);
-  parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
-    const RigidBody& rigid = model_.rigid_bodies[r];
-    outline_force_resultant(model_, rigid, outlines_, &position.rigid[3 * r], &force.rigid[3 * r]);
-    add_rigid_loads(rigid, gravity, motion.instant(), &force.rigid[3 * r]);
-  });
-  for (double power : damping_power_) result.damping_power += power;
-  for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
-  result.sound &= result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
-  return result;
+Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
+  const RunClock clock{time, accepted.steps};
+  if (contact_.candidates_hold(trial, clock)) return {};
+  contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock);
+  return {true, contact_.candidates_hold(trial, clock)};
 }
 
-Evaluation Forces::evaluate_again(const Motion& motion, ContactHistory& history, ContactHistory& scratch, Dofs& force) {
-  std::vector<double> x = outlines_.force_x, y = outlines_.force_y;
-  const Evaluation result = evaluate(motion, history, scratch, force);
-  outlines_.force_x = std::move(x);
-  outlines_.force_y = std::move(y);
+Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Memory& from, const Output& to,
+                            const RegionWork& afterwards) {
+  Evaluation result;
+  result.contact = contact_.forces(outlines, from.contact, to.memory.contact, to.contact_force);
+  result.damping_power = result.contact.damping_power;
+  const OutlineField* on_outlines = &to.contact_force;
+  if (has_outline_loads(model_)) {
+    loaded_ = to.contact_force;
+    result.damping_power += add_outline_loads(model_, motion.instant(), outlines, loaded_);
+    on_outlines = &loaded_;
+  }
+  lane_forces(motion, *on_outlines, to.force, afterwards);
+  if (!stresses_.empty()) spread_forces(motion, *on_outlines, to.force, afterwards);
+  rigid_forces(motion, outlines.position, *on_outlines, to.force);
+  for (double power : damping_power_) result.damping_power += power;
+  for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
+  result.sound = result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
   return result;
 }
 
 /// All forces on bodies that stand one a lane.
-void Forces::lane_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards) {
+void Forces::lane_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force,
+                         const RegionWork& afterwards) {
   parallel_for(model_.lane_batches, [&](int b) {
     const Batch& batch = model_.batches[b];
     const Region& region = model_.regions[b];
     Lanes* f = &force.compliant[batch.offset];
     std::fill_n(f, 2 * batch.slots, Lanes{});
-    add_outline_forces(model_, region, outlines_, f);
+    add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     const Lanes *q = &motion.position.compliant[batch.offset], *v = &motion.velocity.compliant[batch.offset];
     least_jacobian_[b] = least_of(add_internal_forces(model_, batch, q, f));
@@ -93,7 +77,8 @@ void Forces::lane_forces(const Motion& motion, Dofs& force, const RegionWork& af
 }
 
 /// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
-void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards) {
+void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force,
+                           const RegionWork& afterwards) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
@@ -109,10 +94,20 @@ void Forces::spread_forces(const Motion& motion, Dofs& force, const RegionWork& 
     const Region& region = model_.regions[r];
     Lanes* f = &force.compliant[model_.batches[region.batch].offset];
     std::fill(f + 2 * region.first, f + 2 * region.last, Lanes{});
-    add_outline_forces(model_, region, outlines_, f);
+    add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_spread_forces(model_, region, stresses_of(region.batch), f);
     if (afterwards) afterwards(r);
+  });
+}
+
+void Forces::rigid_forces(const Motion& motion, const OutlineField& place, const OutlineField& on_outlines,
+                          Dofs& force) {
+  const Vec2 gravity = model_.scene.gravity_at(motion.time);
+  parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
+    const RigidBody& rigid = model_.rigid_bodies[r];
+    outline_force_resultant(model_, rigid, place, on_outlines, &motion.position.rigid[3 * r], &force.rigid[3 * r]);
+    add_rigid_loads(rigid, gravity, motion.instant(), &force.rigid[3 * r]);
   });
 }
 
@@ -122,19 +117,6 @@ void Forces::warn_of_depth(const Evaluation& evaluation, double time) {
   spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); {}",
                evaluation.contact.deepest, time, lost_penetration,
                time > 0 ? "consider a higher contact stiffness" : "move bodies apart that overlap at the start");
-}
-
-std::vector<double> Forces::stiffness_bound(const std::vector<double>& compliance) {
-  const auto swap_places = [&] {
-    std::swap(outlines_.x, outlines_.x_refresh);
-    std::swap(outlines_.y, outlines_.y_refresh);
-  };
-  std::vector<double> present_lengths = outlines_.tributary_length;
-  swap_places();
-  std::vector<double> result = contact_.stiffness_bound(outlines_, compliance);
-  swap_places();
-  outlines_.tributary_length = std::move(present_lengths);
-  return result;
 }
 
 }  // namespace pliant

@@ -16,8 +16,7 @@ struct Evaluation {
   PatchTotals contact;
   double damping_power = 0;  ///< what viscosity and the dashpots of contacts and supports dissipate, W/m
   double least_jacobian = 1e300;
-  bool refreshed = false;  ///< the contact candidates were rebuilt
-  bool sound = true;  ///< false for J <= 0, lost contacts and a motion beyond the skin: a trial step must be rejected
+  bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
 
 /// What an integrator does with the new forces of a region, an index in Model::regions, while they are in the cache. Called by several threads
@@ -29,41 +28,45 @@ class Forces {
  public:
   explicit Forces(const Model& model);
 
-  /// Forces of a motion into `force`: all but drag (bodies/damping_forces.hpp), which is the integrator's. `committed` is the contact history to start from, `trial` receives the one that goes
-  /// with these positions. `accepted`: the state that a trial step left; candidates are then rebuilt at its positions and its history, laid out
-  /// anew, keeps its records, so that a rejected trial loses none. Not sound is then a trial that goes further than the skin at once, and one
-  /// that starts from another history than the accepted one: that is void, and no forces are computed. `afterwards`, if any, follows the forces of each region.
-  Evaluation evaluate(const Motion& motion, ContactHistory& committed, ContactHistory& trial, Dofs& force,
-                      State* accepted = nullptr, const RegionWork& afterwards = {});
+  /// What became of the contact candidates.
+  struct Candidates {
+    bool found_anew = false;
+    bool hold = true;  ///< false for a trial that goes further than the skin at once
+  };
+  /// Makes sure that the candidates hold for the outlines of a trial that ends at `time`. If they do not, they are found anew, at the accepted
+  /// state, whose history is laid out anew and keeps its records: a rejected trial loses none.
+  Candidates ensure_candidates(State& accepted, const OutlineField& trial, double time);
 
-  /// Once more at an accepted state. Outlines keep the contact forces of the step that led there: dashpots saw the velocities that it predicted.
-  Evaluation evaluate_again(const Motion& motion, ContactHistory& history, ContactHistory& scratch, Dofs& force);
+  /// What an evaluation writes.
+  struct Output {
+    Dofs& force;                  ///< all but drag (bodies/damping_forces.hpp), which is the integrator's
+    OutlineField& contact_force;  ///< N/m
+    Memory& memory;               ///< that goes with these positions
+  };
+  /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of each region.
+  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Memory& from, const Output& to,
+                      const RegionWork& afterwards = {});
 
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 
   const Model& model() const { return model_; }
-  const Outlines& outlines() const { return outlines_; }
-  ContactSystem& contact() { return contact_; }
   const ContactSystem& contact() const { return contact_; }
-  /// Upper bounds of contact stiffness by outline node, at the current patches: see ContactSystem::stiffness_bound. Seen from where the patches
-  /// were found, whatever positions a trial has tried since.
-  std::vector<double> stiffness_bound(const std::vector<double>& compliance);
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("outlines", outlines_);
     visitor("contact", contact_);
     visitor("warned_deep", warned_deep_);
   }
 
  private:
-  const Model& model_;
-  Outlines outlines_;
-  ContactSystem contact_;
-  void lane_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards);
-  void spread_forces(const Motion& motion, Dofs& force, const RegionWork& afterwards);
+  void lane_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force, const RegionWork& afterwards);
+  void spread_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force, const RegionWork& afterwards);
+  void rigid_forces(const Motion& motion, const OutlineField& place, const OutlineField& on_outlines, Dofs& force);
 
+  const Model& model_;
+  ContactSystem contact_;
+  OutlineField loaded_;                 ///< contact forces and loads on outlines together; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies and chunks of points]
   std::vector<double> damping_power_;   ///< of viscosity, as least_jacobian_, W/m; empty without Model::rates
   std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]

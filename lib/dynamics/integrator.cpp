@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
+#include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 
@@ -28,8 +30,19 @@ void pass_switch(const Model& model, State& state) {
 
 }  // namespace
 
-void take_over(const Model& model, State& state, Trial& trial, double end_time, double next_dt,
-               const StepReport& report) {
+Trial::Trial(const Model& model)
+    : position(zero_dofs(model)), velocity(position), force(position), contact_force(model.outline_offset.back()) {}
+
+Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
+  const Dofs velocity = material_velocity(forces.model(), state.velocity);
+  const Motion motion{state.position, velocity, state.time};
+  show_outlines(forces.model(), motion, state.outlines);
+  forces.ensure_candidates(state, state.outlines.position, state.time);
+  return forces.evaluate(motion, state.outlines, state.memory, {trial.force, trial.contact_force, trial.memory});
+}
+
+void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report) {
+  const double end_time = trial.time;
   state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
                                        state.force, trial.force, state.time, end_time) +
                          work_on_outlines(model, state, trial, end_time);
@@ -40,7 +53,9 @@ void take_over(const Model& model, State& state, Trial& trial, double end_time, 
   std::swap(state.position, trial.position);
   std::swap(state.velocity, trial.velocity);
   std::swap(state.force, trial.force);
-  std::swap(state.history, trial.history);
+  std::swap(state.memory, trial.memory);
+  std::swap(state.outlines, trial.outlines);
+  std::swap(state.contact_force, trial.contact_force);
   state.time = end_time;
   state.next_dt = next_dt;
   ++state.steps;

@@ -39,20 +39,17 @@ class Simulation {
     visitor("forces", forces_);
     visitor("auditor", *auditor_);
     visitor("statistics", statistics_);
-    if (Verlet* verlet = std::get_if<Verlet>(&integrator_)) visitor("verlet", *verlet);
-    if (StepDoubling* doubling = std::get_if<StepDoubling>(&integrator_)) visitor("step_doubling", *doubling);
+    std::visit([&](auto& integrator) { visitor("integrator", *integrator); }, integrator_);
   }
 
  private:
-  StepReport integrate(double until);
-
   const Model& model_;
   State state_;
   Forces forces_;
   InitialOverlap overlap_;
   StepStatistics statistics_;
   std::unique_ptr<Auditor> auditor_;
-  std::variant<std::monostate, Verlet, StepDoubling> integrator_;
+  std::variant<std::unique_ptr<Verlet>, std::unique_ptr<StepDoubling>> integrator_;
 };
 
 }  // namespace pliant

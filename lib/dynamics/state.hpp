@@ -4,9 +4,20 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
+#include "bodies/outline.hpp"
 #include "contact/history.hpp"
 
 namespace pliant {
+
+/// What the forces of the next step depend on beside positions and velocities: committed on accepted steps only.
+struct Memory {
+  ContactHistory contact;
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("contact", contact);
+  }
+};
 
 /// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
 /// checkpoint cannot forget a part.
@@ -21,11 +32,20 @@ struct State {
   double damping_power = 0;  ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
   Dofs position, velocity, force;
-  ContactHistory history;
+  Memory memory;
+  // They go with the positions, and are no part of the motion:
+  Outlines outlines;           ///< with the velocities that dashpots saw
+  OutlineField contact_force;  ///< on outline nodes, N/m
 
   /// visitor(name, value) for every member; arrays come as vectors.
   template <class Visitor>
   void visit(Visitor&& visitor) {
+    visit_motion(visitor);
+    visitor("outlines", outlines);
+    visitor("contact_force", contact_force);
+  }
+  template <class Visitor>
+  void visit_motion(Visitor&& visitor) {
     visitor("time", time);
     visitor("next_dt", next_dt);
     visitor("jerk", jerk);
@@ -40,11 +60,11 @@ struct State {
     visitor("position", position);
     visitor("velocity", velocity);
     visitor("force", force);
-    visitor("history", history);
+    visitor("memory", memory);
   }
 };
 
-/// 64-bit FNV-1a hash of every bit of the state.
+/// 64-bit FNV-1a hash of every bit of the motion.
 std::uint64_t state_hash(const State& state);
 
 }  // namespace pliant

@@ -7,10 +7,10 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
+#include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
 #include "dynamics/drag.hpp"
-#include "dynamics/failure.hpp"
 
 namespace pliant {
 namespace {
@@ -66,53 +66,53 @@ LanePair displacement(const ShapeRows& rows, const SpreadShape& shape, const dou
 }  // namespace
 
 StepDoubling::StepDoubling(Forces& forces, const State&)
-    : forces_(forces), model_(forces.model()), drag_(has_drag(forces.model())), wave_time_(wave_time(model_)) {
-  trial_.position = trial_.velocity = trial_.force = start_force_ = zero_dofs(model_);
-  difference_.resize(model_.compliant_size);
+    : forces_(forces),
+      model_(forces.model()),
+      drag_(has_drag(forces.model())),
+      wave_time_(wave_time(model_)),
+      start_force_(zero_dofs(model_)),
+      trial_(model_),
+      difference_(model_.compliant_size) {}
+
+double StepDoubling::first_dt() const { return first_step * wave_time_; }
+
+Proposal StepDoubling::propose(const State& state, double next_dt, double until) const {
+  const double remaining = until - state.time;
+  if (next_dt >= remaining) return {remaining, until, next_dt, wave_time_, "output"};
+  return {next_dt, state.time + next_dt, next_dt, wave_time_, "error"};
 }
 
-StepReport StepDoubling::step(State& state, double until) {
+Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepReport& report) const {
   const TimeSettings& settings = model_.scene.time;
-  double next_dt = state.next_dt > 0 ? state.next_dt : first_step * wave_time_;
-  StepReport report;
-  for (;;) {
-    const double remaining = until - state.time;
-    const bool cut = next_dt >= remaining;
-    const double end_time = cut ? until : state.time + next_dt;
-    report.dt = cut ? remaining : next_dt;
-    report.governed_by = cut ? "output" : "error";
-    report.error = try_step(state, end_time, report);
-    const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_factor;
-    const double proposal = report.dt * std::clamp(factor, least_factor, largest_factor);
-    if (report.error <= settings.alpha * settings.target) {
-      forces_.warn_of_depth(report.evaluation, end_time);
-      take_over(model_, state, trial_, end_time, cut ? std::max(proposal, next_dt) : proposal, report);
-      return report;
-    }
-    next_dt = proposal;
-    ++report.rejections;
-    check_time_step({report, trial_, trial_time_, next_dt, wave_time_, "error control"}, state, forces_);
-  }
+  const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_factor;
+  const double next_dt = proposal.dt * std::clamp(factor, least_factor, largest_factor);
+  if (!(report.error <= settings.alpha * settings.target)) return {false, next_dt};
+  return {true, proposal.wish > proposal.dt ? std::max(next_dt, proposal.wish) : next_dt};
 }
 
-/// Two half steps and, when their error lets them stand, the forces at the end, which the next step starts from. Returns the error: infinite
-/// where an evaluation is not sound.
-double StepDoubling::try_step(State& state, double end_time, StepReport& report, bool once_more) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const double half = 0.5 * report.dt, middle = state.time + half;
+void StepDoubling::attempt(State& state, const Proposal& proposal, StepReport& report) {
+  Halves halves = try_halves(state, proposal, report);
+  if (halves == Halves::voided) halves = try_halves(state, proposal, report);
+  if (halves != Halves::done) report.error = std::numeric_limits<double>::infinity();
+}
+
+/// Two half steps and, when their error lets them stand, the forces at the end, which the next step starts from.
+StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& proposal, StepReport& report) {
+  const double half = 0.5 * proposal.dt, middle = state.time + half;
+  const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
   find_start_force(state, half);
   half_step(state.position, state.velocity, start_force_, state.time, half);
-  if (!evaluate(state, {middle + 0.5 * half}, state.history, half_history_, report)) return infinity;
+  const bool hold = show(state, first, report).hold;
+  if (!evaluate(first, state.memory, half_memory_, report) || !hold) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
-  const double result = error(state, report.dt);
-  if (!(result <= model_.scene.time.alpha * model_.scene.time.target)) return result;
-  if (!evaluate(state, {end_time, true}, half_history_, trial_.history, report))
-    // A refresh makes the half step's history void: once more with the new candidates.
-    return report.evaluation.refreshed && once_more ? try_step(state, end_time, report, false) : infinity;
+  report.error = error(state, proposal.dt);
+  if (!(report.error <= model_.scene.time.alpha * model_.scene.time.target)) return Halves::done;
+  if (show(state, second, report).found_anew) return Halves::voided;
+  if (!evaluate(second, half_memory_, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
-  return result;
+  return Halves::done;
 }
 
 /// With the mean of the loads over the half step: they are linear in time, as steps end at the points of histories.
@@ -123,14 +123,21 @@ void StepDoubling::find_start_force(const State& state, double half) {
   add_load_change(model_, {state.position, velocity, state.time}, {state.time + 0.5 * half}, start_force_);
 }
 
-/// `at`: the time of the loads.
-bool StepDoubling::evaluate(State& state, const Instant& at, ContactHistory& from, ContactHistory& to,
-                            StepReport& report) {
-  report.evaluation = forces_.evaluate(
-      {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, at.time, at.ends_step}, from, to,
-      trial_.force, &state);
+Motion StepDoubling::motion(const Instant& at) const {
+  return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, at.time, at.ends_step};
+}
+
+/// The trial's outlines, and candidates that hold for them. `at`: the time of the loads.
+Forces::Candidates StepDoubling::show(State& state, const Instant& at, StepReport& report) {
+  trial_.time = at.time;
   ++report.evaluations;
-  trial_time_ = at.time;
+  show_outlines(model_, motion(at), trial_.outlines);
+  return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
+}
+
+/// Returns whether the forces are sound.
+bool StepDoubling::evaluate(const Instant& at, const Memory& from, Memory& to, StepReport& report) {
+  report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
   add_drag(model_, at, trial_.velocity, trial_.force);
   report.evaluation.damping_power += drag_power(model_, at, trial_.velocity);
@@ -147,10 +154,9 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
         if (!corrected) trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        trial_.velocity.rigid[i] = dof.imposed(time) ? imposed_velocity(dof, time + half)
-                                                     : velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
-        trial_.position.rigid[i] = dof.imposed(time) ? imposed_position(dof, position.rigid[i], time, half)
-                                                     : position.rigid[i] + half * trial_.velocity.rigid[i];
+        const double x = position.rigid[i], v = velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
+        trial_.velocity.rigid[i] = dof.velocity_after(time, time + half, v);
+        trial_.position.rigid[i] = dof.position_after(time, half, x, x + half * v);
       });
   if (!corrected) return;
   moving_velocity_ = material_velocity(model_, trial_.velocity);
@@ -206,9 +212,10 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
   double change[3], end[3];
   for (std::size_t c = 0; c < 3; ++c) {
     const RigidDof& dof = body.dof[c];
-    const double a = dof.inverse_mass * start_force_.rigid[3 * r + c],
-                 a_half = dof.inverse_mass * trial_.force.rigid[3 * r + c];
-    change[c] = dof.imposed(state.time) ? 0.0 : 0.25 * dt * dt * (a_half - 2 * a);
+    const double inverse_mass = dof.inverse_mass_at(state.time);
+    const double a = inverse_mass * start_force_.rigid[3 * r + c],
+                 a_half = inverse_mass * trial_.force.rigid[3 * r + c];
+    change[c] = 0.25 * dt * dt * (a_half - 2 * a);
     end[c] = trial_.position.rigid[3 * r + c];
   }
   const double c2 = std::cos(end[2]), s2 = std::sin(end[2]), c1 = std::cos(end[2] - change[2]),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "dynamics/integrator.hpp"
 
 namespace pliant {
@@ -11,15 +13,28 @@ class StepDoubling {
  public:
   StepDoubling(Forces& forces, const State& state);
 
-  /// Takes one accepted step that ends at `until` at the latest.
-  StepReport step(State& state, double until);
+  // As take_step asks them:
+  double first_dt() const;
+  Proposal propose(const State& state, double next_dt, double until) const;
+  void attempt(State& state, const Proposal& proposal, StepReport& report);
+  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
+  void finish(const State&, const StepReport&) {}
+  void accepted(const State&) {}
+  Trial& trial() { return trial_; }
+
+  double largest_dt() const { return std::numeric_limits<double>::infinity(); }  ///< s
+  std::string governing() const { return "error control"; }
   template <class Visitor>
   void visit(Visitor&&) {}  ///< nothing outlives a step
 
  private:
-  double try_step(State& state, double end_time, StepReport& report, bool once_more = true);
+  /// Void: contact candidates were found anew in the second half, whose memory is not of them.
+  enum class Halves { done, failed, voided };
+  Halves try_halves(State& state, const Proposal& proposal, StepReport& report);
   void find_start_force(const State& state, double half);
-  bool evaluate(State& state, const Instant& at, ContactHistory& from, ContactHistory& to, StepReport& report);
+  Motion motion(const Instant& at) const;
+  Forces::Candidates show(State& state, const Instant& at, StepReport& report);
+  bool evaluate(const Instant& at, const Memory& from, Memory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);
   void find_difference(const Region& region, double dt);
@@ -34,8 +49,7 @@ class StepDoubling {
   Dofs moving_velocity_;           ///< with corrected mass only: C y
   Dofs start_force_;               ///< of the first half step
   Trial trial_;                    ///< at the half step, then at the end
-  double trial_time_ = 0;          ///< of the trial's last evaluation, s
-  ContactHistory half_history_;    ///< at the half step
+  Memory half_memory_;             ///< at the half step
   std::vector<Lanes> difference_;  ///< u2 - u1 of the compliant degrees of freedom
 };
 

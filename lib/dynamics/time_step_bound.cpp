@@ -263,12 +263,12 @@ void TimeStepBound::update_internal(const Dofs& position, int iterations) {
   limit_ = limit(1);
 }
 
-void TimeStepBound::update_contact(Forces& forces) {
-  const std::vector<double> stiffness = forces.stiffness_bound(compliance_);
-  const std::vector<double> damping = forces.contact().damping_ratios();
+void TimeStepBound::update_contact(const ContactSystem& contact) {
+  const std::vector<double> stiffness = contact.stiffness_bound(compliance_);
+  const std::vector<double> damping = contact.damping_ratios();
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     contact_[b] =
-        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[forces.outlines().offset[b]]));
+        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[model_.outline_offset[b]]));
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
     if (const double z = 2 * damping[b]; z > 0) contact_[b] *= std::pow(std::sqrt(1 + z * z) + z, 2);
   });

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamics/forces.hpp"
+#include "bodies/dofs.hpp"
+#include "contact/contact.hpp"
 
 namespace pliant {
 
@@ -15,8 +16,8 @@ class TimeStepBound {
 
   /// Two more power iterations on the internal forces of every compliant body.
   void update_internal(const Dofs& position, int iterations = 2);
-  /// The a-priori contact bound, after a refresh of the contact candidates.
-  void update_contact(Forces& forces);
+  /// The a-priori contact bound, for new contact candidates.
+  void update_contact(const ContactSystem& contact);
 
   /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much stiffer.
   double largest_dt() const { return limit_.dt; }

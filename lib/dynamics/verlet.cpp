@@ -7,10 +7,10 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
+#include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/accelerations.hpp"
 #include "dynamics/drag.hpp"
-#include "dynamics/failure.hpp"
 
 namespace pliant {
 namespace {
@@ -36,50 +36,49 @@ Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces),
       model_(forces.model()),
       drag_(has_drag(forces.model())),
-      bound_(forces.model(), forces.contact().laws()) {
-  trial_.position = trial_.velocity = trial_.force = mean_velocity_ = zero_dofs(model_);
-  change_.resize(model_.regions.size());
+      bound_(forces.model(), forces.contact().laws()),
+      trial_(model_),
+      mean_velocity_(zero_dofs(model_)),
+      change_(model_.regions.size()) {
   bound_.update_internal(state.position);
-  bound_.update_contact(forces_);
+  bound_.update_contact(forces_.contact());
 }
 
-StepReport Verlet::step(State& state, double until) {
-  const double tolerance = model_.scene.time.tolerance;
-  double next_dt = state.next_dt > 0 ? state.next_dt : first_step * largest_dt();
-  StepReport report;
-  for (;;) {
-    const double largest = largest_dt();  // a rejected trial may have found new contacts
-    const double wish = std::min(next_dt, largest);
-    // Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations time and again.
-    const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
-    const double dt = report.dt = remaining / steps;
-    const double end_time = steps > 1 ? state.time + dt : until;
-    report.governed_by = steps == 1 ? "output" : next_dt < largest ? "error" : "stability";
-    try_step(state, end_time, report);
-    if (report.error <= 2 * tolerance) {
-      forces_.warn_of_depth(report.evaluation, end_time);
-      // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that changes as shortly.
-      if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
-      next_dt = std::min(wish * controller_factor(state.jerk * wish * wish * wish, tolerance), largest);
-      accept(state, end_time, next_dt, report);
-      return report;
-    }
-    next_dt = dt * controller_factor(report.error, tolerance);
-    ++report.rejections;
-    check_time_step({report, trial_, end_time, next_dt, largest, bound_.governing()}, state, forces_);
-  }
+double Verlet::first_dt() const { return first_step * std::min(largest_dt(), model_.scene.time.end); }
+
+/// Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations time and again.
+Proposal Verlet::propose(const State& state, double next_dt, double until) const {
+  const double largest = std::min(largest_dt(), model_.scene.time.end), wish = std::min(next_dt, largest);
+  const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
+  const double dt = remaining / steps;
+  return {dt, steps > 1 ? state.time + dt : until, wish, largest,
+          steps == 1          ? "output"
+          : next_dt < largest ? "error"
+                              : "stability"};
 }
 
-double Verlet::largest_dt() const { return std::min(bound_.largest_dt(), model_.scene.time.end); }
-
-void Verlet::try_step(State& state, double end_time, StepReport& report) {
-  predict(state, report.dt);
+void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report) {
+  trial_.time = proposal.end_time;
+  predict(state, proposal.dt);
+  const Motion motion{trial_.position, trial_.velocity, proposal.end_time, true};
+  show_outlines(model_, motion, trial_.outlines);
+  const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
+  if (candidates.found_anew) bound_.update_contact(forces_.contact());
   report.evaluation =
-      forces_.evaluate({trial_.position, trial_.velocity, end_time, true}, state.history, trial_.history, trial_.force,
-                       &state, [&](int r) { finish_region(state, report.dt, r); });
+      forces_.evaluate(motion, trial_.outlines, state.memory, {trial_.force, trial_.contact_force, trial_.memory},
+                       [&](int r) { finish_region(state, proposal.dt, r); });
+  report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
-  if (report.evaluation.refreshed) bound_.update_contact(forces_);
-  report.error = report.evaluation.sound ? error(state, report.dt) : std::numeric_limits<double>::infinity();
+  report.error = report.evaluation.sound ? error(state, proposal.dt) : std::numeric_limits<double>::infinity();
+}
+
+Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
+  const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, wish = proposal.wish;
+  if (!(report.error <= 2 * tolerance)) return {false, dt * controller_factor(report.error, tolerance)};
+  // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that changes as shortly.
+  if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
+  const double next_dt = wish * controller_factor(state.jerk * wish * wish * wish, tolerance);
+  return {true, std::min(next_dt, proposal.largest_dt)};
 }
 
 /// Positions at the end of the step and, for forces that depend on them, velocities there.
@@ -96,10 +95,9 @@ void Verlet::predict(const State& state, double dt) {
                                        half * inverse_mass * state.force.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
-        const double x = state.position.rigid[i];
-        trial_.position.rigid[i] =
-            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt)
-                                    : x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+        const double x = state.position.rigid[i],
+                     free = x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+        trial_.position.rigid[i] = dof.position_after(state.time, dt, x, free);
       });
 }
 
@@ -120,15 +118,11 @@ void Verlet::predict_velocities(const State& state, double dt) {
   });
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
     const double x = state.position.rigid[i], v = state.velocity.rigid[i];
-    if (dof.imposed(state.time)) {
-      mean_velocity_.rigid[i] = (imposed_position(dof, x, state.time, dt) - x) / dt;
-      trial_.velocity.rigid[i] = imposed_velocity(dof, state.time + dt);
-      return;
-    }
     const Drag<double> drag = drag_over(dt * drag_rate(dof, {state.time}));
     const double change = dt * dof.inverse_mass * state.force.rigid[i];
-    mean_velocity_.rigid[i] = v + drag.mean * change;
-    trial_.velocity.rigid[i] = v + drag.end * change;
+    mean_velocity_.rigid[i] =
+        dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + drag.mean * change;
+    trial_.velocity.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + drag.end * change);
   });
   if (model_.corrected_mass) trial_.velocity = material_velocity(model_, trial_.velocity);
 }
@@ -141,8 +135,7 @@ void Verlet::move_by_mean_velocity(const State& state, double dt) {
       [&](std::size_t i, Lanes) { trial_.position.compliant[i] = state.position.compliant[i] + dt * velocity[i]; },
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i];
-        trial_.position.rigid[i] =
-            dof.imposed(state.time) ? imposed_position(dof, x, state.time, dt) : x + dt * mean_velocity_.rigid[i];
+        trial_.position.rigid[i] = dof.position_after(state.time, dt, x, x + dt * mean_velocity_.rigid[i]);
       });
 }
 
@@ -193,36 +186,33 @@ double Verlet::change_of_rigid(const State& state, std::size_t r) const {
   const RigidBody& body = model_.rigid_bodies[r];
   const auto change = [&](std::size_t c) {
     const RigidDof& dof = body.dof[c];
-    if (dof.imposed(state.time)) return 0.0;
     const double before =
         state.force.rigid[3 * r + c] + drag_coefficient(dof, {state.time}) * state.velocity.rigid[3 * r + c];
-    return std::abs(trial_.force.rigid[3 * r + c] - before) * dof.inverse_mass;
+    return std::abs(trial_.force.rigid[3 * r + c] - before) * dof.inverse_mass_at(state.time);
   };
   const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
   return std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing : std::numeric_limits<double>::infinity();
 }
 
 /// As finish_region.
-void Verlet::finish_rigid(const State& state, double end_time, double dt) {
+void Verlet::finish_rigid(const State& state, double dt) {
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
     const double coefficient = drag_coefficient(dof, {state.time});
-    double& velocity = trial_.velocity.rigid[i];
-    if (dof.imposed(state.time)) {
-      velocity = imposed_velocity(dof, end_time);
-    } else {
-      velocity = state.velocity.rigid[i] + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
-      if (coefficient > 0)
-        velocity += dt * coefficient * dof.inverse_mass * (0.5 * state.velocity.rigid[i] - mean_velocity_.rigid[i]);
-    }
-    trial_.force.rigid[i] -= coefficient * velocity;
+    const double before = state.velocity.rigid[i];
+    double free = before + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+    if (coefficient > 0) free += dt * coefficient * dof.inverse_mass * (0.5 * before - mean_velocity_.rigid[i]);
+    trial_.velocity.rigid[i] = dof.velocity_after(state.time, trial_.time, free);
+    trial_.force.rigid[i] -= coefficient * trial_.velocity.rigid[i];
   });
 }
 
-void Verlet::accept(State& state, double end_time, double next_dt, StepReport& report) {
-  finish_rigid(state, end_time, report.dt);
+void Verlet::finish(const State& state, StepReport& report) {
+  finish_rigid(state, report.dt);
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
   if (drag_) report.damping_work += drag_work(model_, {state.time}, report.dt, state.velocity, mean_velocity_);
-  take_over(model_, state, trial_, end_time, next_dt, report);
+}
+
+void Verlet::accepted(const State& state) {
   if (state.steps % bound_period == 0) bound_.update_internal(state.position);
 }
 

@@ -12,8 +12,17 @@ class Verlet {
  public:
   Verlet(Forces& forces, const State& state);
 
-  /// Takes one accepted step that ends at `until` at the latest.
-  StepReport step(State& state, double until);
+  // As take_step asks them:
+  double first_dt() const;
+  Proposal propose(const State& state, double next_dt, double until) const;
+  void attempt(State& state, const Proposal& proposal, StepReport& report);
+  Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const;
+  void finish(const State& state, StepReport& report);
+  void accepted(const State& state);
+  Trial& trial() { return trial_; }
+
+  double largest_dt() const { return bound_.largest_dt(); }  ///< s
+  std::string governing() const { return bound_.governing(); }
   const TimeStepBound& bound() const { return bound_; }
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -21,16 +30,13 @@ class Verlet {
   }
 
  private:
-  void try_step(State& state, double end_time, StepReport& report);
   void predict(const State& state, double dt);
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
   double error(const State& state, double dt) const;
-  void finish_rigid(const State& state, double end_time, double dt);
+  void finish_rigid(const State& state, double dt);
   double change_of_rigid(const State& state, std::size_t r) const;
-  void accept(State& state, double end_time, double next_dt, StepReport& report);
-  double largest_dt() const;
 
   Forces& forces_;
   const Model& model_;

@@ -22,16 +22,16 @@ constexpr double deep = 0.3, shallow = 0.1;
 /// Modulus times area of all compliant bodies, and weights and contact forces times coordinates, J/m.
 double energy_scale(const Simulation& simulation) {
   const Model& model = simulation.model();
-  const Outlines& outlines = simulation.forces().outlines();
+  const OutlineField &outlines = simulation.state().outlines.position, &force = simulation.state().contact_force;
   const Vec2 gravity = model.scene.gravity_at(simulation.state().time).cwiseAbs();
   double sum = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (body.kind == BodyKind::compliant) sum += model.scene.materials[body.material].young * body.area;
     Vec2 furthest(0, 0);
-    for (int i = outlines.offset[b]; i < outlines.offset[b] + model.outlines[outlines.shape[b]].count; ++i) {
-      const Vec2 at = Vec2(outlines.x[i], outlines.y[i]).cwiseAbs();
-      sum += at.dot(Vec2(outlines.force_x[i], outlines.force_y[i]).cwiseAbs());
+    for (int i = model.outline_offset[b]; i < model.outline_offset[b] + model.outlines[body.outline].count; ++i) {
+      const Vec2 at = outlines.at(i).cwiseAbs();
+      sum += at.dot(force.at(i).cwiseAbs());
       furthest = furthest.cwiseMax(at);
     }
     sum += body.mass * gravity.dot(furthest);

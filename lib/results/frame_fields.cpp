@@ -51,15 +51,15 @@ void contact_count(BodyFrame& frame, std::vector<float>& values) {
 /// normal.
 template <bool normal>
 std::vector<double> traction(const Snapshot& snapshot) {
-  const Outlines& o = snapshot.outlines();
+  const OutlineField& o = snapshot.outlines();
   std::vector<double> values(o.x.size(), 0.0);
-  for (std::size_t b = 0; b < o.shape.size(); ++b) {
-    const OutlineShape& shape = snapshot.model().outlines[o.shape[b]];
-    for (int i = 0, at = o.offset[b]; i < shape.count; ++i, ++at) {
+  for (int b = 0; b < static_cast<int>(snapshot.model().bodies.size()); ++b) {
+    const OutlineShape& shape = snapshot.model().outline_of(b);
+    for (int i = 0, at = snapshot.model().outline_offset[b]; i < shape.count; ++i, ++at) {
       const int before = i > 0 ? at - 1 : at + shape.count - 1;
       const double turn = i > 0 ? 0 : shape.turn_shift;
       const Vec2 along = Vec2(o.x[at + 1] - o.x[before] + turn, o.y[at + 1] - o.y[before]).normalized();
-      const Vec2 force(o.force_x[at], o.force_y[at]);
+      const Vec2 force = snapshot.contact_force().at(at);
       values[at] = (normal ? cross(along, force) : along.dot(force)) / shape.tributary_length[i];
     }
   }
@@ -71,7 +71,7 @@ std::vector<double> contact_gap(const Snapshot& snapshot) {
   std::vector<double> values(snapshot.outlines().x.size(), std::numeric_limits<double>::quiet_NaN());
   for (const TouchingPair& pair : snapshot.contacts())
     for (const ContactPoint& point : pair.points) {
-      double& value = values[snapshot.outlines().offset[point.slave] + point.node];
+      double& value = values[snapshot.model().outline_offset[point.slave] + point.node];
       value = std::fmin(value, point.gap);
     }
   return values;
@@ -82,7 +82,7 @@ std::vector<double> contact_slip(const Snapshot& snapshot) {
   std::vector<double> values(snapshot.outlines().x.size(), 0.0);
   for (const TouchingPair& pair : snapshot.contacts())
     for (const ContactPoint& point : pair.points) {
-      double& value = values[snapshot.outlines().offset[point.slave] + point.node];
+      double& value = values[snapshot.model().outline_offset[point.slave] + point.node];
       if (std::abs(point.slip) > std::abs(value)) value = point.slip;
     }
   return values;
@@ -90,7 +90,7 @@ std::vector<double> contact_slip(const Snapshot& snapshot) {
 
 /// Least damage of each node's bonds, 1 at nodes without.
 std::vector<double> contact_damage(const Snapshot& snapshot) {
-  return snapshot.contact().nodal_damage(snapshot.outlines(), snapshot.state().history);
+  return snapshot.contact().nodal_damage(snapshot.state().memory.contact);
 }
 
 template <class Function>
@@ -135,8 +135,8 @@ BodyField body_field(const std::string& name) {
   return function_of(all, name);
 }
 
-OutlineField outline_field(const std::string& name) {
-  static const std::map<std::string, OutlineField> all{
+OutlineFunction outline_field(const std::string& name) {
+  static const std::map<std::string, OutlineFunction> all{
       {"contact_pressure", traction<true>}, {"contact_shear", traction<false>}, {"contact_gap", contact_gap},
       {"contact_slip", contact_slip},       {"contact_damage", contact_damage},
   };

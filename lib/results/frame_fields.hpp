@@ -30,12 +30,12 @@ class BodyFrame {
 using ConstantField = float (*)(const Body& body);
 /// Appends one body's values of a field on the grid of the bodies: [nodes x components] or [triangles].
 using BodyField = void (*)(BodyFrame& frame, std::vector<float>& values);
-/// Values at all outline nodes, [nodes and copies] as in Outlines.
-using OutlineField = std::vector<double> (*)(const Snapshot& snapshot);
+/// Values at all outline nodes, [nodes and copies] as in OutlineField.
+using OutlineFunction = std::vector<double> (*)(const Snapshot& snapshot);
 
 /// The functions of scene/quantities.hpp's fields. Throw std::logic_error for a field without one.
 ConstantField constant_field(const std::string& name);
 BodyField body_field(const std::string& name);
-OutlineField outline_field(const std::string& name);
+OutlineFunction outline_field(const std::string& name);
 
 }  // namespace pliant

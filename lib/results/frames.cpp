@@ -111,16 +111,15 @@ GridFrame FrameRecorder::bodies_frame(const Snapshot& snapshot) const {
 }
 
 GridFrame FrameRecorder::outlines_frame(const Snapshot& snapshot) const {
-  const Outlines& o = snapshot.outlines();
   GridFrame frame;
   std::vector<std::vector<double>> values;
   for (const auto& [field, function] : outline_fields_) {
     frame.fields.push_back(empty_field(field));
     values.push_back(function(snapshot));
   }
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
-    for (int i = o.offset[b]; i < o.offset[b] + model_.outlines[o.shape[b]].count; ++i) {
-      append(Vec2(o.x[i], o.y[i]), frame.positions);
+  for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b)
+    for (int i = model_.outline_offset[b]; i < model_.outline_end(b); ++i) {
+      append(snapshot.outlines().at(i), frame.positions);
       for (std::size_t f = 0; f < values.size(); ++f)
         frame.fields[f].values.push_back(static_cast<float>(values[f][i]));
     }

@@ -42,7 +42,7 @@ class FrameRecorder {
   std::vector<FieldMesh> rigid_meshes_;  ///< [outline shapes], empty where no rigid grain has it
   std::vector<Wanted<ConstantField>> constant_fields_;
   std::vector<Wanted<BodyField>> body_fields_;
-  std::vector<Wanted<OutlineField>> outline_fields_;
+  std::vector<Wanted<OutlineFunction>> outline_fields_;
   std::unique_ptr<FrameFile> file_;
 };
 

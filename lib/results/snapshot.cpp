@@ -9,16 +9,9 @@
 #include "dynamics/accelerations.hpp"
 
 namespace pliant {
-namespace {
-
-double imposed_acceleration(const RigidDof& dof, double time) {
-  return dof.mode == Drive::Mode::velocity ? dof.history.slope(time) : 0.0;
-}
-
-}  // namespace
 
 const std::vector<TouchingPair>& Snapshot::contacts() const {
-  if (!contacts_) contacts_ = inspect_contacts(model(), simulation_.forces().contact(), outlines(), state().history);
+  if (!contacts_) contacts_ = inspect_contacts(model(), contact(), state().outlines, state().memory.contact);
   return *contacts_;
 }
 
@@ -43,10 +36,7 @@ const Dofs& Snapshot::accelerations() const {
   const Dofs& force = state().force;
   for_each_dof(
       model(), [&](std::size_t i, Lanes inverse_mass) { a.compliant[i] = inverse_mass * force.compliant[i]; },
-      [&](std::size_t i, const RigidDof& dof) {
-        a.rigid[i] =
-            dof.imposed(state().time) ? imposed_acceleration(dof, state().time) : dof.inverse_mass * force.rigid[i];
-      });
+      [&](std::size_t i, const RigidDof& dof) { a.rigid[i] = dof.acceleration_of(state().time, force.rigid[i]); });
   return a = material_velocity(model(), a);
 }
 

@@ -16,7 +16,8 @@ class Snapshot {
   const Model& model() const { return simulation_.model(); }
   const State& state() const { return simulation_.state(); }
   const ContactSystem& contact() const { return simulation_.forces().contact(); }
-  const Outlines& outlines() const { return simulation_.forces().outlines(); }
+  const OutlineField& outlines() const { return state().outlines.position; }   ///< m
+  const OutlineField& contact_force() const { return state().contact_force; }  ///< on outline nodes, N/m
 
   Motion motion() const { return {state().position, velocities(), state().time}; }
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "bodies/initial_state.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {
@@ -59,7 +59,7 @@ Scene scene_of_all_kinds() {
 struct Moved {
   Model model = build_model(scene_of_all_kinds());
   Dofs q = initial_positions(model);
-  Outlines outlines = make_outlines(model);
+  OutlineField place, force;
 
   Moved() {
     Random random(5);
@@ -67,15 +67,14 @@ struct Moved {
       for (int lane = 0; lane < lane_count; ++lane) value[lane] += random.uniform(-0.1, 0.1);
     for (double& value : q.rigid) value += random.uniform(-1, 1);
     q.rigid[5] = q.rigid[8] = 0;  // walls do not turn
-    update_outlines(model, q, outlines);
+    place = placed_outlines(model, q);
+    force = OutlineField(model.outline_offset.back());
   }
-  Vec2 node(int body, int k) const {
-    return {outlines.x[outlines.offset[body] + k], outlines.y[outlines.offset[body] + k]};
-  }
+  Vec2 node(int body, int k) const { return place.at(model.outline_offset[body] + k); }
 };
 
 // EXACT: sum of phi_i(x_k) q_i plus the centre, for each lane.
-TEST(UpdateOutlines, CompliantBodiesFollowTheirShapeFunctions) {
+TEST(PlaceOutlines, CompliantBodiesFollowTheirShapeFunctions) {
   const Moved moved;
   const ShapeRows& rows = moved.model.shapes[0].space.outline_rows;
   for (int body = 0; body < 9; ++body) {
@@ -93,7 +92,7 @@ TEST(UpdateOutlines, CompliantBodiesFollowTheirShapeFunctions) {
 }
 
 // EXACT: rotation about the centroid and translation; walls only move.
-TEST(UpdateOutlines, RigidBodiesTurnAndMove) {
+TEST(PlaceOutlines, RigidBodiesTurnAndMove) {
   const Moved moved;
   for (std::size_t r = 0; r < moved.model.rigid_bodies.size(); ++r) {
     const RigidBody& rigid = moved.model.rigid_bodies[r];
@@ -109,24 +108,23 @@ TEST(UpdateOutlines, RigidBodiesTurnAndMove) {
 
 // EXACT: at rest outlines of both kinds are the turned reference outlines (linear reproduction of the shape functions:
 // 1e-12).
-TEST(UpdateOutlines, AtRestBothKindsShowTheReferenceOutline) {
+TEST(PlaceOutlines, AtRestBothKindsShowTheReferenceOutline) {
   const Model model = build_model(scene_of_all_kinds());
-  Outlines outlines = make_outlines(model);
-  update_outlines(model, initial_positions(model), outlines);
+  const OutlineField place = placed_outlines(model, initial_positions(model));
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     const Points& points = model.outlines[body.outline].points;
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double c = std::cos(body.angle), s = std::sin(body.angle);
       const Vec2 x = body.centre + Vec2(c * points[k].x() - s * points[k].y(), s * points[k].x() + c * points[k].y());
-      EXPECT_NEAR(outlines.x[outlines.offset[b] + k], x.x(), 1e-12);
-      EXPECT_NEAR(outlines.y[outlines.offset[b] + k], x.y(), 1e-12);
+      EXPECT_NEAR(place.x[model.outline_offset[b] + k], x.x(), 1e-12);
+      EXPECT_NEAR(place.y[model.outline_offset[b] + k], x.y(), 1e-12);
     }
   }
 }
 
 // EXACT: copies behind the last node; on a wall a turn further.
-TEST(UpdateOutlines, CopiesContinueTheOutline) {
+TEST(PlaceOutlines, CopiesContinueTheOutline) {
   const Moved moved;
   for (std::size_t b = 0; b < moved.model.bodies.size(); ++b) {
     const OutlineShape& shape = moved.model.outlines[moved.model.bodies[b].outline];
@@ -145,12 +143,11 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
   Random random(8);
   for (std::size_t b = 0; b < moved.model.bodies.size(); ++b)
     for (int k = 0; k < moved.model.outlines[moved.model.bodies[b].outline].count; ++k) {  // copies carry no force
-      moved.outlines.force_x[moved.outlines.offset[b] + k] = random.uniform(-1, 1);
-      moved.outlines.force_y[moved.outlines.offset[b] + k] = random.uniform(-1, 1);
+      moved.force.x[moved.model.outline_offset[b] + k] = random.uniform(-1, 1);
+      moved.force.y[moved.model.outline_offset[b] + k] = random.uniform(-1, 1);
     }
   for (std::size_t b = 0; b < moved.model.bodies.size(); ++b) {
     const Body& body = moved.model.bodies[b];
-    const int count = moved.model.outlines[body.outline].count;
     Dofs there = moved.q, force = zero_dofs(moved.model);
     double power = 0;
     const auto move = [&](double& q, double f) {
@@ -160,7 +157,7 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
     };
     if (body.kind == BodyKind::compliant) {
       const Batch& batch = moved.model.batches[body.batch];
-      add_outline_forces(moved.model, moved.model.regions[body.batch], moved.outlines, &force.compliant[batch.offset]);
+      add_outline_forces(moved.model, moved.model.regions[body.batch], moved.force, &force.compliant[batch.offset]);
       for (std::size_t i = batch.offset; i < batch.offset + 100; ++i) {
         double q = there.compliant[i][body.lane];
         move(q, force.compliant[i][body.lane]);
@@ -168,17 +165,14 @@ TEST(OutlineForces, HaveThePowerOfTheOutline) {
       }
     } else {
       double* f = &force.rigid[3 * body.rigid];
-      outline_force_resultant(moved.model, moved.model.rigid_bodies[body.rigid], moved.outlines,
+      outline_force_resultant(moved.model, moved.model.rigid_bodies[body.rigid], moved.place, moved.force,
                               &there.rigid[3 * body.rigid], f);
       for (int c = 0; c < 3; ++c) move(there.rigid[3 * body.rigid + c], f[c]);
     }
-    Outlines after = make_outlines(moved.model);
-    update_outlines(moved.model, there, after);
+    const OutlineField after = placed_outlines(moved.model, there);
     double expected = 0;
-    for (int i = moved.outlines.offset[b]; i < moved.outlines.offset[b] + count; ++i)
-      expected += ((after.x[i] - moved.outlines.x[i]) * moved.outlines.force_x[i] +
-                   (after.y[i] - moved.outlines.y[i]) * moved.outlines.force_y[i]) /
-                  1e-6;
+    for (int i = moved.model.outline_offset[b]; i < moved.model.outline_end(static_cast<int>(b)); ++i)
+      expected += (after.at(i) - moved.place.at(i)).dot(moved.force.at(i)) / 1e-6;
     // One-sided differences: 1e-6 of the rotation's second derivative, times up to 30 forces; rounding 30 x 1e-16/1e-6
     // x 100 nodes.
     EXPECT_NEAR(power, expected, 2e-5) << body.name;

@@ -206,9 +206,8 @@ TEST(SpreadBodies, fail_by_name) {
   const Body& body = bench.model.bodies[1];
   const BodyPlaces places(bench.model, body);
   set_node(places, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
-  ContactHistory trial;
-  Evaluation evaluation = bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history,
-                                                trial, bench.state.force);
+  Trial trial(bench.model);
+  const Evaluation evaluation = bench.evaluate(trial);
   EXPECT_LT(evaluation.least_jacobian, 0);
   EXPECT_FALSE(evaluation.sound);
   double least = 1e300;

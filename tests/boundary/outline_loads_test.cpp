@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bodies/nodal.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "core/errors.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
@@ -124,7 +124,7 @@ TEST(Pressure, leaves_the_outlines_with_contact_forces_alone) {
   Scene scene = free_disc(60, 1);
   scene.boundary = {pressure_on("disc", 1, true)};
   const Bench bench(scene);
-  for (double f : bench.forces.outlines().force_x) EXPECT_EQ(f, 0) << "EXACT";
+  for (double f : bench.state.contact_force.x) EXPECT_EQ(f, 0) << "EXACT";
 }
 
 double area(const Model& model, const Dofs& position) {

@@ -115,7 +115,7 @@ TEST(Corners, CornersMeet) {
         add_body(scene, outline_shape("square", rectangle(1, 1, 0.1)), BodyKind::rigid, {0, 0}, M_PI / 4);
         add_body(scene, outline_shape("tip", {{0, 0}, {wide, 1}, {-wide, 1}}), BodyKind::rigid, {0, 0}, turn);
         ContactRig rig(scene);
-        update_outlines(rig.model, rig.q, rig.outlines);
+        rig.show();
         const Vec2 place(aside, std::sqrt(0.5) - 0.02);
         rig.move(1, place - rig.node(1, 0));
         rig.evaluate();

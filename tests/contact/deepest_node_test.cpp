@@ -14,7 +14,7 @@ DeepestNode deepest_in(const Scene& scene) {
   std::vector<BodyPair> pairs;
   for (const Patch& patch : bench.forces.contact().patches())
     pairs.push_back({patch.first, patch.second, patch.images});
-  return deepest_node(bench.model, bench.forces.outlines(), pairs);
+  return deepest_node(bench.model, bench.state.outlines.position, pairs);
 }
 
 /// Three blocks in a row, the last pair with more overlap; the corner of one in the side of the other.

@@ -94,9 +94,9 @@ TEST(ContactDepth, WallsSlideThroughTheSeam) {
 void expect_refused(const Scene& scene, bool refused) {
   const ContactRig rig(scene);
   if (refused)
-    EXPECT_THROW(refuse_deep_overlap(rig.model, rig.outlines), InputError);
+    EXPECT_THROW(refuse_deep_overlap(rig.model, rig.outlines.position), InputError);
   else
-    EXPECT_NO_THROW(refuse_deep_overlap(rig.model, rig.outlines));
+    EXPECT_NO_THROW(refuse_deep_overlap(rig.model, rig.outlines.position));
 }
 
 TEST(InitialOverlap, DiscsAcrossThePeriod) {

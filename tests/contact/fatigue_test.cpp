@@ -155,9 +155,9 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
   ContactRig rig(scene);
   rig.step();
   const auto damaged = [&](int body) {
-    const std::vector<double> damage = rig.contact.nodal_damage(rig.outlines, rig.committed);
+    const std::vector<double> damage = rig.contact.nodal_damage(rig.committed);
     double least = 1;
-    for (int k = 0; k < rig.count(body); ++k) least = std::min(least, damage[rig.outlines.offset[body] + k]);
+    for (int k = 0; k < rig.count(body); ++k) least = std::min(least, damage[rig.model.outline_offset[body] + k]);
     return least;
   };
   EXPECT_EQ(damaged(0), 0);

@@ -88,10 +88,10 @@ Seen run_both(const Scene& single, const Scene& twice) {
   EXPECT_EQ(a.state().rejections, b.state().rejections) << "EXACT";
   const double tolerance = static_cast<double>(a.state().steps) * 4 * std::numeric_limits<double>::epsilon() + 1e-12;
   double difference = 0;
-  const Outlines &x = a.forces().outlines(), &y = b.forces().outlines();
+  const OutlineField &x = a.state().outlines.position, &y = b.state().outlines.position;
   for (int copy = 0; copy < 2; ++copy)
     for (int k = 0; k < one.outlines[one.bodies[0].outline].count; ++k) {
-      const int i = x.offset[0] + k, j = y.offset[copy] + k;
+      const int i = k, j = b.model().outline_offset[copy] + k;
       difference = std::max({difference, std::abs(x.x[i] + copy * *single.period - y.x[j]), std::abs(x.y[i] - y.y[j])});
     }
   EXPECT_LT(difference, tolerance) << "EXACT: rounding";

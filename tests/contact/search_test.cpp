@@ -236,8 +236,8 @@ TEST(ContactSearch, AsksForARefreshInTime) {
     rig.move(0, {0, first * skin});
     rig.move(1, {0, second * skin});
     rig.turn(1, turn * skin);  // at radius 1
-    update_outlines(rig.model, rig.q, rig.outlines);
-    return rig.contact.refresh_needed(rig.outlines);
+    rig.show();
+    return !rig.contact.candidates_hold(rig.outlines.position);
   };
   EXPECT_FALSE(asks(0, 0, 0));
   EXPECT_FALSE(asks(0.9, 0, 0));

@@ -46,8 +46,8 @@ Closing close(const Scene& scene) {
   Closing result;
   while (simulation.state().time < scene.time.end) {
     simulation.step(scene.time.end);
-    const Outlines& outlines = simulation.forces().outlines();
-    const Vec2 from(outlines.x[low], outlines.y[low]), to(outlines.x[high], outlines.y[high]);
+    const OutlineField& outlines = simulation.state().outlines.position;
+    const Vec2 from = outlines.at(low), to = outlines.at(high);
     result.width = std::min(result.width, (to - from).norm() * (to.y() > from.y() ? 1 : -1));
     if (simulation.state().steps % 10 != 0) continue;
     const Audit audit = simulation.audit();

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "dynamics/time_step_bound.hpp"
-#include "support/contact_rig.hpp"
+#include "support/bench.hpp"
+#include "support/scenes.hpp"
 
 namespace pliant {
 namespace {
@@ -41,20 +42,12 @@ void add(Dofs& q, const FreeDof& d, double by) {
     q.compliant[d.index][d.lane] += by;
 }
 
-// A model at rest in touch, its forces, and the last accepted history.
-struct Loaded {
-  Model model;
-  Dofs q;
-  Forces forces;
-  ContactHistory committed, trial;
-  Dofs force;
+// A model at rest in touch, and its forces.
+struct Loaded : dynamics_tests::Bench {
+  Trial trial;
 
-  explicit Loaded(const Scene& scene)
-      : model(build_model(scene)), q(initial_positions(model)), forces(model), force(zero_dofs(model)) {
-    evaluate();
-    std::swap(committed, trial);
-  }
-  void evaluate() { forces.evaluate({q, q, 0}, committed, trial, force); }
+  explicit Loaded(const Scene& scene) : Bench(scene), trial(model) {}
+  void evaluate() { Bench::evaluate(trial); }
 };
 
 // Largest eigenvalue of M^-1/2 K M^-1/2, K = -df/dq of all forces by central differences: w^2 of the fastest motion.
@@ -66,10 +59,10 @@ double fastest(Loaded& loaded) {
   for (Eigen::Index j = 0; j < n; ++j) {
     Eigen::VectorXd column = Eigen::VectorXd::Zero(n);
     for (const double sign : {1.0, -1.0}) {
-      add(loaded.q, dofs[j], sign * step);
+      add(loaded.state.position, dofs[j], sign * step);
       loaded.evaluate();
-      for (Eigen::Index i = 0; i < n; ++i) column[i] -= sign * get(loaded.force, dofs[i]) / (2 * step);
-      add(loaded.q, dofs[j], -sign * step);
+      for (Eigen::Index i = 0; i < n; ++i) column[i] -= sign * get(loaded.trial.force, dofs[i]) / (2 * step);
+      add(loaded.state.position, dofs[j], -sign * step);
     }
     for (Eigen::Index i = 0; i < n; ++i) K(i, j) = column[i] / std::sqrt(dofs[i].mass * dofs[j].mass);
   }
@@ -80,8 +73,8 @@ double fastest(Loaded& loaded) {
 // w^2 that the bound stands for: dt = safety x 2/w.
 double bound_of(Loaded& loaded) {
   TimeStepBound bound(loaded.model, loaded.forces.contact().laws());
-  bound.update_internal(loaded.q);
-  bound.update_contact(loaded.forces);
+  bound.update_internal(loaded.state.position);
+  bound.update_contact(loaded.forces.contact());
   const double w = loaded.model.scene.time.safety * 2 / bound.largest_dt();
   return w * w;
 }
@@ -203,10 +196,10 @@ TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
       Loaded loaded(scene);
       const double bound = bound_of(loaded);
       for (int step = 0; step < 5; ++step) {
-        loaded.q.rigid[3] += random.uniform(-0.01, 0.01);
-        loaded.q.rigid[4] -= random.uniform(0, 0.008);
+        loaded.state.position.rigid[3] += random.uniform(-0.01, 0.01);
+        loaded.state.position.rigid[4] -= random.uniform(0, 0.008);
         loaded.evaluate();
-        std::swap(loaded.committed, loaded.trial);
+        std::swap(loaded.state.memory, loaded.trial.memory);
       }
       EXPECT_EQ(loaded.forces.contact().refreshes(), 1);
       EXPECT_LE(fastest(loaded), bound);

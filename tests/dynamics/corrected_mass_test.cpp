@@ -164,8 +164,9 @@ State runge_kutta(int steps) {
         at.velocity.compliant[i] += share * h * before->y[i];
       }
     const Dofs v = material_velocity(bench.model, at.velocity);
-    ContactHistory trial;
-    bench.forces.evaluate({at.position, v, 0}, at.history, trial, at.force);
+    Trial trial(bench.model);
+    evaluate_at(bench.forces, at, trial);
+    at.force = trial.force;
     add_drag(bench.model, {0}, at.velocity, at.force);  // the integrators take it by its exponential
     Slope result{v.compliant, at.force.compliant};
     for_each_dof(

@@ -72,7 +72,7 @@ TEST(StateHash, sees_the_last_bit_of_every_part) {
   EXPECT_TRUE(differs([&](State& s) { nudge(s.velocity.rigid[4]); }));
   EXPECT_TRUE(
       differs([&](State& s) { s.position.compliant[7][2] = std::nextafter(s.position.compliant[7][2], 1e300); }));
-  EXPECT_TRUE(differs([&](State& s) { nudge(s.history.slip[3]); }));
+  EXPECT_TRUE(differs([&](State& s) { nudge(s.memory.contact.slip[3]); }));
 }
 
 }  // namespace

@@ -79,9 +79,9 @@ TEST(Failure, stops_at_the_last_good_state) {
 
 /// Evaluates a bench's forces for what a test did to its positions and lets the failure be told.
 std::string failure_at(Bench& bench) {
-  ContactHistory trial;
-  const Evaluation evaluation = bench.forces.evaluate({bench.state.position, bench.state.velocity, 0},
-                                                      bench.state.history, trial, bench.state.force);
+  Trial trial(bench.model);
+  const Evaluation evaluation = bench.evaluate(trial);
+  bench.state.force = trial.force;
   return failure_of([&] { check_start(evaluation, bench.state, bench.forces); });
 }
 

@@ -71,11 +71,10 @@ End run(const Telling& telling, Integrator integrator) {
   end.refreshes = simulation.forces().contact().refreshes();
   end.outlines.resize(model.bodies.size());
   const Telling back{{}, {0, 0}, (4 - telling.quarters) % 4};
-  const Outlines& o = simulation.forces().outlines();
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (int i = o.offset[b]; i < o.offset[b] + model.outlines[o.shape[b]].count; ++i)
+    for (int i = model.outline_offset[b]; i < model.outline_end(b); ++i)
       end.outlines[telling.order.empty() ? b : static_cast<std::size_t>(telling.order[b])].push_back(
-          back.turned(Vec2(o.x[i], o.y[i]) - scene.time.end * telling.drift));
+          back.turned(simulation.state().outlines.position.at(i) - scene.time.end * telling.drift));
   return end;
 }
 

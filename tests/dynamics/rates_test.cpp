@@ -77,7 +77,7 @@ Run run(const Scene& scene, int steps) {
   Run result;
   for (int i = 1; i <= steps; ++i) {
     here.bench.state.next_dt = 1e300;
-    const StepReport report = here.verlet->step(here.bench.state, scene.time.end * i / steps);
+    const StepReport report = take_step(*here.verlet, here.bench.forces, here.bench.state, scene.time.end * i / steps);
     EXPECT_NEAR(report.dt * steps / scene.time.end, 1, 1e-9) << "the step is stable";
     result.imbalance =
         std::max(result.imbalance, std::abs(here.auditor.energy_gained(here.auditor.audit(here.bench.state).energy)));

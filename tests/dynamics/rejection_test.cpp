@@ -7,6 +7,7 @@
 #include <functional>
 #include <type_traits>
 
+#include "bodies/place_outlines.hpp"
 #include "core/errors.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
@@ -52,13 +53,13 @@ int compare_rejected_steps(const Scene& scene, const std::function<void(const Tw
     State state = bench.state;
     Forces forces = bench.forces;
     const long refreshes = forces.contact().refreshes();
-    const StepReport report = integrator.step(bench.state, scene.time.end);
+    const StepReport report = take_step(integrator, bench.forces, bench.state, scene.time.end);
     if (report.rejections == 0) continue;
     ++seen;
     // Verlet divides what is left until the end by whole steps: for as many.
     state.next_dt = std::is_same_v<Integrator, Verlet> ? report.dt * (1 + 1e-12) : report.dt;
     Integrator fresh(forces, state);
-    fresh.step(state, scene.time.end);
+    take_step(fresh, forces, state, scene.time.end);
     look({bench.state, state, bench.forces.contact().refreshes() != refreshes});
   }
   return seen;
@@ -94,7 +95,7 @@ void expect_equal(const Twins& twins) {
   EXPECT_TRUE(same_bits(twins.retried.position, twins.direct.position)) << "EXACT, t = " << twins.direct.time;
   EXPECT_TRUE(same_bits(twins.retried.velocity, twins.direct.velocity)) << "EXACT, t = " << twins.direct.time;
   EXPECT_TRUE(same_bits(twins.retried.force, twins.direct.force)) << "EXACT, t = " << twins.direct.time;
-  const auto retried = records(twins.retried.history), direct = records(twins.direct.history);
+  const auto retried = records(twins.retried.memory.contact), direct = records(twins.direct.memory.contact);
   ASSERT_EQ(retried.size(), direct.size()) << "EXACT, t = " << twins.direct.time;
   for (std::size_t i = 0; i < direct.size(); ++i) {
     // EXACT but for rounding: after a refresh, places on a periodic wall may count from another turn.
@@ -108,37 +109,37 @@ void expect_equal(const Twins& twins) {
 TEST(Rejection, a_trial_far_away_loses_no_record) {
   Bench bench(fast_slide(Integrator::verlet));
   Verlet integrator(bench.forces, bench.state);
-  while (bench.state.time < 1) integrator.step(bench.state, 1);
+  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, 1);
   State& state = bench.state;
-  const auto before = records(state.history);
+  const auto before = records(state.memory.contact);
   ASSERT_FALSE(before.empty());
-  Dofs away = state.position, force = state.force;
+  Trial trial(bench.model);
+  Dofs away = state.position;
   away.rigid[1] += 5;
-  ContactHistory trial;
-  EXPECT_FALSE(bench.forces.evaluate({away, state.velocity, 1}, state.history, trial, force, &state).sound)
-      << "EXACT: further than the skin";
-  EXPECT_EQ(records(state.history), before) << "EXACT";
-  EXPECT_TRUE(bench.forces.evaluate({state.position, state.velocity, 1}, state.history, trial, force, &state).sound);
-  EXPECT_TRUE(same_bits(force.rigid, state.force.rigid)) << "EXACT";
+  const Forces::Candidates candidates = bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1);
+  EXPECT_TRUE(candidates.found_anew) << "EXACT";
+  EXPECT_FALSE(candidates.hold) << "EXACT: further than the skin";
+  EXPECT_EQ(records(state.memory.contact), before) << "EXACT";
+  EXPECT_TRUE(bench.evaluate(trial).sound);
+  EXPECT_TRUE(same_bits(trial.force.rigid, state.force.rigid)) << "EXACT";
 }
 
-/// A trial that starts from another history, as step doubling's second half does, is void when it needs new
-/// candidates; the accepted history goes with them. Here they drop a first block, so that the records of a second move.
+/// New candidates lay out the accepted memory anew, whatever trial asked for them: here they drop a first block, so that the records of a second move.
 TEST(Rejection, a_refresh_lays_out_the_accepted_history) {
   Scene scene = fast_slide(Integrator::step_doubling);
   scene.grains.push_back(grains("second", "block", BodyKind::rigid, {{8, 0.245}}, moving({2, 0})));
   Bench bench(scene);
   StepDoubling integrator(bench.forces, bench.state);
-  while (bench.state.time < 1) integrator.step(bench.state, 1);
+  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, 1);
   State& state = bench.state;
   state.position.rigid[1] += 5;
-  ContactHistory half = state.history, trial;
-  Dofs away = state.position, force = state.force;
+  state.outlines.position = placed_outlines(bench.model, state.position);
+  Dofs away = state.position;
   away.rigid[3] += 1;
-  const Evaluation evaluation = bench.forces.evaluate({away, state.velocity, 1}, half, trial, force, &state);
-  EXPECT_TRUE(evaluation.refreshed);
-  EXPECT_FALSE(evaluation.sound);
-  bench.forces.evaluate({state.position, state.velocity, 1}, state.history, trial, force, &state);
+  EXPECT_TRUE(bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1).found_anew);
+  Trial trial(bench.model);
+  bench.evaluate(trial);
+  const Dofs& force = trial.force;
   for (std::size_t c = 3; c < 6; ++c)
     EXPECT_NEAR(force.rigid[c], state.force.rigid[c], 1e-12) << "EXACT: rounding of forces of order 1";
   EXPECT_GT(std::abs(state.force.rigid[3]), 0.01) << "friction must act, or this test says nothing";

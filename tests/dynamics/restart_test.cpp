@@ -166,10 +166,10 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   Simulation simulation(scene_model);
   for (long step = 0; step <= last_step; ++step) simulation.step(1000);
   EXPECT_GT(simulation.forces().contact().refreshes(), 3) << "candidates were rebuilt";
-  const std::vector<double>& slip = simulation.state().history.slip;
+  const std::vector<double>& slip = simulation.state().memory.contact.slip;
   EXPECT_GT(std::count_if(slip.begin(), slip.end(), [](double s) { return s != 0; }), 1) << "contacts have slip";
   EXPECT_GT(simulation.state().dissipated, 0);
-  const std::vector<double>& damage = simulation.state().history.damage;
+  const std::vector<double>& damage = simulation.state().memory.contact.damage;
   const bool worn = std::any_of(damage.begin(), damage.end(), [](double d) { return d > 0.01 && d < 0.99; });
   EXPECT_EQ(worn, !damage.empty()) << "bonds are half worn";
   const std::vector<Patch>& patches = simulation.forces().contact().patches();

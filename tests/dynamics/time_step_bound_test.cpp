@@ -1,5 +1,6 @@
 // The stability bound against the true largest eigenvalue of M^-1 K, from dense finite differences (METHOD 6).
 #include "dynamics/time_step_bound.hpp"
+#include "bodies/place_outlines.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "bodies/place_outlines.hpp"
 #include "dynamics/true_spectrum.hpp"
 #include "dynamics/verlet.hpp"
 #include "support/simulations.hpp"
@@ -23,7 +25,7 @@ double square_frequency(const TimeStepBound& bound, const Scene& scene) {
 double bound_of(Bench& bench) {
   TimeStepBound bound(bench.model, bench.forces.contact().laws());
   bound.update_internal(bench.state.position);
-  bound.update_contact(bench.forces);
+  bound.update_contact(bench.forces.contact());
   return square_frequency(bound, bench.model.scene);
 }
 
@@ -116,10 +118,8 @@ std::vector<Scene> touching_scenes(const ContactRule& contact) {
 }
 
 int contacts_of(Bench& bench) {
-  ContactHistory trial;
-  Dofs force = bench.state.force;
-  return bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history, trial, force)
-      .contact.contacts;
+  Trial trial(bench.model);
+  return bench.evaluate(trial).contact.contacts;
 }
 
 class ContactBound : public ::testing::TestWithParam<double> {};
@@ -192,9 +192,10 @@ TEST(TimeStepBound, holds_for_the_retry_after_a_refresh) {
     Bench bench(scene);
     Verlet verlet(bench.forces, bench.state);
     bench.state.position.rigid[1] = 0;
+    bench.state.outlines.position = placed_outlines(bench.model, bench.state.position);
     bench.state.next_dt = 1;
     const double before = verlet.bound().largest_dt();
-    const StepReport report = verlet.step(bench.state, 1e9);
+    const StepReport report = take_step(verlet, bench.forces, bench.state, 1e9);
     look(report, before, verlet.bound().largest_dt());
   };
   double error = 0;

@@ -36,13 +36,13 @@ inline std::vector<Coordinate> coordinates(Bench& bench, Dofs& force) {
 /// The step is small against penetrations and large against rounding; contacts stay where they are when they are not
 /// at their edge.
 inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
-  Dofs force = bench.state.force;
-  ContactHistory trial;
+  Trial trial(bench.model);
+  Dofs& force = trial.force;
   const std::vector<Coordinate> all = coordinates(bench, force);
   const auto n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd matrix(n, n);
   const auto forces_into = [&](Eigen::VectorXd& column) {
-    bench.forces.evaluate({bench.state.position, bench.state.velocity, 0}, bench.state.history, trial, force);
+    bench.evaluate(trial);
     for (const Coordinate& c : all) *c.force *= c.inverse_mass;
     // C D^-1 f with corrected mass. Copied: coordinates point into `force`.
     const Dofs acceleration = material_velocity(bench.model, force);

@@ -11,11 +11,12 @@ using reference::Vector;
 
 /// Contact forces on all outline nodes, N/m, [2 outline nodes].
 Vector engine_contact_forces(const Simulation& simulation) {
-  const Outlines& o = simulation.forces().outlines();
+  const OutlineField& force = simulation.state().contact_force;
+  const Model& model = simulation.model();
   std::vector<double> values;
   for (std::size_t b = 0; b < simulation.model().bodies.size(); ++b)
-    for (int i = o.offset[b]; i < o.offset[b] + simulation.model().outlines[o.shape[b]].count; ++i)
-      values.insert(values.end(), {o.force_x[i], o.force_y[i]});
+    for (int i = model.outline_offset[b]; i < model.outline_end(b); ++i)
+      values.insert(values.end(), {force.x[i], force.y[i]});
   return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 

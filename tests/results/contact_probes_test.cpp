@@ -127,10 +127,10 @@ TEST(ContactProbes, tractions_of_walls_go_on_across_the_period) {
   const Snapshot snapshot(simulation);
   const std::vector<double> pressure = outline_field("contact_pressure")(snapshot),
                             shear = outline_field("contact_shear")(snapshot);
-  const Outlines& o = snapshot.outlines();
+  const OutlineField& o = snapshot.outlines();
   int pressed = 0;
   for (int wall : {1, 2})
-    for (int i = o.offset[wall]; i < o.offset[wall] + model.outlines[o.shape[wall]].count; ++i) {
+    for (int i = model.outline_offset[wall]; i < model.outline_end(wall); ++i) {
       if (std::abs(std::remainder(o.x[i], 4)) > 0.25) continue;  // the last two before the corners of the block
       EXPECT_NEAR(pressure[i], 0.4, 1e-12) << "x = " << o.x[i] << ", wall " << wall;
       EXPECT_NEAR(shear[i], 0, 1e-12) << "x = " << o.x[i] << ", wall " << wall;

@@ -47,11 +47,12 @@ TEST(CurrentLength, is_that_of_the_accepted_positions) {
   Simulation simulation(model);
   while (simulation.state().time < 3) {
     simulation.step(3);
-    const Outlines& o = simulation.forces().outlines();
-    const int n = model.outlines[o.shape[0]].count;
+    const Outlines& outlines = simulation.state().outlines;
+    const OutlineField& o = outlines.position;
+    const int n = model.outline_of(0).count;
     for (int i = 1; i < n; ++i) {
       const auto length = [&](int a, int b) { return std::hypot(o.x[b] - o.x[a], o.y[b] - o.y[a]); };
-      ASSERT_EQ(o.tributary_length[i], 0.5 * (length(i - 1, i) + length(i, i + 1))) << simulation.state().steps;
+      ASSERT_EQ(outlines.tributary_length[i], 0.5 * (length(i - 1, i) + length(i, i + 1))) << simulation.state().steps;
     }
   }
 }

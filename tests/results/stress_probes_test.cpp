@@ -103,11 +103,11 @@ Scene squeezed_pair() {
 
 /// sum f (x) (x - centre) over outline nodes.
 Matrix contact_moment(const Simulation& simulation, int b) {
-  const Outlines& o = simulation.forces().outlines();
+  const State& state = simulation.state();
   const Vec2 centre = centre_of(simulation.model(), simulation.model().bodies[b], simulation.state().position);
   Matrix moment = Matrix::Zero();
-  for (int i = o.offset[b]; i < o.offset[b] + simulation.model().outlines[o.shape[b]].count; ++i)
-    moment += Vec2(o.force_x[i], o.force_y[i]) * (Vec2(o.x[i], o.y[i]) - centre).transpose();
+  for (int i = simulation.model().outline_offset[b]; i < simulation.model().outline_end(b); ++i)
+    moment += state.contact_force.at(i) * (state.outlines.position.at(i) - centre).transpose();
   return moment;
 }
 

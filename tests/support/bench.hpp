@@ -6,8 +6,7 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
-#include "dynamics/forces.hpp"
-#include "dynamics/state.hpp"
+#include "dynamics/integrator.hpp"
 
 namespace pliant::dynamics_tests {
 
@@ -28,15 +27,16 @@ struct Bench {
   Bench(const Bench&) = delete;
   Bench& operator=(const Bench&) = delete;
 
-  /// Forces at the state's own positions, for states set by hand.
+  /// What a trial at the state's own positions, set by hand, finds; the state keeps its memory.
+  Evaluation evaluate(Trial& trial) { return evaluate_at(forces, state, trial); }
+  /// Forces there, and the memory that goes with them.
   void evaluate_here() {
-    ContactHistory trial;
-    state.damping_power = forces
-                              .evaluate({state.position, material_velocity(model, state.velocity), state.time},
-                                        state.history, trial, state.force)
-                              .damping_power;
-    add_drag(model, {state.time}, state.velocity, state.force);
-    std::swap(state.history, trial);
+    Trial trial(model);
+    state.damping_power = evaluate(trial).damping_power;
+    add_drag(model, {state.time}, state.velocity, trial.force);
+    std::swap(state.force, trial.force);
+    std::swap(state.contact_force, trial.contact_force);
+    std::swap(state.memory, trial.memory);
   }
 
   /// Turns the present shape of body 0 into F X.

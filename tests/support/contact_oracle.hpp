@@ -199,7 +199,7 @@ class ContactOracle {
 
   int reach_of_images() const {
     if (!rig_.model.scene.period) return 0;
-    const auto [low, high] = std::minmax_element(rig_.outlines.x.begin(), rig_.outlines.x.end());
+    const auto [low, high] = std::minmax_element(rig_.outlines.position.x.begin(), rig_.outlines.position.x.end());
     return 1 + static_cast<int>((*high - *low) / *rig_.model.scene.period);
   }
 

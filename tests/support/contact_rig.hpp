@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bodies/initial_state.hpp"
-#include "bodies/update_outlines.hpp"
+#include "bodies/place_outlines.hpp"
 #include "contact/contact.hpp"
 #include "support/scenes.hpp"
 
@@ -10,24 +10,24 @@ namespace pliant::testing {
 /// A model, where its bodies are, and their contacts: what a step does with them, without dynamics.
 class ContactRig {
  public:
-  explicit ContactRig(const Scene& scene)
-      : model(build_model(scene)), q(initial_positions(model)), outlines(make_outlines(model)), contact(model) {
-    update_outlines(model, q, outlines);
+  explicit ContactRig(const Scene& scene) : model(build_model(scene)), q(initial_positions(model)), contact(model) {
+    show();
   }
   ContactRig(const ContactRig&) = delete;
 
+  void show() { show_outlines(model, {q, q, 0}, outlines); }
   /// Forces at the positions q. Returns whether the candidates were searched anew.
   bool evaluate() {
-    update_outlines(model, q, outlines);
-    const bool refresh = contact.refresh_needed(outlines);
-    if (refresh) contact.refresh(outlines, committed);
-    totals = contact.forces(outlines, committed, trial);
-    return refresh;
+    show();
+    const bool hold = contact.candidates_hold(outlines.position);
+    if (!hold) contact.find_candidates(outlines, committed);
+    totals = contact.forces(outlines, committed, trial, forces);
+    return !hold;
   }
   /// Searches the candidates anew, whether needed or not.
   void refresh() {
-    update_outlines(model, q, outlines);
-    contact.refresh(outlines, committed);
+    show();
+    contact.find_candidates(outlines, committed);
   }
   /// Accepts the last evaluation.
   void commit() {
@@ -40,12 +40,8 @@ class ContactRig {
   }
 
   int count(int body) const { return model.outlines[model.bodies[body].outline].count; }
-  Vec2 node(int body, int k) const {
-    return {outlines.x[outlines.offset[body] + k], outlines.y[outlines.offset[body] + k]};
-  }
-  Vec2 force(int body, int k) const {
-    return {outlines.force_x[outlines.offset[body] + k], outlines.force_y[outlines.offset[body] + k]};
-  }
+  Vec2 node(int body, int k) const { return outlines.position.at(model.outline_offset[body] + k); }
+  Vec2 force(int body, int k) const { return forces.at(model.outline_offset[body] + k); }
   Vec2 force(int body) const {
     Vec2 sum(0, 0);
     for (int k = 0; k < count(body); ++k) sum += force(body, k);
@@ -76,15 +72,17 @@ class ContactRig {
   Dofs dof_forces() const {
     Dofs f = zero_dofs(model);
     for (const Region& region : model.regions)
-      add_outline_forces(model, region, outlines, &f.compliant[model.batches[region.batch].offset]);
+      add_outline_forces(model, region, forces, &f.compliant[model.batches[region.batch].offset]);
     for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-      outline_force_resultant(model, model.rigid_bodies[r], outlines, &q.rigid[3 * r], &f.rigid[3 * r]);
+      outline_force_resultant(model, model.rigid_bodies[r], outlines.position, forces, &q.rigid[3 * r],
+                              &f.rigid[3 * r]);
     return f;
   }
 
   Model model;
   Dofs q;
   Outlines outlines;
+  OutlineField forces;
   ContactSystem contact;
   ContactHistory committed, trial;
   PatchTotals totals;
@@ -122,7 +120,7 @@ inline void press_together(ContactRig& rig, Random& random, double depth) {
   const double direction = random.uniform(0, 2 * M_PI);
   const Vec2 d(std::cos(direction), std::sin(direction));
   rig.move(1, 4 * d);
-  update_outlines(rig.model, rig.q, rig.outlines);
+  rig.show();
   double gap = 1e300;
   // Distance along d of each node of one to the segments of the other.
   const auto cast = [&](const Points& from, const Points& to, const Vec2& along) {
@@ -136,7 +134,7 @@ inline void press_together(ContactRig& rig, Random& random, double depth) {
   cast(rig.outline(1), rig.outline(0), -d);
   cast(rig.outline(0), rig.outline(1), d);
   rig.move(1, -(gap < 1e300 ? gap + depth : 4) * d);
-  update_outlines(rig.model, rig.q, rig.outlines);
+  rig.show();
 }
 
 }  // namespace pliant::testing

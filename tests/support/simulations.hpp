@@ -202,10 +202,10 @@ inline Vec2 mass_mean(const Model& model, const Body& body, const Dofs& dofs) {
 
 /// Contact force on a body.
 inline Vec2 contact_force(const Simulation& simulation, int body) {
-  const Outlines& o = simulation.forces().outlines();
+  const Model& model = simulation.model();
   Vec2 total(0, 0);
-  for (int i = o.offset[body]; i < o.offset[body] + simulation.model().outlines[o.shape[body]].count; ++i)
-    total += Vec2(o.force_x[i], o.force_y[i]);
+  for (int i = model.outline_offset[body]; i < model.outline_end(body); ++i)
+    total += simulation.state().contact_force.at(i);
   return total;
 }
 

@@ -30,7 +30,8 @@ struct Steered {
   StepReport step(double dt) {
     bench.state.next_dt = 1e300;
     const double until = bench.state.time + dt;
-    return verlet ? verlet->step(bench.state, until) : step_doubling->step(bench.state, until);
+    return verlet ? take_step(*verlet, bench.forces, bench.state, until)
+                  : take_step(*step_doubling, bench.forces, bench.state, until);
   }
 };
 

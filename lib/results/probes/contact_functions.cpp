@@ -45,14 +45,14 @@ Samples contacts(const Snapshot& snapshot, const Selection& selection) {
 }
 
 Samples contact_length(const Snapshot& snapshot, const Selection& selection) {
-  const Outlines& outlines = snapshot.outlines();
-  std::vector<double> length(outlines.x.size(), 0.0);  // of each outline node in touch, once however many it touches
-  for_each_contact(snapshot, selection,
-                   [&](const ContactPoint& p) { length[outlines.offset[p.slave] + p.node] = p.length; });
+  const std::vector<int>& offset = snapshot.model().outline_offset;
+  std::vector<double> length(static_cast<std::size_t>(offset.back()),
+                             0.0);  // of each outline node in touch, once however many it touches
+  for_each_contact(snapshot, selection, [&](const ContactPoint& p) { length[offset[p.slave] + p.node] = p.length; });
   Samples samples(1);
   for (int b : selection.bodies) {
     double sum = 0;
-    for (int i = outlines.offset[b]; i < outlines.offset[b + 1]; ++i) sum += length[i];
+    for (int i = offset[b]; i < offset[b + 1]; ++i) sum += length[i];
     samples.add(1, {sum});
   }
   return samples;

@@ -15,10 +15,9 @@ namespace {
 // The force on one body, N/m, by origin. Their sum is the total force.
 
 Vec2 contact_force(const Snapshot& snapshot, int b) {
-  const Outlines& o = snapshot.outlines();
+  const int first = snapshot.model().outline_offset[b];
   Vec2 total(0, 0);
-  for (int i = o.offset[b]; i < o.offset[b] + snapshot.model().outlines[o.shape[b]].count; ++i)
-    total += Vec2(o.force_x[i], o.force_y[i]);
+  for (int k = 0; k < snapshot.model().outline_of(b).count; ++k) total += snapshot.contact_force().at(first + k);
   return total;
 }
 
@@ -75,8 +74,7 @@ Vec2 total_force(const Snapshot& snapshot, int b) {
 }
 
 Vec2 contact_force_at(const Snapshot& snapshot, int b, int node) {
-  const Outlines& o = snapshot.outlines();
-  return {o.force_x[o.offset[b] + node], o.force_y[o.offset[b] + node]};
+  return snapshot.contact_force().at(snapshot.model().outline_offset[b] + node);
 }
 
 Vec2 internal_force_at(const Snapshot& snapshot, int b, int node) {

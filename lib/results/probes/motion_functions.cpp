@@ -103,10 +103,9 @@ Samples rotation(const Snapshot& snapshot, const Selection& selection) {
 }
 
 Samples diameter(const Snapshot& snapshot, const Selection& selection) {
-  const Outlines& outlines = snapshot.outlines();
   Samples samples(2);
   for (int b : selection.bodies) {
-    const Box box = bounding_box(snapshot.model().outlines[outlines.shape[b]], outlines, b);
+    const Box box = bounding_box(snapshot.model(), snapshot.outlines(), b);
     samples.add(1, {box.x_max - box.x_min, box.y_max - box.y_min});
   }
   return samples;

@@ -11,21 +11,21 @@ namespace pliant {
 namespace {
 
 Points outline_of(const Snapshot& snapshot, int body) {
-  const Outlines& o = snapshot.outlines();
+  const Model& model = snapshot.model();
   Points points;
-  for (int i = o.offset[body]; i < o.offset[body] + snapshot.model().outlines[o.shape[body]].count; ++i)
-    points.emplace_back(o.x[i], o.y[i]);
+  for (int i = model.outline_offset[body]; i < model.outline_end(body); ++i)
+    points.push_back(snapshot.outlines().at(i));
   return points;
 }
 
 /// Integral of a wall's height over one period, m2. Its first copy behind the last node closes the period.
 double area_below(const Snapshot& snapshot, int wall) {
-  const Outlines& o = snapshot.outlines();
-  const OutlineShape& shape = snapshot.model().outlines[o.shape[wall]];
+  const OutlineField& o = snapshot.outlines();
+  const Model& model = snapshot.model();
   double sum = 0;
-  for (int i = o.offset[wall]; i < o.offset[wall] + shape.count; ++i)
+  for (int i = model.outline_offset[wall]; i < model.outline_end(wall); ++i)
     sum += 0.5 * (o.y[i] + o.y[i + 1]) * (o.x[i + 1] - o.x[i]);
-  return std::copysign(1.0, shape.turn_shift) * sum;
+  return std::copysign(1.0, model.outline_of(wall).turn_shift) * sum;
 }
 
 }  // namespace
@@ -50,8 +50,7 @@ bool centre_is_in_region(const Snapshot& snapshot, const Selection& selection, i
 
 double area_in_region(const Snapshot& snapshot, const Selection& selection, int body) {
   if (!selection.box) return outline_area(snapshot, body);
-  const Outlines& o = snapshot.outlines();
-  const Box extent = bounding_box(snapshot.model().outlines[o.shape[body]], o, body);
+  const Box extent = bounding_box(snapshot.model(), snapshot.outlines(), body);
   const double period = snapshot.model().scene.period.value_or(0);
   const auto first = period > 0 ? std::ceil((selection.box->low.x() - extent.x_max) / period) : 0.0,
              last = period > 0 ? std::floor((selection.box->high.x() - extent.x_min) / period) : 0.0;

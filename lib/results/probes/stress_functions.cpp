@@ -68,11 +68,11 @@ Samples strain(const Snapshot& snapshot, const Selection& selection) {
 
 /// sum over outline nodes of force (x) arm from the centre of mass: area times mean stress of a body at rest, J/m.
 Eigen::Matrix2d contact_moment(const Snapshot& snapshot, int b) {
-  const Outlines& o = snapshot.outlines();
-  const Vec2 centre = centre_of(snapshot.model(), snapshot.model().bodies[b], snapshot.state().position);
+  const Model& model = snapshot.model();
+  const Vec2 centre = centre_of(model, model.bodies[b], snapshot.state().position);
   Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
-  for (int i = o.offset[b]; i < o.offset[b] + snapshot.model().outlines[o.shape[b]].count; ++i)
-    moment += Vec2(o.force_x[i], o.force_y[i]) * (Vec2(o.x[i], o.y[i]) - centre).transpose();
+  for (int i = model.outline_offset[b]; i < model.outline_end(b); ++i)
+    moment += snapshot.contact_force().at(i) * (snapshot.outlines().at(i) - centre).transpose();
   return moment;
 }
 
