@@ -8,7 +8,8 @@
 #include <spdlog/spdlog.h>
 
 #include "contact/close_phase.hpp"
-#include "contact/patch_survey.hpp"
+#include "contact/patch_forces.hpp"
+#include "contact/patch_queries.hpp"
 #include "contact/self_contact.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
@@ -121,8 +122,9 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   carry_history(old, history);
   if (start) refuse_self_overlap();
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    locate_newcomers(model_, outlines, patches_[p], skin_, history, thread_scratch());
-    if (start) make_bonds(model_, outlines, patches_[p], skin_, history, thread_scratch());
+    const PatchView view{model_, found_at_, patches_[p], skin_, thread_scratch()};
+    locate_newcomers(view, history);
+    if (start) make_bonds(view, history);
   });
   fresh_ = true;
   ++refreshes_;
@@ -201,7 +203,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.y.resize(outlines.position.x.size());
   const int count = static_cast<int>(patches_.size());
   parallel_for(count, [&](int p) {
-    totals_[p] = compute_patch(model_, outlines, patches_[p], skin_, from, to, forces_, thread_scratch());
+    totals_[p] = compute_patch({model_, outlines, patches_[p], skin_, thread_scratch()}, from, to, forces_);
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     const int n = model_.outline_of(b).count;
@@ -237,7 +239,7 @@ void ContactSystem::add_self_patches() {
 /// A limb thinner than contact sees would press its own far side out.
 void ContactSystem::refuse_self_overlap() const {
   for (const Patch& patch : patches_)
-    if (patch.of_itself() && overlaps(model_, found_at_, patch, skin_, thread_scratch()))
+    if (patch.of_itself() && overlaps({model_, found_at_, patch, skin_, thread_scratch()}))
       throw InputError(fmt::format(
           "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
           "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",

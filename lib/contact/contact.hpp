@@ -8,7 +8,7 @@
 #include "contact/broad_phase.hpp"
 #include "contact/contact_laws.hpp"
 #include "contact/history.hpp"
-#include "contact/patch_forces.hpp"
+#include "contact/patch.hpp"
 
 namespace pliant {
 

@@ -73,22 +73,20 @@ inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNode
 
 /// Calls visit(pass, slave side, i) for each eight slave nodes, from position i on, with the master's window filled.
 template <class Visit>
-void for_each_eight(const Model& model, const Outlines& outlines, const Patch& patch, double skin, MasterWindow& window,
-                    Visit&& visit) {
+void for_each_eight(const PatchView& view, Visit&& visit) {
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(model, outlines, patch, slave_side);
-    fill_window(model, outlines, patch, 1 - slave_side, skin, window);
+    if (view.patch.nodes[slave_side].count == 0) continue;
+    const Pass pass = make_pass(view, slave_side);
+    fill_window(view, 1 - slave_side);
     for (int i = 0; i < pass.nodes.count; i += lane_count) visit(pass, slave_side, i);
   }
 }
 
 /// Calls visit(pass, slave side, i, facing) where some of the eight touch the master or would, at most `outward` off.
 template <class Visit>
-void for_each_facing(const Model& model, const Outlines& outlines, const Patch& patch, double skin, double outward,
-                     MasterWindow& window, Visit&& visit) {
-  for_each_eight(model, outlines, patch, skin, window, [&](const Pass& pass, int slave_side, int i) {
-    if (const Facing at = face(pass, window, load_slaves(pass, i), i, outward); any(at.p.hit))
+void for_each_facing(const PatchView& view, double outward, Visit&& visit) {
+  for_each_eight(view, [&](const Pass& pass, int slave_side, int i) {
+    if (const Facing at = face(pass, view.window, load_slaves(pass, i), i, outward); any(at.p.hit))
       visit(pass, slave_side, i, at);
   });
 }

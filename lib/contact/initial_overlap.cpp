@@ -31,22 +31,21 @@ Lanes compression(const Law& law, Lanes gap) {
     return law(gap).energy - law(Lanes{}).energy;
 }
 
-std::vector<DeepNode> deep_nodes(const Model& model, const Outlines& outlines, const Patch& patch, double skin) {
+std::vector<DeepNode> deep_nodes(const PatchView& view) {
   std::vector<DeepNode> nodes;
-  MasterWindow window;
   const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;
-    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_share * window.longest());
+    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_share * view.window.longest());
     const Lanes stored = 0.5 * at.length * compression(law, p.gap);
     for (int lane = 0; lane < lane_count; ++lane)
       if (deep[lane])
-        nodes.push_back({-p.gap[lane], -p.gap[lane] / window.longest(), stored[lane],
+        nodes.push_back({-p.gap[lane], -p.gap[lane] / view.window.longest(), stored[lane],
                          (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
   };
   const auto look = [&](const auto& law) {
-    for_each_facing(model, outlines, patch, skin, 0, window, [&](const auto&... found) { add_nodes(law, found...); });
+    for_each_facing(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
   };
-  std::visit(look, patch.law);
+  std::visit(look, view.patch.law);
   return nodes;
 }
 
@@ -91,7 +90,7 @@ InitialOverlap initial_overlap(const Model& model, const ContactSystem& contact,
   InitialOverlap overlap;
   std::pair<int, int> last{-1, -1};
   for (const Patch& patch : contact.patches()) {
-    const std::vector<DeepNode> nodes = deep_nodes(model, outlines, patch, contact.skin());
+    const std::vector<DeepNode> nodes = deep_nodes({model, outlines, patch, contact.skin(), thread_scratch()});
     if (nodes.empty()) continue;
     const std::pair<int, int> pair{patch.first, patch.second};  // patches with several images stand side by side
     overlap.pairs += pair != last;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bodies/model.hpp"
-#include "contact/patch_forces.hpp"
+#include "contact/master_window.hpp"
+#include "contact/patch.hpp"
 
 namespace pliant {
 
@@ -39,32 +39,29 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
 }
 
 /// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
-inline Pass make_pass(const Model& model, const Outlines& outlines, const Patch& patch, int slave_side) {
-  const int slave = slave_side == 0 ? patch.first : patch.second, master = slave_side == 0 ? patch.second : patch.first;
-  const double shift = patch.images * model.scene.period.value_or(0);
-  const int offset = model.outline_offset[slave], master_side = 1 - slave_side;
-  const bool present_lengths = !outlines.tributary_length.empty();
+inline Pass make_pass(const PatchView& view, int slave_side) {
+  const Model& model = view.model;
+  const Patch& patch = view.patch;
+  const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
+  const std::vector<double>& present = view.outlines.tributary_length;
   return {&model.outline_of(slave),
-          &model.outline_of(master),
-          &outlines.position.x[offset],
-          &outlines.position.y[offset],
+          &model.outline_of(view.body(master_side)),
+          &view.outlines.position.x[offset],
+          &view.outlines.position.y[offset],
           patch.nodes[slave_side],
-          slave_side == 0 ? 0.0 : shift,
+          view.shift(slave_side),
           patch.record[slave_side],
           patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
           patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
-          present_lengths ? &outlines.tributary_length[offset] : model.outline_of(slave).tributary_length.data(),
-          present_lengths,
+          present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
+          !present.empty(),
           patch.corners};
 }
 
-inline void fill_window(const Model& model, const Outlines& outlines, const Patch& patch, int master_side, double skin,
-                        MasterWindow& window) {
-  const int master = master_side == 0 ? patch.first : patch.second;
-  const double shift = master_side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0);
-  const int offset = model.outline_offset[master];
-  window.fill(model.outline_of(master), &outlines.position.x[offset], &outlines.position.y[offset],
-              patch.segments[master_side], shift, skin);
+inline void fill_window(const PatchView& view, int master_side) {
+  const int master = view.body(master_side), offset = view.model.outline_offset[master];
+  view.window.fill(view.model.outline_of(master), &view.outlines.position.x[offset], &view.outlines.position.y[offset],
+                   view.patch.segments[master_side], view.shift(master_side), view.skin);
 }
 
 inline void clear_forces(const Patch& patch, PatchForces& forces) {

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <vector>
+
+#include "bodies/model.hpp"
+#include "bodies/outline.hpp"
 #include "contact/contact_law.hpp"
 
 namespace pliant {
+
+class MasterWindow;
 
 /// A run of consecutive outline nodes or segments (a segment bears its first node's number). Numbers beyond [0, count) of the outline continue
 /// cyclically; on a wall they reach into the next periods.
@@ -45,6 +51,32 @@ struct Patch {
     const int begin = n.begin < s.begin ? n.begin : s.begin, end = n.end() > s.end() + 1 ? n.end() : s.end() + 1;
     return {begin, end - begin};
   }
+};
+
+/// A patch with all that work on it looks at.
+struct PatchView {
+  const Model& model;
+  const Outlines& outlines;  ///< in motion
+  const Patch& patch;
+  double skin;           ///< m
+  MasterWindow& window;  ///< scratch: of the pass at hand
+  int body(int side) const { return side == 0 ? patch.first : patch.second; }
+  /// Periods to add to x of one side's body, m.
+  double shift(int side) const { return side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0); }
+};
+
+/// What the two passes of a patch add up to.
+struct PatchTotals {
+  double stored = 0;         ///< normal and elastic tangential energy, J/m
+  double dissipated = 0;     ///< work of slip and damage since the last accepted step, J/m
+  double damping_power = 0;  ///< of dashpots, W/m
+  double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
+  int contacts = 0;          ///< nodes in touch
+};
+
+/// Where the forces of all patches go: each arc has its own stretch, gathered later by its body in a fixed order.
+struct PatchForces {
+  std::vector<double> x, y;  ///< N/m
 };
 
 }  // namespace pliant

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "contact/facing.hpp"
-#include "contact/patch_survey.hpp"
+#include "contact/patch_queries.hpp"
 #include "contact/response.hpp"
 
 namespace pliant {
@@ -148,31 +148,28 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
   }
 }
 
-void look_up_velocities(const Model& model, const OutlineField& velocity, const Patch& patch, int slave_side,
-                        Pass& pass) {
-  const int slave = model.outline_offset[slave_side == 0 ? patch.first : patch.second],
-            master = model.outline_offset[slave_side == 0 ? patch.second : patch.first];
+void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
+  const OutlineField& velocity = view.outlines.velocity;
+  const int slave = view.model.outline_offset[view.body(slave_side)],
+            master = view.model.outline_offset[view.body(1 - slave_side)];
   pass.slave_vx = &velocity.x[slave], pass.slave_vy = &velocity.y[slave];
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
 /// Both passes of a patch. What a law does not need is neither kept nor added up.
 template <class Law>
-PatchTotals compute_passes(const Law& law, const Model& model, const Outlines& outlines, const Patch& patch,
-                           double skin, const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
-                           MasterWindow& scratch) {
+PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactHistory& from, ContactHistory& to,
+                           PatchForces& forces) {
   LaneTotals totals;
   double damping = 0;
   if constexpr (has_dashpot<Law>)
-    if (const double length = touching_length(model, outlines, patch, skin, scratch); length > 0)
-      damping = law.root_damping / std::sqrt(length);
+    if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (patch.nodes[slave_side].count == 0) continue;
-    Pass pass = make_pass(model, outlines, patch, slave_side);
-    if constexpr (has_dashpot<Law>)
-      look_up_velocities(model, outlines.velocity, patch, slave_side, pass), pass.damping = damping;
-    fill_window(model, outlines, patch, 1 - slave_side, skin, scratch);
-    compute_pass(law, pass, scratch, skin, committed, trial, forces, totals);
+    if (view.patch.nodes[slave_side].count == 0) continue;
+    Pass pass = make_pass(view, slave_side);
+    if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
+    fill_window(view, 1 - slave_side);
+    compute_pass(law, pass, view.window, view.skin, from, to, forces, totals);
   }
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
@@ -181,15 +178,9 @@ PatchTotals compute_passes(const Law& law, const Model& model, const Outlines& o
 
 }  // namespace
 
-PatchTotals compute_patch(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
-                          const ContactHistory& committed, ContactHistory& trial, PatchForces& forces,
-                          MasterWindow& scratch) {
-  clear_forces(patch, forces);
-  return std::visit(
-      [&](const auto& law) {
-        return compute_passes(law, model, outlines, patch, skin, committed, trial, forces, scratch);
-      },
-      patch.law);
+PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces) {
+  clear_forces(view.patch, forces);
+  return std::visit([&](const auto& law) { return compute_passes(law, view, from, to, forces); }, view.patch.law);
 }
 
 }  // namespace pliant

@@ -45,7 +45,7 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
   return total;
 }
 
-Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), scratch_(forces.model()) {
+Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(zero_dofs(forces.model())) {
   gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
 }
@@ -72,9 +72,8 @@ Audit Auditor::audit(const State& state) {
   warn_of_strain(state);
   Audit result;
   // The same forces once more: the memory stands still at an accepted state, so nothing slips.
-  const Evaluation evaluation =
-      forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time}, state.outlines,
-                       state.memory, {scratch_.force, scratch_.contact_force, scratch_.memory});
+  const Evaluation evaluation = forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time},
+                                                 state.outlines, state.memory, {force_, contact_force_, memory_});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);

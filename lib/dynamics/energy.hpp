@@ -1,6 +1,7 @@
 #pragma once
 
-#include "dynamics/trial.hpp"
+#include "dynamics/forces.hpp"
+#include "dynamics/state.hpp"
 
 namespace pliant {
 
@@ -53,7 +54,10 @@ class Auditor {
   Forces& forces_;
   double gravity_start_ = 0;
   double energy_start_ = 0;
-  Trial scratch_;
+  // Scratch, so that an audit finds its memory:
+  Dofs force_;
+  OutlineField contact_force_;
+  Memory memory_;
   bool warned_of_strain_ = false;
 };
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "contact/inspect.hpp"
+#include "contact/contact_points.hpp"
 #include "dynamics/simulation.hpp"
 
 namespace pliant {

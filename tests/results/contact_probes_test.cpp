@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "contact/inspect.hpp"
+#include "contact/contact_points.hpp"
 #include "results/frame_fields.hpp"
 #include "support/contact_oracle.hpp"
 #include "support/probing.hpp"

@@ -1,4 +1,4 @@
-#include "contact/inspect.hpp"
+#include "contact/contact_points.hpp"
 
 #include <limits>
 
@@ -21,29 +21,26 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
     return respond(law, window, p, touching, place, old_place, load(&committed.slip[record]), law(p.gap));
 }
 
-std::vector<ContactPoint> inspect_patch(const Model& model, const Outlines& outlines, const Patch& patch, double skin,
-                                        const ContactHistory& committed) {
+std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& committed) {
   std::vector<ContactPoint> points;
-  MasterWindow window;
   const auto add_points = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     Lanes damage = broadcast(none);
-    const Contact c = answer(law, window, p, touching, committed, pass.record + i, damage);
+    const Contact c = answer(law, view.window, p, touching, committed, pass.record + i, damage);
     for (int lane = 0; lane < lane_count; ++lane) {
       if (!touching[lane]) continue;
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
-      points.push_back({side == 0 ? patch.first : patch.second, side == 0 ? patch.second : patch.first,
-                        index - turn_of(index, count) * count, p.gap[lane], c.slip[lane], c.pressure[lane],
-                        c.shear[lane], damage[lane], at.length[lane], Vec2(p.normal_x[lane], p.normal_y[lane]), side});
+      points.push_back({view.body(side), view.body(1 - side), index - turn_of(index, count) * count, p.gap[lane],
+                        c.slip[lane], c.pressure[lane], c.shear[lane], damage[lane], at.length[lane],
+                        Vec2(p.normal_x[lane], p.normal_y[lane]), side});
     }
   };
   std::visit(
       [&](const auto& law) {
-        for_each_facing(model, outlines, patch, skin, law.reach + skin, window,
-                        [&](const auto&... found) { add_points(law, found...); });
+        for_each_facing(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
       },
-      patch.law);
+      view.patch.law);
   return points;
 }
 
@@ -60,7 +57,8 @@ std::vector<TouchingPair> inspect_contacts(const Model& model, const ContactSyst
                                            const ContactHistory& history) {
   std::vector<TouchingPair> pairs;
   for (const Patch& patch : contact.patches()) {
-    std::vector<ContactPoint> points = inspect_patch(model, outlines, patch, contact.skin(), history);
+    std::vector<ContactPoint> points =
+        inspect_patch({model, outlines, patch, contact.skin(), thread_scratch()}, history);
     if (!points.empty()) pairs.push_back({patch.first, patch.second, patch.images, std::move(points)});
   }
   return pairs;

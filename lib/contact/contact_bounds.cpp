@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "contact/contact.hpp"
-#include "contact/patch_survey.hpp"
+#include "contact/master_window.hpp"
+#include "contact/patch_queries.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -14,8 +15,7 @@ std::vector<double> ContactSystem::stiffness_bound(const std::vector<double>& co
     const double a = compliance[patch.first], b = compliance[patch.second];
     // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
     const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
-    compute_patch_stiffness(model_, found_at_, patch, stiffness_of(patch.law), skin_, reach_of(patch.law) + skin_,
-                            factor, entries, thread_scratch());
+    add_patch_stiffness({model_, found_at_, patch, skin_, thread_scratch()}, factor, entries);
   });
   std::vector<double> result(static_cast<std::size_t>(model_.outline_offset.back()), 0.0);
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
