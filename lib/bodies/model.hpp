@@ -79,7 +79,7 @@ struct RigidDof {
     if (!imposed(time)) return inverse_mass * force;
     return mode == Drive::Mode::velocity ? history.slope(time) : 0;
   }
-  /// What forces do to it.
+  /// Acceleration by unit force: none while the motion is imposed.
   double inverse_mass_at(double time) const { return imposed(time) ? 0 : inverse_mass; }
   double imposed_velocity(double time) const { return mode == Drive::Mode::velocity ? history.at(time) : 0; }
 };

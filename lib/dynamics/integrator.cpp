@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 /// Of pressures and soft supports.
 double work_on_outlines(const Model& model, const State& state, const Trial& trial, double end_time) {
-  if (model.pressures.empty() && model.supports.empty()) return 0;
+  if (!has_outline_loads(model)) return 0;
   const Dofs before = material_velocity(model, state.velocity), after = material_velocity(model, trial.velocity);
   return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time, true});
 }
@@ -39,6 +40,17 @@ Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
   show_outlines(forces.model(), motion, state.outlines);
   forces.ensure_candidates(state, state.outlines.position, state.time);
   return forces.evaluate(motion, state.outlines, state.memory, {trial.force, trial.contact_force, trial.memory});
+}
+
+Evaluation find_forces(Forces& forces, State& state) {
+  Trial trial(forces.model());
+  const Evaluation found = evaluate_at(forces, state, trial);
+  std::swap(state.force, trial.force);
+  std::swap(state.contact_force, trial.contact_force);
+  std::swap(state.memory, trial.memory);
+  add_drag(forces.model(), {state.time}, state.velocity, state.force);
+  state.damping_power = found.damping_power;
+  return found;
 }
 
 void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report) {

@@ -23,6 +23,9 @@ struct Verdict {
 /// after an evaluation in which time stands still.
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial);
 
+/// The same, and the state takes over the forces, drag among them, and the memory that go with its motion.
+Evaluation find_forces(Forces& forces, State& state);
+
 /// Makes an accepted trial the state: books its work and dissipation, swaps, counts. Where loads switch, the state's forces become those of the next
 /// step. Only acceptance changes a state, so that a step that throws leaves it as it was; new contact candidates may have put the records of its memory
 /// in another order.

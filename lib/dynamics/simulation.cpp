@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
 #include "contact/deepest_node.hpp"
@@ -15,14 +14,8 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   state_.velocity = initial_velocities(model, state_.position);
   state_.force = zero_dofs(model);
   refuse_deep_overlap(model, placed_outlines(model, state_.position));
-  Trial trial(model);
-  const Evaluation start = evaluate_at(forces_, state_, trial);
-  std::swap(state_.force, trial.force);
-  std::swap(state_.contact_force, trial.contact_force);
-  std::swap(state_.memory, trial.memory);
+  const Evaluation start = find_forces(forces_, state_);
   check_start(start, state_, forces_);
-  add_drag(model, {0}, state_.velocity, state_.force);
-  state_.damping_power = start.damping_power;
   forces_.warn_of_depth(start, 0);
   if (start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), state_.outlines);
   ++state_.evaluations;

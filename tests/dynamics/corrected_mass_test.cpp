@@ -1,6 +1,7 @@
 // Corrected mass in motion (METHOD 2): what it must keep, and what it is for.
 #include <gtest/gtest.h>
 
+#include "bodies/damping_forces.hpp"
 #include "bodies/mass_correction.hpp"
 #include "dynamics/accelerations.hpp"
 #include "support/simulations.hpp"

@@ -1,6 +1,5 @@
 // The stability bound against the true largest eigenvalue of M^-1 K, from dense finite differences (METHOD 6).
 #include "dynamics/time_step_bound.hpp"
-#include "bodies/place_outlines.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "dynamics/integrator.hpp"
@@ -29,15 +28,8 @@ struct Bench {
 
   /// What a trial at the state's own positions, set by hand, finds; the state keeps its memory.
   Evaluation evaluate(Trial& trial) { return evaluate_at(forces, state, trial); }
-  /// Forces there, and the memory that goes with them.
-  void evaluate_here() {
-    Trial trial(model);
-    state.damping_power = evaluate(trial).damping_power;
-    add_drag(model, {state.time}, state.velocity, trial.force);
-    std::swap(state.force, trial.force);
-    std::swap(state.contact_force, trial.contact_force);
-    std::swap(state.memory, trial.memory);
-  }
+  /// Forces there, and the memory that goes with them, become the state's.
+  void evaluate_here() { find_forces(forces, state); }
 
   /// Turns the present shape of body 0 into F X.
   void deform(const Eigen::Matrix2d& F) {
