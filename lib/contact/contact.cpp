@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -124,7 +127,7 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     const PatchView view{model_, found_at_, patches_[p], skin_, thread_scratch()};
     locate_newcomers(view, history);
-    if (start) make_bonds(view, history);
+    if (start) start_records(view, history);
   });
   fresh_ = true;
   ++refreshes_;
@@ -164,14 +167,15 @@ void ContactSystem::lay_out_patches() {
 }
 
 void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory& history) const {
-  ContactHistory next;
-  const int arrays = laws_.damages() ? 4 : 2;
-  for (int a = 0; a < arrays; ++a) {
-    const auto& [values, of_strangers] = ContactHistory::arrays[a];
-    (next.*values).assign(static_cast<std::size_t>(records_), of_strangers);
-  }
+  const std::size_t records = static_cast<std::size_t>(records_);
+  ContactHistory next{std::vector(records, std::numeric_limits<double>::quiet_NaN()), std::vector(records, 0.0),
+                      std::vector(records * laws_.remembered(), 0.0)};
   parallel_for(static_cast<int>(patches_.size()), [&](int p) {
     const Patch& patch = patches_[p];
+    const std::span<const Remembered> remembered = remembered_of(patch.law);
+    for (int side = 0; side < 2; ++side)
+      for (std::size_t k = 0; k < remembered.size(); ++k)
+        std::fill_n(next.field(k) + patch.record[side], padded(patch.nodes[side].count), remembered[k].of_strangers);
     const auto from =
         std::lower_bound(old.begin(), old.end(), patch, [](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;
@@ -183,10 +187,11 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
         int at = patch.nodes[side].begin + i - from->nodes[side].begin;
         if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
         if (at < 0 || at >= from->nodes[side].count) continue;
-        for (int a = 0; a < arrays; ++a) {
-          const auto values = ContactHistory::arrays[a].values;
-          (next.*values)[patch.record[side] + i] = (history.*values)[from->record[side] + at];
-        }
+        const int record = patch.record[side] + i, old_record = from->record[side] + at;
+        next.place[record] = history.place[old_record];
+        next.slip[record] = history.slip[old_record];
+        for (std::size_t k = 0; k < remembered.size(); ++k)
+          next.field(k)[record] = std::as_const(history).field(k)[old_record];
       }
     }
   });
@@ -195,10 +200,9 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
 
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                   OutlineField& force) {
-  for (const auto& [values, of_strangers] : ContactHistory::arrays) (to.*values).resize((from.*values).size());
-  // Patches whose laws keep no damage leave their records alone.
-  to.damage = from.damage;
-  to.opening = from.opening;
+  to.place.resize(from.records());
+  to.slip.resize(from.records());
+  to.of_law = from.of_law;  // laws that remember less than others leave the rest alone
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   const int count = static_cast<int>(patches_.size());

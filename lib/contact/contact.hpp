@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "bodies/model.hpp"
@@ -20,6 +21,10 @@ struct RunClock {
 
 /// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its skin, and computes the
 /// forces on outline nodes. The history belongs to the caller's state.
+///
+/// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its stretch of the forces on them, which
+/// the bodies gather afterwards. Between the two is the seam where a body's outline may come from elsewhere, as from another process: fill its stretch
+/// before candidates_hold, fetch its stretch after forces().
 class ContactSystem {
  public:
   explicit ContactSystem(const Model& model);
@@ -42,8 +47,8 @@ class ContactSystem {
   /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
 
-  /// [outline nodes] least damage of each node's bonds; 1: it has none.
-  std::vector<double> nodal_damage(const ContactHistory& history) const;
+  /// [outline nodes] least of what laws remember by this name over each node's contacts; `none` where no law does.
+  std::vector<double> least_remembered(const ContactHistory& history, std::string_view name, double none) const;
 
   const ContactLaws& laws() const { return laws_; }
   const std::vector<Patch>& patches() const { return patches_; }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "contact/contact.hpp"
 #include "contact/master_window.hpp"
@@ -41,19 +42,24 @@ std::vector<double> ContactSystem::damping_ratios() const {
   return ratio;
 }
 
-std::vector<double> ContactSystem::nodal_damage(const ContactHistory& history) const {
-  std::vector<double> damage(static_cast<std::size_t>(model_.outline_offset.back()), 1.0);
-  if (history.damage.empty()) return damage;
-  for (const Patch& patch : patches_)
+std::vector<double> ContactSystem::least_remembered(const ContactHistory& history, std::string_view name,
+                                                    double none) const {
+  std::vector<double> least(static_cast<std::size_t>(model_.outline_offset.back()), none);
+  for (const Patch& patch : patches_) {
+    const std::span<const Remembered> all = remembered_of(patch.law);
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
+    if (found == all.end()) continue;
+    const double* values = history.field(static_cast<std::size_t>(found - all.begin()));
     for (int side = 0; side < 2; ++side) {
       const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
       for (int i = 0; i < patch.nodes[side].count; ++i) {
         const int node = patch.nodes[side].begin + i;
-        double& least = damage[model_.outline_offset[body] + node - turn_of(node, n) * n];
-        least = std::min(least, history.damage[patch.record[side] + i]);
+        double& value = least[model_.outline_offset[body] + node - turn_of(node, n) * n];
+        value = std::min(value, values[patch.record[side] + i]);
       }
     }
-  return damage;
+  }
+  return least;
 }
 
 }  // namespace pliant

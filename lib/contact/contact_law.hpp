@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <variant>
 
 #include "contact/laws/cohesive.hpp"
@@ -24,6 +25,14 @@ inline double stiffness_of(const ContactLaw& law) {
       [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },
       law);
 }
-inline bool has_damage(const ContactLaw& law) { return std::holds_alternative<CohesiveFatigue>(law); }
+/// What the law remembers of a node.
+inline std::span<const Remembered> remembered_of(const ContactLaw& law) {
+  return std::visit(
+      []<class Law>(const Law&) -> std::span<const Remembered> {
+        if constexpr (remembers<Law>) return Law::remembered;
+        return {};
+      },
+      law);
+}
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -119,7 +120,7 @@ void ContactLaws::look_at_extremes() {
         if (!rule(first, second)) continue;
         const ContactLaw law = make_law(first, second);
         max_reach_ = std::max(max_reach_, reach_of(law));
-        damages_ |= has_damage(law);
+        remembered_ = std::max(remembered_, remembered_of(law).size());
         damps_ |= damping_ratio(first, second) > 0;
       }
 }
@@ -193,28 +194,37 @@ ContactLaw ContactLaws::make_law(const Side& a, const Side& b) const {
     throw InputError(fmt::format("{}: {}: stiffness \"auto\" needs a compliant body in the scene; give a value in Pa/m",
                                  file_, pair_text(rule)));
   const double kt = rule.shear_stiffness.value_or(kn);
-  if (rule.law == ContactLawKind::frictionless) return with_impact(Frictionless{kn, 0, 0}, rule, a, b);
-  if (rule.law == ContactLawKind::mohr_coulomb)
-    return with_impact(MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion}, rule, a, b);
   const double range = rule.range.value_or(auto_range_factor * h);
-  if (range <= rule.strength / kn)
+  const auto check_range = [&] {
+    if (range > rule.strength / kn) return;
     throw InputError(
         fmt::format("{}: {}: range {:.3g} m must exceed strength / stiffness = {:.3g} m; give a larger range or "
                     "stiffness",
                     file_, pair_text(rule), range, rule.strength / kn));
-  if (rule.law == ContactLawKind::cohesive)
-    return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
-  return CohesiveFatigue{kn,
-                         kn / (rule.shear_ratio * rule.shear_ratio),
-                         range,
-                         rule.strength,
-                         rule.shear_ratio,
-                         rule.residual_strength,
-                         rule.friction,
-                         rule.fatigue_threshold,
-                         rule.fatigue_rate,
-                         rule.shear_fatigue_rate,
-                         rule.bond_gap};
+  };
+  switch (rule.law) {
+    case ContactLawKind::frictionless:
+      return with_impact(Frictionless{kn, 0, 0}, rule, a, b);
+    case ContactLawKind::mohr_coulomb:
+      return with_impact(MohrCoulomb{kn, kt, rule.tension / kn, rule.friction, rule.cohesion}, rule, a, b);
+    case ContactLawKind::cohesive:
+      check_range();
+      return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
+    case ContactLawKind::cohesive_fatigue:
+      check_range();
+      return CohesiveFatigue{kn,
+                             kn / (rule.shear_ratio * rule.shear_ratio),
+                             range,
+                             rule.strength,
+                             rule.shear_ratio,
+                             rule.residual_strength,
+                             rule.friction,
+                             rule.fatigue_threshold,
+                             rule.fatigue_rate,
+                             rule.shear_fatigue_rate,
+                             rule.bond_gap};
+  }
+  throw std::logic_error("a contact law without a maker");
 }
 
 /// 0 where there is no dashpot: only two rigid bodies of which one can move have one.

@@ -2,37 +2,39 @@
 
 #include <limits>
 
+#include "contact/encounter.hpp"
 #include "contact/facing.hpp"
-#include "contact/response.hpp"
 
 namespace pliant {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// The law's answer without a dashpot's share.
+/// The law's answer without a dashpot's share, and what it then remembers.
 template <class Law>
 Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
-               const ContactHistory& committed, int record, Lanes& damage) {
-  const Lanes place = place_of(p), old_place = load(&committed.place[record]);
-  if constexpr (keeps_damage<Law>)
-    return respond_with_damage(law, window, p, touching, place, old_place, load_bond(committed, record), damage);
-  else
-    return respond(law, window, p, touching, place, old_place, load(&committed.slip[record]), law(p.gap));
+               const ContactHistory& history, int record, Record<Law>& now) {
+  const Encounter at = encounter(law, window, p, touching, load(&history.place[record]), place_of(p));
+  return respond(law, at, law(p.gap), load(&history.slip[record]), load_record<remembered_count<Law>>(history, record),
+                 now);
 }
 
-std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& committed) {
+std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& history) {
   std::vector<ContactPoint> points;
-  const auto add_points = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
+  const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
-    Lanes damage = broadcast(none);
-    const Contact c = answer(law, view.window, p, touching, committed, pass.record + i, damage);
+    Record<Law> now;
+    const Contact c = answer(law, view.window, p, touching, history, pass.record + i, now);
+    const auto damage_of = [](const Record<Law>& record, int lane) {
+      if constexpr (constexpr int k = index_of_remembered<Law>("damage"); k >= 0) return record[k][lane];
+      return none;
+    };
     for (int lane = 0; lane < lane_count; ++lane) {
       if (!touching[lane]) continue;
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
       points.push_back({view.body(side), view.body(1 - side), index - turn_of(index, count) * count, p.gap[lane],
-                        c.slip[lane], c.pressure[lane], c.shear[lane], damage[lane], at.length[lane],
+                        c.slip[lane], c.pressure[lane], c.shear[lane], damage_of(now, lane), at.length[lane],
                         Vec2(p.normal_x[lane], p.normal_y[lane]), side});
     }
   };

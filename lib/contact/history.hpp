@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
+
+#include "core/lanes.hpp"
 
 namespace pliant {
 
@@ -8,21 +12,32 @@ namespace pliant {
 struct ContactHistory {
   std::vector<double>
       place;  ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
-  std::vector<double> slip;     ///< elastic tangential displacement then, m
-  std::vector<double> damage;   ///< of the bond, 1: none is left; empty when no law damages
-  std::vector<double> opening;  ///< max(gap, 0) of the bond then, m; empty likewise
+  std::vector<double> slip;  ///< elastic tangential displacement then, m
+  std::vector<double>
+      of_law;  ///< what the pair's law remembers besides (laws/response.hpp): first of all records, then
+               ///< second of all ...; empty when no law of the scene does
+
+  std::size_t records() const { return place.size(); }
+  std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }
+  double* field(std::size_t k) { return of_law.data() + k * records(); }
+  const double* field(std::size_t k) const { return of_law.data() + k * records(); }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("place", place), visitor("slip", slip);
-    visitor("damage", damage), visitor("opening", opening);
+    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law);
   }
-
-  struct Array {
-    std::vector<double> ContactHistory::* values;
-    double of_strangers;  ///< of nodes that were not near before
-  };
-  static const Array arrays[4];
 };
+
+/// What a law remembers of eight nodes, from a record on.
+template <std::size_t count>
+std::array<Lanes, count> load_record(const ContactHistory& history, int record) {
+  std::array<Lanes, count> values;
+  for (std::size_t k = 0; k < count; ++k) values[k] = load(history.field(k) + record);
+  return values;
+}
+template <std::size_t count>
+void store_record(ContactHistory& history, int record, const std::array<Lanes, count>& values) {
+  for (std::size_t k = 0; k < count; ++k) store(history.field(k) + record, values[k]);
+}
 
 }  // namespace pliant

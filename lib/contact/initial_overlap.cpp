@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "contact/facing.hpp"
-#include "contact/response.hpp"
 
 namespace pliant {
 namespace {
@@ -25,10 +24,7 @@ struct DeepNode {
 /// What compression stores at a gap below 0, J/m2: all but cohesion's share, which is there at gap 0 too.
 template <class Law>
 Lanes compression(const Law& law, Lanes gap) {
-  if constexpr (keeps_damage<Law>)
-    return law.broken(gap).energy - law.broken(Lanes{}).energy;
-  else
-    return law(gap).energy - law(Lanes{}).energy;
+  return law(gap).energy - law(Lanes{}).energy;
 }
 
 std::vector<DeepNode> deep_nodes(const PatchView& view) {

@@ -5,12 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/encounter.hpp"
 #include "contact/facing.hpp"
 #include "contact/patch_queries.hpp"
-#include "contact/response.hpp"
 
 namespace pliant {
 namespace {
+
+template <class Law>
+constexpr bool has_dashpot = requires { Law::has_damping; };
 
 /// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's distance, and makes the
 /// force the exact conjugate of the slip.
@@ -56,20 +59,16 @@ struct LaneTotals {
 
 void add(double* to, Lanes value) { store(to, load(to) + value); }
 
-/// Nodes that left the master: what they had stored is set free.
+constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+
+/// Of nodes that are not beside the master.
 template <class Law>
-Lanes release(const Law& law, const Pass& pass, int i, Lanes old_slip, const ContactHistory& committed,
-              ContactHistory& trial) {
-  store(&trial.place[pass.record + i], broadcast(std::numeric_limits<double>::quiet_NaN()));
-  store(&trial.slip[pass.record + i], Lanes{});
-  const Lanes sheared = (0.5 * law.shear_stiffness) * old_slip * old_slip;
-  if constexpr (keeps_damage<Law>) {
-    store(&trial.damage[pass.record + i], broadcast(1));
-    store(&trial.opening[pass.record + i], Lanes{});
-    const CohesiveFatigue::Bond bond = load_bond(committed, pass.record + i);
-    return select(bond.damage < 1.0, law.damage_work(bond, broadcast(1), bond.opening, bond.slip), sheared);
-  }
-  return sheared;
+void forget(ContactHistory& history, int record) {
+  store(&history.place[record], broadcast(nowhere));
+  store(&history.slip[record], Lanes{});
+  if constexpr (remembers<Law>)
+    for (std::size_t k = 0; k < remembered_count<Law>; ++k)
+      store(history.field(k) + record, broadcast(Law::remembered[k].of_strangers));
 }
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work on.
@@ -99,8 +98,8 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
 }
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, double skin,
-                  const ContactHistory& committed, ContactHistory& trial, PatchForces& forces, LaneTotals& totals) {
+void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, double skin, const ContactHistory& from,
+                  ContactHistory& to, PatchForces& forces, LaneTotals& totals) {
   const double inverse_longest = 1 / window.longest();
   const double outward = law.reach + (Law::has_shear ? skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
@@ -109,27 +108,23 @@ void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, 
     const Facing facing = face(pass, window, load_slaves(pass, i), i, outward);
     const Projection& p = facing.p;
     const Lanes half_length = select(active, 0.5 * facing.length, Lanes{});
-    const Lanes old_place = load(&committed.place[record]), old_slip = load(&committed.slip[record]);
+    const Lanes old_place = load(&from.place[record]), old_slip = load(&from.slip[record]);
+    const Record<Law> old = load_record<remembered_count<Law>>(from, record);
     if (!any(p.hit)) {
-      totals.dissipated += half_length * release(law, pass, i, old_slip, committed, trial);
+      totals.dissipated += half_length * set_free(law, old_slip, old);
+      forget<Law>(to, record);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
     const Lanes place = place_of(p);
-    Contact c;
-    if constexpr (keeps_damage<Law>) {
-      Lanes damage;
-      c = respond_with_damage(law, window, p, touching, place, old_place, load_bond(committed, record), damage);
-      store(&trial.damage[record], damage);
-      store(&trial.opening[record], select(p.hit, max(p.gap, Lanes{}), Lanes{}));
-    } else {
-      Traction traction = law(p.gap);
-      if constexpr (has_dashpot<Law>)
-        totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
-      c = respond(law, window, p, touching, place, old_place, old_slip, traction);
-    }
-    store(&trial.place[record], select(p.hit, place, broadcast(std::numeric_limits<double>::quiet_NaN())));
-    store(&trial.slip[record], select(touching, c.slip, Lanes{}));
+    Traction traction = law(p.gap);
+    if constexpr (has_dashpot<Law>)
+      totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
+    Record<Law> now;
+    const Contact c = respond(law, encounter(law, window, p, touching, old_place, place), traction, old_slip, old, now);
+    store(&to.place[record], select(p.hit, place, broadcast(nowhere)));
+    store(&to.slip[record], select(touching, c.slip, Lanes{}));
+    store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
     if (!any(touching)) continue;
     const Lanes weight = select(touching, half_length, Lanes{});

@@ -26,15 +26,15 @@ void locate_newcomers(const PatchView& view, ContactHistory& history) {
   });
 }
 
-void make_bonds(const PatchView& view, ContactHistory& history) {
-  const CohesiveFatigue* law = std::get_if<CohesiveFatigue>(&view.patch.law);
-  if (!law) return;
-  for_each_facing(view, law->bond_gap, [&](const Pass& pass, int, int i, const Facing& at) {
-    const Projection& p = at.p;
-    const LaneBits near = first_lanes(pass.nodes.count - i) & p.hit & (p.gap <= law->bond_gap);
-    store(&history.damage[pass.record + i], select(near, Lanes{}, broadcast(1)));
-    store(&history.opening[pass.record + i], select(near, max(p.gap, Lanes{}), Lanes{}));
-  });
+void start_records(const PatchView& view, ContactHistory& history) {
+  const auto start = [&]<class Law>(const Law& law) {
+    if constexpr (remembers<Law>)
+      for_each_facing(view, law.start_reach(), [&](const Pass& pass, int, int i, const Facing& at) {
+        const LaneBits beside = first_lanes(pass.nodes.count - i) & at.p.hit;
+        store_record(history, pass.record + i, law.at_start(at.p.gap, beside));
+      });
+  };
+  std::visit(start, view.patch.law);
 }
 
 bool overlaps(const PatchView& view) {

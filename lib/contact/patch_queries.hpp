@@ -14,8 +14,8 @@ double touching_length(const PatchView& view);
 /// that slip counts from its first step.
 void locate_newcomers(const PatchView& view, ContactHistory& history);
 
-/// Where the gap is small enough at the start of a run, bonds are whole. Does nothing without a law that knows bonds.
-void make_bonds(const PatchView& view, ContactHistory& history);
+/// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most laws.
+void start_records(const PatchView& view, ContactHistory& history);
 
 /// Whether some node of the patch stands inside the other outline.
 bool overlaps(const PatchView& view);

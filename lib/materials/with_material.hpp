@@ -1,5 +1,7 @@
 #pragma once
 
+#include <stdexcept>
+
 #include "materials/linear_elastic.hpp"
 #include "materials/melody.hpp"
 #include "materials/neo_hookean.hpp"
@@ -12,15 +14,18 @@ namespace pliant {
 template <class Action>
 auto with_material(MaterialLaw law, Action&& action) {
   switch (law) {
+    case MaterialLaw::neo_hookean:
+      return action(NeoHookean{});
     case MaterialLaw::neo_hookean_quadratic:
       return action(NeoHookeanQuadratic{});
     case MaterialLaw::melody:
       return action(Melody{});
     case MaterialLaw::linear_elastic:
       return action(LinearElastic{});
-    default:
-      return action(NeoHookean{});
+    case MaterialLaw::rigid:
+      break;
   }
+  throw std::logic_error("a material law that deforms nothing");
 }
 
 }  // namespace pliant

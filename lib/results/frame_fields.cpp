@@ -90,7 +90,7 @@ std::vector<double> contact_slip(const Snapshot& snapshot) {
 
 /// Least damage of each node's bonds, 1 at nodes without.
 std::vector<double> contact_damage(const Snapshot& snapshot) {
-  return snapshot.contact().nodal_damage(snapshot.state().memory.contact);
+  return snapshot.contact().least_remembered(snapshot.state().memory.contact, "damage", 1);
 }
 
 template <class Function>

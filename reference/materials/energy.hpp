@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <stdexcept>
 
 #include "scene/scene.hpp"
 
@@ -46,13 +47,21 @@ template <class Scalar>
 Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   using std::log, std::pow;
   const Moduli m = moduli(material);
-  if (material.law == MaterialLaw::linear_elastic) return linear_elastic_energy(m, F);
-  const Scalar J = jacobian(F), I1 = first_invariant(F), volume = J - 1.0;
-  if (material.law == MaterialLaw::melody)
-    return 0.5 * m.bulk * volume * volume + 0.5 * m.mu * (pow(J, -2.0 / 3) * I1 - 3.0);
-  const Scalar shear = 0.5 * m.mu * (I1 - 3.0 - 2.0 * log(J));
-  if (material.law == MaterialLaw::neo_hookean_quadratic) return shear + 0.5 * m.lambda * volume * volume;
-  return shear + 0.5 * m.lambda * log(J) * log(J);
+  const auto shear = [&] { return 0.5 * m.mu * (first_invariant(F) - 3.0 - 2.0 * log(jacobian(F))); };
+  const Scalar J = jacobian(F), volume = J - 1.0;
+  switch (material.law) {
+    case MaterialLaw::neo_hookean:
+      return shear() + 0.5 * m.lambda * log(J) * log(J);
+    case MaterialLaw::neo_hookean_quadratic:
+      return shear() + 0.5 * m.lambda * volume * volume;
+    case MaterialLaw::melody:
+      return 0.5 * m.bulk * volume * volume + 0.5 * m.mu * (pow(J, -2.0 / 3) * first_invariant(F) - 3.0);
+    case MaterialLaw::linear_elastic:
+      return linear_elastic_energy(m, F);
+    case MaterialLaw::rigid:
+      break;
+  }
+  throw std::logic_error("a material law without an energy");
 }
 
 /// Kelvin-Voigt damping (METHOD 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot : E_dot. Its derivative by the rate

@@ -83,7 +83,7 @@ int bonded_nodes(const ContactRig& rig) {
   int nodes = 0;
   for (const Patch& patch : rig.contact.patches())
     for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < patch.nodes[side].count; ++i) nodes += rig.committed.damage[patch.record[side] + i] < 1;
+      for (int i = 0; i < patch.nodes[side].count; ++i) nodes += rig.committed.field(0)[patch.record[side] + i] < 1;
   return nodes;
 }
 
@@ -155,7 +155,7 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
   ContactRig rig(scene);
   rig.step();
   const auto damaged = [&](int body) {
-    const std::vector<double> damage = rig.contact.nodal_damage(rig.committed);
+    const std::vector<double> damage = rig.contact.least_remembered(rig.committed, "damage", 1);
     double least = 1;
     for (int k = 0; k < rig.count(body); ++k) least = std::min(least, damage[rig.model.outline_offset[body] + k]);
     return least;
@@ -187,10 +187,10 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
 TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
   ContactRig rig(block_on_bar(bond_rule(), 2));
   rig.step();
-  ASSERT_TRUE(rig.committed.damage.empty());
+  ASSERT_EQ(rig.committed.fields(), 0);
   rig.move(1, {0, -2 + 0.0005});
   rig.step();
-  ASSERT_FALSE(rig.committed.damage.empty());
+  ASSERT_EQ(rig.committed.fields(), 2);
   EXPECT_EQ(bonded_nodes(rig), 0);
   rig.move(1, {0, 0.005});
   rig.step();
@@ -201,8 +201,7 @@ TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
 TEST(Fatigue, OtherLawsKeepNoDamage) {
   ContactRig rig(block_on_bar(cohesive(kn, strength, range, strength)));
   rig.step();
-  EXPECT_TRUE(rig.committed.damage.empty());
-  EXPECT_TRUE(rig.committed.opening.empty());
+  EXPECT_TRUE(rig.committed.of_law.empty());
 }
 
 }  // namespace

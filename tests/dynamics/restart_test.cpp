@@ -169,9 +169,11 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   const std::vector<double>& slip = simulation.state().memory.contact.slip;
   EXPECT_GT(std::count_if(slip.begin(), slip.end(), [](double s) { return s != 0; }), 1) << "contacts have slip";
   EXPECT_GT(simulation.state().dissipated, 0);
-  const std::vector<double>& damage = simulation.state().memory.contact.damage;
-  const bool worn = std::any_of(damage.begin(), damage.end(), [](double d) { return d > 0.01 && d < 0.99; });
-  EXPECT_EQ(worn, !damage.empty()) << "bonds are half worn";
+  const ContactHistory& history = simulation.state().memory.contact;
+  const double* damage = history.field(0);
+  const bool worn = history.fields() > 0 &&
+                    std::any_of(damage, damage + history.records(), [](double d) { return d > 0.01 && d < 0.99; });
+  EXPECT_EQ(worn, history.fields() > 0) << "bonds are half worn";
   const std::vector<Patch>& patches = simulation.forces().contact().patches();
   EXPECT_TRUE(std::any_of(patches.begin(), patches.end(), [&](const Patch& p) {
     return p.images != 0 || scene_model.bodies[p.first].wall || scene_model.bodies[p.second].wall;

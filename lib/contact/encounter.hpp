@@ -1,0 +1,18 @@
+#pragma once
+
+#include "contact/laws/response.hpp"
+#include "contact/slip.hpp"
+
+namespace pliant {
+
+/// Eight nodes, by where they were on the master at the last accepted step, and are now: place_of(p).
+template <class Law>
+Encounter encounter(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
+                    Lanes place) {
+  Encounter at{p.gap, p.hit, touching, {}};
+  if constexpr (Law::has_shear)
+    at.moved = moved_along(window, p, touching & (old_place == old_place), old_place, place);
+  return at;
+}
+
+}  // namespace pliant

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "contact/laws/traction.hpp"
+
+namespace pliant {
+
+/// Eight nodes near a master, in the step at hand.
+struct Encounter {
+  Lanes gap;          ///< m, negative: penetration
+  LaneBits beside;    ///< which of them face the master at all
+  LaneBits touching;  ///< and are within the law's reach
+  Lanes moved;        ///< past the master since the last accepted step, m; 0 for laws without shear
+};
+
+/// What a law makes of them: tractions, and slip brought up to date.
+struct Contact {
+  Lanes pressure, shear, energy;  ///< shear acts on the slave along the tangent
+  Lanes slip, slip_work;          ///< slip_work: dissipated per length, by whatever, J/m2
+};
+
+/// A number that a law remembers of a node and its partner from one accepted step to the next, besides place and slip.
+/// A law lists them as `static constexpr Remembered remembered[]`, and brings
+///
+///     Contact respond(const Encounter&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
+///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, of nodes that left the master
+///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to start_reach()
+///
+/// where a Record has one Lanes for each. Nothing else need know.
+struct Remembered {
+  const char* name;
+  double of_strangers;  ///< of nodes that were not near before
+};
+
+template <class Law>
+constexpr bool remembers = requires { Law::remembered; };
+template <class Law>
+constexpr std::size_t remembered_count = 0;
+template <class Law>
+  requires remembers<Law>
+constexpr std::size_t remembered_count<Law> = std::size(Law::remembered);
+template <class Law>
+using Record = std::array<Lanes, remembered_count<Law>>;
+
+/// Place in the record of what has this name; -1: the law remembers no such thing.
+template <class Law>
+constexpr int index_of_remembered(std::string_view name) {
+  if constexpr (remembers<Law>)
+    for (std::size_t k = 0; k < remembered_count<Law>; ++k)
+      if (Law::remembered[k].name == name) return static_cast<int>(k);
+  return -1;
+}
+
+/// The tangential part of a contact that slips beyond its limit.
+template <class Law>
+void slide(const Law& law, const Traction& traction, LaneBits touching, Lanes old_slip, Lanes trial, Contact& c) {
+  const Lanes largest = select(touching, traction.shear_limit * (1 / law.shear_stiffness), Lanes{});
+  c.slip = min(max(trial, -largest), largest);
+  c.shear = -law.shear_stiffness * c.slip;
+  // Mean of the old and the new traction times the plastic slip: what the tangential forces do, less what is stored.
+  c.slip_work = (0.5 * law.shear_stiffness) * (old_slip + c.slip) * (trial - c.slip);
+  c.energy += 0.5 * law.shear_stiffness * c.slip * c.slip;
+}
+
+/// `traction`: the law's answer to the gap, and its dashpot's.
+template <class Law>
+Contact respond(const Law& law, const Encounter& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,
+                Record<Law>& now) {
+  if constexpr (remembers<Law>) {
+    return law.respond(at, traction, old_slip, old, now);
+  } else {
+    Contact c{traction.pressure, {}, traction.energy, {}, {}};
+    if constexpr (Law::has_shear) slide(law, traction, at.touching, old_slip, old_slip + at.moved, c);
+    return c;
+  }
+}
+
+/// What nodes had stored that are no longer beside the master, J/m2.
+template <class Law>
+Lanes set_free(const Law& law, Lanes old_slip, const Record<Law>& old) {
+  if constexpr (remembers<Law>)
+    return law.set_free(old_slip, old);
+  else
+    return (0.5 * law.shear_stiffness) * old_slip * old_slip;
+}
+
+}  // namespace pliant
