@@ -28,7 +28,8 @@ void internal_forces(benchmark::State& state) {
   Dofs force = zero_dofs(model);
   for (auto _ : state)
     for (const Batch& batch : model.batches)
-      benchmark::DoNotOptimize(add_internal_forces(model, batch, &simulation.state().position.compliant[batch.offset],
+      benchmark::DoNotOptimize(add_internal_forces(model, batch,
+                                                   {.position = &simulation.state().position.compliant[batch.offset]},
                                                    &force.compliant[batch.offset]));
 }
 BENCHMARK(internal_forces)->Unit(benchmark::kMillisecond);

@@ -17,7 +17,7 @@ using Vector = Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Which mass matrix compliant bodies have (METHOD 2).
+/// Which mass matrix compliant bodies have (docs/method.md 2).
 enum class MassMatrix {
   lumped,     ///< row sums, as the engine's default
   corrected,  ///< inverse of the engine's 2 D^-1 - D^-1 M D^-1

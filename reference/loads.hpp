@@ -7,7 +7,7 @@
 
 namespace pliant::reference {
 
-/// What acts on one rigid degree of freedom (METHOD 5).
+/// What acts on one rigid degree of freedom (docs/method.md 5).
 struct RigidLoad {
   int dof = 0;
   Drive drive;

@@ -1,5 +1,7 @@
 #include "reference/system.hpp"
 
+#include <limits>
+
 namespace pliant::reference {
 namespace {
 
@@ -23,6 +25,13 @@ System::System(const Scene& scene)
   for (const Body& body : bodies_.all())
     if (body.compliant())
       internal_.emplace_back(bodies_.space_of(body), bodies_.material_of(body), body.placed.scale, body.placed.angle);
+  branches_.resize(internal_.size());
+}
+
+void System::accept() {
+  contacts_.accept();
+  for (std::size_t i = 0; i < internal_.size(); ++i) internal_[i].accept(branches_[i]);
+  accepted_ = evaluated_;
 }
 
 Forces System::evaluate(const Motion& motion, bool tangent) {
@@ -46,13 +55,18 @@ Forces System::evaluate(const Motion& motion, bool tangent) {
   return forces;
 }
 
-void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) const {
+void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) {
   std::size_t number = 0;
+  evaluated_ = motion.time;
+  const double elapsed = motion.moves ? motion.time - accepted_ : std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < bodies_.all().size(); ++b) {
     const Body& body = bodies_.all()[b];
     if (!body.compliant()) continue;
     const int first = body.first_dof;
-    const InternalState internal = internal_[number++].evaluate(motion.q.segment(first, body.dofs), tangent);
+    const InternalState internal = internal_[number].evaluate(motion.q.segment(first, body.dofs), tangent, elapsed);
+    branches_[number] = internal.branch;
+    forces.symmetric &= !internal_[number++].has_branch();
+    forces.creep_power += internal.power;
     if (internal.least_jacobian < forces.least_jacobian) {
       forces.least_jacobian = internal.least_jacobian;
       forces.worst_body = static_cast<int>(b);

@@ -28,6 +28,7 @@ struct Forces {
   bool symmetric = true;
   double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
   double potential = 0;                          ///< of all forces that have one: stored, less what loads can give, J/m
+  double creep_power = 0;                        ///< dissipated by Maxwell branches, W/m
   double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
   double least_jacobian = 1e300;
   int worst_body = -1;  ///< the one with it
@@ -45,12 +46,12 @@ class System {
   /// With the tangent when asked to. Contacts remember what accept() has accepted.
   Forces evaluate(const Motion& motion, bool tangent);
   /// Histories go on from the last motion evaluated.
-  void accept() { contacts_.accept(); }
+  void accept();
   /// [compliant bodies] in their order.
   const std::vector<InternalForces>& internal() const { return internal_; }
 
  private:
-  void add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries) const;
+  void add_internal(const Motion& motion, bool tangent, Forces& forces, Triplets& entries);
   void add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
                     Triplets& entries);
   void add_applied(const Motion& motion, Forces& forces) const;
@@ -60,7 +61,9 @@ class System {
 
   Bodies bodies_;
   Loads loads_;
-  std::vector<InternalForces> internal_;  ///< [compliant bodies]
+  std::vector<InternalForces> internal_;            ///< [compliant bodies]
+  std::vector<std::vector<BranchPoint>> branches_;  ///< [compliant bodies] at the last motion evaluated
+  double evaluated_ = 0, accepted_ = 0;             ///< times, s
   Contacts contacts_;
 };
 

@@ -272,6 +272,8 @@ void TimeStepping::book(const Trial& trial) {
                               0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
   books_.dissipated_by_contact += trial.forces.dissipated;
   books_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
+  if (after.moves)
+    books_.dissipated_by_damping += 0.5 * (after.time - before.time) * (forces_.creep_power + trial.forces.creep_power);
   books_.kinetic = 0.5 * after.v.dot(mass_ * after.v);
   books_.strain = trial.forces.strain, books_.contact = trial.forces.contact, books_.boundary = trial.forces.boundary;
 }

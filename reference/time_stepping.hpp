@@ -19,7 +19,7 @@ struct SolverOptions {
   NewtonOptions newton;
 };
 
-/// Energies of a run, J/m; as the engine's books (METHOD 6).
+/// Energies of a run, J/m; as the engine's books (docs/method.md 6).
 struct Books {
   double kinetic = 0, strain = 0, contact = 0, boundary = 0;
   double dissipated_by_contact = 0, dissipated_by_damping = 0;
@@ -44,7 +44,7 @@ struct StepRecord {
   std::string trouble;            ///< of the last part that did not converge
 };
 
-/// The motion of a scene, step by step (DESIGN 6).
+/// The motion of a scene, step by step (docs/design.md 6).
 class TimeStepping {
  public:
   TimeStepping(System& system, const SolverOptions& options);

@@ -3,72 +3,8 @@
 #include <algorithm>
 
 #include "bodies/node_arrays.hpp"
-#include "bodies/spread_forces.hpp"
-#include "materials/kelvin_voigt.hpp"
 
 namespace pliant {
-namespace {
-
-/// Deformation gradient and its rate.
-struct Gradients {
-  Tensor<Lanes> F{}, rate{};
-};
-
-/// Vector: Vec2 or LaneVector, as Table: IntegrationTable or LaneTable.
-template <class Vector>
-inline void add_outer(Tensor<Lanes>& sum, Lanes x, Lanes y, const Vector& b) {
-  sum.xx += x * b.x();
-  sum.xy += x * b.y();
-  sum.yx += y * b.x();
-  sum.yy += y * b.y();
-}
-
-template <class Table>
-inline Gradients gradients(const Table& table, std::size_t point, const Lanes* q, const Lanes* v) {
-  Gradients result;
-  for (int e = table.start[point]; e < table.start[point + 1]; ++e) {
-    const int i = 2 * table.node[e];
-    add_outer(result.F, q[i], q[i + 1], table.gradient[e]);
-    add_outer(result.rate, v[i], v[i + 1], table.gradient[e]);
-  }
-  return result;
-}
-
-template <class Table>
-Lanes add_in_lanes(const Table& table, Lanes viscosity, const Lanes* positions, const Lanes* velocities,
-                   Lanes* forces) {
-  Lanes power{};
-  for (std::size_t point = 0; point < table.weight.size(); ++point) {
-    const Gradients at = gradients(table, point, positions, velocities);
-    const KelvinVoigt rate(at.F, at.rate);
-    const Lanes factor = 2.0 * table.weight[point] * viscosity;
-    power += factor * rate.square();
-    const Tensor<Lanes> P = rate.stress(at.F, factor);
-    for (int e = table.start[point]; e < table.start[point + 1]; ++e) {
-      const auto& b = table.gradient[e];
-      Lanes* f = forces + 2 * table.node[e];
-      f[0] -= P.xx * b.x() + P.xy * b.y();
-      f[1] -= P.yx * b.x() + P.yy * b.y();
-    }
-  }
-  return power;
-}
-
-}  // namespace
-
-Lanes add_viscous_forces(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
-                         Lanes* forces) {
-  if (batch.layout == Layout::spread) return add_spread_viscous_forces(model, batch, positions, velocities, forces);
-  return with_tables(model, batch, [&](const auto& tables) {
-    return add_in_lanes(tables.table, batch.viscosity, positions, velocities, forces);
-  });
-}
-
-double viscous_power(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
-                     Lanes* forces) {
-  return batch.viscous ? sum(batch.weight * add_viscous_forces(model, batch, positions, velocities, forces)) : 0.0;
-}
-
 double drag_coefficient(const RigidDof& dof, const Instant& at) {
   return dof.mass_damping * dof.mass + (contains(dof.window, at) ? dof.damping : 0.0);
 }

@@ -5,17 +5,6 @@
 
 namespace pliant {
 
-/// Adds the Kelvin-Voigt forces of one batch, f_i = - sum_g w_g F_g S_g b_gi with the second Piola stress S = 2
-/// viscosity E_dot (METHOD 3). E_dot = sym(F^T F_dot) vanishes in rigid motions. positions, velocities, forces:
-/// [slots x 2] of the batch; linear in the velocities. Returns what each body dissipates, sum_g w_g 2 viscosity E_dot
-/// : E_dot, W/m; padding lanes repeat a body.
-Lanes add_viscous_forces(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
-                         Lanes* forces);
-
-/// The same for a batch that may have none. Returns the power of all bodies together.
-double viscous_power(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
-                     Lanes* forces);
-
 /// Drag on a rigid degree of freedom, force over velocity: of its material and of the dashpot beside its load, N s/m2 (N s).
 double drag_coefficient(const RigidDof& dof, const Instant& at);
 

@@ -5,7 +5,6 @@
 #include "bodies/body_view.hpp"
 #include "bodies/node_arrays.hpp"
 #include "bodies/spread_forces.hpp"
-#include "materials/with_material.hpp"
 
 namespace pliant {
 namespace {
@@ -56,53 +55,60 @@ inline void subtract_forces(const Rows<T...>& rows, int point, const Tensor<Lane
 }
 
 /// Three points are under way at once, each at another stage, so that the processor need not wait for the long chain of
-/// operations of one point's stress.
+/// operations of one point's stress. The last one's is found twice and counts once. Law and motion are copies, which no
+/// store of Lanes can alias.
 template <class Law, class... T>
-Lanes add_forces(Law, const Rows<T...>& rows, Lanes mu, Lanes lambda, const Lanes* q, Lanes* f) {
-  Lanes least_J = broadcast(1e300);
+PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch, const BatchMotion motion, Lanes* f) {
+  PointTotals totals;
   const int last = rows.points - 1;
-  const auto weighted_stress = [&](int point, const Tensor<Lanes>& F) {
-    const auto w = rows.weight[point];
-    const Response<Lanes> response = Law::template stress<Lanes>(F, w * mu, w * lambda);  // P is linear in them
-    least_J = min(response.J, least_J);
+  const auto weighted_stress = [&](int point, const Tensor<Lanes>& F, bool counts) {
+    Tensor<Lanes> rate{};
+    if constexpr (has_rate<Law>) rate = deformation_gradient(rows, point, motion.velocity);
+    Record<Law> now;
+    const Response<Lanes> response =
+        respond(law.weighted(rows.weight[point]), F, rate, load_record<Law>(batch, motion, point), now);
+    store_record<Law>(batch, motion, point, now);
+    totals.least_jacobian = min(response.J, totals.least_jacobian);
+    if constexpr (dissipates<Law>)
+      if (counts) totals.power += response.power;
     return response.P;
   };
-  Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, q));
-  Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), q);
+  Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, motion.position), true);
+  Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), motion.position);
   for (int point = 0; point <= last; ++point) {
-    const Tensor<Lanes> next_P = weighted_stress(std::min(point + 1, last), F);
-    F = deformation_gradient(rows, std::min(point + 2, last), q);
+    const Tensor<Lanes> next_P = weighted_stress(std::min(point + 1, last), F, point < last);
+    F = deformation_gradient(rows, std::min(point + 2, last), motion.position);
     subtract_forces(rows, point, P, f);
     P = next_P;
   }
-  return least_J;
+  return totals;
 }
 
 template <class Law, class... T>
-Lanes energy(Law, const Rows<T...>& rows, Lanes mu, Lanes lambda, const Lanes* q) {
+Lanes energy(const Law& law, const Rows<T...>& rows, const Batch& batch, const BatchMotion& motion) {
   Lanes total{};
   for (int point = 0; point < rows.points; ++point)
-    total += rows.weight[point] * Law::template energy<Lanes>(deformation_gradient(rows, point, q), mu, lambda);
+    total += rows.weight[point] *
+             energy_of(law, deformation_gradient(rows, point, motion.position), load_record<Law>(batch, motion, point));
   return total;
 }
 
 }  // namespace
 
-Lanes add_internal_forces(const Model& model, const Batch& batch, const Lanes* positions, Lanes* forces) {
-  if (batch.layout == Layout::spread) return add_spread_forces(model, batch, positions, forces);
+PointTotals add_internal_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces) {
+  if (batch.layout == Layout::spread) return add_spread_forces(model, batch, motion, forces);
   return with_tables(model, batch, [&](const auto& tables) {
-    return with_material(model.groups[batch.group].law, [&](auto law) {
-      return add_forces(law, rows_of(tables.table), batch.mu, batch.lambda, positions, forces);
+    return with_point_law(model, batch, motion, [&](const auto& law) {
+      return add_forces(law, rows_of(tables.table), batch, motion, forces);
     });
   });
 }
 
-Lanes strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
-  if (batch.layout == Layout::spread) return spread_strain_energy(model, batch, positions);
+Lanes strain_energy(const Model& model, const Batch& batch, const BatchMotion& motion) {
+  if (batch.layout == Layout::spread) return spread_strain_energy(model, batch, motion);
   return batch.weight * with_tables(model, batch, [&](const auto& tables) {
-           return with_material(model.groups[batch.group].law, [&](auto law) {
-             return energy(law, rows_of(tables.table), batch.mu, batch.lambda, positions);
-           });
+           return with_law(model.groups[batch.group].law, batch.constants,
+                           [&](const auto& law) { return energy(law, rows_of(tables.table), batch, motion); });
          });
 }
 

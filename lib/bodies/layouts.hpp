@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y (DESIGN 4):
+/// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y (docs/design.md 4):
 /// shared: one body a lane, node i of each in slot i, all copies of one shape and so of one table;
 /// related: the same, of shapes with one mesh topology: one connectivity, values by lane;
 /// spread: one body alone, its nodes over slots and lanes: its cost is not that of eight, and threads share it.
@@ -78,10 +78,11 @@ struct SpreadShape {
   std::vector<Lanes> unit_mass, inverse_unit_mass;  ///< [slots]
   std::vector<Lanes> nodal_distance;                ///< [slots], m; 1 in padding
 
-  std::vector<double> weight;  ///< [points, whole lanes], m2; 0 in padding
-  std::vector<int> start;      ///< [points, whole lanes, + 1], rows of the two following
-  std::vector<int> node;       ///< [entries], places
-  Points gradient;             ///< [entries], 1/m
+  std::vector<int> point_number;  ///< [points of the IntegrationTable], where each stands among the following
+  std::vector<double> weight;     ///< [points, whole lanes], m2; 0 in padding
+  std::vector<int> start;         ///< [points, whole lanes, + 1], rows of the two following
+  std::vector<int> node;          ///< [entries], places
+  Points gradient;                ///< [entries], 1/m
 
   std::vector<int> node_start;  ///< [8 x slots + 1]: the same table by nodes, rows of the two following
   std::vector<int> point;       ///< [entries]

@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <map>
 
+#include "bodies/node_arrays.hpp"
 #include "bodies/related_shapes.hpp"
 #include "bodies/spread_shape.hpp"
-#include "materials/elastic_constants.hpp"
+#include "materials/with_law.hpp"
 
 namespace pliant {
 namespace {
 
 void set_constants(const Scene& scene, const Body& body, bool counts, int lane, Batch& batch) {
   const Material& material = scene.materials[body.material];
-  const LameConstants lame = lame_constants(material.young, material.poisson);
-  batch.mu[lane] = lame.mu;
-  batch.lambda[lane] = lame.lambda;
+  set_law_constants(material, lane, batch.constants);
+  with_law(material, [&](const auto& law) {
+    const auto [mu, lambda] = law.small_strains();
+    batch.mu[lane] = mu, batch.lambda[lane] = lambda;
+  });
   batch.density[lane] = material.density * body.scale * body.scale;
   batch.inverse_density[lane] = 1 / batch.density[lane];
   batch.scale[lane] = body.scale;
@@ -69,8 +72,20 @@ class BatchMaker {
     if (layout == Layout::spread) spread(batch);
     if (!alike) relate(batch, body_in);
     model_.compliant_size += 2 * static_cast<std::size_t>(batch.slots);
+    lay_out_memory(batch);
     add_regions(batch);
     model_.batches.push_back(batch);
+  }
+
+  void lay_out_memory(Batch& batch) {
+    batch.points = batch.layout == Layout::spread ? model_.spread_shape_of(batch).points() / lane_count
+                                                  : static_cast<int>(with_tables(model_, batch, [](const auto& tables) {
+                                                      return tables.table.weight.size();
+                                                    }));
+    batch.memory = model_.material_memory;
+    with_law_type<Lanes>(model_.groups[batch.group].law, [&]<class Law>(std::type_identity<Law>) {
+      model_.material_memory += remembered_count<Law> * static_cast<std::size_t>(batch.points);
+    });
   }
 
   void spread(Batch& batch) {

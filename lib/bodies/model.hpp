@@ -10,6 +10,7 @@
 #include "discretisation/table.hpp"
 #include "geometry/assembly.hpp"
 #include "geometry/shape_families.hpp"
+#include "materials/with_law.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
@@ -23,7 +24,7 @@ struct CompliantShape {
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
-/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a batch, one a lane (DESIGN 4).
+/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a batch, one a lane (docs/design.md 4).
 struct CompliantGroup {
   int shape = 0;  ///< index of the compliant shape, or of the first of its family
   MaterialLaw law = MaterialLaw::neo_hookean;
@@ -43,7 +44,10 @@ struct Batch {
   int shape = 0;                      ///< index of the compliant shape, of related ones that of lane 0
   int tables = -1;                    ///< spread, related: index in Model::spread_shapes or related_shapes
   int first_region = 0, regions = 1;  ///< in Model::regions
-  Lanes mu, lambda;                   ///< material constants a lane, Pa
+  LawConstants constants;             ///< of the group's law, a lane
+  Lanes mu, lambda;                   ///< Lame constants of small strains, before anything relaxes, Pa
+  std::size_t memory = 0;             ///< first entry in Memory::material, [fields x points], of a law that remembers
+  int points = 0;                     ///< integration points; of a spread body whole lanes of them
   Lanes density, inverse_density;     ///< density x s^2, so that unit masses give the mass that belongs to f/s and q/s
   Lanes scale, inverse_scale;         ///< s; all 1 unless `scaled`
   bool scaled = false;
@@ -117,6 +121,7 @@ struct Model {
   std::vector<Body> bodies;         ///< grains in the scene's order, then walls
   std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
   std::size_t compliant_size = 0;   ///< length of Dofs::compliant
+  std::size_t material_memory = 0;  ///< length of Memory::material: 0 unless laws remember
   bool corrected_mass = false;      ///< states hold momentum over lumped mass: see mass_correction.hpp
   bool rates = false;  ///< some force but drag (damping_forces.hpp) depends on velocities: only then are rates formed
   bool outline_rates = false;  ///< and on those of outline nodes

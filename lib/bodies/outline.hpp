@@ -43,7 +43,7 @@ struct OutlineField {
   }
 };
 
-/// All outlines in motion: what bodies of either kind see of each other (METHOD 1).
+/// All outlines in motion: what bodies of either kind see of each other (docs/method.md 1).
 struct Outlines {
   OutlineField position;                 ///< m
   OutlineField velocity;                 ///< m/s; empty without Model::outline_rates

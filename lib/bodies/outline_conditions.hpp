@@ -13,8 +13,8 @@ struct PartNode {
   bool before = false, after = false;
 };
 
-/// A pressure on a part of one body's outline (METHOD 5). Parts are made of whole segments, each of which loads its
-/// two nodes by halves: on a whole outline that is the s_k of METHOD 2.
+/// A pressure on a part of one body's outline (docs/method.md 5). Parts are made of whole segments, each of which loads its
+/// two nodes by halves: on a whole outline that is the s_k of docs/method.md 2.
 struct OutlinePressure {
   int body = 0;  ///< global index
   Window window;
@@ -24,7 +24,7 @@ struct OutlinePressure {
 };
 
 /// Springs and dashpots that tie a part of one compliant body's outline to where it was at the start, moved by
-/// histories (METHOD 5).
+/// histories (docs/method.md 5).
 struct OutlineSupport {
   int body = 0;  ///< global index
   Window window;

@@ -3,9 +3,6 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
-#include "materials/kelvin_voigt.hpp"
-#include "materials/tensor.hpp"
-#include "materials/with_material.hpp"
 
 namespace pliant {
 namespace {
@@ -44,16 +41,6 @@ Tensor<Lanes> deformation_gradients(const SpreadShape& shape, int first, const d
   return {load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3])};
 }
 
-void add_columns(const Tensor<Lanes>& P, StressColumns* to) {
-  const Lanes rows[8] = {P.xx, P.yx, P.xy, P.yy};
-  Lanes points[8];
-  transpose(rows, points);
-  for (int lane = 0; lane < lane_count; ++lane) {
-    const Lanes& point = points[lane];
-    to[lane].xx += point[0], to[lane].yx += point[1], to[lane].xy += point[2], to[lane].yy += point[3];
-  }
-}
-
 void store_columns(const Tensor<Lanes>& P, StressColumns* to) {
   const Lanes rows[8] = {P.xx, P.yx, P.xy, P.yy};
   Lanes points[8];
@@ -61,52 +48,45 @@ void store_columns(const Tensor<Lanes>& P, StressColumns* to) {
   for (int lane = 0; lane < lane_count; ++lane) std::memcpy(&to[lane], &points[lane], sizeof(StressColumns));
 }
 
+const double* flat(const Lanes* values) { return reinterpret_cast<const double*>(values); }
+
 template <class Law>
-double stresses_of(Law, const SpreadShape& shape, Lanes mu, Lanes lambda, const Chunk& points, const double* q,
-                   StressColumns* stresses) {
-  Lanes least_J = broadcast(1e300);
+PointTotals stresses_of(const Law law, const SpreadShape& shape, const Batch& batch, const Chunk& points,
+                        const BatchMotion motion, StressColumns* stresses) {
+  PointTotals totals;
   for (int p = points.first; p < points.last; p += lane_count) {
-    const Lanes w = load(&shape.weight[p]);
+    Tensor<Lanes> rate{};
+    if constexpr (has_rate<Law>) rate = deformation_gradients(shape, p, flat(motion.velocity));
+    Record<Law> now;
     const Response<Lanes> response =
-        Law::template stress<Lanes>(deformation_gradients(shape, p, q), w * mu, w * lambda);  // P is linear in them
-    least_J = min(response.J, least_J);
+        respond(law.weighted(load(&shape.weight[p])), deformation_gradients(shape, p, flat(motion.position)), rate,
+                load_record<Law>(batch, motion, p / lane_count), now);
+    store_record<Law>(batch, motion, p / lane_count, now);
+    totals.least_jacobian = min(response.J, totals.least_jacobian);
+    if constexpr (dissipates<Law>) totals.power += response.power;
     store_columns(response.P, stresses + p);
   }
-  return -largest(-least_J);
+  return totals;
 }
 
 template <class Law>
-double energy_of(Law, const SpreadShape& shape, Lanes mu, Lanes lambda, int first, int last, const double* q) {
+double energy_of_chunk(const Law& law, const SpreadShape& shape, const Batch& batch, int first, int last,
+                       const BatchMotion& motion) {
   Lanes total{};
   for (int p = first; p < last; p += lane_count)
-    total += load(&shape.weight[p]) * Law::template energy<Lanes>(deformation_gradients(shape, p, q), mu, lambda);
+    total += load(&shape.weight[p]) * energy_of(law, deformation_gradients(shape, p, flat(motion.position)),
+                                                load_record<Law>(batch, motion, p / lane_count));
   return sum(total);
 }
 
-const double* flat(const Lanes* values) { return reinterpret_cast<const double*>(values); }
-
 }  // namespace
 
-double spread_stresses(const Model& model, const Chunk& points, const Lanes* positions, StressColumns* stresses) {
-  const Batch& batch = model.batches[points.batch];
-  return with_material(model.groups[batch.group].law, [&](auto law) {
-    return stresses_of(law, model.spread_shape_of(batch), batch.mu, batch.lambda, points, flat(positions), stresses);
-  });
-}
-
-double add_viscous_stresses(const Model& model, const Chunk& points, const Lanes* positions, const Lanes* velocities,
+PointTotals spread_stresses(const Model& model, const Chunk& points, const BatchMotion& motion,
                             StressColumns* stresses) {
   const Batch& batch = model.batches[points.batch];
-  const SpreadShape& shape = model.spread_shape_of(batch);
-  Lanes power{};
-  for (int p = points.first; p < points.last; p += lane_count) {
-    const Tensor<Lanes> F = deformation_gradients(shape, p, flat(positions));
-    const KelvinVoigt rate(F, deformation_gradients(shape, p, flat(velocities)));
-    const Lanes factor = 2.0 * batch.viscosity * load(&shape.weight[p]);
-    power += factor * rate.square();
-    add_columns(rate.stress(F, factor), stresses + p);
-  }
-  return sum(power) * batch.weight[0];
+  return with_point_law(model, batch, motion, [&](const auto& law) {
+    return stresses_of(law, model.spread_shape_of(batch), batch, points, motion, stresses);
+  });
 }
 
 void add_spread_forces(const Model& model, const Region& region, const StressColumns* stresses, Lanes* forces) {
@@ -132,47 +112,38 @@ void add_spread_forces(const Model& model, const Region& region, const StressCol
   }
 }
 
-Lanes add_spread_forces(const Model& model, const Batch& batch, const Lanes* positions, Lanes* forces) {
+PointTotals add_spread_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces) {
   const int number = static_cast<int>(&batch - model.batches.data()), points = model.spread_shape_of(batch).points();
   thread_local std::vector<StressColumns> scratch;
-  scratch.resize(static_cast<std::size_t>(points));
-  StressColumns* stresses = scratch.data();  // of the calling thread, for all that share its work
+  thread_local std::vector<PointTotals> scratch_totals;
   constexpr int step = SpreadShape::chunk_points;
   const int chunks = (points + step - 1) / step;
-  const double least = -parallel_max(chunks, -1e300, [&](int c) {
-    return -spread_stresses(model, {number, c * step, std::min(points, (c + 1) * step)}, positions, stresses);
+  scratch.resize(static_cast<std::size_t>(points));
+  scratch_totals.resize(static_cast<std::size_t>(chunks));
+  StressColumns* stresses = scratch.data();  // of the calling thread, for all that share its work
+  PointTotals* of_chunks = scratch_totals.data();
+  parallel_for(chunks, [&](int c) {
+    of_chunks[c] = spread_stresses(model, {number, c * step, std::min(points, (c + 1) * step)}, motion, stresses);
   });
   parallel_for(batch.regions,
                [&](int r) { add_spread_forces(model, model.regions[batch.first_region + r], stresses, forces); });
-  return broadcast(least);
+  PointTotals totals;
+  for (int c = 0; c < chunks; ++c) {
+    totals.least_jacobian = min(totals.least_jacobian, of_chunks[c].least_jacobian);
+    totals.power[0] += sum(of_chunks[c].power);
+  }
+  totals.least_jacobian = broadcast(-largest(-totals.least_jacobian));
+  return totals;
 }
 
-Lanes add_spread_viscous_forces(const Model& model, const Batch& batch, const Lanes* positions, const Lanes* velocities,
-                                Lanes* forces) {
-  const int number = static_cast<int>(&batch - model.batches.data()), points = model.spread_shape_of(batch).points();
-  std::vector<StressColumns> stresses(static_cast<std::size_t>(points));
-  constexpr int step = SpreadShape::chunk_points;
-  Lanes power{};
-  power[0] = ordered_sum<1>((points + step - 1) / step,
-                            [&](int c) {
-                              const Chunk chunk{number, c * step, std::min(points, (c + 1) * step)};
-                              return add_viscous_stresses(model, chunk, positions, velocities, stresses.data());
-                            }) /
-             batch.weight[0];
-  parallel_for(batch.regions, [&](int r) {
-    add_spread_forces(model, model.regions[batch.first_region + r], stresses.data(), forces);
-  });
-  return power;
-}
-
-Lanes spread_strain_energy(const Model& model, const Batch& batch, const Lanes* positions) {
+Lanes spread_strain_energy(const Model& model, const Batch& batch, const BatchMotion& motion) {
   const SpreadShape& shape = model.spread_shape_of(batch);
   constexpr int step = SpreadShape::chunk_points;
   const int points = shape.points();
   Lanes result{};
   result[0] = ordered_sum<1>((points + step - 1) / step, [&](int c) {
-    return with_material(model.groups[batch.group].law, [&](auto law) {
-      return energy_of(law, shape, batch.mu, batch.lambda, c * step, std::min(points, (c + 1) * step), flat(positions));
+    return with_law(model.groups[batch.group].law, batch.constants, [&](const auto& law) {
+      return energy_of_chunk(law, shape, batch, c * step, std::min(points, (c + 1) * step), motion);
     });
   });
   return batch.weight * result;

@@ -63,6 +63,8 @@ void add_points(const Discretisation& space, SpreadShape& shape) {
   const IntegrationTable& table = space.table;
   std::vector<int> order = spatial_order(point_positions(space));
   const std::size_t points = order.size();
+  shape.point_number.resize(points);
+  for (std::size_t p = 0; p < points; ++p) shape.point_number[order[p]] = static_cast<int>(p);
   order.resize((points + lane_count - 1) / lane_count * lane_count, order.back());
   shape.start.push_back(0);
   for (std::size_t p = 0; p < order.size(); ++p) {

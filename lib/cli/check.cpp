@@ -183,7 +183,7 @@ Stability stability(const Model& model) {
   ContactHistory history;
   contact.find_candidates(outlines, history);
   TimeStepBound bound(model, contact.laws());
-  bound.update_internal(position);
+  bound.update_internal(position, initial_memory(model));
   bound.update_contact(contact);
   return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
 }

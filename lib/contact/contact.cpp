@@ -175,7 +175,7 @@ void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory&
     const std::span<const Remembered> remembered = remembered_of(patch.law);
     for (int side = 0; side < 2; ++side)
       for (std::size_t k = 0; k < remembered.size(); ++k)
-        std::fill_n(next.field(k) + patch.record[side], padded(patch.nodes[side].count), remembered[k].of_strangers);
+        std::fill_n(next.field(k) + patch.record[side], padded(patch.nodes[side].count), remembered[k].at_first);
     const auto from =
         std::lower_bound(old.begin(), old.end(), patch, [](const Patch& a, const Patch& b) { return key(a) < key(b); });
     if (from == old.end() || key(*from) != key(patch)) return;

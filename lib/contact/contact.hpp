@@ -40,7 +40,7 @@ class ContactSystem {
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
 
   /// [outline nodes] upper bound of the contact stiffness that each node may feel until the candidates are found anew, N/m2, seen from where they
-  /// were found; weighted so that the bound of a pair is that of its two bodies taken alone (METHOD 6). `compliance` [bodies]: largest w^2 a body
+  /// were found; weighted so that the bound of a pair is that of its two bodies taken alone (docs/method.md 6). `compliance` [bodies]: largest w^2 a body
   /// shows per unit contact stiffness.
   std::vector<double> stiffness_bound(const std::vector<double>& compliance) const;
 

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// METHOD 4: 6 to 8 % of h penetration at p = E/2.
+/// docs/method.md 4: 6 to 8 % of h penetration at p = E/2.
 constexpr double auto_stiffness_factor = 8;
 constexpr double auto_range_factor = 0.12;
 /// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they sink in by a segment

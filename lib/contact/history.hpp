@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// Contact history, one record a slave node and other body (METHOD 4): committed on accepted steps only.
+/// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
 struct ContactHistory {
   std::vector<double>
       place;  ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it

@@ -68,7 +68,7 @@ void forget(ContactHistory& history, int record) {
   store(&history.slip[record], Lanes{});
   if constexpr (remembers<Law>)
     for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      store(history.field(k) + record, broadcast(Law::remembered[k].of_strangers));
+      store(history.field(k) + record, broadcast(Law::remembered[k].at_first));
 }
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work on.

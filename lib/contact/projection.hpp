@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Stage 3 of METHOD 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds the node, and where the node
+/// Stage 3 of docs/method.md 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds the node, and where the node
 /// stands beside it: orthogonal or, beyond an end, radial from that end node.
 struct Projection {
   LaneBits hit;

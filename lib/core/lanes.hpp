@@ -35,6 +35,17 @@ inline Lanes sqrt(Lanes a) {
 #endif
 }
 
+/// Applies a function of one number to each lane, one after the other.
+template <class Function>
+Lanes in_each_lane(Lanes a, Function&& function) {
+  for (int lane = 0; lane < lane_count; ++lane) a[lane] = function(a[lane]);
+  return a;
+}
+template <class Function>
+double in_each_lane(double a, Function&& function) {
+  return function(a);
+}
+
 /// Nearest integer for |a| < 2^51, ties to even.
 inline Lanes round_to_integer(Lanes a) {
   constexpr double magic = 6755399441055744.0;  // 1.5 x 2^52: the sum's last bit is the unit

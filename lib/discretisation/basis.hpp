@@ -27,7 +27,7 @@ Basis linear_triangles(const FieldMesh& mesh);
 
 /// What the shape functions of a mesh were like wherever they were asked for.
 struct BasisQuality {
-  double least_value = 0;  ///< of phi: moving least squares reach below zero (METHOD 2)
+  double least_value = 0;  ///< of phi: moving least squares reach below zero (docs/method.md 2)
   double condition = 1;    ///< the largest
 };
 

@@ -25,7 +25,7 @@ struct MlsNodes {
   std::vector<int> near(const Vec2& x) const;
 };
 
-/// Gives each node the distance to its support-th nearest other node as radius (METHOD 2). Throws InputError when there
+/// Gives each node the distance to its support-th nearest other node as radius (docs/method.md 2). Throws InputError when there
 /// are not that many nodes.
 MlsNodes make_mls_nodes(const Points& nodes, int support);
 

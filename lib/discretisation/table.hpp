@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// Everything that internal forces need from space (METHOD 2): per integration point a weight and, for each neighbour
+/// Everything that internal forces need from space (docs/method.md 2): per integration point a weight and, for each neighbour
 /// node, a reference gradient.
 struct IntegrationTable {
   std::vector<double> weight;  ///< [points], m2; sum to the polygon's area
@@ -35,10 +35,10 @@ struct Discretisation {
   ShapeRows node_rows;                 ///< at all field nodes
   std::vector<double> unit_mass;       ///< [nodes], lumped mass at density 1, m2
   std::vector<double> nodal_distance;  ///< [nodes], distance to the nearest other node, m
-  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (METHOD 2). Empty: lumped.
+  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (docs/method.md 2). Empty: lumped.
   ShapeRows mass_correction;
   double correction_bound = 1;       ///< on its largest eigenvalue
-  double min_shape_value = 0;        ///< least phi met at integration points and nodes (METHOD 2)
+  double min_shape_value = 0;        ///< least phi met at integration points and nodes (docs/method.md 2)
   double condition = 1;              ///< largest condition number of the systems that the shape functions solve
   double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)
 };

@@ -79,14 +79,14 @@ Audit Auditor::audit(const State& state) {
   result.energy.kinetic = kinetic_energy(model, state.velocity);
   std::vector<double> strain(model.batches.size());
   for_each_batch(model, [&](int b) {
-    strain[b] = sum(strain_energy(model, model.batches[b], &state.position.compliant[model.batches[b].offset]));
+    strain[b] = sum(strain_energy(model, model.batches[b], motion_of(model.batches[b], state.position, state.memory)));
   });
   result.energy.strain = ordered_sum(static_cast<int>(strain.size()), [&](int b) { return strain[b]; });
   result.energy.boundary = support_energy(model, state.position, {state.time});
   result.energy.dissipated = state.dissipated;
   result.energy.external_work =
       state.external_work + state.gravity_work + constant_gravity_moment(state.position) - gravity_start_;
-  result.momentum_error = std::max(contact_imbalance(state), internal_imbalance(state.position));
+  result.momentum_error = std::max(contact_imbalance(state), internal_imbalance(state));
   return result;
 }
 
@@ -117,15 +117,15 @@ double Auditor::contact_imbalance(const State& state) const {
   return model.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
 }
 
-double Auditor::internal_imbalance(const Dofs& position) const {
+double Auditor::internal_imbalance(const State& state) const {
   const Model& model = forces_.model();
   std::vector<double> imbalance(model.batches.size());
   for_each_batch(model, [&](int b) {
     const Batch& batch = model.batches[b];
     const std::size_t slots = static_cast<std::size_t>(batch.slots);
     std::vector<Lanes> f(2 * slots, Lanes{});
-    const Lanes* q = &position.compliant[batch.offset];
-    add_internal_forces(model, batch, q, f.data());
+    const Lanes* q = &state.position.compliant[batch.offset];
+    add_internal_forces(model, batch, motion_of(batch, state.position, state.memory), f.data());
     Lanes fx{}, fy{}, moment{}, magnitude = broadcast(1e-300), lever = broadcast(1e-300);
     for (std::size_t i = 0; i < slots; ++i) {
       fx += f[2 * i], fy += f[2 * i + 1];

@@ -48,7 +48,7 @@ class Auditor {
  private:
   void warn_of_strain(const State& state);
   double constant_gravity_moment(const Dofs& position) const;
-  double internal_imbalance(const Dofs& position) const;
+  double internal_imbalance(const State& state) const;
   double contact_imbalance(const State& state) const;
 
   Forces& forces_;

@@ -5,7 +5,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
@@ -29,7 +28,7 @@ Forces::Forces(const Model& model)
       least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
     stresses_.emplace_back(static_cast<std::size_t>(model.spread_shape_of(model.batches[b]).points()));
-  if (model.rates) damping_power_.resize(least_jacobian_.size());
+  if (model.rates || model.material_memory > 0) damping_power_.resize(least_jacobian_.size());
 }
 
 Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
@@ -39,10 +38,10 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
   return {true, contact_.candidates_hold(trial, clock)};
 }
 
-Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Memory& from, const Output& to,
+Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
                             const RegionWork& afterwards) {
   Evaluation result;
-  result.contact = contact_.forces(outlines, from.contact, to.memory.contact, to.contact_force);
+  result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
   result.damping_power = result.contact.damping_power;
   const OutlineField* on_outlines = &to.contact_force;
   if (has_outline_loads(model_)) {
@@ -50,8 +49,9 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
     result.damping_power += add_outline_loads(model_, motion.instant(), outlines, loaded_);
     on_outlines = &loaded_;
   }
-  lane_forces(motion, *on_outlines, to.force, afterwards);
-  if (!stresses_.empty()) spread_forces(motion, *on_outlines, to.force, afterwards);
+  to.memory.material.resize(model_.material_memory);
+  lane_forces(motion, *on_outlines, from, to, afterwards);
+  if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, afterwards);
   rigid_forces(motion, outlines.position, *on_outlines, to.force);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -59,40 +59,48 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   return result;
 }
 
+/// What the points of a batch go through from a memory on.
+BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const Recall& from, Memory& to) const {
+  BatchMotion step = motion_of(batch, motion.position, from.memory);
+  if (batch.viscous) step.velocity = &motion.velocity.compliant[batch.offset];
+  step.elapsed = from.elapsed;
+  if (step.memory) step.new_memory = to.material.data() + batch.memory;
+  return step;
+}
+
 /// All forces on bodies that stand one a lane.
-void Forces::lane_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force,
+void Forces::lane_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
                          const RegionWork& afterwards) {
   parallel_for(model_.lane_batches, [&](int b) {
     const Batch& batch = model_.batches[b];
     const Region& region = model_.regions[b];
-    Lanes* f = &force.compliant[batch.offset];
+    Lanes* f = &to.force.compliant[batch.offset];
     std::fill_n(f, 2 * batch.slots, Lanes{});
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
-    const Lanes *q = &motion.position.compliant[batch.offset], *v = &motion.velocity.compliant[batch.offset];
-    least_jacobian_[b] = least_of(add_internal_forces(model_, batch, q, f));
-    if (model_.rates) damping_power_[b] = viscous_power(model_, batch, q, v, f);
+    const PointTotals totals = add_internal_forces(model_, batch, step_of(batch, motion, from, to.memory), f);
+    least_jacobian_[b] = least_of(totals.least_jacobian);
+    if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
     if (afterwards) afterwards(b);
   });
 }
 
 /// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
-void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force,
+void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
                            const RegionWork& afterwards) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
     const Batch& batch = model_.batches[chunk.batch];
-    const Lanes* q = &motion.position.compliant[batch.offset];
-    least_jacobian_[model_.lane_batches + c] = spread_stresses(model_, chunk, q, stresses_of(chunk.batch));
-    if (batch.viscous)
-      damping_power_[model_.lane_batches + c] =
-          add_viscous_stresses(model_, chunk, q, &motion.velocity.compliant[batch.offset], stresses_of(chunk.batch));
+    const PointTotals totals =
+        spread_stresses(model_, chunk, step_of(batch, motion, from, to.memory), stresses_of(chunk.batch));
+    least_jacobian_[model_.lane_batches + c] = least_of(totals.least_jacobian);
+    if (!damping_power_.empty()) damping_power_[model_.lane_batches + c] = sum(totals.power) * batch.weight[0];
   });
   parallel_for(static_cast<int>(model_.regions.size()) - model_.lane_batches, [&](int i) {
     const int r = model_.lane_batches + i;
     const Region& region = model_.regions[r];
-    Lanes* f = &force.compliant[model_.batches[region.batch].offset];
+    Lanes* f = &to.force.compliant[model_.batches[region.batch].offset];
     std::fill(f + 2 * region.first, f + 2 * region.last, Lanes{});
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);

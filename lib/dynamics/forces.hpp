@@ -14,7 +14,7 @@ namespace pliant {
 /// What one force evaluation found.
 struct Evaluation {
   PatchTotals contact;
-  double damping_power = 0;  ///< what viscosity and the dashpots of contacts and supports dissipate, W/m
+  double damping_power = 0;  ///< what materials and the dashpots of contacts and supports dissipate, W/m
   double least_jacobian = 1e300;
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
@@ -44,7 +44,7 @@ class Forces {
     Memory& memory;               ///< that goes with these positions
   };
   /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of each region.
-  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Memory& from, const Output& to,
+  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
                       const RegionWork& afterwards = {});
 
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
@@ -60,15 +60,18 @@ class Forces {
   }
 
  private:
-  void lane_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force, const RegionWork& afterwards);
-  void spread_forces(const Motion& motion, const OutlineField& on_outlines, Dofs& force, const RegionWork& afterwards);
+  BatchMotion step_of(const Batch& batch, const Motion& motion, const Recall& from, Memory& to) const;
+  void lane_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
+                   const RegionWork& afterwards);
+  void spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
+                     const RegionWork& afterwards);
   void rigid_forces(const Motion& motion, const OutlineField& place, const OutlineField& on_outlines, Dofs& force);
 
   const Model& model_;
   ContactSystem contact_;
   OutlineField loaded_;                 ///< contact forces and loads on outlines together; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies and chunks of points]
-  std::vector<double> damping_power_;   ///< of viscosity, as least_jacobian_, W/m; empty without Model::rates
+  std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty where none dissipates
   std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]
   bool warned_deep_ = false;
 };

@@ -37,8 +37,7 @@ void check_size(const Model& model, const Body& body) {
 /// A batch of eight times this body.
 Batch repeated(const Model& model, const Body& body) {
   Batch batch = model.batches[body.batch];
-  batch.mu = broadcast(batch.mu[body.lane]);
-  batch.lambda = broadcast(batch.lambda[body.lane]);
+  for (Lanes& constant : batch.constants) constant = broadcast(constant[body.lane]);
   return batch;
 }
 
@@ -65,7 +64,7 @@ std::vector<Lanes> moved_forces(const Model& model, const Batch& batch, std::vec
   for (int lane = 0; lane < columns * ways; ++lane)
     q[static_cast<std::size_t>(first + lane / ways)][lane] += step * way[lane % ways];
   std::vector<Lanes> force(q.size(), Lanes{});
-  add_internal_forces(model, batch, q.data(), force.data());
+  add_internal_forces(model, batch, {.position = q.data()}, force.data());
   return force;
 }
 

@@ -13,6 +13,7 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   state_.position = initial_positions(model);
   state_.velocity = initial_velocities(model, state_.position);
   state_.force = zero_dofs(model);
+  state_.memory = initial_memory(model);
   refuse_deep_overlap(model, placed_outlines(model, state_.position));
   const Evaluation start = find_forces(forces_, state_);
   check_start(start, state_, forces_);

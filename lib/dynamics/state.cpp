@@ -1,8 +1,29 @@
 #include "dynamics/state.hpp"
 
+#include <algorithm>
+
 #include "core/archive.hpp"
 
 namespace pliant {
+
+Memory initial_memory(const Model& model) {
+  Memory memory;
+  memory.material.resize(model.material_memory);
+  for (const Batch& batch : model.batches)
+    with_law_type<Lanes>(model.groups[batch.group].law, [&]<class Law>(std::type_identity<Law>) {
+      if constexpr (remembers<Law>)
+        for (std::size_t k = 0; k < remembered_count<Law>; ++k)
+          std::fill_n(&memory.material[batch.memory + k * static_cast<std::size_t>(batch.points)], batch.points,
+                      broadcast(Law::remembered[k].at_first));
+    });
+  return memory;
+}
+
+BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& memory) {
+  BatchMotion motion{.position = &position.compliant[batch.offset]};
+  if (!memory.material.empty()) motion.memory = memory.material.data() + batch.memory;
+  return motion;
+}
 
 std::uint64_t state_hash(const State& state) {
   HashLeaf leaf;

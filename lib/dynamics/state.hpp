@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
+#include "bodies/point_law.hpp"
 #include "contact/history.hpp"
 
 namespace pliant {
@@ -12,12 +14,27 @@ namespace pliant {
 /// What the forces of the next step depend on beside positions and velocities: committed on accepted steps only.
 struct Memory {
   ContactHistory contact;
+  std::vector<Lanes> material;  ///< [Model::material_memory], of integration points: Batch::memory
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("contact", contact);
+    visitor("material", material);
   }
 };
+
+/// A memory, and how long ago it was, s.
+struct Recall {
+  const Memory& memory;
+  double elapsed;
+  Recall(const Memory& memory, double elapsed = 0) : memory(memory), elapsed(elapsed) {}
+};
+
+/// Before anything has happened.
+Memory initial_memory(const Model& model);
+
+/// The motion of a batch at a state's positions, with its memory, and at rest.
+BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& memory);
 
 /// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
 /// checkpoint cannot forget a part.

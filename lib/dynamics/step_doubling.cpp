@@ -103,13 +103,13 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   find_start_force(state, half);
   half_step(state.position, state.velocity, start_force_, state.time, half);
   const bool hold = show(state, first, report).hold;
-  if (!evaluate(first, state.memory, half_memory_, report) || !hold) return Halves::failed;
+  if (!evaluate(first, {state.memory, half}, half_memory_, report) || !hold) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
   if (!(report.error <= model_.scene.time.alpha * model_.scene.time.target)) return Halves::done;
   if (show(state, second, report).found_anew) return Halves::voided;
-  if (!evaluate(second, half_memory_, trial_.memory, report)) return Halves::failed;
+  if (!evaluate(second, {half_memory_, half}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return Halves::done;
@@ -136,7 +136,7 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, StepRepor
 }
 
 /// Returns whether the forces are sound.
-bool StepDoubling::evaluate(const Instant& at, const Memory& from, Memory& to, StepReport& report) {
+bool StepDoubling::evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
   add_drag(model_, at, trial_.velocity, trial_.force);

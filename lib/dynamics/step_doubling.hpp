@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// The paper's scheme (METHOD 6): semi-implicit Euler once with dt (u1) and twice with dt/2 (u2, kept), controlled by
+/// The paper's scheme (docs/method.md 6): semi-implicit Euler once with dt (u1) and twice with dt/2 (u2, kept), controlled by
 /// err = max |u2 - u1| / d over all field nodes and rigid outline nodes. Two force evaluations a step. It knows no stability limit. Loads act with their
 /// mean over each half step, forces that depend on velocities see those of its start.
 class StepDoubling {
@@ -34,7 +34,7 @@ class StepDoubling {
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
   Forces::Candidates show(State& state, const Instant& at, StepReport& report);
-  bool evaluate(const Instant& at, const Memory& from, Memory& to, StepReport& report);
+  bool evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);
   void find_difference(const Region& region, double dt);

@@ -199,13 +199,16 @@ double TimeStepBound::contact_frequency(const Body& body, const double* stiffnes
   return shape.space.correction_bound * largest / model_.batches[body.batch].density[body.lane];
 }
 
-void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) {
+void TimeStepBound::iterate_batch(int b, BatchMotion motion, int iterations) {
   const Batch& batch = model_.batches[b];
+  const Lanes* position = motion.position;
   const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
   const std::vector<Lanes> centred = from_first_node(batch, position);
   std::vector<Lanes> at_rest(size, Lanes{}), probe(size), response(size);
   Lanes* u = &direction_[batch.offset];
-  add_internal_forces(model_, batch, centred.data(), at_rest.data());
+  motion.position = centred.data();
+  add_internal_forces(model_, batch, motion, at_rest.data());
+  motion.position = probe.data();
   const Lanes step = probe_step(model_, batch);
   const BodyFrame frame(model_, batch, position);
   frame.into_space(batch, u);
@@ -213,7 +216,7 @@ void TimeStepBound::iterate_batch(int b, const Lanes* position, int iterations) 
     normalise(batch, u);
     for (std::size_t i = 0; i < size; ++i) probe[i] = centred[i] + step * u[i];
     std::fill(response.begin(), response.end(), Lanes{});
-    add_internal_forces(model_, batch, probe.data(), response.data());
+    add_internal_forces(model_, batch, motion, response.data());
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
     if (model_.corrected_mass) response = corrected(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
@@ -238,7 +241,7 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
   for (int iteration = 0; iteration < iterations; ++iteration) {
     normalise(batch, v);
     std::fill(response.begin(), response.end(), Lanes{});
-    add_viscous_forces(model_, batch, position, v, response.data());
+    add_internal_forces(model_, batch, {.position = position, .velocity = v, .elastic = false}, response.data());
     if (model_.corrected_mass) response = corrected(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
       const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.unit_mass, batch.slots));
@@ -253,10 +256,10 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
   frame.into_body(batch, v);
 }
 
-void TimeStepBound::update_internal(const Dofs& position, int iterations) {
+void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, int iterations) {
   const bool first = !internal_.empty() && internal_[0][0] == 0;
   for_each_batch(model_, [&](int b) {
-    iterate_batch(b, &position.compliant[model_.batches[b].offset], first ? start_iterations : iterations);
+    iterate_batch(b, motion_of(model_.batches[b], position, memory), first ? start_iterations : iterations);
     if (model_.batches[b].viscous)
       iterate_viscous(b, &position.compliant[model_.batches[b].offset], first ? start_iterations : iterations);
   });

@@ -5,17 +5,18 @@
 
 #include "bodies/dofs.hpp"
 #include "contact/contact.hpp"
+#include "dynamics/state.hpp"
 
 namespace pliant {
 
-/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (METHOD 6 with z for 2 z, where dashpots see the
+/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6 with z for 2 z, where dashpots see the
 /// velocity of the half step): w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);
 
   /// Two more power iterations on the internal forces of every compliant body.
-  void update_internal(const Dofs& position, int iterations = 2);
+  void update_internal(const Dofs& position, const Memory& memory, int iterations = 2);
   /// The a-priori contact bound, for new contact candidates.
   void update_contact(const ContactSystem& contact);
 
@@ -43,7 +44,7 @@ class TimeStepBound {
 
   void bound_conditions();
   void iterate_viscous(int b, const Lanes* position, int iterations);
-  void iterate_batch(int b, const Lanes* position, int iterations);
+  void iterate_batch(int b, BatchMotion motion, int iterations);
   double contact_frequency(const Body& body, const double* stiffness) const;
   Limit limit(double contact_factor) const;
   double total(std::size_t body, double contact_factor) const;

@@ -40,7 +40,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       trial_(model_),
       mean_velocity_(zero_dofs(model_)),
       change_(model_.regions.size()) {
-  bound_.update_internal(state.position);
+  bound_.update_internal(state.position, state.memory);
   bound_.update_contact(forces_.contact());
 }
 
@@ -64,9 +64,9 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   show_outlines(model_, motion, trial_.outlines);
   const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) bound_.update_contact(forces_.contact());
-  report.evaluation =
-      forces_.evaluate(motion, trial_.outlines, state.memory, {trial_.force, trial_.contact_force, trial_.memory},
-                       [&](int r) { finish_region(state, proposal.dt, r); });
+  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt},
+                                       {trial_.force, trial_.contact_force, trial_.memory},
+                                       [&](int r) { finish_region(state, proposal.dt, r); });
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
   report.error = report.evaluation.sound ? error(state, proposal.dt) : std::numeric_limits<double>::infinity();
@@ -213,7 +213,7 @@ void Verlet::finish(const State& state, StepReport& report) {
 }
 
 void Verlet::accepted(const State& state) {
-  if (state.steps % bound_period == 0) bound_.update_internal(state.position);
+  if (state.steps % bound_period == 0) bound_.update_internal(state.position, state.memory);
 }
 
 }  // namespace pliant

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Velocity Verlet with a stability bound and a free error control (METHOD 6): one force evaluation a step. Of second order with forces that depend
+/// Velocity Verlet with a stability bound and a free error control (docs/method.md 6): one force evaluation a step. Of second order with forces that depend
 /// on velocities too: drag (dynamics/drag.hpp) slows the motion by its exact exponential, all others see the velocity that the accelerations so far
 /// predict for the end of the step.
 class Verlet {

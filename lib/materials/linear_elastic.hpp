@@ -1,26 +1,37 @@
 #pragma once
 
-#include "materials/tensor.hpp"
+#include "materials/elastic_constants.hpp"
+#include "materials/respond.hpp"
 
 namespace pliant {
 
 /// Linear elasticity in plane strain, a check for small strains only: psi = mu e:e + lambda/2 (tr e)^2, P = 2 mu e +
 /// lambda tr(e) I with the strain e = sym(F - I). Not objective: a rotation by r counts as a strain of r^2/2, so
 /// bodies must start unturned (F = I) and hardly turn.
+template <class T>
 struct LinearElastic {
-  template <class T>
-  static Response<T> stress(const Tensor<T>& F, T mu, T lambda) {
+  T mu, lambda;  ///< Pa
+  static LinearElastic of(const Material& material) {
+    const auto [mu, lambda] = lame_constants(material);
+    return {mu, lambda};
+  }
+  template <class W>
+  LinearElastic weighted(W w) const {
+    return {w * mu, w * lambda};
+  }
+  LameConstants<T> small_strains() const { return {mu, lambda}; }
+
+  Response<T> respond(const Tensor<T>& F) const {
     const T shear = mu * (F.xy + F.yx), volume = lambda * (F.xx + F.yy - 2.0);
     return {{2.0 * mu * (F.xx - 1.0) + volume, shear, shear, 2.0 * mu * (F.yy - 1.0) + volume}, determinant(F)};
   }
 
-  template <class T>
-  static T energy(const Tensor<T>& F, T mu, T lambda) {
+  T energy(const Tensor<T>& F) const {
     const T xx = F.xx - 1.0, yy = F.yy - 1.0, xy = 0.5 * (F.xy + F.yx);
     return mu * (xx * xx + yy * yy + 2.0 * xy * xy) + 0.5 * lambda * (xx + yy) * (xx + yy);
   }
 
-  static double sigma_zz(const Tensor<double>& F, double, double lambda) { return lambda * (F.xx + F.yy - 2.0); }
+  double sigma_zz(const Tensor<double>& F) const { return lambda * (F.xx + F.yy - 2.0); }
 };
 
 }  // namespace pliant

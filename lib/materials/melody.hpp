@@ -1,15 +1,27 @@
 #pragma once
 
 #include "core/elementary_functions.hpp"
-#include "materials/tensor.hpp"
+#include "materials/elastic_constants.hpp"
+#include "materials/respond.hpp"
 
 namespace pliant {
 
-/// The form used by the code MELODY (METHOD 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2 mu/3;
+/// The form used by the code MELODY (docs/method.md 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2 mu/3;
 /// P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
+template <class T>
 struct Melody {
-  template <class T>
-  static Response<T> stress(const Tensor<T>& F, T mu, T lambda) {
+  T mu, lambda;  ///< Pa
+  static Melody of(const Material& material) {
+    const auto [mu, lambda] = lame_constants(material);
+    return {mu, lambda};
+  }
+  template <class W>
+  Melody weighted(W w) const {
+    return {w * mu, w * lambda};
+  }
+  LameConstants<T> small_strains() const { return {mu, lambda}; }
+
+  Response<T> respond(const Tensor<T>& F) const {
     const T J = determinant(F);
     const T root = inverse_cube_root(J);
     const T isochoric = mu * root * root;
@@ -17,15 +29,14 @@ struct Melody {
     return {combine<T>(isochoric, F, bulk * (J - 1.0) - isochoric * first_invariant(F) / (3.0 * J)), J};
   }
 
-  template <class T>
-  static T energy(const Tensor<T>& F, T mu, T lambda) {
+  T energy(const Tensor<T>& F) const {
     const T J = determinant(F);
     const T root = inverse_cube_root(J);
     const T bulk = lambda + mu * (2.0 / 3.0);
     return 0.5 * bulk * (J - 1.0) * (J - 1.0) + 0.5 * mu * (root * root * first_invariant(F) - 3.0);
   }
 
-  static double sigma_zz(const Tensor<double>& F, double mu, double lambda) {
+  double sigma_zz(const Tensor<double>& F) const {
     const double J = determinant(F);
     const double deviatoric = mu * std::pow(J, -5.0 / 3.0) * (1.0 - first_invariant(F) / 3.0);
     return (lambda + mu * 2.0 / 3.0) * (J - 1.0) + deviatoric;

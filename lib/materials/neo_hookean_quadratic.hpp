@@ -1,26 +1,37 @@
 #pragma once
 
 #include "core/elementary_functions.hpp"
-#include "materials/tensor.hpp"
+#include "materials/elastic_constants.hpp"
+#include "materials/respond.hpp"
 
 namespace pliant {
 
-/// Neo-Hookean solid with a quadratic volume term (METHOD 3), no logarithm in the stress:
+/// Neo-Hookean solid with a quadratic volume term (docs/method.md 3), no logarithm in the stress:
 /// psi = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (J - 1)^2,  P = mu F + (lambda (J - 1) - mu/J) cof F.
+template <class T>
 struct NeoHookeanQuadratic {
-  template <class T>
-  static Response<T> stress(const Tensor<T>& F, T mu, T lambda) {
+  T mu, lambda;  ///< Pa
+  static NeoHookeanQuadratic of(const Material& material) {
+    const auto [mu, lambda] = lame_constants(material);
+    return {mu, lambda};
+  }
+  template <class W>
+  NeoHookeanQuadratic weighted(W w) const {
+    return {w * mu, w * lambda};
+  }
+  LameConstants<T> small_strains() const { return {mu, lambda}; }
+
+  Response<T> respond(const Tensor<T>& F) const {
     const T J = determinant(F);
     return {combine<T>(mu, F, lambda * (J - 1.0) - mu / J), J};
   }
 
-  template <class T>
-  static T energy(const Tensor<T>& F, T mu, T lambda) {
+  T energy(const Tensor<T>& F) const {
     const T J = determinant(F);
     return 0.5 * mu * (first_invariant(F) - 3.0 - 2.0 * natural_log(J)) + 0.5 * lambda * (J - 1.0) * (J - 1.0);
   }
 
-  static double sigma_zz(const Tensor<double>& F, double, double lambda) { return lambda * (determinant(F) - 1.0); }
+  double sigma_zz(const Tensor<double>& F) const { return lambda * (determinant(F) - 1.0); }
 };
 
 }  // namespace pliant

@@ -31,11 +31,4 @@ Tensor<T> combine(T a, const Tensor<T>& F, T b) {
   return {a * F.xx + b * F.yy, a * F.xy - b * F.yx, a * F.yx - b * F.xy, a * F.yy + b * F.xx};
 }
 
-/// First Piola stress of a law, with the Jacobian that it had to compute.
-template <class T>
-struct Response {
-  Tensor<T> P;
-  T J;
-};
-
 }  // namespace pliant

@@ -10,7 +10,8 @@
 namespace pliant {
 
 const std::vector<PointState>& BodyFrame::points() {
-  if (points_.empty()) points_ = point_states(snapshot.model(), body, snapshot.state().position);
+  if (points_.empty())
+    points_ = point_states(snapshot.model(), body, snapshot.state().position, snapshot.state().memory);
   return points_;
 }
 

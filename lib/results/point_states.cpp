@@ -4,18 +4,34 @@
 #include <cmath>
 
 #include "bodies/internal_forces.hpp"
-#include "materials/elastic_constants.hpp"
-#include "materials/with_material.hpp"
+#include "materials/with_law.hpp"
 
 namespace pliant {
 namespace {
 
 /// Cauchy stress P F^T / J.
 template <class Law>
-Stress cauchy(const Tensor<double>& F, double mu, double lambda) {
-  const auto [P, J] = Law::template stress<double>(F, mu, lambda);
+Stress cauchy(const Law& law, const Tensor<double>& F, const Record<Law, double>& record) {
+  Record<Law, double> now;
+  const auto [P, J, power] = respond(law, F, Tensor<double>{}, record, now);
   return {(P.xx * F.xx + P.xy * F.xy) / J, (P.yx * F.yx + P.yy * F.yy) / J, (P.xx * F.yx + P.xy * F.yy) / J,
-          Law::sigma_zz(F, mu, lambda)};
+          law.sigma_zz(F)};
+}
+
+/// What the law remembers of one point of a body.
+template <class Law>
+Record<Law, double> record_of(const Model& model, const Body& body, const Memory& memory, std::size_t point) {
+  Record<Law, double> record;
+  if constexpr (remembers<Law>) {
+    const Batch& batch = model.batches[body.batch];
+    const bool spread = batch.layout == Layout::spread;
+    const std::size_t number = spread ? model.spread_shape_of(batch).point_number[point] : point;
+    const std::size_t slot = spread ? number / lane_count : number;
+    const int lane = spread ? static_cast<int>(number % lane_count) : body.lane;
+    for (std::size_t k = 0; k < record.size(); ++k)
+      record[k] = memory.material[batch.memory + k * static_cast<std::size_t>(batch.points) + slot][lane];
+  }
+  return record;
 }
 
 /// R E R^T with E = (F^T F - 1)/2: F contains the turn R by which the grain was put into the scene.
@@ -46,20 +62,18 @@ double tresca(const Stress& s) {
 
 double pressure(const Stress& s) { return -(s.xx + s.yy + s.zz) / 3; }
 
-std::vector<PointState> point_states(const Model& model, const Body& body, const Dofs& position) {
+std::vector<PointState> point_states(const Model& model, const Body& body, const Dofs& position, const Memory& memory) {
   const std::vector<Tensor<double>> F = deformation_gradients(model, body, position);
   const std::vector<double>& weight = model.shape_of(body).space.table.weight;
-  const Material& material = model.scene.materials[body.material];
-  const LameConstants lame = lame_constants(material.young, material.poisson);
   const double c = std::cos(body.angle), s = std::sin(body.angle);
   std::vector<PointState> states(F.size());
-  with_material(material.law, [&](auto law) {
-    using Law = decltype(law);
+  with_law(model.scene.materials[body.material], [&]<class Law>(const Law& law) {
     for (std::size_t g = 0; g < F.size(); ++g) {
+      const Record<Law, double> record = record_of<Law>(model, body, memory, g);
       states[g].weight = body.scale * body.scale * weight[g];
       states[g].jacobian = determinant(F[g]);
-      states[g].stress = cauchy<Law>(F[g], lame.mu, lame.lambda);
-      states[g].energy = Law::template energy<double>(F[g], lame.mu, lame.lambda);
+      states[g].stress = cauchy(law, F[g], record);
+      states[g].energy = energy_of(law, F[g], record);
       strain_at_start(F[g], c, s, states[g].strain);
     }
   });

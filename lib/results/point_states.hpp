@@ -4,6 +4,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
+#include "dynamics/state.hpp"
 #include "materials/tensor.hpp"
 
 namespace pliant {
@@ -24,7 +25,7 @@ double von_mises(const Stress& stress);
 double tresca(const Stress& stress);
 double pressure(const Stress& stress);
 
-/// One integration point of a compliant body (METHOD 3).
+/// One integration point of a compliant body (docs/method.md 3).
 struct PointState {
   double weight = 0;      ///< reference area, m2
   double jacobian = 1;    ///< current over reference area
@@ -34,6 +35,6 @@ struct PointState {
 };
 
 /// [points] of one compliant body.
-std::vector<PointState> point_states(const Model& model, const Body& body, const Dofs& position);
+std::vector<PointState> point_states(const Model& model, const Body& body, const Dofs& position, const Memory& memory);
 
 }  // namespace pliant

@@ -45,7 +45,7 @@ const Dofs& Snapshot::internal_forces() const {
   Dofs& f = internal_forces_.emplace(zero_dofs(model()));
   parallel_for(static_cast<int>(model().batches.size()), [&](int b) {
     const Batch& batch = model().batches[b];
-    add_internal_forces(model(), batch, &state().position.compliant[batch.offset], &f.compliant[batch.offset]);
+    add_internal_forces(model(), batch, motion_of(batch, state().position, state().memory), &f.compliant[batch.offset]);
   });
   return f;
 }

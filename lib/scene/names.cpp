@@ -10,13 +10,13 @@ namespace pliant {
 
 std::string_view scene_keys() {
   static constexpr std::string_view keys =
-      " alpha angle angles beta between body bond_gap bottom boundary box caps checkpoint cohesion columns "
-      "contact contacts count damping density descriptors deviation diameter direction discretisation "
-      "displacement distribution domain end factors fatigue_rate fatigue_threshold fields file first force "
-      "frames friction from gauss_points gradient grains gravity half_angles height heights high integrator "
-      "kind law left length level low mass mass_damping material materials mean median mix mix_order mode moment "
-      "name node nodes of origin outline outline_nodes packing part period pitch points poisson positions pressure "
-      "probes pull quantity range recipe reduce refresh residual_strength restitution right rotation rounding "
+      " alpha angle angles beta between body bond_gap bottom boundary box branch_modulus caps checkpoint cohesion "
+      "columns contact contacts count damping density descriptors deviation diameter direction discretisation "
+      "displacement distribution domain end factors fatigue_rate fatigue_threshold fields file first force frames "
+      "friction from gauss_points gradient grains gravity half_angles height heights high integrator kind law left "
+      "length level low mass mass_damping material materials mean median mix mix_order mode moment name node nodes "
+      "of origin outline outline_nodes packing part period pitch points poisson positions pressure probes pull "
+      "quantity range recipe reduce refresh relaxation_time residual_strength restitution right rotation rounding "
       "row_pitch rows safety seed self_contact shape shapes share shares shear_fatigue_rate shear_ratio "
       "shear_stiffness shear_strength side sides size skin smoothing solid solid_fraction spacing stiffness "
       "strength support target tension thickness time title tolerance top uniform unit until variants velocity "

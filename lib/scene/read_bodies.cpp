@@ -157,11 +157,16 @@ Material read_material(TableReader table, const std::string& name) {
                                       {"neo-hookean-quadratic", MaterialLaw::neo_hookean_quadratic},
                                       {"melody", MaterialLaw::melody},
                                       {"linear-elastic", MaterialLaw::linear_elastic},
+                                      {"neo-hookean-maxwell", MaterialLaw::neo_hookean_maxwell},
                                       {"rigid", MaterialLaw::rigid}}});
   table.required("density", material.density, Quantity{"kg/m3", positive});
   if (material.law != MaterialLaw::rigid) {
     table.required("young", material.young, Quantity{"Pa", positive});
     table.required("poisson", material.poisson, Quantity{"1", Range{.low = 0, .high = 0.5, .high_open = true}});
+    if (material.law == MaterialLaw::neo_hookean_maxwell) {
+      table.required("branch_modulus", material.branch_modulus, Quantity{"Pa", positive});
+      table.required("relaxation_time", material.relaxation_time, Quantity{"s", positive});
+    }
     table.optional("viscosity", material.viscosity, Quantity{"Pa s", non_negative});
   }
   table.optional("mass_damping", material.mass_damping, Quantity{"1/s", non_negative});

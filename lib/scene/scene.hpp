@@ -16,7 +16,7 @@ namespace pliant {
 /// What the user asked for, validated and in SI units (per metre of thickness). Immutable after reading.
 /// Numbers that the scene may leave open carry their default here; `auto` values are std::nullopt.
 
-enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, linear_elastic, rigid };
+enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, linear_elastic, neo_hookean_maxwell, rigid };
 enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
@@ -46,11 +46,13 @@ struct Window {
 struct Material {
   std::string name;
   MaterialLaw law = MaterialLaw::neo_hookean;
-  double density = 0;       ///< kg/m3
-  double young = 0;         ///< Pa; 0 for `rigid`
-  double poisson = 0;       ///< [0, 0.5); 0 for `rigid`
-  double viscosity = 0;     ///< Kelvin-Voigt, of compliant bodies: second Piola stress 2 viscosity E_dot, Pa s
-  double mass_damping = 0;  ///< of grains: force - mass_damping m v, 1/s
+  double density = 0;          ///< kg/m3
+  double young = 0;            ///< Pa; 0 for `rigid`
+  double poisson = 0;          ///< [0, 0.5); 0 for `rigid`
+  double viscosity = 0;        ///< Kelvin-Voigt, of compliant bodies: second Piola stress 2 viscosity E_dot, Pa s
+  double mass_damping = 0;     ///< of grains: force - mass_damping m v, 1/s
+  double branch_modulus = 0;   ///< shear modulus of a Maxwell branch, Pa; 0 for laws without
+  double relaxation_time = 0;  ///< of the branch, s
 };
 
 struct ShapeSpec {
@@ -175,7 +177,7 @@ struct OutlinePart {
   Vec2 side{0, 0};               ///< side: outward normals less than 45 degrees from this direction
 };
 
-/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines (METHOD 5).
+/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines (docs/method.md 5).
 struct BoundaryCondition {
   enum class Kind { drive, pressure, support } kind = Kind::drive;
   std::string grains;                         ///< name of a set of grains ...
@@ -191,7 +193,7 @@ struct BoundaryCondition {
   std::string where{};              ///< file, line and column of its table, for messages
 };
 
-/// What holds between two sorts of bodies (METHOD 4). Which rule a pair gets: scene/contact_rules.hpp.
+/// What holds between two sorts of bodies (docs/method.md 4). Which rule a pair gets: scene/contact_rules.hpp.
 struct ContactRule {
   std::string first, second;  ///< names of materials, grains or walls; "all": any
   ContactLawKind law = ContactLawKind::frictionless;

@@ -68,7 +68,7 @@ struct ContactResult {
 Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 
 /// All contacts of a scene by brute force: every node of every body against every segment of every other, and of its
-/// own periodic images (METHOD 4).
+/// own periodic images (docs/method.md 4).
 class Contacts {
  public:
   /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for

@@ -63,7 +63,7 @@ struct Footing {
   NodeLength length;
 };
 
-/// Of a node that stands beside the given segment (METHOD 4): that one, or beyond a near corner one of the next face,
+/// Of a node that stands beside the given segment (docs/method.md 4): that one, or beyond a near corner one of the next face,
 /// where the node would store more; none beyond a corner that ends the face.
 std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward);
 

@@ -8,7 +8,7 @@
 
 namespace pliant::reference {
 
-/// Which law holds between which bodies, with all that the scene leaves open (METHOD 4).
+/// Which law holds between which bodies, with all that the scene leaves open (docs/method.md 4).
 class PairLaws {
  public:
   /// Throws as Contacts does.

@@ -53,7 +53,7 @@ struct Nearest {
 std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point,
                                        double outward);
 
-/// A point against a segment, by the coordinates of the point and of the segment's first and second node (METHOD 4).
+/// A point against a segment, by the coordinates of the point and of the segment's first and second node (docs/method.md 4).
 struct Projection {
   Jet<6> gap;     ///< m
   Jet<6> height;  ///< over the segment's line, m

@@ -7,7 +7,7 @@
 
 namespace pliant::reference {
 
-/// The symmetric variationally consistent correction (METHOD 2): changes all gradients by the d that makes
+/// The symmetric variationally consistent correction (docs/method.md 2): changes all gradients by the d that makes
 /// sum_g w_g |d_gi|^2 least under
 /// (1) at every point sum_i b_gi = 0, sum_i b_gi (x) X_i = I,
 /// (2) for every node sum_g w_g b_gi = sum_k s_k phi_i(x_k) over the outline nodes k with the rows `outline`.

@@ -22,7 +22,7 @@ struct Point {
   std::vector<int> triangles;  ///< background triangles that it stands for in pictures
 };
 
-/// One shape, discretised: dense, slow, and without a line of the engine's mathematics (METHOD 2).
+/// One shape, discretised: dense, slow, and without a line of the engine's mathematics (docs/method.md 2).
 struct Space {
   FieldMesh mesh;
   std::vector<Point> points;

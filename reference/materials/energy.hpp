@@ -42,7 +42,7 @@ Scalar linear_elastic_energy(const Moduli& m, const Deformation<Scalar>& F) {
   return m.mu * (xx * xx + yy * yy + zz * zz + 2.0 * xy * xy) + 0.5 * m.lambda * trace * trace;
 }
 
-/// Strain energy per reference volume, Pa (METHOD 3). Not a number where J <= 0, but for `linear_elastic`.
+/// Strain energy per reference volume, Pa (docs/method.md 3), of what never relaxes. Not a number where J <= 0, but for `linear_elastic`.
 template <class Scalar>
 Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   using std::log, std::pow;
@@ -51,6 +51,7 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   const Scalar J = jacobian(F), volume = J - 1.0;
   switch (material.law) {
     case MaterialLaw::neo_hookean:
+    case MaterialLaw::neo_hookean_maxwell:  // see branch_energy
       return shear() + 0.5 * m.lambda * log(J) * log(J);
     case MaterialLaw::neo_hookean_quadratic:
       return shear() + 0.5 * m.lambda * volume * volume;
@@ -64,7 +65,31 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   throw std::logic_error("a material law without an energy");
 }
 
-/// Kelvin-Voigt damping (METHOD 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot : E_dot. Its derivative by the rate
+/// Entries of a symmetric tensor in the plane, 1 out of it.
+template <class Scalar>
+struct Symmetric {
+  Scalar xx{1.0}, xy{0.0}, yy{1.0};
+};
+
+/// Inverse of F^T F.
+template <class Scalar>
+Symmetric<Scalar> inverse_metric(const Deformation<Scalar>& F) {
+  const Scalar J = jacobian(F), square = J * J;
+  return {(F.xy * F.xy + F.yy * F.yy) / square, -(F.xx * F.xy + F.yx * F.yy) / square,
+          (F.xx * F.xx + F.yx * F.yx) / square};
+}
+
+/// What a Maxwell branch stores per reference volume, Pa: neo-Hookean in the part of the strain that its dashpot has not taken up, G the inverse of
+/// that, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt = ((F^T F)^-1 - G) / relaxation time.
+template <class Scalar>
+Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, const Symmetric<Scalar>& G) {
+  using std::log;
+  const Scalar xx = F.xx * F.xx + F.yx * F.yx, xy = F.xx * F.xy + F.yx * F.yy, yy = F.xy * F.xy + F.yy * F.yy;
+  const Scalar trace = xx * G.xx + 2.0 * xy * G.xy + yy * G.yy + F.zz * F.zz;
+  return 0.5 * material.branch_modulus * (trace - 3.0 - 2.0 * log(jacobian(F)) - log(G.xx * G.yy - G.xy * G.xy));
+}
+
+/// Kelvin-Voigt damping (docs/method.md 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot : E_dot. Its derivative by the rate
 /// of F is F S with the second Piola stress S = 2 eta E_dot. E: Green-Lagrange strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
 template <class Scalar>
 Scalar viscous_potential(double viscosity, const Deformation<Scalar>& F, const Deformation<Scalar>& rate) {

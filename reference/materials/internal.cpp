@@ -36,6 +36,7 @@ InternalForces::InternalForces(const Space& space, const Material& material, dou
   }
   gradient_.resize(4 * weight_.size(), 2 * Eigen::Index(space.mesh.nodes.size()));
   gradient_.setFromTriplets(entries.begin(), entries.end());
+  if (material.law == MaterialLaw::neo_hookean_maxwell) branch_.resize(space.points.size());
 }
 
 template <class Scalar>
@@ -56,7 +57,33 @@ Eigen::SparseMatrix<double> InternalForces::at_nodes(const std::vector<Eigen::Ma
   return Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
 }
 
-InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent) const {
+/// dG/dt by the trapezoidal rule: G = (1 - 2 s) G_old + s (goal_old + goal), s = z / (2 + z), z the time over the relaxation time.
+void InternalForces::add_branch(Eigen::Index point, const Deformation<double>& F, double elapsed,
+                                Eigen::Vector4d& stress, Eigen::Matrix4d& stiffness, InternalState& state) const {
+  const BranchPoint& old = branch_[std::size_t(point)];
+  const Symmetric<Jet<4>> goal = inverse_metric(as_variables<4>(F));
+  const bool relaxed = std::isinf(elapsed);
+  const double z = elapsed / material_.relaxation_time, share = relaxed ? 1 : z / (2 + z);
+  const auto follow = [&](double viscous, double goal_before, const Jet<4>& to) {
+    return relaxed ? to : Jet<4>((1 - 2 * share) * viscous + share * goal_before) + share * to;
+  };
+  const Symmetric<Jet<4>> G{follow(old.viscous.xx, old.goal.xx, goal.xx), follow(old.viscous.xy, old.goal.xy, goal.xy),
+                            follow(old.viscous.yy, old.goal.yy, goal.yy)};
+  const Jet<7> energy = branch_energy(material_, as_variables<7>(F),
+                                      {Jet<7>(G.xx.value, 4), Jet<7>(G.xy.value, 5), Jet<7>(G.yy.value, 6)});
+  Eigen::Matrix<double, 3, 4> by_F;
+  by_F << G.xx.gradient.transpose(), G.xy.gradient.transpose(), G.yy.gradient.transpose();
+  const Eigen::Vector3d rate =
+      Eigen::Vector3d(goal.xx.value - G.xx.value, goal.xy.value - G.xy.value, goal.yy.value - G.yy.value) /
+      material_.relaxation_time;
+  stress += energy.gradient.head<4>();
+  stiffness += energy.hessian.topLeftCorner<4, 4>() + energy.hessian.topRightCorner<4, 3>() * by_F;
+  state.energy += weight_[point] * energy.value;
+  state.power -= weight_[point] * energy.gradient.tail<3>().dot(rate);
+  state.branch.push_back({{G.xx.value, G.xy.value, G.yy.value}, {goal.xx.value, goal.xy.value, goal.yy.value}});
+}
+
+InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed) const {
   const Eigen::VectorXd F = gradient_ * q;
   InternalState state;
   Eigen::VectorXd stress(F.size());
@@ -64,8 +91,11 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent) c
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
     state.energy += weight_[g] * energy.value;
-    stress.segment<4>(4 * g) = weight_[g] * energy.gradient;
-    if (tangent) stiffness.push_back(weight_[g] * energy.hessian);
+    Eigen::Vector4d P = energy.gradient;
+    Eigen::Matrix4d by_F = energy.hessian;
+    if (has_branch()) add_branch(g, entries_at(F, g), elapsed, P, by_F, state);
+    stress.segment<4>(4 * g) = weight_[g] * P;
+    if (tangent) stiffness.push_back(weight_[g] * by_F);
     const double J = jacobian(entries_at(F, g));
     if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
   }
@@ -99,7 +129,11 @@ std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) cons
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     // Differentiated by the F that the law sees, which for small strains is also that of the stress.
     const Deformation<double> F = measured(entries_at(all, g));
-    const Jet<5> energy = strain_energy(material_, as_variables<5>(F));
+    Jet<5> energy = strain_energy(material_, as_variables<5>(F));
+    if (has_branch()) {
+      const Symmetric<double>& G = branch_[std::size_t(g)].viscous;
+      energy += branch_energy(material_, as_variables<5>(F), Symmetric<Jet<5>>{G.xx, G.xy, G.yy});
+    }
     const auto& P = energy.gradient;
     const double J = jacobian(F);
     if (material_.law == MaterialLaw::linear_elastic)

@@ -9,6 +9,11 @@
 
 namespace pliant::reference {
 
+/// A Maxwell branch at one point: the inverse of the strain that its dashpot has taken up, and what that creeps towards.
+struct BranchPoint {
+  Symmetric<double> viscous, goal;
+};
+
 /// Internal forces of one body at one state. Not numbers where some J <= 0, but for `linear_elastic`.
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
@@ -16,6 +21,8 @@ struct InternalState {
   Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty if not asked for
   double least_jacobian = 0;
   int least_point = 0;
+  double power = 0;                 ///< what Maxwell branches dissipate, W/m
+  std::vector<BranchPoint> branch;  ///< [points] as they are then; empty without
 };
 
 /// Kelvin-Voigt damping of one body at one motion.
@@ -38,8 +45,12 @@ class InternalForces {
  public:
   InternalForces(const Space& space, const Material& material, double size, double angle);
 
-  /// At positions q, m, from any origin.
-  InternalState evaluate(const Eigen::VectorXd& q, bool tangent) const;
+  /// At positions q, m, from any origin, so long after what the points remember, s. Where that is infinite, branches have relaxed. With a branch the
+  /// tangent is not symmetric.
+  InternalState evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed = 0) const;
+  /// From then on the points remember this.
+  void accept(std::vector<BranchPoint> branch) { branch_ = std::move(branch); }
+  bool has_branch() const { return !branch_.empty(); }
   /// At positions q, m, and velocities v, m/s.
   ViscousState damping(const Eigen::VectorXd& q, const Eigen::VectorXd& v, bool tangent) const;
   /// [points] Elastic stresses at positions q.
@@ -52,11 +63,16 @@ class InternalForces {
   template <class Scalar>
   Deformation<Scalar> measured(const Deformation<Scalar>& F) const;
 
+  /// Adds what the branch of a point does over some time, from its deformation on, to its stress, stiffness and energy by area.
+  void add_branch(Eigen::Index point, const Deformation<double>& F, double elapsed, Eigen::Vector4d& stress,
+                  Eigen::Matrix4d& stiffness, InternalState& state) const;
+
   /// [2 nodes x 2 nodes] of matrices [4 x 4] at the points, the entries (row, column) of F.
   Eigen::SparseMatrix<double> at_nodes(const std::vector<Eigen::Matrix4d>& of_points) const;
 
   Material material_;
   double cos_, sin_;
+  std::vector<BranchPoint> branch_;       ///< [points] at the last accepted motion; empty without
   Eigen::VectorXd weight_;                ///< [points], m2
   Eigen::SparseMatrix<double> gradient_;  ///< [4 points x 2 nodes], F of each point from q: xx, xy, yx, yy; 1/m
 };

@@ -55,10 +55,12 @@ struct Loaded {
     f = zero_dofs(model);
     jacobian.clear();
     for (const Batch& batch : model.batches)
-      jacobian.push_back(add_internal_forces(model, batch, &q.compliant[batch.offset], &f.compliant[batch.offset]));
+      jacobian.push_back(
+          add_internal_forces(model, batch, {.position = &q.compliant[batch.offset]}, &f.compliant[batch.offset])
+              .least_jacobian);
   }
   Lanes energy(int batch) const {
-    return strain_energy(model, model.batches[batch], &q.compliant[model.batches[batch].offset]);
+    return strain_energy(model, model.batches[batch], {.position = &q.compliant[model.batches[batch].offset]});
   }
   double largest_force() const {
     double result = 0;
@@ -84,7 +86,7 @@ TEST(InternalForces, AreTheSumOverThePoints) {
           deformation_gradients(loaded.model, loaded.model.bodies[loaded.model.groups[0].bodies[lane]], loaded.q);
       double least = 1e300;
       for (std::size_t g = 0; g < points; ++g) {
-        const auto [P, J] = NeoHookean::stress<double>(F[g], batch.mu[lane], batch.lambda[lane]);
+        const auto [P, J, power] = NeoHookean<double>{batch.mu[lane], batch.lambda[lane]}.respond(F[g]);
         least = std::min(least, J);
         for (int e = table.start[g]; e < table.start[g + 1]; ++e) {
           const Vec2 b = table.weight[g] * table.gradient[e];
@@ -207,7 +209,7 @@ TEST(InternalForces, AffineDeformation) {
   const Lanes energy = loaded.energy(0);
   for (int lane = 0; lane < batch.count; ++lane) {
     // psi of an isotropic law does not see the initial rotation. lambda = 4 mu, psi/mu = 0.0872207960699283
-    // (VERIFICATION 1) for nu = 0.4.
+    // (docs/method.md 3) for nu = 0.4.
     if (lane % 3 == 1) continue;
     EXPECT_NEAR(energy[lane], loaded.model.bodies[lane].area * batch.mu[lane] * 0.0872207960699283, 1e-12);
     EXPECT_NEAR(loaded.jacobian[0][lane], 1.2 * 0.85 + 0.03, 1e-12);
@@ -231,7 +233,7 @@ TEST(InternalForces, AreAdded) {
   const Dofs once = loaded.f;
   const Batch& batch = loaded.model.batches[0];
   std::vector<Lanes> twice(once.compliant.begin(), once.compliant.begin() + 2 * loaded.model.shape_of(batch).nodes());
-  add_internal_forces(loaded.model, batch, loaded.q.compliant.data(), twice.data());
+  add_internal_forces(loaded.model, batch, {.position = loaded.q.compliant.data()}, twice.data());
   for (std::size_t i = 0; i < twice.size(); ++i) EXPECT_LT(largest(abs(twice[i] - 2.0 * once.compliant[i])), 1e-14);
 }
 

@@ -118,10 +118,14 @@ TEST(SpreadForces, belong_to_the_energy) {
     Dofs f = zero_dofs(spread), g = zero_dofs(lanes);
     std::vector<double> least;
     for (const Batch& batch : spread.batches)
-      least.push_back(add_internal_forces(spread, batch, &q.compliant[batch.offset], &f.compliant[batch.offset])[0]);
+      least.push_back(
+          add_internal_forces(spread, batch, {.position = &q.compliant[batch.offset]}, &f.compliant[batch.offset])
+              .least_jacobian[0]);
     std::vector<Lanes> least_lanes;
     for (const Batch& batch : lanes.batches)
-      least_lanes.push_back(add_internal_forces(lanes, batch, &p.compliant[batch.offset], &g.compliant[batch.offset]));
+      least_lanes.push_back(
+          add_internal_forces(lanes, batch, {.position = &p.compliant[batch.offset]}, &g.compliant[batch.offset])
+              .least_jacobian);
     for (int b = 0; b < 3; ++b) {
       const Body &body = spread.bodies[b], &other = lanes.bodies[b];
       const BodyView forces(spread, body, f), expected(lanes, other, g);
@@ -132,8 +136,9 @@ TEST(SpreadForces, belong_to_the_energy) {
       EXPECT_NEAR(least[body.batch], least_lanes[other.batch][other.lane], 1e-13);
       const Batch& batch = spread.batches[body.batch];
       const Batch& lane_batch = lanes.batches[other.batch];
-      const auto energy = [&] { return strain_energy(spread, batch, &q.compliant[batch.offset])[0]; };
-      EXPECT_NEAR(energy(), strain_energy(lanes, lane_batch, &p.compliant[lane_batch.offset])[other.lane], 1e-13);
+      const auto energy = [&] { return strain_energy(spread, batch, {.position = &q.compliant[batch.offset]})[0]; };
+      EXPECT_NEAR(energy(), strain_energy(lanes, lane_batch, {.position = &p.compliant[lane_batch.offset]})[other.lane],
+                  1e-13);
       const BodyPlaces places(spread, body);
       for (std::size_t i = 0; i < 60; i += 7) {
         double& x = reinterpret_cast<double*>(q.compliant.data())[places[i]];

@@ -1,4 +1,4 @@
-// Drives of rigid grains, drives that set in and end, and walls pressed through a dashpot (METHOD 5).
+// Drives of rigid grains, drives that set in and end, and walls pressed through a dashpot (docs/method.md 5).
 #include <gtest/gtest.h>
 
 #include "support/simulations.hpp"

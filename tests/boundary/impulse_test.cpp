@@ -1,4 +1,4 @@
-// Loads shorter than a step: impulses are those of the histories and windows, to rounding, with both integrators (METHOD 5).
+// Loads shorter than a step: impulses are those of the histories and windows, to rounding, with both integrators (docs/method.md 5).
 #include <gtest/gtest.h>
 
 #include <cmath>

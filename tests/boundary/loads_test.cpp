@@ -1,5 +1,5 @@
-// What moves bodies from outside: imposed histories, forces and pressures, gravity, and the work that they do (METHOD
-// 5).
+// What moves bodies from outside: imposed histories, forces and pressures, gravity, and the work that they do
+// (docs/method.md 5).
 #include "boundary/loads.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Pressures and soft supports on parts of outlines (METHOD 5): forces, work, books.
+// Pressures and soft supports on parts of outlines (docs/method.md 5): forces, work, books.
 #include "boundary/outline_loads.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ double largest_force(const Bench& bench) {
 /// Nominal stress of a disc stretched by a in all directions, neo-Hookean: mu (a - 1/a) + 2 lambda ln(a)/a.
 double nominal_stress(double a) { return (a - 1 / a) + 4 * 2 * std::log(a) / a; }
 
-/// A disc of another size is in equilibrium everywhere, inside and at its nodes (METHOD 2, condition 2), with the
+/// A disc of another size is in equilibrium everywhere, inside and at its nodes (docs/method.md 2, condition 2), with the
 /// pressure -P on its first outline, or -P/a on its present one.
 TEST(Pressure, holds_a_shrunken_disc_in_equilibrium) {
   for (const bool following : {true, false}) {

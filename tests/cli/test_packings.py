@@ -84,7 +84,7 @@ def test_random_packing_of_outlines_from_files(desk) -> None:
         assert result.returncode == 0, result.stderr
     one, two = desk.summary("1"), desk.summary("2")
     assert one["state_hash"] == two["state_hash"]
-    # The bound of VERIFICATION 5, 1 %: grains are hit by a wall at 1 m/s.
+    # Within 1 %: grains are hit by a wall at 1 m/s.
     assert abs(one["energy"]["balance_error"]) < 1e-2
 
 

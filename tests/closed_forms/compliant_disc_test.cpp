@@ -1,5 +1,5 @@
 // One compliant disc against finite element solutions of the continuum (dolfinx 0.5.2, quadratic triangles,
-// extrapolated; errors below 2e-4). Units mu = R = rho = 1, lambda = 4, neo-Hookean, plane strain (VERIFICATION 2).
+// extrapolated; errors below 2e-4). Units mu = R = rho = 1, lambda = 4, neo-Hookean, plane strain.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -130,7 +130,7 @@ SwingErrors swing_errors(int nodes) {
   return errors;
 }
 
-/// Lumped mass and `mls` make the oval mode 1.6 % slow at 168 nodes and 0.36 % at 700 (VERIFICATION 2): the times err
+/// Lumped mass and `mls` make the oval mode 1.6 % slow at 168 nodes and 0.36 % at 700: the times err
 /// as much. Amplitudes collect the phases of the higher modes too, which err by 5 and 1.1 %: some of that.
 TEST(FreeOscillation, maxima_against_the_continuum) {
   const SwingErrors coarse = swing_errors(168), middle = swing_errors(350), fine = swing_errors(700);

@@ -1,4 +1,4 @@
-// Free flight, bounces and collisions: what momentum and energy alone decide (VERIFICATION 4).
+// Free flight, bounces and collisions: what momentum and energy alone decide.
 #include <gtest/gtest.h>
 
 #include "support/simulations.hpp"

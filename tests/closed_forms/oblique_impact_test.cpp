@@ -1,5 +1,5 @@
 // Restitution with friction: a rigid body hits a floor at an angle. What the normal force does in all, friction does in the share mu while it slides;
-// while it sticks, spring and dashpot are those of one degree of freedom each (METHOD 4).
+// while it sticks, spring and dashpot are those of one degree of freedom each (docs/method.md 4).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A rigid block with a flat face falls on a floor: spring and dashpot of one degree of freedom (METHOD 4).
+// A rigid block with a flat face falls on a floor: spring and dashpot of one degree of freedom (docs/method.md 4).
 #include <gtest/gtest.h>
 
 #include "contact/contact_laws.hpp"
@@ -43,7 +43,7 @@ double rebound(const ContactRule& rule, double safety) {
   return simulation.state().velocity.rigid[1] / 0.1;
 }
 
-/// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and METHOD's figures.
+/// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and the figures of docs/method.md 4.
 TEST(Restitution, damping_ratio_inverts_both_end_rules) {
   const auto restitution = [](double z, bool pull) {
     double x = 0, v = 1;  // depth and its rate, w = 1
@@ -178,7 +178,7 @@ TEST(Restitution, laws_follow_drives_in_time) {
   EXPECT_EQ(root(2), root(0));
 }
 
-/// EXACT: the bound of the time step falls with the damping ratio of METHOD 6; the run at full safety stays bounded: a block at rest settles.
+/// EXACT: the bound of the time step falls with the damping ratio of docs/method.md 6; the run at full safety stays bounded: a block at rest settles.
 TEST(Restitution, shortens_the_time_step_and_settles) {
   const Model elastic = build_model(block_above_floor(smooth(100), -0.001, 0, {0, -0.1}, 0.8)),
               damped = build_model(block_above_floor(bouncing(0.1, false), -0.001, 0, {0, -0.1}, 0.8));

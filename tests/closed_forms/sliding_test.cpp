@@ -1,4 +1,4 @@
-// Sliding and rolling on a floor with Coulomb friction, and the books of energy while friction works (VERIFICATION 4).
+// Sliding and rolling on a floor with Coulomb friction, and the books of energy while friction works.
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -1,4 +1,4 @@
-// Blocks on slopes, rigid and compliant, from any start on floors of any nodes: Coulomb's law in slip and in stick (VERIFICATION 4). Gravity is turned,
+// Blocks on slopes, rigid and compliant, from any start on floors of any nodes: Coulomb's law in slip and in stick. Gravity is turned,
 // not the floor. Units: the block's width, its density and gravity are 1; it is 1 x 0.5.
 #include <gtest/gtest.h>
 

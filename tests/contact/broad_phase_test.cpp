@@ -37,7 +37,7 @@ bool overlap(double a_min, double a_max, double b_min, double b_max, double marg
   return a_min <= b_max + margin && b_min <= a_max + margin;
 }
 
-// All pairs, all images, of a body itself too: what METHOD 4 asks for.
+// All pairs, all images, of a body itself too: what docs/method.md 4 asks for.
 std::vector<BodyPair> all_pairs(const Boxes& in) {
   std::vector<BodyPair> pairs;
   const double period = in.model.scene.period.value_or(0);

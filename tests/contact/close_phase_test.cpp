@@ -47,7 +47,7 @@ struct Pair {
   }
 };
 
-// METHOD 4: no contact may be missed. A node within the margin of a segment must be among its side's nodes, and the
+// docs/method.md 4: no contact may be missed. A node within the margin of a segment must be among its side's nodes, and the
 // segment among the other's.
 int missed(const Pair& pair, int turns) {
   int result = 0;

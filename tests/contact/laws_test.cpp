@@ -126,7 +126,7 @@ ContactRule with_auto_stiffness(ContactRule rule) {
   return rule;
 }
 
-// EXACT, METHOD 4: 8 E/h of the softer body and the finer outline; range 0.12 h; kt = kn, tau_c = sigma_c.
+// EXACT, docs/method.md 4: 8 E/h of the softer body and the finer outline; range 0.12 h; kt = kn, tau_c = sigma_c.
 TEST(LawsOfPairs, AutomaticStiffnessAndRange) {
   Scene scene = five_bodies();
   scene.contacts = {with_auto_stiffness(cohesive(0, 1e-3, 0, 0))};

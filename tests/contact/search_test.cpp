@@ -46,7 +46,7 @@ const ContactRule rules[] = {frictionless(stiffness), mohr_coulomb(stiffness, 0.
                              smoothed(mohr_coulomb(stiffness, 0.3, 0.05), 0.1)};
 constexpr int rule_count = 5;
 
-// Two bodies of given kinds pressed into each other; false when a node lies too deep for METHOD's contact box.
+// Two bodies of given kinds pressed into each other; false when a node lies too deep for the contact box.
 bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_b) {
   Scene scene = bare_scene();
   scene.contacts = {rule};
@@ -249,7 +249,7 @@ TEST(ContactSearch, AsksForARefreshInTime) {
   EXPECT_TRUE(asks(0.3, 0.3 - 0.51, 0.51));
 }
 
-// EXACT, bit by bit (DESIGN 5): one thread or five.
+// EXACT, bit by bit (docs/design.md 5): one thread or five.
 TEST(ContactSearch, DoesNotDependOnThreads) {
   std::vector<std::vector<double>> forces;
   for (const int threads : {1, 5}) {

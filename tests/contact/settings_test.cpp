@@ -104,7 +104,7 @@ TEST(CurrentLength, of_a_stretched_face_carries_its_pressure) {
   EXPECT_NEAR(block.rig.force(1).y(), block.stiffness * block.depth * 1.1, 1e-12);
 }
 
-/// RATE: what the present length costs in energy, METHOD's 0.05 to 0.3 %; the reference length keeps it to the integrator's error.
+/// RATE: what the present length costs in energy, 0.05 to 0.3 % in a prototype; the reference length keeps it to the integrator's error.
 TEST(CurrentLength, costs_energy) {
   const auto error = [](ContactLength length) {
     Scene scene = flight_and_impact(1e-2);

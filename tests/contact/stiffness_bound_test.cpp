@@ -73,7 +73,7 @@ double fastest(Loaded& loaded) {
 // w^2 that the bound stands for: dt = safety x 2/w.
 double bound_of(Loaded& loaded) {
   TimeStepBound bound(loaded.model, loaded.forces.contact().laws());
-  bound.update_internal(loaded.state.position);
+  bound.update_internal(loaded.state.position, loaded.state.memory);
   bound.update_contact(loaded.forces.contact());
   const double w = loaded.model.scene.time.safety * 2 / bound.largest_dt();
   return w * w;

@@ -18,7 +18,7 @@ auto with_threads(int count, Action&& action) {
   return result;
 }
 
-// EXACT: the sum has the same bits for any number of threads (DESIGN 5); numbers of very different size would betray
+// EXACT: the sum has the same bits for any number of threads (docs/design.md 5); numbers of very different size would betray
 // another order.
 TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
   testing::Random random(4);

@@ -23,7 +23,7 @@ double length_of(const Discretisation& d) {
   return std::sqrt(polygon_properties(outline_of(d.mesh)).area / static_cast<double>(d.mesh.nodes.size()));
 }
 
-// EXACT: linear completeness at every point, (1) of METHOD 2; rounding of sums of 12 terms b X, each up to 10: 1e-12.
+// EXACT: linear completeness at every point, (1) of docs/method.md 2; rounding of sums of 12 terms b X, each up to 10: 1e-12.
 void expect_complete(const Discretisation& d) {
   const double length = length_of(d);
   for (std::size_t g = 0; g < d.table.weight.size(); ++g) {
@@ -38,7 +38,7 @@ void expect_complete(const Discretisation& d) {
   }
 }
 
-// Largest defect of (2) of METHOD 2 over all nodes, relative to the mean node distance; computed here anew.
+// Largest defect of (2) of docs/method.md 2 over all nodes, relative to the mean node distance; computed here anew.
 double balance_defect(const Discretisation& d) {
   Points defect(d.mesh.nodes.size(), Vec2(0, 0));
   for (std::size_t g = 0; g < d.table.weight.size(); ++g)
@@ -56,7 +56,7 @@ double balance_defect(const Discretisation& d) {
   return largest / length_of(d);
 }
 
-// EXACT, tolerance of METHOD 2: conditions (1) and (2) hold to 1e-12 for every support that `mls` takes.
+// EXACT, tolerance of docs/method.md 2: conditions (1) and (2) hold to 1e-12 for every support that `mls` takes.
 TEST(TableMls, SatisfiesBothConditions) {
   for (const ShapeSpec& shape : all_shapes())
     for (const int support : {7, 8, 9, 10, 12, 14}) {
@@ -149,7 +149,7 @@ TEST(Table, RowsReproducePlaces) {
   EXPECT_EQ(d.node_rows.start.size(), 169U);
 }
 
-// INDEPENDENT: the prototype of METHOD 2 met -0.03; ours must be negative and of that size.
+// INDEPENDENT: the prototype of docs/method.md 2 met -0.03; ours must be negative and of that size.
 TEST(Table, LeastShapeValueIsReported) {
   const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
   EXPECT_LT(d.min_shape_value, 0);
@@ -178,7 +178,7 @@ TEST(Table, DoesNotDependOnUnits) {
     EXPECT_LT((small.table.gradient[e] - 1e9 * large.table.gradient[e]).norm() * length_of(small), 1e-11);
 }
 
-// EXACT: limits of METHOD 2 and of the interface.
+// EXACT: limits of docs/method.md 2 and of the interface.
 TEST(Table, RefusesSupportsBeyondTheLimits) {
   const FieldMesh mesh = make_field_mesh(disc(168));
   const auto message = [&](const DiscretisationSettings& s) { return error_of([&] { discretise(mesh, s); }); };

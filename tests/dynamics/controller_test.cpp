@@ -1,4 +1,4 @@
-// What sets Verlet's steps when the error does, and how they meet outputs (METHOD 6).
+// What sets Verlet's steps when the error does, and how they meet outputs (docs/method.md 6).
 #include <gtest/gtest.h>
 
 #include "support/bench.hpp"

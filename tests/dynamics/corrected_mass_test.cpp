@@ -1,4 +1,4 @@
-// Corrected mass in motion (METHOD 2): what it must keep, and what it is for.
+// Corrected mass in motion (docs/method.md 2): what it must keep, and what it is for.
 #include <gtest/gtest.h>
 
 #include "bodies/damping_forces.hpp"
@@ -113,7 +113,7 @@ double oval_frequency(Mass mass) {
   return 2 * M_PI * 11 / (upward.back() - upward.front());
 }
 
-/// EXACT: the continuum's oval mode, a Bessel root: 2.35106 at nu = 0.4. VERIFICATION 2: 0.3 % with corrected mass, 1.6 % with lumped mass.
+/// EXACT: the continuum's oval mode, a Bessel root: 2.35106 at nu = 0.4. docs/method.md 2: 0.3 % with corrected mass, 1.6 % with lumped mass.
 TEST(CorrectedMass, oval_mode_has_the_right_frequency) {
   EXPECT_NEAR(oval_frequency(Mass::corrected) / 2.3510613358274024, 1, 0.4e-2);
   EXPECT_LT(oval_frequency(Mass::lumped) / 2.3510613358274024, 1 - 0.8e-2) << "else this test says nothing";

@@ -1,6 +1,7 @@
-// Kelvin-Voigt and mass-proportional damping (METHOD 3): forces, power, decay, books and the time step that is
+// Kelvin-Voigt and mass-proportional damping (docs/method.md 3): forces, power, decay, books and the time step that is
 // stable.
 #include "bodies/damping_forces.hpp"
+#include "bodies/internal_forces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,8 +49,10 @@ struct Viscous {
 
 Viscous viscous_forces(const Bench& bench) {
   Viscous result{std::vector<Lanes>(bench.model.compliant_size, Lanes{}), 0};
-  result.power = add_viscous_forces(bench.model, bench.model.batches[0], bench.state.position.compliant.data(),
-                                    bench.state.velocity.compliant.data(), result.force.data())[0];
+  const BatchMotion motion{.position = bench.state.position.compliant.data(),
+                           .velocity = bench.state.velocity.compliant.data(),
+                           .elastic = false};
+  result.power = add_internal_forces(bench.model, bench.model.batches[0], motion, result.force.data()).power[0];
   return result;
 }
 
@@ -234,7 +237,7 @@ TEST(Bound, follows_the_rates_of_a_deformed_viscous_disc) {
     set_motion(bench, matrix(1.4, 0, 0, 0.75), Eigen::Matrix2d::Zero());
     bench.evaluate_here();
     TimeStepBound bound(bench.model, bench.forces.contact().laws());
-    bound.update_internal(bench.state.position);
+    bound.update_internal(bench.state.position, bench.state.memory);
     bound.update_contact(bench.forces.contact());
     const double dt = bound.largest_dt() / bench.model.scene.time.safety, truth = true_largest_dt(bench);
     EXPECT_LE(dt, truth) << "INDEPENDENT: dense eigenvalues";

@@ -1,4 +1,4 @@
-// The same bits for any number of threads, and twice (DESIGN 5).
+// The same bits for any number of threads, and twice (docs/design.md 5).
 #include <gtest/gtest.h>
 #include <omp.h>
 

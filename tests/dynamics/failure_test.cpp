@@ -1,4 +1,4 @@
-// How a run that cannot go on ends: where, when, why, and what the last good state is (DESIGN 5).
+// How a run that cannot go on ends: where, when, why, and what the last good state is (docs/design.md 5).
 #include "dynamics/failure.hpp"
 
 #include <gtest/gtest.h>

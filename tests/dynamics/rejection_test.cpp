@@ -1,4 +1,4 @@
-// A rejected step leaves no trace: the state goes on as if only the accepted step had been tried (DESIGN 5, METHOD 6).
+// A rejected step leaves no trace: the state goes on as if only the accepted step had been tried (docs/design.md 5, docs/method.md 6).
 #include <gtest/gtest.h>
 
 #include <algorithm>

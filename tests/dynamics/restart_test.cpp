@@ -1,4 +1,4 @@
-// A simulation that is read back goes on with the same bits, from any step, with any number of threads (DESIGN 5). All
+// A simulation that is read back goes on with the same bits, from any step, with any number of threads (docs/design.md 5). All
 // EXACT. A new feature that keeps something from step to step joins by a scene in `scenes`.
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -65,13 +65,15 @@ Scene fast_blocks() {
   return scene;
 }
 
-/// Two discs that rub against their own periodic images and each other.
+/// Two discs, one with a memory, that rub against their own periodic images and each other.
 Scene own_images() {
   Scene scene = empty_scene(1000);
   scene.period = 1.99;
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("soft", "disc", BodyKind::compliant, {{0.3, 0}}, moving({0, 0.1}, 0.3)),
                   grains("hard", "disc", BodyKind::rigid, {{1.3, 1.74}}, moving({0, -0.1}, 0.2))};
+  Material& soft = scene.materials[0];
+  soft.law = MaterialLaw::neo_hookean_maxwell, soft.branch_modulus = 1, soft.relaxation_time = 0.1;
   scene.contacts = {rough(100, 0.4)};
   return scene;
 }

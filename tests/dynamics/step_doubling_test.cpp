@@ -1,4 +1,4 @@
-// The paper's scheme: order one, its estimator, and how its controller holds the error (METHOD 6).
+// The paper's scheme: order one, its estimator, and how its controller holds the error (docs/method.md 6).
 #include "dynamics/step_doubling.hpp"
 
 #include <gtest/gtest.h>

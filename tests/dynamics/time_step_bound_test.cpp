@@ -1,4 +1,4 @@
-// The stability bound against the true largest eigenvalue of M^-1 K, from dense finite differences (METHOD 6).
+// The stability bound against the true largest eigenvalue of M^-1 K, from dense finite differences (docs/method.md 6).
 #include "dynamics/time_step_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ double square_frequency(const TimeStepBound& bound, const Scene& scene) {
 
 double bound_of(Bench& bench) {
   TimeStepBound bound(bench.model, bench.forces.contact().laws());
-  bound.update_internal(bench.state.position);
+  bound.update_internal(bench.state.position, bench.state.memory);
   bound.update_contact(bench.forces.contact());
   return square_frequency(bound, bench.model.scene);
 }
@@ -58,11 +58,11 @@ TEST(InternalBounds, follow_a_body_that_turns) {
   Bench bench(free_disc(60, 1));
   bench.deform(matrix(1.1, 0.2, 0, 0.9));
   TimeStepBound bound(bench.model, bench.forces.contact().laws());
-  bound.update_internal(bench.state.position);
+  bound.update_internal(bench.state.position, bench.state.memory);
   double last = bound.largest_dt();
   for (int turn = 1; turn <= 20; ++turn) {
     bench.deform(Eigen::Rotation2Dd(0.4).toRotationMatrix());
-    bound.update_internal(bench.state.position);
+    bound.update_internal(bench.state.position, bench.state.memory);
     EXPECT_LE(bound.largest_dt(), last * (1 + 1e-8)) << turn;
     last = bound.largest_dt();
   }

@@ -1,4 +1,4 @@
-// Velocity Verlet on free compliant discs: order, energy, stability limit, and what sets its steps (METHOD 6).
+// Velocity Verlet on free compliant discs: order, energy, stability limit, and what sets its steps (docs/method.md 6).
 #include "dynamics/verlet.hpp"
 
 #include <gtest/gtest.h>

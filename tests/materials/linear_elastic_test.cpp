@@ -28,15 +28,15 @@ TEST(LinearElastic, StressIsTheDerivativeOfTheEnergy) {
   testing::Random random(1);
   for (int sample = 0; sample < 50; ++sample) {
     const Tensor<double> F = random_deformation(random, 0.3);
-    const Tensor<double> P = LinearElastic::stress<double>(F, mu, lambda).P;
+    const Tensor<double> P = LinearElastic<double>{mu, lambda}.respond(F).P;
     const double entries[4] = {P.xx, P.xy, P.yx, P.yy};
     for (int entry = 0; entry < 4; ++entry) {
       Complex f[4] = {F.xx, F.xy, F.yx, F.yy};
       f[entry] += Complex(0, tiny);
-      const double slope = LinearElastic::energy<Complex>({f[0], f[1], f[2], f[3]}, mu, lambda).imag() / tiny;
+      const double slope = LinearElastic<Complex>{mu, lambda}.energy({f[0], f[1], f[2], f[3]}).imag() / tiny;
       EXPECT_NEAR(entries[entry], slope, 1e-14);
     }
-    EXPECT_NEAR(LinearElastic::sigma_zz(F, mu, lambda), lambda * (F.xx + F.yy - 2), 1e-15);
+    EXPECT_NEAR((LinearElastic<double>{mu, lambda}.sigma_zz(F)), lambda * (F.xx + F.yy - 2), 1e-15);
   }
 }
 

@@ -1,4 +1,4 @@
-// Contact of the engine against that of the reference solver (VERIFICATION 3a).
+// Contact of the engine against that of the reference solver.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,7 +119,7 @@ class Sides {
     contacts.accept();
   }
 
-  /// INDEPENDENT: two programs. Tolerances: that of VERIFICATION 3a; energies, of order 0.1, the same.
+  /// INDEPENDENT: two programs. Tolerances: that of verify/frozen_states; energies, of order 0.1, the same.
   void expect_agreement() {
     const Points forces = forces_on_nodes(result, outline_points(rig).size());
     double largest = 0, worst = 0;

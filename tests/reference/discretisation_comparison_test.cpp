@@ -1,4 +1,4 @@
-// VERIFICATION 3a: the reference solver's discretisation against the engine's, on the same meshes. INDEPENDENT: the two
+// As verify/frozen_states: the reference solver's discretisation against the engine's, on the same meshes. INDEPENDENT: the two
 // share no line between mesh and table.
 #include <gtest/gtest.h>
 

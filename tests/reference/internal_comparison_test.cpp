@@ -1,9 +1,8 @@
-// VERIFICATION 3a: internal and viscous forces, energies and stresses of the reference solver against the engine's, on
+// As verify/frozen_states: internal and viscous forces, energies and stresses of the reference solver against the engine's, on
 // random deformed states. INDEPENDENT: they share the mesh and the scene.
 #include <gtest/gtest.h>
 
 #include "bodies/body_view.hpp"
-#include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/nodal.hpp"
@@ -29,6 +28,8 @@ Scene some_grains(MaterialLaw law, const DiscretisationSettings& settings, int c
   scene.materials[0].law = law;
   scene.materials[0].viscosity = 0.2;
   scene.materials.push_back({"stiff", law, 3, 5, 0.3});
+  if (law == MaterialLaw::neo_hookean_maxwell)
+    for (Material& material : scene.materials) material.branch_modulus = 2, material.relaxation_time = 0.7;
   scene.shapes = {disc(60, 1), curve("rounded", rounded_polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.2), 168),
                   curve("fourier", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 120)};
   for (int i = 0; i < count; ++i) {
@@ -83,9 +84,11 @@ double compare_forces(const Both& both) {
   std::vector<Lanes> energy;
   for (const Batch& batch : both.model.batches) {
     const std::size_t at = batch.offset;
-    add_internal_forces(both.model, batch, &both.q.compliant[at], &f.compliant[at]);
-    add_viscous_forces(both.model, batch, &both.q.compliant[at], &both.rate.compliant[at], &viscous.compliant[at]);
-    energy.push_back(strain_energy(both.model, batch, &both.q.compliant[at]));
+    BatchMotion motion{.position = &both.q.compliant[at]};
+    add_internal_forces(both.model, batch, motion, &f.compliant[at]);
+    energy.push_back(strain_energy(both.model, batch, motion));
+    motion.velocity = &both.rate.compliant[at], motion.elastic = false;
+    add_internal_forces(both.model, batch, motion, &viscous.compliant[at]);
   }
   double worst = 0;
   for (const Body& body : both.model.bodies) {
@@ -110,7 +113,7 @@ double compare_forces(const Both& both) {
 /// strain away.
 double compare_stresses(const Both& both, const Body& body) {
   const std::vector<reference::PointStress> own = both.reference_of(body).stresses(of_body(both.model, body, both.q));
-  const std::vector<PointState> engine = point_states(both.model, body, both.q);
+  const std::vector<PointState> engine = point_states(both.model, body, both.q, initial_memory(both.model));
   EXPECT_EQ(own.size(), engine.size());
   if (own.size() != engine.size()) return INFINITY;
   const bool small =
@@ -130,7 +133,7 @@ double compare_stresses(const Both& both, const Body& body) {
 }
 
 const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
-                                MaterialLaw::linear_elastic};
+                                MaterialLaw::linear_elastic, MaterialLaw::neo_hookean_maxwell};
 
 TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
   LargestFigures figures;
@@ -146,6 +149,104 @@ TEST(ReferenceAgainstEngine, spread_bodies_agree) {
   ASSERT_TRUE(std::any_of(both.model.batches.begin(), both.model.batches.end(),
                           [](const Batch& batch) { return batch.layout == Layout::spread; }));
   compare_forces(both);
+}
+
+/// Bodies with a Maxwell branch, which have come from their start to q and remember it.
+struct Remembering : Both {
+  Memory memory = initial_memory(model);
+
+  explicit Remembering(const BuildOptions& options = {})
+      : Both(some_grains(MaterialLaw::neo_hookean_maxwell, settings_of(Recipe::mls), 6), options) {
+    forces(q, 0.5, memory);
+  }
+  struct Found {
+    Dofs force;
+    std::vector<PointTotals> totals;
+    std::vector<Lanes> energy;
+  };
+  /// Of the engine at positions so long after `from`, which goes on to them.
+  Found forces(const Dofs& at, double elapsed, Memory& from) const {
+    Found found{zero_dofs(model), {}, {}};
+    Memory next = from;
+    for (const Batch& batch : model.batches) {
+      BatchMotion motion = motion_of(batch, at, from);
+      motion.elapsed = elapsed, motion.new_memory = next.material.data() + batch.memory;
+      found.totals.push_back(add_internal_forces(model, batch, motion, &found.force.compliant[batch.offset]));
+      motion.memory = motion.new_memory;
+      found.energy.push_back(strain_energy(model, batch, motion));
+    }
+    from = std::move(next);
+    return found;
+  }
+  /// A body of the reference that remembers the same.
+  reference::InternalForces remembering(const Body& body) const {
+    reference::InternalForces own = reference_of(body);
+    const Batch& batch = model.batches[body.batch];
+    std::vector<reference::BranchPoint> points(static_cast<std::size_t>(own.weights().size()));
+    for (std::size_t g = 0; g < points.size(); ++g) {
+      const bool spread = batch.layout == Layout::spread;
+      const auto number = spread ? static_cast<std::size_t>(model.spread_shape_of(batch).point_number[g]) : g;
+      const auto value = [&](std::size_t k) {
+        const Lanes& lanes = memory.material[batch.memory + k * static_cast<std::size_t>(batch.points) +
+                                             (spread ? number / lane_count : number)];
+        return lanes[spread ? static_cast<int>(number % lane_count) : body.lane];
+      };
+      points[g] = {{value(0) + value(3), value(1) + value(4), value(2) + value(5)}, {value(3), value(4), value(5)}};
+    }
+    own.accept(points);
+    return own;
+  }
+};
+
+/// Largest difference of forces, over the largest force, after `dt` on the way on; energies and powers besides.
+double difference_after(const Remembering& both, double dt) {
+  Dofs at = both.q;
+  for (std::size_t i = 0; i < at.compliant.size(); ++i) at.compliant[i] += dt * both.rate.compliant[i];
+  Memory memory = both.memory;
+  const Remembering::Found found = both.forces(at, dt, memory);
+  double worst = 0;
+  for (const Body& body : both.model.bodies) {
+    const reference::InternalState own = both.remembering(body).evaluate(of_body(both.model, body, at), false, dt);
+    const Eigen::VectorXd engine = of_body(both.model, body, found.force);
+    worst = std::max(worst, (own.residual + engine).cwiseAbs().maxCoeff() / engine.cwiseAbs().maxCoeff());
+    const Batch& batch = both.model.batches[body.batch];
+    const PointTotals& totals = found.totals[static_cast<std::size_t>(body.batch)];
+    const int lane = batch.layout == Layout::spread ? 0 : body.lane;
+    const double power = totals.power[lane] * body.scale * body.scale;
+    const double energy = found.energy[static_cast<std::size_t>(body.batch)][lane];
+    worst = std::max({worst, std::abs(own.power / power - 1), std::abs(own.energy / energy - 1)});
+  }
+  return worst;
+}
+
+/// INDEPENDENT at a state; RATE in time: the engine's exponential and the reference's trapezoidal rule differ by the third order of a step.
+TEST(ReferenceAgainstEngine, maxwell_branches_agree) {
+  for (const bool spread : {false, true}) {
+    const Remembering both(spread ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
+    EXPECT_EQ(both.model.batches[0].layout == Layout::spread, spread);
+    EXPECT_LT(difference_after(both, 0), tolerance);
+    const double coarse = difference_after(both, 0.04), fine = difference_after(both, 0.02);
+    EXPECT_NEAR(coarse / fine, 8, 1.2) << coarse << " " << fine;
+    EXPECT_LT(fine, 1e-4);
+  }
+}
+
+/// EXACT: the tangent is the derivative of the residual (central differences: 1e-10 by rounding, as much by the third derivative).
+TEST(ReferenceAgainstEngine, maxwell_tangent_is_the_derivative) {
+  const Remembering both;
+  const Body& body = both.model.bodies[0];
+  const reference::InternalForces own = both.remembering(body);
+  const Eigen::VectorXd q = of_body(both.model, body, both.q);
+  for (const double elapsed : {0.0, 0.3}) {
+    const Eigen::MatrixXd tangent(own.evaluate(q, true, elapsed).tangent);
+    for (Eigen::Index i = 0; i < q.size(); i += 11) {
+      Eigen::VectorXd step = Eigen::VectorXd::Zero(q.size());
+      step[i] = 1e-5;
+      const Eigen::VectorXd slope =
+          (own.evaluate(q + step, false, elapsed).residual - own.evaluate(q - step, false, elapsed).residual) / 2e-5;
+      EXPECT_LT((slope - tangent.col(i)).cwiseAbs().maxCoeff(), 1e-8 * tangent.cwiseAbs().maxCoeff());
+    }
+  }
 }
 
 /// Points in the order of the background triangles on both sides.

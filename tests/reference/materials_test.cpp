@@ -47,7 +47,7 @@ double& entry(Deformation<double>& F, int i) {
 TEST(ReferenceMaterials, exact_value) {
   // lambda = 4 mu, mu = 1: nu = 0.4, E = 2.8.
   const Jet<4> psi = strain_energy(material_of(MaterialLaw::neo_hookean), variables<4>({1.2, 0.3, -0.1, 0.85}));
-  EXPECT_NEAR(psi.value, 0.0872207960699283, 1e-15) << "EXACT: VERIFICATION 1";
+  EXPECT_NEAR(psi.value, 0.0872207960699283, 1e-15) << "EXACT: docs/method.md 3";
   const double P[] = {0.5484633887391133, 0.2233486339693074, 0.1299540980920776, -0.0698163923683106};
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(psi.gradient[i], P[i], 4e-15) << "EXACT: lambda of nu in rounding";
 }

@@ -1,4 +1,4 @@
-// Natural frequencies of the reference solver's tangent and masses against those of the engine's kernels (VERIFICATION 3a).
+// Natural frequencies of the reference solver's tangent and masses against those of the engine's kernels.
 // INDEPENDENT: they share the mesh and the scene.
 #include <gtest/gtest.h>
 

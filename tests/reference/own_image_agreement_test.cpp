@@ -41,7 +41,7 @@ struct Compared {
   int contacts = 0, own = 0;
 };
 
-/// INDEPENDENT: two programs. Tolerance: that of VERIFICATION 3a; energies, of order 0.1, the same.
+/// INDEPENDENT: two programs. Tolerance: that of verify/frozen_states; energies, of order 0.1, the same.
 void compare(ContactRig& rig, reference::Contacts& contacts, Compared& all) {
   EXPECT_FALSE(rig.evaluate());
   const reference::ContactResult result = contacts.evaluate(outline_points(rig));

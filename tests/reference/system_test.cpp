@@ -140,7 +140,7 @@ TEST(ReferenceSystem, corrected_mass_is_the_inverse_of_the_engines) {
   const Eigen::MatrixXd inverse = space.lumped.cwiseInverse().asDiagonal(), consistent = space.consistent;
   const Eigen::MatrixXd engine = 2 * inverse - inverse * consistent * inverse;
   const Eigen::MatrixXd mass = system.bodies().mass(MassMatrix::corrected);
-  // EXACT: METHOD 2.
+  // EXACT: docs/method.md 2.
   for (int i = 0; i < engine.rows(); ++i)
     for (int j = 0; j < engine.cols(); ++j) {
       double product = 0;

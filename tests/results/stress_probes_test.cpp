@@ -25,7 +25,7 @@ class DeformedDisc : public testing::Test {
         const Vec2 x = deformation * Vec2(position_.compliant[i][lane], position_.compliant[i + 1][lane]);
         position_.compliant[i][lane] = x.x(), position_.compliant[i + 1][lane] = x.y();
       }
-    states_ = point_states(model_, model_.bodies[0], position_);
+    states_ = point_states(model_, model_.bodies[0], position_, initial_memory(model_));
   }
   static Scene scene() {
     Scene scene = free_disc(60, 1);
@@ -124,7 +124,7 @@ TEST(StressProbes, mean_stress_is_the_virial_of_the_forces) {
     virial -=
         node_value(model, body, state.force, i) * (node_value(model, body, state.position, i) - centre).transpose();
   double area = 0;
-  for (const PointState& p : point_states(model, body, state.position)) area += p.weight * p.jacobian;
+  for (const PointState& p : point_states(model, body, state.position, state.memory)) area += p.weight * p.jacobian;
   const std::vector<double> s = measured(simulation, probe_of("stress", "soft"));
   EXPECT_LT(s[1], -0.05) << "it is pressed";
   EXPECT_NEAR(s[0], virial(0, 0) / area, rounding);
@@ -148,7 +148,8 @@ TEST(StressProbes, extremes_and_nodes_are_local) {
   EXPECT_LT(least, mean);
   EXPECT_GT(largest, mean);
   double expected = 1e300;
-  for (const PointState& p : point_states(model, model.bodies[0], simulation.state().position))
+  for (const PointState& p :
+       point_states(model, model.bodies[0], simulation.state().position, simulation.state().memory))
     expected = std::min(expected, p.jacobian);
   EXPECT_EQ(least, expected) << "EXACT";
   // The local mean lies between the extremes; nodes at the pressed pole and at the side differ.

@@ -30,7 +30,7 @@ TEST(Cases, AllParseAndNameTheirCommand) {
 }
 
 TEST(Cases, ThirdBodyIsThatOfTheMethod) {
-  // EXACT: METHOD 8; a tolerance of 1e-12 covers the roundings of units and products.
+  // EXACT: docs/method.md 8; a tolerance of 1e-12 covers the roundings of units and products.
   const Scene scene = read_scene(cases / "third_body.toml");
   EXPECT_NEAR(*scene.period, 87e-6, 87e-18);
   EXPECT_NEAR(scene.time.end, 18.5e-6, 18.5e-18);
@@ -47,7 +47,7 @@ TEST(Cases, ThirdBodyIsThatOfTheMethod) {
 }
 
 TEST(Cases, GrainsOfTheThirdBodyAreTakenInTurnAndHold400MPa) {
-  // EXACT: METHOD 8.
+  // EXACT: docs/method.md 8.
   for (const char* file : {"third_body.toml", "third_body_mini.toml"}) {
     const Scene scene = read_scene(cases / file);
     EXPECT_EQ(scene.grains[0].mix_order, MixOrder::in_turn) << file;

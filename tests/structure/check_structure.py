@@ -21,9 +21,10 @@ CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
 MAX_LINES = 400
 SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
 
+CITED = ["docs/method.md", "docs/design.md"]
 JUDGED = ["lib", "reference"]  # by what they include
 
-# All of lib/ that the reference solver may share: no mechanics (DESIGN 6). Of core only these.
+# All of lib/ that the reference solver may share: no mechanics (docs/design.md 6). Of core only these.
 SHARED_FOLDERS = ["files", "geometry", "scene"]
 SHARED_CORE = {"errors.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
 
@@ -173,6 +174,21 @@ def check_words(root: Path, files: list[Path], forbidden: dict[str, str]) -> lis
     return problems
 
 
+def check_citations(root: Path) -> list[str]:
+    """Sections that texts cite are there, and so are the files that docs/design.md names."""
+    problems, sections = [], {}
+    for file in (file for name in CITED if (file := root / name).is_file()):
+        sections[file.name] = set(re.findall(r"^## (\d+)\.", read(file), re.MULTILINE))
+        for path in re.findall(r"`([\w.]+/[\w./-]*)`", read(file)):
+            if not (root / path).exists():
+                problems.append(f"{file.relative_to(root)}: names {path}, which is not there")
+    for file in files_of(root, TEXT_SUFFIXES):
+        for name, number in re.findall(r"docs/(\w+\.md)\s+(?:#|//+)?\s*(\d+)\b", read(file)):
+            if f"docs/{name}" in CITED and number not in sections.get(name, set()):
+                problems.append(f"{file.relative_to(root)}: cites docs/{name} {number}, a section that is not there")
+    return problems
+
+
 def check_draws(root: Path) -> list[str]:
     return [f"{file.relative_to(root)}:{line}: the compiler chooses which of these random numbers is drawn first: draw them "
             "one statement after the other, or between braces"
@@ -188,7 +204,7 @@ def check_pragma_once(root: Path) -> list[str]:
 def check_tree(root: Path) -> list[str]:
     texts = [file for file in files_of(root, TEXT_SUFFIXES) if file.name != "LICENSE"]
     return [*check_forms(root), *check_arrows(root), *check_cycles(root), *check_independence(root),
-            *check_lengths(root), *check_pragma_once(root),
+            *check_lengths(root), *check_pragma_once(root), *check_citations(root),
             *check_words(root, files_of(root, {".hpp", ".cpp"}, ["lib"]), FORBIDDEN_IN_LIB), *check_draws(root),
             *check_words(root, texts, FORBIDDEN)]
 

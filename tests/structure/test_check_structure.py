@@ -27,6 +27,8 @@ GOOD = {
     "reference/bodies.cpp": '#include "scene/scene.hpp"\n#include "reference/jet.hpp"\n',
     "reference/jet.hpp": "#pragma once\n#include <vector>\n",
     "CMakeLists.txt": CMAKE,
+    "docs/method.md": "# The method\n\n## 1. Bodies\n\nIn `lib/core/sums.hpp` and `lib/contact/`.\n",
+    "lib/core/cites.hpp": "#pragma once\n// As in (docs/method.md\n/// 1).\n",
     "tests/core/sums_test.cpp": '#include "core/sums.hpp"\n',
 }
 BAD = {
@@ -47,6 +49,9 @@ BAD = {
                            "random.below(3);\n}\n", "x_test.cpp:2"),
     "atomic": ("lib/core/atomic.cpp", "\n#pragma omp atomic\n", "atomic.cpp:2"),
     "unordered sum": ("lib/core/sum.cpp", "#pragma omp parallel for reduction(+ : s)\n", "fixed blocks"),
+    "a section that is not there": ("lib/core/x.cpp", "// docs/method.md 2\n", "a section that is not there"),
+    "a section over the end of a line": ("lib/core/x.cpp", "// docs/method.md\n// 2.\n", "method.md 2, a section"),
+    "a file that is not there": ("docs/design.md", "`lib/core/none.hpp`\n", "names lib/core/none.hpp"),
     "path of a machine": ("scripts/plot.py", 'OUT = "/home/' 'me/out"\n', "path of one machine"),
     "engine in the reference": ("reference/x.cpp", '#include "contact/pairs.hpp"\n', "shares no mechanics"),
     "core's mathematics in the reference": ("reference/x.hpp", '#pragma once\n#include "core/sums.hpp"\n', "no mechanics"),

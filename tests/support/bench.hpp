@@ -21,6 +21,7 @@ struct Bench {
     state.position = initial_positions(model);
     state.velocity = initial_velocities(model, state.position);
     state.force = zero_dofs(model);
+    state.memory = initial_memory(model);
     evaluate_here();
   }
   Bench(const Bench&) = delete;

@@ -11,7 +11,7 @@
 #include "reference/contact_pair.hpp"
 #include "support/contact_rig.hpp"
 
-/// Contact of METHOD 4 once more: scalars, all nodes against all segments, no candidates, no windows. Deliberately
+/// Contact of docs/method.md 4 once more: scalars, all nodes against all segments, no candidates, no windows. Deliberately
 /// slow. The rules of corners are the reference solver's.
 namespace pliant::testing {
 

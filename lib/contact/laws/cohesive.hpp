@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// Reversible cohesion (METHOD 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`; |tau| <= shear strength
+/// Reversible cohesion (docs/method.md 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`; |tau| <= shear strength
 /// with the same taper. The energy is that of separated surfaces less what pulling them apart would take.
 struct Cohesive {
   static constexpr bool has_shear = true;

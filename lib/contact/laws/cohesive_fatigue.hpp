@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Bonds with damage D (METHOD 4). One potential, psi = kn min(g, 0)^2 / 2 + (1 - D) (kn max(g, 0)^2 + kt s^2) / 2, gives pressure and shear: so the
+/// Bonds with damage D (docs/method.md 4). One potential, psi = kn min(g, 0)^2 / 2 + (1 - D) (kn max(g, 0)^2 + kt s^2) / 2, gives pressure and shear: so the
 /// shear stiffness is kn / r^2 for strengths in the ratio r. With the opening delta = sqrt(max(g, 0)^2 + (s/r)^2) the energy release rate is
 /// -dpsi/dD = kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta (g_max - g_c)) makes the traction fall in a straight line from
 /// the strength at g_c = strength / kn to zero at g_max, which takes strength g_max / 2.

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// p = kn max(-g, 0), no shear (METHOD 4).
+/// p = kn max(-g, 0), no shear (docs/method.md 4).
 struct Frictionless {
   static constexpr bool has_shear = false;
   static constexpr const char* name = "frictionless";

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
-#include <string_view>
-
 #include "contact/laws/traction.hpp"
+#include "core/remembered.hpp"
 
 namespace pliant {
 
@@ -21,37 +19,13 @@ struct Contact {
   Lanes slip, slip_work;          ///< slip_work: dissipated per length, by whatever, J/m2
 };
 
-/// A number that a law remembers of a node and its partner from one accepted step to the next, besides place and slip.
-/// A law lists them as `static constexpr Remembered remembered[]`, and brings
+/// A law that remembers something besides place and slip (core/remembered.hpp) brings
 ///
 ///     Contact respond(const Encounter&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
 ///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, of nodes that left the master
 ///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to start_reach()
 ///
-/// where a Record has one Lanes for each. Nothing else need know.
-struct Remembered {
-  const char* name;
-  double of_strangers;  ///< of nodes that were not near before
-};
-
-template <class Law>
-constexpr bool remembers = requires { Law::remembered; };
-template <class Law>
-constexpr std::size_t remembered_count = 0;
-template <class Law>
-  requires remembers<Law>
-constexpr std::size_t remembered_count<Law> = std::size(Law::remembered);
-template <class Law>
-using Record = std::array<Lanes, remembered_count<Law>>;
-
-/// Place in the record of what has this name; -1: the law remembers no such thing.
-template <class Law>
-constexpr int index_of_remembered(std::string_view name) {
-  if constexpr (remembers<Law>)
-    for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      if (Law::remembered[k].name == name) return static_cast<int>(k);
-  return -1;
-}
+/// Nothing else need know.
 
 /// The tangential part of a contact that slips beyond its limit.
 template <class Law>

@@ -50,7 +50,8 @@ Samples strain_energy(const Snapshot& snapshot, const Selection& selection) {
   Samples samples(1);
   for (int b : selection.bodies) {
     double energy = 0;
-    for (const PointState& p : point_states(snapshot.model(), snapshot.model().bodies[b], snapshot.state().position))
+    for (const PointState& p :
+         point_states(snapshot.model(), snapshot.model().bodies[b], snapshot.state().position, snapshot.state().memory))
       energy += p.weight * p.energy;
     samples.add(1, {energy});
   }

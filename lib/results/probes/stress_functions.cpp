@@ -21,7 +21,8 @@ template <class Add>
 void for_each_point(const Snapshot& snapshot, const Selection& selection, Add&& add) {
   const Model& model = snapshot.model();
   for (int b : selection.bodies) {
-    const std::vector<PointState> states = point_states(model, model.bodies[b], snapshot.state().position);
+    const std::vector<PointState> states =
+        point_states(model, model.bodies[b], snapshot.state().position, snapshot.state().memory);
     for (std::size_t g = 0; g < states.size(); ++g)
       if (!selection.node || is_beside(model.shape_of(model.bodies[b]).space, g, *selection.node)) add(states[g]);
   }

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "core/remembered.hpp"
+#include "materials/tensor.hpp"
+
+namespace pliant {
+
+/// What a law answers at one point (T: double), or at eight (Lanes).
+template <class T>
+struct Response {
+  Tensor<T> P;  ///< first Piola stress, Pa
+  T J;          ///< the Jacobian, which it had to compute
+  T power{};    ///< dissipated per reference volume, W/m3; of laws that dissipate only
+};
+
+/// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first, and answers
+///
+///     Response<T> respond(F) const;              or respond(F, rate) if it `has_rate`, dF/dt, 1/s,
+///                                                or respond(F, old, now) if it remembers something (core/remembered.hpp)
+///     T energy(F) const;                         stored per reference volume, J/m3; or energy(F, record)
+///     double sigma_zz(F) const;                  Cauchy stress out of the plane, Pa
+///     Law weighted(w) const;                     of w times as much material: with its constants in Pa times w, to which
+///                                                stresses, energies and powers are proportional
+///     LameConstants small_strains() const;       Pa, at once, before anything relaxes
+///     static Law of(const Material&);            of one material
+///
+/// A law that remembers has Law over(elapsed), as it answers so long after what it remembers, s; and dissipates.
+template <class Law, class T>
+Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
+                    Record<Law, T>& now) {
+  if constexpr (requires { law.respond(F, rate, old, now); })
+    return law.respond(F, rate, old, now);
+  else if constexpr (remembers<Law>)
+    return law.respond(F, old, now);
+  else
+    return law.respond(F);
+}
+
+/// Stored at once at F, by a point that remembers this.
+template <class Law, class T>
+T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
+  if constexpr (remembers<Law>) {
+    Record<Law, T> now;
+    law.respond(F, old, now);
+    return law.energy(F, now);
+  } else {
+    return law.energy(F);
+  }
+}
+
+template <class Law>
+Law over(const Law& law, double elapsed) {
+  if constexpr (remembers<Law>)
+    return law.over(elapsed);
+  else
+    return law;
+}
+
+template <class Law>
+constexpr bool has_rate = requires { Law::has_rate; };
+template <class Law>
+constexpr bool dissipates = has_rate<Law> || remembers<Law>;
+
+}  // namespace pliant
