@@ -1,4 +1,5 @@
-// Cost of the parts of one force evaluation on the headline scene, squeezed by a short run. One thread unless OMP_NUM_THREADS says otherwise.
+// Cost of the parts of one force evaluation on the headline scene, squeezed by a short run. One thread unless
+// OMP_NUM_THREADS says otherwise.
 //   ./pliant bench
 #include <benchmark/benchmark.h>
 

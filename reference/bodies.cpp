@@ -11,7 +11,8 @@ namespace {
 
 Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
 
-/// D (2 D - M)^-1 D: what the engine's inverse mass 2 D^-1 - D^-1 M D^-1 is the inverse of. Dense: a body's nodes all meet.
+/// D (2 D - M)^-1 D: what the engine's inverse mass 2 D^-1 - D^-1 M D^-1 is the inverse of. Dense: a body's nodes all
+/// meet.
 Eigen::MatrixXd corrected_mass(const Space& space) {
   const Eigen::MatrixXd lumped = space.lumped.asDiagonal();
   return lumped * (2 * lumped - Eigen::MatrixXd(space.consistent)).ldlt().solve(lumped);

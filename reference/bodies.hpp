@@ -59,7 +59,8 @@ class Bodies {
   Points outline_positions(const Vector& q) const;  ///< [outline nodes], m
   SparseMatrix outline_jacobian(
       const Vector& q) const;  ///< [2 outline nodes x dofs]: velocities of the outline by those of the bodies
-  /// What the turning of rigid outlines adds to the tangent of constant outline forces: `residual` [2 outline nodes], N/m.
+  /// What the turning of rigid outlines adds to the tangent of constant outline forces: `residual` [2 outline nodes],
+  /// N/m.
   void add_turning(const Vector& q, const Vector& residual, Triplets& tangent) const;
   std::vector<ContactOutline> contact_outlines() const;
 

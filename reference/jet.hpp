@@ -5,8 +5,9 @@
 
 namespace pliant::reference {
 
-/// Forward automatic differentiation of second order: a value with its gradient and Hessian by N variables. Energies are written once, with Jets
-/// they give residual and tangent. Comparisons look at values, so that a branch is differentiated as the branch that it takes.
+/// Forward automatic differentiation of second order: a value with its gradient and Hessian by N variables. Energies
+/// are written once, with Jets they give residual and tangent. Comparisons look at values, so that a branch is
+/// differentiated as the branch that it takes.
 template <int N>
 struct Jet {
   using Gradient = Eigen::Matrix<double, N, 1>;

@@ -20,7 +20,8 @@ struct Pattern {
   bool operator==(const Pattern&) const = default;
 };
 
-/// Factors that tell how near to singular their matrix is: reciprocal condition number, roughly, of a matrix with ones on its diagonal.
+/// Factors that tell how near to singular their matrix is: reciprocal condition number, roughly, of a matrix with ones
+/// on its diagonal.
 struct Cholesky : Eigen::CholmodSupernodalLLT<SparseMatrix> {
   double reciprocal_condition() { return cholmod_rcond(m_cholmodFactor, &cholmod()); }
 };

@@ -38,7 +38,8 @@ bool in_part(const OutlinePart& part, const Vec2& a, const Vec2& b, const Vec2& 
   return true;
 }
 
-/// Displacement of a support's target along one axis, or its velocity. What began before the window began to act does not count.
+/// Displacement of a support's target along one axis, or its velocity. What began before the window began to act does
+/// not count.
 double target(const Drive& drive, double time, double from) {
   if (drive.mode == Mode::displacement) return drive.history.at(time);
   return drive.mode == Mode::velocity ? drive.history.integral(from, time) : 0.0;
@@ -77,7 +78,8 @@ Vec2 stretch(const OutlineLoad& support, const LoadedNode& node, const Points& x
   return result;
 }
 
-/// Of minus p/2 (outward(before, node) + outward(node, after)): the node's own place drops out when both segments count.
+/// Of minus p/2 (outward(before, node) + outward(node, after)): the node's own place drops out when both segments
+/// count.
 void add_following_tangent(const LoadedNode& node, double pressure, Triplets& tangent) {
   const auto add = [&](int by, double sign) {  // residual = +p/2 outward(...): outward of e is (e_y, -e_x)
     tangent.emplace_back(2 * node.node, 2 * by + 1, sign * 0.5 * pressure);

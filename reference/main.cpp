@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/errors.hpp"
+#include "files/output_folder.hpp"
 #include "reference/natural_modes.hpp"
 #include "reference/run.hpp"
 #include "scene/units.hpp"
@@ -56,6 +57,7 @@ int main_program(int argc, char** argv) {
     return 0;
   }
   if (options.out.empty()) options.out = std::filesystem::path("results") / (scene.name + "_reference");
+  tell_output_folder(options.out);
   run_scene(scene, options);
   return 0;
 }

@@ -11,8 +11,8 @@ namespace pliant::reference {
 namespace {
 
 constexpr int halvings = 12;  ///< of the step, at most
-constexpr int memory =
-    4;  ///< the residual may grow against the last one, but not against the largest of so many: forces of contact have kinks
+/// The residual may grow against the last one, but not against the largest of so many: forces of contact have kinks.
+constexpr int memory = 4;
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
 /// The step's share that lowers the residual; of those that do not, the one with the least.

@@ -12,8 +12,8 @@ namespace pliant::reference {
 struct Linearisation {
   Vector residual;
   Vector magnitude;  ///< sum of the absolute values of what cancels in it
-  Vector
-      sensitivity;  ///< of it to a relative rounding of all that the unknowns are added to; empty: they are added to nothing
+  /// Of the residual to a relative rounding of all that the unknowns are added to; empty: they are added to nothing.
+  Vector sensitivity;
   SparseMatrix matrix;  ///< its derivative; empty unless asked for
   bool symmetric = true;
   double potential = 0;    ///< what the residual is the gradient of, where the matrix is symmetric, J/m
@@ -50,8 +50,8 @@ class Measure {
   Vector weight_, stiffness_, sensitivity_;
 };
 
-/// Newton's method with a line search that keeps to admissible places. Residuals are measured with the first matrix. `x`: the start, then
-/// the solution, at which `equations` was asked last.
+/// Newton's method with a line search that keeps to admissible places. Residuals are measured with the first matrix.
+/// `x`: the start, then the solution, at which `equations` was asked last.
 NewtonResult solve_newton(const Equations& equations, const NewtonOptions& options, LinearSolver& solver, Vector& x);
 
 }  // namespace pliant::reference

@@ -12,7 +12,8 @@ struct Effort {
   long steps = 0, bisections = 0, iterations = 0;
 };
 
-/// Says on the standard error how a run is doing: a line redrawn every second on a terminal, a line every ten seconds otherwise, or one a step.
+/// Says on the standard error how a run is doing: a line redrawn every second on a terminal, a line every ten seconds
+/// otherwise, or one a step.
 class Progress {
  public:
   enum class Detail { none, periodic, steps };

@@ -17,7 +17,8 @@ struct Motion {
   Instant instant() const { return {time, ends_step}; }
 };
 
-/// All forces at one motion, as residuals: mass x acceleration + residual = 0. Without mass-proportional damping, which goes with the mass matrix.
+/// All forces at one motion, as residuals: mass x acceleration + residual = 0. Without mass-proportional damping, which
+/// goes with the mass matrix.
 struct Forces {
   Vector residual;          ///< [dofs]
   Vector magnitude;         ///< [dofs], sum of the absolute values of what cancels in it

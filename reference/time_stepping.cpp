@@ -141,8 +141,8 @@ Forces TimeStepping::evaluate(const Motion& motion, bool tangent) {
   return forces;
 }
 
-/// Positions after dt without the acceleration at its end. The unknowns are counted from there: in a short step a difference of positions would lose
-/// the acceleration to rounding. Statics: counted from the origin.
+/// Positions after dt without the acceleration at its end. The unknowns are counted from there: in a short step a
+/// difference of positions would lose the acceleration to rounding. Statics: counted from the origin.
 Vector TimeStepping::predicted(double dt) const {
   if (options_.statics) return Vector::Zero(motion_.q.size());
   return motion_.q + dt * motion_.v + dt * dt * (0.5 - beta_) * acceleration_;
@@ -287,7 +287,8 @@ void TimeStepping::accept(const Trial& trial) {
   if (std::binary_search(switch_times_.begin(), switch_times_.end(), motion_.time)) pass_switch();
 }
 
-/// Loads jump where windows open and close: the next step starts from their values after that. Springs that come or go bring or take their energy.
+/// Loads jump where windows open and close: the next step starts from their values after that. Springs that come or go
+/// bring or take their energy.
 void TimeStepping::pass_switch() {
   if (options_.statics) return;
   motion_.ends_step = false;

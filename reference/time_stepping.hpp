@@ -49,8 +49,9 @@ class TimeStepping {
  public:
   TimeStepping(System& system, const SolverOptions& options);
 
-  /// To a later time, with a step to each point of a history and each end of a window on the way; halves steps that do not converge. Throws PhysicsError with the worst body, the residual and the last good time
-  /// when even a thousandth of it does not.
+  /// To a later time, with a step to each point of a history and each end of a window on the way; halves steps that do
+  /// not converge. Throws PhysicsError with the worst body, the residual and the last good time when even a thousandth
+  /// of it does not.
   StepRecord step(double until);
 
   const Motion& motion() const { return motion_; }

@@ -18,8 +18,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from info import read_json
-from plots.run_data import BadFolder, Frames, Run, Table, read_run
+from run_data import BadFolder, Frames, Run, Table, read_json, read_run
 
 EQUAL, DIFFERENT, NOT_COMPARABLE = 0, 1, 2
 # Of the machine and the day, not of the run.
@@ -101,7 +100,7 @@ def common_times(name: str, a: np.ndarray, b: np.ndarray, result: Comparison) ->
 
 
 def columns(table: Table) -> dict[str, np.ndarray]:
-    return {f"{column.source}.{column.name} [{column.unit}]".lstrip("."): column.values for column in table.columns}
+    return {f"{column.full_name} [{column.unit}]": column.values for column in table.columns}
 
 
 def compare_tables(name: str, a: Table | None, b: Table | None, result: Comparison) -> None:

@@ -18,20 +18,11 @@ import h5py
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from plots.run_data import BadFolder
 from plots.units import readable
+from run_data import BadFolder, read_json
 
 BAD_INPUT = 2
 LONGEST_ROW = 4096  # bytes
-
-
-def read_json(file: Path) -> dict:
-    try:
-        return json.loads(file.read_text())
-    except FileNotFoundError:
-        return {}
-    except (OSError, ValueError) as error:
-        raise BadFolder(f"{file}: cannot be read: {error}") from error
 
 
 def read_title(folder: Path) -> str:

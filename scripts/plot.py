@@ -24,7 +24,7 @@ from matplotlib.figure import Figure
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from plots import curves, maps
-from plots.run_data import BadFolder, Run, read_run
+from run_data import BadFolder, Run, read_run
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
 DOTS_PER_INCH = 200

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plots.run_data import Frames
+from run_data import Frames
 from verification import Run
 
 STRESSES = ("xx", "yy", "xy")

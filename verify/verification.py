@@ -6,7 +6,6 @@ and the rows of the checks go to results/verify/<case>/, or below PLIANT_VERIFY_
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import subprocess
@@ -16,6 +15,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+
+from run_data import read_json, read_table
 
 ROOT = Path(__file__).resolve().parents[1]
 ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
@@ -67,20 +68,21 @@ class Run:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.summary = json.loads((folder / "summary.json").read_text())
-        self._columns, self._values = read_table(folder / "probes.csv")
-
-    def columns(self) -> list[str]:
-        return self._columns[1:]
+        self.summary = read_json(folder / "summary.json")
+        self._probes = read_table(folder / "probes.csv")
 
     def probe(self, name: str) -> np.ndarray:
         """A column such as "energy.strain", where it was measured."""
-        values = self._values[:, self._columns.index(name)]
-        return values[np.isfinite(values)]
+        return self._sampled(name)[1]
 
     def times(self, name: str) -> np.ndarray:
         """When the column was measured, s."""
-        return self._values[np.isfinite(self._values[:, self._columns.index(name)]), 0]
+        return self._sampled(name)[0]
+
+    def _sampled(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        if self._probes is None:
+            raise KeyError(f"{self.folder}: no probes")
+        return self._probes.sampled(self._probes.column(name))
 
     def at(self, name: str, times: np.ndarray) -> np.ndarray:
         """A column at times at which it was measured; others are an error."""
@@ -91,9 +93,11 @@ class Run:
         return self.probe(name)[index]
 
     def steps(self, name: str) -> np.ndarray:
-        """A column of steps.csv such as "dt"."""
-        columns, values = read_table(self.folder / "steps.csv")
-        return values[:, columns.index(name)]
+        """A column of steps.csv such as "dt", or "time"."""
+        table = read_table(self.folder / "steps.csv")
+        if table is None:
+            raise KeyError(f"{self.folder}: no steps")
+        return table.time if name == "time" else table.column(name).values
 
     @property
     def balance_error(self) -> float:
@@ -174,14 +178,6 @@ def commit_of_engine() -> str:
     except OSError:
         return "unknown"
     return answer.stdout.strip() if answer.returncode == 0 else "unknown"
-
-
-def read_table(file: Path) -> tuple[list[str], np.ndarray]:
-    """Names without units, and values [rows x columns]; NaN where a cell is empty."""
-    with file.open() as stream:
-        header, *rows = csv.reader(stream)
-    values = [[float(cell) if cell else np.nan for cell in row] for row in rows]
-    return [name.split(" [")[0] for name in header], np.array(values)
 
 
 def replace_file(file: Path, text: str) -> None:

@@ -10,7 +10,8 @@ Dofs zero_dofs(const Model& model);
 /// Padding lanes repeat the last body of their batch.
 void fill_padding(const Model& model, Dofs& dofs);
 
-/// Reference shapes, turned by each body's angle. Compliant positions are relative to the batch's centres, in units of the body's scale.
+/// Reference shapes, turned by each body's angle. Compliant positions are relative to the batch's centres, in units of
+/// the body's scale.
 Dofs initial_positions(const Model& model);
 
 /// Uniform, rotational and linear initial velocity fields of the scene, and the imposed ones of driven walls at t = 0.

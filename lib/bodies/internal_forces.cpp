@@ -9,7 +9,8 @@
 namespace pliant {
 namespace {
 
-/// A table's arrays by their bare pointers: a store of Lanes may alias the vectors' own, which would be read anew each time.
+/// A table's arrays by their bare pointers: a store of Lanes may alias the vectors' own, which would be read anew each
+/// time.
 template <class Gradient, class Weight>
 struct Rows {
   const int *start, *node;

@@ -8,7 +8,8 @@
 
 namespace pliant {
 
-/// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y (docs/design.md 4):
+/// How the bodies of a batch stand in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y
+/// (docs/design.md 4):
 /// shared: one body a lane, node i of each in slot i, all copies of one shape and so of one table;
 /// related: the same, of shapes with one mesh topology: one connectivity, values by lane;
 /// spread: one body alone, its nodes over slots and lanes: its cost is not that of eight, and threads share it.
@@ -42,7 +43,8 @@ struct LaneVector {
   const Lanes& y() const { return components[1]; }
 };
 
-/// As IntegrationTable: the neighbours of a point are those of all lanes' shapes together, with gradient 0 where a shape has none.
+/// As IntegrationTable: the neighbours of a point are those of all lanes' shapes together, with gradient 0 where a
+/// shape has none.
 struct LaneTable {
   std::vector<Lanes> weight;         ///< [points], m2
   std::vector<int> start;            ///< [points + 1]
@@ -65,9 +67,9 @@ struct RelatedShapes {
   Lanes correction_bound{};
 };
 
-/// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that slots, points and the
-/// threads' shares of them are patches of the body. A `place` is where x of a node stands from the batch's first entry, counted in doubles;
-/// y stands lane_count further.
+/// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that
+/// slots, points and the threads' shares of them are patches of the body. A `place` is where x of a node stands from
+/// the batch's first entry, counted in doubles; y stands lane_count further.
 struct SpreadShape {
   static constexpr int region_slots = 64;    ///< slots of a region: 512 nodes
   static constexpr int chunk_points = 1024;  ///< integration points of a chunk, a multiple of lane_count

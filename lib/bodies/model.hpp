@@ -24,15 +24,17 @@ struct CompliantShape {
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
-/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a batch, one a lane (docs/design.md 4).
+/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a
+/// batch, one a lane (docs/design.md 4).
 struct CompliantGroup {
   int shape = 0;  ///< index of the compliant shape, or of the first of its family
   MaterialLaw law = MaterialLaw::neo_hookean;
   std::vector<int> bodies;  ///< [bodies], global index of the body in each lane; padding lanes are absent
 };
 
-/// Eight bodies of a group, or one body spread over the lanes. Padding lanes carry a copy of a resting body and weight 0. Degrees of freedom are
-/// stored in units of each body's scale s: positions q/s, velocities, and forces f/s. So F, stresses and nodal distances are those of the shape
+/// Eight bodies of a group, or one body spread over the lanes. Padding lanes carry a copy of a resting body and weight
+/// 0. Degrees of freedom are stored in units of each body's scale s: positions q/s, velocities, and forces f/s. So F,
+/// stresses and nodal distances are those of the shape
 /// itself, and only constants differ: m/s^2 and f/s give q/s, and energies are those of s = 1 times s^2.
 struct Batch {
   int group = 0;
@@ -70,8 +72,8 @@ struct RigidDof {
   bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }  ///< at some time
   bool imposed(double time) const { return imposed() && window.contains(time); }
 
-  // What becomes of it in a step that begins at `time`: what is imposed there, the exact integral of its history, or else what the caller says of a
-  // free motion.
+  // What becomes of it in a step that begins at `time`: what is imposed there, the exact integral of its history, or
+  // else what the caller says of a free motion.
   double position_after(double time, double dt, double x, double free) const {
     if (!imposed(time)) return free;
     return mode == Drive::Mode::velocity ? x + history.integral(time, time + dt) : x;
@@ -141,14 +143,16 @@ struct Model {
 
 /// What a caller may want to choose himself; no part of a scene.
 struct BuildOptions {
-  /// Bodies that would leave their batch's lanes empty are united with those of related shapes, or spread, when their shapes have so many nodes
+  /// Bodies that would leave their batch's lanes empty are united with those of related shapes, or spread, when their
+  /// shapes have so many nodes
   /// together: below, nobody waits for the empty lanes. 0: always; a large number: never.
   int least_sparse_nodes = pliant::least_sparse_nodes;
   bool relate = true;          ///< unite related shapes then, where they would be spread
   std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: as the scene says
 };
 
-/// Builds bodies, tables and masses. Throws InputError for what the scene reader cannot see (shapes that cannot be meshed).
+/// Builds bodies, tables and masses. Throws InputError for what the scene reader cannot see (shapes that cannot be
+/// meshed).
 Model build_model(const Scene& scene, const BuildOptions& options = {});
 
 }  // namespace pliant

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Reference outline of a shape: what contact needs and never changes. Node arrays are extended cyclically by lane_count entries, so that
-/// eight consecutive nodes can be loaded from any start.
+/// Reference outline of a shape: what contact needs and never changes. Node arrays are extended cyclically by
+/// lane_count entries, so that eight consecutive nodes can be loaded from any start.
 struct OutlineShape {
   int count = 0;          ///< nodes
   double turn_shift = 0;  ///< x offset after one turn: 0 for closed outlines, +- period for walls
@@ -28,8 +28,8 @@ constexpr double corner_turn = 35 * std::numbers::pi / 180;
 
 OutlineShape make_outline_shape(const Points& points, double turn_shift);
 
-/// A vector at every outline node of all bodies: those of one body after another, from Model::outline_offset on, each followed by lane_count
-/// cyclic copies.
+/// A vector at every outline node of all bodies: those of one body after another, from Model::outline_offset on, each
+/// followed by lane_count cyclic copies.
 struct OutlineField {
   std::vector<double> x, y;  ///< [nodes and copies]
 

@@ -13,7 +13,8 @@ struct PartNode {
   bool before = false, after = false;
 };
 
-/// A pressure on a part of one body's outline (docs/method.md 5). Parts are made of whole segments, each of which loads its
+/// A pressure on a part of one body's outline (docs/method.md 5). Parts are made of whole segments, each of which loads
+/// its
 /// two nodes by halves: on a whole outline that is the s_k of docs/method.md 2.
 struct OutlinePressure {
   int body = 0;  ///< global index

@@ -15,8 +15,8 @@ OutlineField placed_outlines(const Model& model, const Dofs& positions);
 /// All that a motion shows: positions, and velocities and present lengths in models that need them.
 void show_outlines(const Model& model, const Motion& motion, Outlines& outlines);
 
-/// Carries forces on the outline nodes of a batch's bodies to the degrees of freedom of one of its regions: forces, [slots x 2] of the batch,
-/// += phi^T f.
+/// Carries forces on the outline nodes of a batch's bodies to the degrees of freedom of one of its regions: forces,
+/// [slots x 2] of the batch, += phi^T f.
 void add_outline_forces(const Model& model, const Region& region, const OutlineField& on_outlines, Lanes* forces);
 
 /// Force and moment of the forces on a rigid body's outline: [x, y, moment about its centre].

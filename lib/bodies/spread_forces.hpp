@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// Internal forces of spread bodies in two passes, so that no two threads write to one node (docs/design.md 4): stresses at all points, then each node
-/// gathers from its points. Forces: [slots x 2] of the batch.
+/// Internal forces of spread bodies in two passes, so that no two threads write to one node (docs/design.md 4):
+/// stresses at all points, then each node gathers from its points. Forces: [slots x 2] of the batch.
 
 /// A weighted first Piola stress by columns, w P: what a gradient's x and y components go with.
 struct StressColumns {

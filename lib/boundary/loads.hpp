@@ -14,12 +14,14 @@ void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes*
 /// Adds applied loads and gravity g to a rigid body's force [x, y, moment].
 void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, double* force);
 
-/// Adds to the forces of a motion what loads change from its instant to another, on bodies that stand and move as they do: of histories, and of what
-/// sets in or ends. Returns how much more supports' dashpots dissipate, W/m. So forces need no new evaluation where only time goes on.
+/// Adds to the forces of a motion what loads change from its instant to another, on bodies that stand and move as they
+/// do: of histories, and of what sets in or ends. Returns how much more supports' dashpots dissipate, W/m. So forces
+/// need no new evaluation where only time goes on.
 double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
 
-/// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion does the change of
-/// kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`: as it ended with. Gravity is booked apart.
+/// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion
+/// does the change of kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`:
+/// as it ended with. Gravity is booked apart.
 double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
                      const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
                      double end_time);

@@ -11,8 +11,9 @@ namespace pliant {
 /// Whether pressures or soft supports act on any outline.
 bool has_outline_loads(const Model& model);
 
-/// Adds the forces of pressures and soft supports on outline nodes, N/m: they go to the bodies the way of contact forces. `outlines`: of the motion,
-/// with its velocities where Model::outline_rates. Returns the power of the supports' dashpots, W/m.
+/// Adds the forces of pressures and soft supports on outline nodes, N/m: they go to the bodies the way of contact
+/// forces. `outlines`: of the motion, with its velocities where Model::outline_rates. Returns the power of the
+/// supports' dashpots, W/m.
 double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force);
 
 /// What pressures and supports together exert on one body, N/m.
@@ -21,10 +22,12 @@ Vec2 outline_load(const Model& model, int body, const Motion& motion);
 /// Energy in the springs of soft supports, J/m.
 double support_energy(const Model& model, const Dofs& position, const Instant& at);
 
-/// The part of add_load_change (boundary/loads.hpp) that acts on outlines: pressures and supports. Returns the growth of their dashpots' power, W/m.
+/// The part of add_load_change (boundary/loads.hpp) that acts on outlines: pressures and supports. Returns the growth
+/// of their dashpots' power, W/m.
 double add_outline_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
 
-/// Work that pressures do and that supports' histories do on their springs and dashpots over one step, J/m: trapezoidal rule.
+/// Work that pressures do and that supports' histories do on their springs and dashpots over one step, J/m: trapezoidal
+/// rule.
 double outline_work(const Model& model, const Motion& before, const Motion& after);
 
 }  // namespace pliant

@@ -94,7 +94,8 @@ ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first,
   return pair;
 }
 
-/// Of the bodies of each party, grains and walls apart, the one with the finest outline, another, and the one with the coarsest.
+/// Of the bodies of each party, grains and walls apart, the one with the finest outline, another, and the one with the
+/// coarsest.
 std::vector<std::vector<int>> representatives(const Model& model, const ContactLaws& laws) {
   std::map<std::pair<int, bool>, std::vector<int>> parties;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)

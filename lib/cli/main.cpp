@@ -11,6 +11,7 @@
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
 #include "dynamics/natural_modes.hpp"
+#include "files/output_folder.hpp"
 #include "results/run.hpp"
 #include "scene/late_conditions.hpp"
 #include "scene/schema.hpp"
@@ -40,6 +41,7 @@ Scene load(const Arguments& arguments) {
 void run(Arguments arguments) {
   const Scene scene = load(arguments);
   if (arguments.run.out.empty()) arguments.run.out = std::filesystem::path("results") / scene.name;
+  tell_output_folder(arguments.run.out);
   run_scene(scene, arguments.run);
 }
 

@@ -21,8 +21,8 @@ struct BodyPair {
 
 Box bounding_box(const Model& model, const OutlineField& place, int body);
 
-/// Sweep and prune on x, then y, periodic in x (docs/method.md 4, stage 1). Pairs are sorted. Walls span all x, and meet no
-/// image of theirs.
+/// Sweep and prune on x, then y, periodic in x (docs/method.md 4, stage 1). Pairs are sorted. Walls span all x, and
+/// meet no image of theirs.
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin);
 
 }  // namespace pliant

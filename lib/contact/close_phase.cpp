@@ -156,8 +156,9 @@ struct Margins {
       : reach(reach), skin(skin), sight(corners ? 2 * longest_segment + skin : 0) {}
 };
 
-/// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to a depth of the skin, one
-/// inside a skin deeper; to find which face is nearest then, all within two skins of the present reach must be known.
+/// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to
+/// a depth of the skin, one inside a skin deeper; to find which face is nearest then, all within two skins of the
+/// present reach must be known.
 void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window, int first_segment,
             const Margins& margins, Arc& nodes, Arc& segments) {
   Span near_nodes, near_segments;
@@ -184,7 +185,8 @@ void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window
   segments = near_segments.arc(first_segment);
 }
 
-/// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same on both sides.
+/// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same
+/// on both sides.
 Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
   const int more = two_walls ? lane_count : 0;
   const Arc all{nodes.begin - 1 - more, nodes.count + 1 + 2 * more};

@@ -19,18 +19,20 @@ struct RunClock {
   std::int64_t steps = 0;  ///< accepted so far
 };
 
-/// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its skin, and computes the
-/// forces on outline nodes. The history belongs to the caller's state.
+/// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its
+/// skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
-/// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its stretch of the forces on them, which
-/// the bodies gather afterwards. Between the two is the seam where a body's outline may come from elsewhere, as from another process: fill its stretch
-/// before candidates_hold, fetch its stretch after forces().
+/// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its
+/// stretch of the forces on them, which the bodies gather afterwards. Between the two is the seam where a body's
+/// outline may come from elsewhere, as from another process: fill its stretch before candidates_hold, fetch its stretch
+/// after forces().
 class ContactSystem {
  public:
   explicit ContactSystem(const Model& model);
 
-  /// False when some close pair may have moved by the skin since the candidates were found, or always before the first time. With a fixed period:
-  /// when it is over; contacts that come earlier are missed. Also when laws change: see ContactLaws::era.
+  /// False when some close pair may have moved by the skin since the candidates were found, or always before the first
+  /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
+  /// ContactLaws::era.
   bool candidates_hold(const OutlineField& place, const RunClock& clock = {});
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
@@ -39,12 +41,13 @@ class ContactSystem {
   /// Contact forces on outline nodes, N/m, from one history into another.
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
 
-  /// [outline nodes] upper bound of the contact stiffness that each node may feel until the candidates are found anew, N/m2, seen from where they
-  /// were found; weighted so that the bound of a pair is that of its two bodies taken alone (docs/method.md 6). `compliance` [bodies]: largest w^2 a body
-  /// shows per unit contact stiffness.
+  /// [outline nodes] upper bound of the contact stiffness that each node may feel until the candidates are found anew,
+  /// N/m2, seen from where they were found; weighted so that the bound of a pair is that of its two bodies taken alone
+  /// (docs/method.md 6). `compliance` [bodies]: largest w^2 a body shows per unit contact stiffness.
   std::vector<double> stiffness_bound(const std::vector<double>& compliance) const;
 
-  /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of stiffness; 0: no dashpot.
+  /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of
+  /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
 
   /// [outline nodes] least of what laws remember by this name over each node's contacts; `none` where no law does.

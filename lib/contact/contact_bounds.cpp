@@ -26,8 +26,8 @@ std::vector<double> ContactSystem::stiffness_bound(const std::vector<double>& co
   return result;
 }
 
-/// Several contacts at once act together: N of the same ratio z on one body are a ratio z sqrt(N) of their common frequency, and a lever can raise
-/// the square of a contact's share by 1 + m R^2 / I.
+/// Several contacts at once act together: N of the same ratio z on one body are a ratio z sqrt(N) of their common
+/// frequency, and a lever can raise the square of a contact's share by 1 + m R^2 / I.
 std::vector<double> ContactSystem::damping_ratios() const {
   std::vector<double> ratio(model_.bodies.size(), 0.0);
   if (!laws_.damps()) return ratio;

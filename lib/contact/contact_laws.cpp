@@ -15,8 +15,9 @@ namespace {
 /// docs/method.md 4: 6 to 8 % of h penetration at p = E/2.
 constexpr double auto_stiffness_factor = 8;
 constexpr double auto_range_factor = 0.12;
-/// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they sink in by a segment
-/// length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before they govern the time step.
+/// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they
+/// sink in by a segment length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before
+/// they govern the time step.
 constexpr double rigid_pair_factor = 3;
 
 ContactParty party_of(const Scene& scene, const Body& body) {

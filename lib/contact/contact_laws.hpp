@@ -8,17 +8,18 @@
 
 namespace pliant {
 
-/// Which law holds between two bodies. Rules are found once a scene for each two parties, bodies of equal kind, material and name in rules; the law
-/// itself also depends on both outline spacings, and is made when a pair is.
+/// Which law holds between two bodies. Rules are found once a scene for each two parties, bodies of equal kind,
+/// material and name in rules; the law itself also depends on both outline spacings, and is made when a pair is.
 class ContactLaws {
  public:
-  /// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid bodies get three
-  /// times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
+  /// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid
+  /// bodies get three times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
   explicit ContactLaws(const Model& model);
 
   /// At a time: a body that a drive moves then counts as infinitely heavy for dashpots.
   ContactLaw between(int first, int second, double time = 0) const;
-  /// Laws hold for one such span of time, counted from 0; all the time unless dashpots meet drives with `from` or `until`.
+  /// Laws hold for one such span of time, counted from 0; all the time unless dashpots meet drives with `from` or
+  /// `until`.
   int era(double time) const;
   bool automatic_stiffness(int first, int second) const;
 
@@ -72,8 +73,9 @@ class ContactLaws {
   bool damps_ = false;
 };
 
-/// Damping ratio of a linear spring and dashpot that bounce with this restitution in (0, 1]. `pull`: the force ends with g = 0,
-/// e = exp(-pi z / sqrt(1 - z^2)); else when it would pull, e = exp(-2 z acos(z) / sqrt(1 - z^2)), z > 1 with acosh and the root of z^2 - 1.
+/// Damping ratio of a linear spring and dashpot that bounce with this restitution in (0, 1]. `pull`: the force ends
+/// with g = 0, e = exp(-pi z / sqrt(1 - z^2)); else when it would pull, e = exp(-2 z acos(z) / sqrt(1 - z^2)), z > 1
+/// with acosh and the root of z^2 - 1.
 double damping_ratio(double restitution, bool pull);
 
 }  // namespace pliant

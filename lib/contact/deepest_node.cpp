@@ -60,7 +60,8 @@ Nearest nearest_segment(const Model& model, const OutlineField& outlines, int ma
   return nearest;
 }
 
-/// Whether a point is on the open side of everything in a box around an outline: off the box, or beyond a wall's surface.
+/// Whether a point is on the open side of everything in a box around an outline: off the box, or beyond a wall's
+/// surface.
 bool is_clear(const Box& box, const OutlineShape& shape, const Vec2& x, double period) {
   if (shape.turn_shift != 0) return shape.turn_shift < 0 ? x.y() > box.y_max : x.y() < box.y_min;
   const Vec2 from_middle = lever(x, Vec2(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)), period);

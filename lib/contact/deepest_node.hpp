@@ -17,12 +17,13 @@ struct DeepestNode {
   double segment_length = 1;  ///< of that segment, m
 };
 
-/// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes with all segments of each pair
+/// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes
+/// with all segments of each pair
 /// of bodies: for messages.
 DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const std::vector<BodyPair>& pairs);
 
-/// Throws InputError when a body starts deeper inside another than contact can see, a segment length of that other: it would be let through
-/// without a force.
+/// Throws InputError when a body starts deeper inside another than contact can see, a segment length of that other: it
+/// would be let through without a force.
 void refuse_deep_overlap(const Model& model, const OutlineField& outlines);
 
 }  // namespace pliant

@@ -129,9 +129,9 @@ struct NodeLength {
 /// corner of the slave on the line of its nearest row, as one that begins there.
 enum class RowKind { nearest, beyond_corner, at_corner };
 NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const Faces& faces, int row, RowKind kind);
-/// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there: a corner
-/// of the slave the one where it stores less, as it leaves the master through either, unless it is hardly deep; any other
-/// node where it stores more.
+/// The row that a node touches, its nearest one or one beyond a corner, and the length that it stands for there: a
+/// corner of the slave the one where it stores less, as it leaves the master through either, unless it is hardly deep;
+/// any other node where it stores more.
 struct Foothold {
   int row;
   NodeLength length;

@@ -13,8 +13,8 @@ namespace pliant {
 /// Only opposing outlines touch. Near a corner of the master a node that is none itself counts as far as it opposes the
 /// face, not at all across it, and of its nearest face and the one beyond the corner it touches the one where it stores
 /// more: a node of a floor that a block has sunk into would else count as beside the block's flank for as long as that
-/// is nearer than the bottom, and lock the block. A corner of the slave touches the one of the two where it stores less,
-/// unless it lies on the master's corner. Nothing touches beyond a corner.
+/// is nearer than the bottom, and lock the block. A corner of the slave touches the one of the two where it stores
+/// less, unless it lies on the master's corner. Nothing touches beyond a corner.
 ///
 /// Each of a node's two segments stands for half its length, but for the last two nodes before the end of the master's
 /// face, at a corner: they share out what of the face lies there (node_length.cpp), the last one the less the nearer it
@@ -22,7 +22,8 @@ namespace pliant {
 /// nothing. So two flat faces touch over the length that they share, wherever their nodes are. The energy of a contact
 /// is its length times that of its law, and its forces are the gradient of both.
 struct Facing {
-  /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment, and the corners at the ends of its face.
+  /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment, and the
+  /// corners at the ends of its face.
   enum Node { before, itself, after, segment_start, segment_end, corner_back, corner_on, nodes };
 
   Projection p;

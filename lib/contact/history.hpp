@@ -10,12 +10,13 @@ namespace pliant {
 
 /// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
 struct ContactHistory {
-  std::vector<double>
-      place;  ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
-  std::vector<double> slip;  ///< elastic tangential displacement then, m
-  std::vector<double>
-      of_law;  ///< what the pair's law remembers besides (laws/response.hpp): first of all records, then
-               ///< second of all ...; empty when no law of the scene does
+  /// On the master's outline at the last accepted step, see slip.hpp; NaN when not beside it.
+  std::vector<double> place;
+  /// Elastic tangential displacement then, m.
+  std::vector<double> slip;
+  /// What the pair's law remembers besides (laws/response.hpp): first of all records, then second of all ...; empty
+  /// when no law of the scene does.
+  std::vector<double> of_law;
 
   std::size_t records() const { return place.size(); }
   std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }

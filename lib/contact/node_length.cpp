@@ -11,7 +11,8 @@ namespace {
 /// full, 18 degrees, and to where not at all, 36 degrees. Less than half of a right angle: no node opposes both faces
 /// at a square corner.
 constexpr double square = 0.95, oblique = 0.81;
-/// Difference of such cosines at which the lesser of a corner's two segments no longer counts: 35 degrees, as of the least corner that lies flat.
+/// Difference of such cosines at which the lesser of a corner's two segments no longer counts: 35 degrees, as of the
+/// least corner that lies flat.
 constexpr double lesser = 0.18;
 
 /// Of the shorter of both outlines' longest segments: the way beyond a corner of the master over which a corner of the
@@ -171,8 +172,8 @@ Varying nearness(const Varying& distance, double limit) {
 }
 
 /// What the neighbour of a slave's corner stands for while that comes onto the face past the master's corner, r steps
-/// from the neighbour: half a segment more goes over to the corner. Where both are hardly below the face, the corner has
-/// it at once.
+/// from the neighbour: half a segment more goes over to the corner. Where both are hardly below the face, the corner
+/// has it at once.
 Varying share_beside_corner(const Beside& at, const Vec2& corner, int way, const Varying& r, double sight) {
   const Varying distance = at.distance(corner, way);
   Varying past = scaled(distance.value / (r.value * r.value), r, -distance.value / r.value);

@@ -10,8 +10,8 @@ namespace pliant {
 
 class MasterWindow;
 
-/// A run of consecutive outline nodes or segments (a segment bears its first node's number). Numbers beyond [0, count) of the outline continue
-/// cyclically; on a wall they reach into the next periods.
+/// A run of consecutive outline nodes or segments (a segment bears its first node's number). Numbers beyond [0, count)
+/// of the outline continue cyclically; on a wall they reach into the next periods.
 struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }

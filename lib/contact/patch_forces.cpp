@@ -15,8 +15,8 @@ namespace {
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
 
-/// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's distance, and makes the
-/// force the exact conjugate of the slip.
+/// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's
+/// distance, and makes the force the exact conjugate of the slip.
 void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, Lanes couple, int base,
                   PatchForces& forces) {
   const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
@@ -30,7 +30,8 @@ void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, La
   }
 }
 
-/// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the length.
+/// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
+/// length.
 void add_length_forces(const Pass& pass, const Facing& facing, unsigned touching, int i, Lanes energy,
                        PatchForces& forces) {
   for (unsigned left = facing.varying & touching; left != 0; left &= left - 1) {
@@ -71,7 +72,8 @@ void forget(ContactHistory& history, int record) {
       store(history.field(k) + record, broadcast(Law::remembered[k].at_first));
 }
 
-/// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work on.
+/// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
+/// on.
 Lanes gap_rate(const Pass& pass, int i, const Projection& p, LaneBits touching) {
   const int index = pass.nodes.begin + i, node = index - turn_of(index, pass.slave->count) * pass.slave->count;
   Lanes rate{};
@@ -98,10 +100,11 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
 }
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const MasterWindow& window, double skin, const ContactHistory& from,
+void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const ContactHistory& from,
                   ContactHistory& to, PatchForces& forces, LaneTotals& totals) {
+  const MasterWindow& window = view.window;
   const double inverse_longest = 1 / window.longest();
-  const double outward = law.reach + (Law::has_shear ? skin : 0);  // see locate_newcomers
+  const double outward = law.reach + (Law::has_shear ? view.skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
     const LaneBits active = first_lanes(pass.nodes.count - i);
@@ -164,7 +167,7 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
     Pass pass = make_pass(view, slave_side);
     if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
     fill_window(view, 1 - slave_side);
-    compute_pass(law, pass, view.window, view.skin, from, to, forces, totals);
+    compute_pass(law, pass, view, from, to, forces, totals);
   }
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);

@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// Forces of one patch: each body's nodes against the other's segments, each pass with weight 1/2 (docs/method.md 4), from one history into another.
-/// Penetrations are seen down to the longest segment near and the skin more: as no step moves two bodies further than the skin against each other,
-/// none can pass from a permitted depth to beyond sight.
+/// Forces of one patch: each body's nodes against the other's segments, each pass with weight 1/2 (docs/method.md 4),
+/// from one history into another. Penetrations are seen down to the longest segment near and the skin more: as no step
+/// moves two bodies further than the skin against each other, none can pass from a permitted depth to beyond sight.
 PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces);
 
 }  // namespace pliant

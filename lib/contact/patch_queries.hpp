@@ -10,19 +10,20 @@ namespace pliant {
 /// Length of both sides in touch, each pass with weight 1/2, m.
 double touching_length(const PatchView& view);
 
-/// Places of the nodes that can come in touch within a step, at the present outlines, where a history has none yet. Known before the touch, so
-/// that slip counts from its first step.
+/// Places of the nodes that can come in touch within a step, at the present outlines, where a history has none yet.
+/// Known before the touch, so that slip counts from its first step.
 void locate_newcomers(const PatchView& view, ContactHistory& history);
 
-/// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most laws.
+/// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most
+/// laws.
 void start_records(const PatchView& view, ContactHistory& history);
 
 /// Whether some node of the patch stands inside the other outline.
 bool overlaps(const PatchView& view);
 
-/// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch before the next search for candidates, added
-/// to the entries of the patch's nodes as forces have them: half the tributary length times the stiffness, shared by the two segment nodes on the
-/// master, and times the factor of the node's side.
+/// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch before the next
+/// search for candidates, added to the entries of the patch's nodes as forces have them: half the tributary length
+/// times the stiffness, shared by the two segment nodes on the master, and times the factor of the node's side.
 void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries);
 
 }  // namespace pliant

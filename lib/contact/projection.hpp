@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-/// Stage 3 of docs/method.md 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds the node, and where the node
+/// Stage 3 of docs/method.md 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds
+/// the node, and where the node
 /// stands beside it: orthogonal or, beyond an end, radial from that end node.
 struct Projection {
   LaneBits hit;
@@ -22,7 +23,8 @@ struct Projection {
   Lanes fan;  ///< beyond an end: sine of the turn from the segment's normal to the node's; 0 beside the segment
 };
 
-/// Row of the nearest segment's line among those whose wedges hold the nodes, at most `reach` off; -1: none. Of equals the first.
+/// Row of the nearest segment's line among those whose wedges hold the nodes, at most `reach` off; -1: none. Of equals
+/// the first.
 inline Lanes find_segments(const MasterWindow& window, Lanes px, Lanes py, double reach) {
   Lanes nearest = broadcast(reach), found = broadcast(-1);
   const MasterSegment* segment = &window[0];

@@ -37,7 +37,8 @@ double corner(const MasterSegment& before, const MasterSegment& after, const Vec
   return twice * std::tan(0.5 * turn);
 }
 
-/// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between refreshes and stay on it.
+/// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between
+/// refreshes and stay on it.
 const MasterSegment& at(const MasterWindow& window, int row) {
   const int n = window.count();
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];

@@ -14,8 +14,9 @@ T natural_log(T x) {
 }
 
 /// All lanes at once, for positive normal x; relative error below 6e-16 also near x = 1.
-/// x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172. (2 artanh s)/s is the minimax polynomial in
-/// s^2 (Remez, relative error of ln m 1.3e-18); its even and its odd powers make two short chains instead of a long one.
+/// x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172. (2 artanh s)/s is
+/// the minimax polynomial in s^2 (Remez, relative error of ln m 1.3e-18); its even and its odd powers make two short
+/// chains instead of a long one.
 template <>
 inline Lanes natural_log(Lanes x) {
   // Unsigned words wrap: trial steps may turn an element inside out, and what becomes of a negative x is not used.

@@ -18,8 +18,8 @@ struct ShapeFunctions {
 /// The shape functions of a mesh, at a point of a given triangle: all that tables and masses need of a recipe.
 using Basis = std::function<ShapeFunctions(const Vec2& x, int triangle)>;
 
-/// The shape functions of the scene's recipe, on a mesh in mean node distances that must outlive them. Throws InputError when the recipe's limits
-/// are exceeded.
+/// The shape functions of the scene's recipe, on a mesh in mean node distances that must outlive them. Throws
+/// InputError when the recipe's limits are exceeded.
 Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings);
 
 /// Linear functions of the mesh's triangles.

@@ -104,8 +104,8 @@ MatrixX2d lacking_moments(const IntegrationTable& table, const Points& moments) 
   return lacking;
 }
 
-// Changes each point's gradients by the least amount that gives condition (1) back: what rounding of large multipliers leaves of it in meshes of
-// tens of thousands of nodes.
+// Changes each point's gradients by the least amount that gives condition (1) back: what rounding of large multipliers
+// leaves of it in meshes of tens of thousands of nodes.
 void restore_completeness(IntegrationTable& table, const FieldMesh& mesh) {
   const Eigen::Matrix<double, 3, 2> wanted = (Eigen::Matrix<double, 3, 2>() << 0, 0, 1, 0, 0, 1).finished();
   for (std::size_t g = 0; g < table.weight.size(); ++g) {

@@ -14,9 +14,9 @@ Points boundary_moments(const FieldMesh& mesh, const ShapeRows& outline_rows);
 /// Changes the table's gradients by the least amount d, in the norm sum_g w_g |d_gi|^2, that makes
 /// (1) sum_i b_gi = 0 and sum_i b_gi (x) X_i = I at every point and
 /// (2) sum_g w_g b_gi = sum_k s_k phi_i(x_k) for every node
-/// (docs/method.md 2; the unsymmetric origin is Chen, Hillman, Rueter 2013). The table's gradients must already be linearly
-/// complete, as those of moving least squares are. Throws InputError when the residual stays above 1e-12 (above 4500 nodes: their
-/// number times the rounding unit). Coordinates
+/// (docs/method.md 2; the unsymmetric origin is Chen, Hillman, Rueter 2013). The table's gradients must already be
+/// linearly complete, as those of moving least squares are. Throws InputError when the residual stays above 1e-12
+/// (above 4500 nodes: their number times the rounding unit). Coordinates
 /// should be of the order of one node distance. Returns the largest residual of (1) and (2).
 double make_gradients_consistent(IntegrationTable& table, const FieldMesh& mesh, const ShapeRows& outline_rows);
 

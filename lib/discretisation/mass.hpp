@@ -8,16 +8,18 @@ namespace pliant {
 /// the recipe's own points (docs/method.md 2). Throws InputError when one is not positive.
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
-/// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points a triangle: exact for linear triangles), D the lumped
-/// one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in M - D.
+/// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points a triangle: exact for
+/// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in M -
+/// D.
 ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped);
 
-/// Bound on the largest eigenvalue of C, 2 - min eig(D^-1 M): computed for up to 1000 nodes, else 2, as M is positive semidefinite.
+/// Bound on the largest eigenvalue of C, 2 - min eig(D^-1 M): computed for up to 1000 nodes, else 2, as M is positive
+/// semidefinite.
 double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped);
 
 /// Inertia of a rotation about the centroid over that of the polygon, which the consistent mass has: kinetic energy
-/// y.D C y / 2 of the y that moves nodes so (docs/method.md 2). `correction`: rows of C as mass_correction gives them; without
-/// any C = I.
+/// y.D C y / 2 of the y that moves nodes so (docs/method.md 2). `correction`: rows of C as mass_correction gives them;
+/// without any C = I.
 double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction);
 
 }  // namespace pliant

@@ -9,7 +9,8 @@
 
 namespace pliant {
 
-/// A mesh whose nodes are too far apart for their supports. The message lacks what to do: whoever knows the mesh adds it.
+/// A mesh whose nodes are too far apart for their supports. The message lacks what to do: whoever knows the mesh adds
+/// it.
 struct TooFewNeighbours : InputError {
   using InputError::InputError;
 };
@@ -25,8 +26,8 @@ struct MlsNodes {
   std::vector<int> near(const Vec2& x) const;
 };
 
-/// Gives each node the distance to its support-th nearest other node as radius (docs/method.md 2). Throws InputError when there
-/// are not that many nodes.
+/// Gives each node the distance to its support-th nearest other node as radius (docs/method.md 2). Throws InputError
+/// when there are not that many nodes.
 MlsNodes make_mls_nodes(const Points& nodes, int support);
 
 /// Moving least squares at x: linear basis centred at x, cubic spline weight; the gradients are the full derivatives.

@@ -12,7 +12,8 @@ class NodeGrid {
   /// Numbers of all points in the cells within `radius` of x, ascending: some lie further away, none nearer is missing.
   std::vector<int> near(const Vec2& x, double radius) const;
 
-  /// Square of the distance of x to its number-th nearest point (0: the nearest, x itself if it is one of them). There must be so many.
+  /// Square of the distance of x to its number-th nearest point (0: the nearest, x itself if it is one of them). There
+  /// must be so many.
   double square_distance_to_nearest(const Vec2& x, int number) const;
 
  private:

@@ -9,14 +9,15 @@
 
 namespace pliant {
 
-/// Everything that internal forces need from space (docs/method.md 2): per integration point a weight and, for each neighbour
-/// node, a reference gradient.
+/// Everything that internal forces need from space (docs/method.md 2): per integration point a weight and, for each
+/// neighbour node, a reference gradient.
 struct IntegrationTable {
   std::vector<double> weight;  ///< [points], m2; sum to the polygon's area
   std::vector<int> start;      ///< [points + 1], rows of `node` and `gradient`
   std::vector<int> node;       ///< [entries]
   Points gradient;             ///< [entries], 1/m
-  /// [points], background triangles that a point stands for in pictures: twice the one it lies in, or those beside its edge.
+  /// [points], background triangles that a point stands for in pictures: twice the one it lies in, or those beside its
+  /// edge.
   std::vector<std::array<int, 2>> cells;
 };
 
@@ -35,7 +36,8 @@ struct Discretisation {
   ShapeRows node_rows;                 ///< at all field nodes
   std::vector<double> unit_mass;       ///< [nodes], lumped mass at density 1, m2
   std::vector<double> nodal_distance;  ///< [nodes], distance to the nearest other node, m
-  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (docs/method.md 2). Empty: lumped.
+  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (docs/method.md 2). Empty:
+  /// lumped.
   ShapeRows mass_correction;
   double correction_bound = 1;       ///< on its largest eigenvalue
   double min_shape_value = 0;        ///< least phi met at integration points and nodes (docs/method.md 2)

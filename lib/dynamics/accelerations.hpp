@@ -13,8 +13,8 @@ void for_each_rigid_dof(const Model& model, Update&& update) {
     for (std::size_t c = 0; c < 3; ++c) update(3 * r + c, model.rigid_bodies[r].dof[c]);
 }
 
-/// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i, dof) for each rigid one.
-/// The bodies are shared out over the threads; updates touch only index i.
+/// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i,
+/// dof) for each rigid one. The bodies are shared out over the threads; updates touch only index i.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
   parallel_for(static_cast<int>(model.regions.size()), [&](int r) {

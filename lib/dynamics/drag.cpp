@@ -24,7 +24,8 @@ double rest_of_exponential(double z, int n) {
   return sum;
 }
 
-/// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without drag, when it is linear in time.
+/// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without drag, when
+/// it is linear in time.
 double spread(double z) {
   const double mean = rest_of_exponential(z, 2);
   return (4 * rest_of_exponential(2 * z, 3) - 2 * rest_of_exponential(z, 3)) / (mean * mean) - 1;

@@ -5,8 +5,9 @@
 
 namespace pliant {
 
-/// What drag - c m v (bodies/damping_forces.hpp) makes of a step dt, exactly for as long as all other forces stand still: v' = a at its start, of all
-/// forces, and a' = -c a. By z = c dt; without drag 0, 1/2, 1. T: double, or Lanes of one body each.
+/// What drag - c m v (bodies/damping_forces.hpp) makes of a step dt, exactly for as long as all other forces stand
+/// still: v' = a at its start, of all forces, and a' = -c a. By z = c dt; without drag 0, 1/2, 1. T: double, or Lanes
+/// of one body each.
 template <class T>
 struct Drag {
   T z{};

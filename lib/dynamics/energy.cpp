@@ -73,7 +73,7 @@ Audit Auditor::audit(const State& state) {
   Audit result;
   // The same forces once more: the memory stands still at an accepted state, so nothing slips.
   const Evaluation evaluation = forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time},
-                                                 state.outlines, state.memory, {force_, contact_force_, memory_});
+                                                 state.outlines, {state.memory}, {force_, contact_force_, memory_});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.velocity);
@@ -99,8 +99,9 @@ double Auditor::balance_error(const Energies& energy) const {
                std::max({std::abs(energy.external_work), std::abs(energy_start_), energy.dissipated}));
 }
 
-/// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but a force's
-/// lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a period.
+/// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but
+/// a force's lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a
+/// period.
 double Auditor::contact_imbalance(const State& state) const {
   const Model& model = forces_.model();
   const OutlineField &at = state.outlines.position, &force = state.contact_force;

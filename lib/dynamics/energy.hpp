@@ -21,8 +21,8 @@ double kinetic_energy(const Model& model, const Dofs& velocity);
 /// Sums and checks of one state: energies, and what should vanish in the balances of momentum.
 struct Audit {
   Energies energy;
-  double momentum_error =
-      0;  ///< |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes
+  /// |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
+  double momentum_error = 0;
   int contacts = 0;
 };
 

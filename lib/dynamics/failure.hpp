@@ -17,8 +17,9 @@ struct FailedStep {
   std::string governed_by;  ///< and its reason
 };
 
-/// Throws PhysicsError when next_dt has fallen under 1e-9 of largest_dt: what the last trial met (a grain turned inside out, a number that is
-/// none, a lost contact, an error that stays), where and when, what governs the time step and the last good state.
+/// Throws PhysicsError when next_dt has fallen under 1e-9 of largest_dt: what the last trial met (a grain turned inside
+/// out, a number that is none, a lost contact, an error that stays), where and when, what governs the time step and the
+/// last good state.
 void check_time_step(const FailedStep& step, const State& accepted, const Forces& forces);
 
 /// Throws PhysicsError when the scene cannot start from its initial positions.

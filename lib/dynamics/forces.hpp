@@ -19,8 +19,8 @@ struct Evaluation {
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
 
-/// What an integrator does with the new forces of a region, an index in Model::regions, while they are in the cache. Called by several threads
-/// at once.
+/// What an integrator does with the new forces of a region, an index in Model::regions, while they are in the cache.
+/// Called by several threads at once.
 using RegionWork = std::function<void(int region)>;
 
 /// All forces on all degrees of freedom for given positions.
@@ -33,8 +33,9 @@ class Forces {
     bool found_anew = false;
     bool hold = true;  ///< false for a trial that goes further than the skin at once
   };
-  /// Makes sure that the candidates hold for the outlines of a trial that ends at `time`. If they do not, they are found anew, at the accepted
-  /// state, whose history is laid out anew and keeps its records: a rejected trial loses none.
+  /// Makes sure that the candidates hold for the outlines of a trial that ends at `time`. If they do not, they are
+  /// found anew, at the accepted state, whose history is laid out anew and keeps its records: a rejected trial loses
+  /// none.
   Candidates ensure_candidates(State& accepted, const OutlineField& trial, double time);
 
   /// What an evaluation writes.
@@ -43,7 +44,8 @@ class Forces {
     OutlineField& contact_force;  ///< N/m
     Memory& memory;               ///< that goes with these positions
   };
-  /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of each region.
+  /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of
+  /// each region.
   Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
                       const RegionWork& afterwards = {});
 

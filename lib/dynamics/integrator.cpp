@@ -21,7 +21,8 @@ double work_on_outlines(const Model& model, const State& state, const Trial& tri
   return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time, true});
 }
 
-/// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of the springs that come or go.
+/// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of
+/// the springs that come or go.
 void pass_switch(const Model& model, State& state) {
   const Instant before{state.time, true}, after{state.time};
   state.external_work += support_energy(model, state.position, after) - support_energy(model, state.position, before);
@@ -39,7 +40,7 @@ Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
   const Motion motion{state.position, velocity, state.time};
   show_outlines(forces.model(), motion, state.outlines);
   forces.ensure_candidates(state, state.outlines.position, state.time);
-  return forces.evaluate(motion, state.outlines, state.memory, {trial.force, trial.contact_force, trial.memory});
+  return forces.evaluate(motion, state.outlines, {state.memory}, {trial.force, trial.contact_force, trial.memory});
 }
 
 Evaluation find_forces(Forces& forces, State& state) {

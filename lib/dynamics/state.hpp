@@ -26,8 +26,7 @@ struct Memory {
 /// A memory, and how long ago it was, s.
 struct Recall {
   const Memory& memory;
-  double elapsed;
-  Recall(const Memory& memory, double elapsed = 0) : memory(memory), elapsed(elapsed) {}
+  double elapsed = 0;
 };
 
 /// Before anything has happened.

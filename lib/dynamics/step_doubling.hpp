@@ -6,9 +6,10 @@
 
 namespace pliant {
 
-/// The paper's scheme (docs/method.md 6): semi-implicit Euler once with dt (u1) and twice with dt/2 (u2, kept), controlled by
-/// err = max |u2 - u1| / d over all field nodes and rigid outline nodes. Two force evaluations a step. It knows no stability limit. Loads act with their
-/// mean over each half step, forces that depend on velocities see those of its start.
+/// The paper's scheme (docs/method.md 6): semi-implicit Euler once with dt (u1) and twice with dt/2 (u2, kept),
+/// controlled by err = max |u2 - u1| / d over all field nodes and rigid outline nodes. Two force evaluations a step. It
+/// knows no stability limit. Loads act with their mean over each half step, forces that depend on velocities see those
+/// of its start.
 class StepDoubling {
  public:
   StepDoubling(Forces& forces, const State& state);

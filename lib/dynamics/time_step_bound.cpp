@@ -24,7 +24,8 @@ constexpr double internal_margin = 1.05;
 constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.
 constexpr double probe_size = 1e-6;
-/// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least, 3.716, at z = 0.87.
+/// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least,
+/// 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
 
 /// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
@@ -128,7 +129,8 @@ std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector
   return result;
 }
 
-/// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It does not depend on the angle.
+/// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It
+/// does not depend on the angle.
 double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, const double* stiffness) {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
   for (int k = 0; k < outline.count; ++k) {
@@ -290,9 +292,10 @@ double TimeStepBound::damping(std::size_t b) const {
   return damping_[b] + (viscous ? internal_margin * viscous_[body.batch][body.lane] : 0.0);
 }
 
-/// Dashpots see the velocity v + dt a that the step's first acceleration a predicts for its end, so a mode x of rate c follows
-/// x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from w^2 dt^2 + 4 c dt = 4 on: dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w.
-/// The forms of stiffness, damping and mass are symmetric, so the largest w^2 and the largest c bound all modes.
+/// Dashpots see the velocity v + dt a that the step's first acceleration a predicts for its end, so a mode x of rate c
+/// follows x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from w^2 dt^2 + 4 c dt = 4 on:
+/// dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w. The forms of stiffness, damping and mass are symmetric, so the largest
+/// w^2 and the largest c bound all modes.
 double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const {
   const double w2 = total(b, contact_factor), c = damping(b);
   const double square = limit_square_[b];

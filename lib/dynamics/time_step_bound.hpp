@@ -9,8 +9,9 @@
 
 namespace pliant {
 
-/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6 with z for 2 z, where dashpots see the
-/// velocity of the half step): w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
+/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6 with
+/// z for 2 z, where dashpots see the velocity of the half step): w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z
+/// = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);
@@ -20,7 +21,8 @@ class TimeStepBound {
   /// The a-priori contact bound, for new contact candidates.
   void update_contact(const ContactSystem& contact);
 
-  /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much stiffer.
+  /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much
+  /// stiffer.
   double largest_dt() const { return limit_.dt; }
   double largest_dt(double contact_factor) const { return limit(contact_factor).dt; }
   /// Name of the limiting body and share of contact in its w^2, for messages.

@@ -19,8 +19,8 @@ constexpr int bound_period = 50;     ///< steps between power iterations
 constexpr double first_step = 1e-3;  ///< of the bound
 constexpr double least_factor = 0.5, largest_factor = 1.15;
 constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in dt
-/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So a large error fades from
-/// memory over many of their periods only.
+/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So a
+/// large error fades from memory over many of their periods only.
 constexpr double fading = 0.99;
 /// Steps shorter than this part of what was wished for are not remembered. Of equal steps to an output none is.
 constexpr double least_share = 0.5;
@@ -46,7 +46,8 @@ Verlet::Verlet(Forces& forces, const State& state)
 
 double Verlet::first_dt() const { return first_step * std::min(largest_dt(), model_.scene.time.end); }
 
-/// Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations time and again.
+/// Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations
+/// time and again.
 Proposal Verlet::propose(const State& state, double next_dt, double until) const {
   const double largest = std::min(largest_dt(), model_.scene.time.end), wish = std::min(next_dt, largest);
   const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
@@ -75,7 +76,8 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
 Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
   const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, wish = proposal.wish;
   if (!(report.error <= 2 * tolerance)) return {false, dt * controller_factor(report.error, tolerance)};
-  // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that changes as shortly.
+  // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that
+  // changes as shortly.
   if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
   const double next_dt = wish * controller_factor(state.jerk * wish * wish * wish, tolerance);
   return {true, std::min(next_dt, proposal.largest_dt)};
@@ -139,8 +141,9 @@ void Verlet::move_by_mean_velocity(const State& state, double dt) {
       });
 }
 
-/// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is accepted, because the forces come
-/// out of the cache then. Drag joins them at the end: the errors of the step are those of all others, which the step takes for constant.
+/// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is
+/// accepted, because the forces come out of the cache then. Drag joins them at the end: the errors of the step are
+/// those of all others, which the step takes for constant.
 void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];

@@ -5,9 +5,10 @@
 
 namespace pliant {
 
-/// Velocity Verlet with a stability bound and a free error control (docs/method.md 6): one force evaluation a step. Of second order with forces that depend
-/// on velocities too: drag (dynamics/drag.hpp) slows the motion by its exact exponential, all others see the velocity that the accelerations so far
-/// predict for the end of the step.
+/// Velocity Verlet with a stability bound and a free error control (docs/method.md 6): one force evaluation a step. Of
+/// second order with forces that depend
+/// on velocities too: drag (dynamics/drag.hpp) slows the motion by its exact exponential, all others see the velocity
+/// that the accelerations so far predict for the end of the step.
 class Verlet {
  public:
   Verlet(Forces& forces, const State& state);

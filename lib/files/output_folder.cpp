@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -116,6 +117,10 @@ void empty_output_folder(const fs::path& folder, const std::set<std::string>& ke
 void prepare_output_folder(const fs::path& folder, bool overwrite) {
   check_output_folder(folder, overwrite);
   empty_output_folder(folder);
+}
+
+void tell_output_folder(const fs::path& folder) {
+  if (const char* file = std::getenv("PLIANT_TELL_FOLDER")) write_file_atomically(file, folder.string() + "\n");
 }
 
 void remove_temporary_files(const fs::path& folder) {

@@ -26,8 +26,8 @@ struct PlacedBody {
 /// The same on any number of threads. Throws InputError for packings that cannot be made.
 std::vector<PlacedBody> place_bodies(Scene& scene);
 
-/// Outline of a wall, [nodes], as wall_outline gives it, y from the wall's level. `finest`: mean segment of the finest outline of
-/// the grains, the spacing of walls that give none. Throws InputError for more than a million nodes.
+/// Outline of a wall, [nodes], as wall_outline gives it, y from the wall's level. `finest`: mean segment of the finest
+/// outline of the grains, the spacing of walls that give none. Throws InputError for more than a million nodes.
 Points wall_points(const Scene& scene, const Wall& wall, double finest);
 
 }  // namespace pliant

@@ -12,13 +12,14 @@
 namespace pliant {
 namespace {
 
-// Grains keep this distance, over the mean radius of the circles around them: it hides the errors of distance tables and of
-// an unfinished relaxation, and costs about 1 % of solid fraction.
+// Grains keep this distance, over the mean radius of the circles around them: it hides the errors of distance tables
+// and of an unfinished relaxation, and costs about 1 % of solid fraction.
 constexpr double clearance = 0.01;
 // A stage is over when no node lies deeper in the clearance than this share of it.
 constexpr double settled = 0.9;
 constexpr double skin = 0.3;  // of the mean radius: neighbours further off are not watched
-// A node pushes with its share of the outline, so that a contact has a stiffness of some 0.1 and a grain one of 1 in all.
+// A node pushes with its share of the outline, so that a contact has a stiffness of some 0.1 and a grain one of 1 in
+// all.
 constexpr double first_step = 0.3, longest_step = 1.5;
 
 }  // namespace

@@ -8,10 +8,10 @@
 
 namespace pliant {
 
-/// Grains that repel each other and the edges of their region where they are nearer than a small clearance, and so slide
-/// into the gaps until no two overlap. Penalties act between the nodes of one outline and the signed distance from the
-/// other, the minimum is sought by FIRE (E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201). The same bits on any
-/// number of threads. Lengths inside are in units of the mean radius of the circles around the grains.
+/// Grains that repel each other and the edges of their region where they are nearer than a small clearance, and so
+/// slide into the gaps until no two overlap. Penalties act between the nodes of one outline and the signed distance
+/// from the other, the minimum is sought by FIRE (E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201). The same bits
+/// on any number of threads. Lengths inside are in units of the mean radius of the circles around the grains.
 class GrainRelaxation {
  public:
   /// `grains`: at their full size, wherever they are; outlines of their shapes by index. Both outlive the relaxation.

@@ -23,7 +23,8 @@ PolygonProperties polygon_properties(const Points& polygon);
 /// Outline of a shape: a counter-clockwise closed polygon about its centroid; a disc's has the area of the circle.
 Points make_outline(const ShapeSpec& shape);
 
-/// Outline and relaxed interior nodes, constrained Delaunay triangulation. Throws InputError (self-intersection, too few nodes).
+/// Outline and relaxed interior nodes, constrained Delaunay triangulation. Throws InputError (self-intersection, too
+/// few nodes).
 FieldMesh make_field_mesh(const ShapeSpec& shape);
 
 /// The outline alone, triangulated without interior nodes (rigid bodies, for pictures only).

@@ -13,8 +13,9 @@
 namespace pliant {
 namespace {
 
-// The circles around the grains cover this share of the region at the start, where random places without overlap are easily
-// found. From there grains grow bit by bit, so that none ever lies deep in another, where the way out would be unclear.
+// The circles around the grains cover this share of the region at the start, where random places without overlap are
+// easily found. From there grains grow bit by bit, so that none ever lies deep in another, where the way out would be
+// unclear.
 constexpr double first_coverage = 0.2;
 constexpr double fastest_growth = 1.15, slowest_growth = 1.01;
 constexpr int tries = 1000;

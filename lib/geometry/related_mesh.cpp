@@ -63,8 +63,8 @@ MeshTemplate::MeshTemplate(MeshTemplate&&) noexcept = default;
 
 namespace {
 
-/// Distortion of a mesh against its template, triangle by triangle with F the linear map between them: |F|^2 / (2 J) + (J + 1/J) / 2, least
-/// where angles and areas are kept, infinite where a triangle loses its area.
+/// Distortion of a mesh against its template, triangle by triangle with F the linear map between them: |F|^2 / (2 J) +
+/// (J + 1/J) / 2, least where angles and areas are kept, infinite where a triangle loses its area.
 class Distortion {
  public:
   /// `scale`: lengths of the mesh over the template's.

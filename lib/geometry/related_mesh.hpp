@@ -7,10 +7,11 @@
 
 namespace pliant {
 
-/// A disc's mesh that is carried over to other smooth shapes with as many outline nodes: same triangles, so that tables of these shapes share
-/// their connectivity. The interior first follows its outline by the discrete harmonic map (weights of Pinkall and Polthier 1993, positive for a
-/// Delaunay mesh), which keeps triangles from overlapping where the outline is convex or nearly so, and is then smoothed: triangles keep the
-/// template's angles and areas as well as they can together.
+/// A disc's mesh that is carried over to other smooth shapes with as many outline nodes: same triangles, so that tables
+/// of these shapes share their connectivity. The interior first follows its outline by the discrete harmonic map
+/// (weights of Pinkall and Polthier 1993, positive for a Delaunay mesh), which keeps triangles from overlapping where
+/// the outline is convex or nearly so, and is then smoothed: triangles keep the template's angles and areas as well as
+/// they can together.
 class MeshTemplate {
  public:
   MeshTemplate(int nodes, int outline_nodes);

@@ -13,8 +13,8 @@ namespace {
 // Stops when no node moves by more than this share of the spacing: far below what changes a triangle's quality.
 constexpr double settled = 1e-4;
 constexpr int max_sweeps = 300;
-// A large mesh is mended near its outline after few sweeps, and to even out its inside would take thousands: with 30 of them the least angle of
-// 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
+// A large mesh is mended near its outline after few sweeps, and to even out its inside would take thousands: with 30 of
+// them the least angle of 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
 constexpr int min_sweeps = 30;
 constexpr double node_sweeps = 1.5e6;  // of all sweeps, from 5,000 nodes on
 // Least distance to the outline, in outline spacings; equilateral triangles would have 0.87.

@@ -45,8 +45,8 @@ ShapeSpec fitted_shape(const ShapeSpec& shape, const Points& cell, std::size_t n
   return fitted;
 }
 
-/// The common factor on all sizes at which the grains, none larger than its cell allows, cover `wanted` m2 (bisection: the area
-/// grows with it).
+/// The common factor on all sizes at which the grains, none larger than its cell allows, cover `wanted` m2 (bisection:
+/// the area grows with it).
 double common_factor(const std::vector<Placement>& grains, const std::vector<CellFit>& fits,
                      const std::vector<double>& areas, double wanted) {
   double low = 0, high = 0;

@@ -17,4 +17,15 @@ inline LameConstants<double> lame_constants(const Material& material) {
   return lame_constants(material.young, material.poisson);
 }
 
+/// What laws have in common whose constants are these two: such a Law derives from it (materials/respond.hpp).
+template <template <class> class Law, class T>
+struct LameLaw : LameConstants<T> {
+  static Law<T> of(const Material& material) { return {{lame_constants(material)}}; }
+  template <class W>
+  Law<T> weighted(W w) const {
+    return {{{w * this->mu, w * this->lambda}}};
+  }
+  LameConstants<T> small_strains() const { return *this; }
+};
+
 }  // namespace pliant

@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// Kelvin-Voigt damping (docs/method.md 3): second Piola stress S = 2 viscosity E_dot, P = F S, E_dot = sym(F^T F_dot), which
-/// vanishes in rigid motions, in parallel with another law. It dissipates 2 viscosity E_dot : E_dot.
+/// Kelvin-Voigt damping (docs/method.md 3): second Piola stress S = 2 viscosity E_dot, P = F S, E_dot = sym(F^T F_dot),
+/// which vanishes in rigid motions, in parallel with another law. It dissipates 2 viscosity E_dot : E_dot.
 template <class Law, class T>
 struct KelvinVoigt : Law {
   static constexpr bool has_rate = true;

@@ -9,17 +9,8 @@ namespace pliant {
 /// lambda tr(e) I with the strain e = sym(F - I). Not objective: a rotation by r counts as a strain of r^2/2, so
 /// bodies must start unturned (F = I) and hardly turn.
 template <class T>
-struct LinearElastic {
-  T mu, lambda;  ///< Pa
-  static LinearElastic of(const Material& material) {
-    const auto [mu, lambda] = lame_constants(material);
-    return {mu, lambda};
-  }
-  template <class W>
-  LinearElastic weighted(W w) const {
-    return {w * mu, w * lambda};
-  }
-  LameConstants<T> small_strains() const { return {mu, lambda}; }
+struct LinearElastic : LameLaw<LinearElastic, T> {
+  using LameConstants<T>::mu, LameConstants<T>::lambda;
 
   Response<T> respond(const Tensor<T>& F) const {
     const T shear = mu * (F.xy + F.yx), volume = lambda * (F.xx + F.yy - 2.0);

@@ -6,20 +6,11 @@
 
 namespace pliant {
 
-/// The form used by the code MELODY (docs/method.md 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2 mu/3;
-/// P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
+/// The form used by the code MELODY (docs/method.md 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2
+/// mu/3; P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
 template <class T>
-struct Melody {
-  T mu, lambda;  ///< Pa
-  static Melody of(const Material& material) {
-    const auto [mu, lambda] = lame_constants(material);
-    return {mu, lambda};
-  }
-  template <class W>
-  Melody weighted(W w) const {
-    return {w * mu, w * lambda};
-  }
-  LameConstants<T> small_strains() const { return {mu, lambda}; }
+struct Melody : LameLaw<Melody, T> {
+  using LameConstants<T>::mu, LameConstants<T>::lambda;
 
   Response<T> respond(const Tensor<T>& F) const {
     const T J = determinant(F);

@@ -9,17 +9,8 @@ namespace pliant {
 /// Compressible neo-Hookean solid in plane strain (docs/method.md 3):
 /// psi = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (ln J)^2,  P = mu F + (lambda ln J - mu)/J cof F.
 template <class T>
-struct NeoHookean {
-  T mu, lambda;  ///< Pa
-  static NeoHookean of(const Material& material) {
-    const auto [mu, lambda] = lame_constants(material);
-    return {mu, lambda};
-  }
-  template <class W>
-  NeoHookean weighted(W w) const {
-    return {w * mu, w * lambda};
-  }
-  LameConstants<T> small_strains() const { return {mu, lambda}; }
+struct NeoHookean : LameLaw<NeoHookean, T> {
+  using LameConstants<T>::mu, LameConstants<T>::lambda;
 
   Response<T> respond(const Tensor<T>& F) const {
     const T J = determinant(F);

@@ -9,17 +9,8 @@ namespace pliant {
 /// Neo-Hookean solid with a quadratic volume term (docs/method.md 3), no logarithm in the stress:
 /// psi = mu/2 (I1 - 3 - 2 ln J) + lambda/2 (J - 1)^2,  P = mu F + (lambda (J - 1) - mu/J) cof F.
 template <class T>
-struct NeoHookeanQuadratic {
-  T mu, lambda;  ///< Pa
-  static NeoHookeanQuadratic of(const Material& material) {
-    const auto [mu, lambda] = lame_constants(material);
-    return {mu, lambda};
-  }
-  template <class W>
-  NeoHookeanQuadratic weighted(W w) const {
-    return {w * mu, w * lambda};
-  }
-  LameConstants<T> small_strains() const { return {mu, lambda}; }
+struct NeoHookeanQuadratic : LameLaw<NeoHookeanQuadratic, T> {
+  using LameConstants<T>::mu, LameConstants<T>::lambda;
 
   Response<T> respond(const Tensor<T>& F) const {
     const T J = determinant(F);

@@ -15,16 +15,17 @@ struct Response {
 
 /// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first, and answers
 ///
-///     Response<T> respond(F) const;              or respond(F, rate) if it `has_rate`, dF/dt, 1/s,
-///                                                or respond(F, old, now) if it remembers something (core/remembered.hpp)
-///     T energy(F) const;                         stored per reference volume, J/m3; or energy(F, record)
-///     double sigma_zz(F) const;                  Cauchy stress out of the plane, Pa
-///     Law weighted(w) const;                     of w times as much material: with its constants in Pa times w, to which
-///                                                stresses, energies and powers are proportional
-///     LameConstants small_strains() const;       Pa, at once, before anything relaxes
-///     static Law of(const Material&);            of one material
+///     Response<T> respond(F) const;            or respond(F, old, now) if it remembers (core/remembered.hpp),
+///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
+///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
+///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
+///     Law weighted(w) const;                   of w times as much material: with its constants in Pa times w, to which
+///                                              stresses, energies and powers are proportional
+///     LameConstants<T> small_strains() const;  at once, before anything relaxes
+///     static Law of(const Material&);          of one material
 ///
-/// A law that remembers has Law over(elapsed), as it answers so long after what it remembers, s; and dissipates.
+/// A law of the two Lame constants alone inherits the last three (LameLaw in elastic_constants.hpp). One that remembers
+/// has Law over(elapsed) too, as it answers so long after what it remembers, s; it dissipates.
 template <class Law, class T>
 Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
                     Record<Law, T>& now) {

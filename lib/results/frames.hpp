@@ -8,8 +8,8 @@
 
 namespace pliant {
 
-/// frames.h5 and frames.xdmf: grid "bodies" (triangles of all grains) and grid "outlines" (segments of all bodies), with
-/// the fields that the scene asks for and no others. Positions are not wrapped into the period.
+/// frames.h5 and frames.xdmf: grid "bodies" (triangles of all grains) and grid "outlines" (segments of all bodies),
+/// with the fields that the scene asks for and no others. Positions are not wrapped into the period.
 class FrameRecorder {
  public:
   FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// The line that says how a run is doing: time, dt and what governs it, evaluations per second, energy balance, time left.
-/// Redrawn every second on a terminal, a line every ten seconds otherwise.
+/// The line that says how a run is doing: time, dt and what governs it, evaluations per second, energy balance, time
+/// left. Redrawn every second on a terminal, a line every ten seconds otherwise.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);

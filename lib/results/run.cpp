@@ -137,8 +137,8 @@ nlohmann::json summary_in(const fs::path& folder) {
   return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
 }
 
-/// Whether the folder's last run left it in order at this checkpoint. One that was killed after its last checkpoint, but
-/// before its summary was written and its lock removed, did not.
+/// Whether the folder's last run left it in order at this checkpoint. One that was killed after its last checkpoint,
+/// but before its summary was written and its lock removed, did not.
 bool ended_in_order(const fs::path& folder, const Checkpoint& checkpoint) {
   const nlohmann::json summary = summary_in(folder);
   return summary.is_object() && summary.value("status", "running") != "running" &&

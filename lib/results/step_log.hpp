@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-/// steps.csv: every accepted step of the first 200,000, then every tenth. Rejections and evaluations count from the start.
+/// steps.csv: every accepted step of the first 200,000, then every tenth. Rejections and evaluations count from the
+/// start.
 class StepLog {
  public:
   explicit StepLog(const std::filesystem::path& folder, Opening opening = Opening::create)

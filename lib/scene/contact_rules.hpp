@@ -22,7 +22,8 @@ ContactParty contact_party(const Scene& scene, const std::string& material, cons
 /// All parties of the scene, sorted, each once.
 std::vector<ContactParty> contact_parties(const Scene& scene);
 
-/// The rule of a pair. A side of a rule that names grains or a wall counts 2, a material 1, "all" 0: the largest sum wins.
+/// The rule of a pair. A side of a rule that names grains or a wall counts 2, a material 1, "all" 0: the largest sum
+/// wins.
 struct RuleMatch {
   const ContactRule* rule = nullptr;   ///< nullptr: none applies
   const ContactRule* rival = nullptr;  ///< another of the same sum: the scene does not say which holds

@@ -16,8 +16,9 @@ Points regular_polygon(int sides, double diameter);
 /// Ellipse of the given axes, counter-clockwise, its polygon of the ellipse's area.
 Points ellipse(double width, double height);
 
-/// Fourier grain (Mollon and Zhao 2012, doi 10.1007/s10035-012-0356-x): polar radius 1 + sum_n D_n cos(n theta + phase_n), n = 2 on, phases
-/// random by seed, scaled to the area of a circle of `diameter`. Empty when the radius is not positive all round.
+/// Fourier grain (Mollon and Zhao 2012, doi 10.1007/s10035-012-0356-x): polar radius 1 + sum_n D_n cos(n theta +
+/// phase_n), n = 2 on, phases random by seed, scaled to the area of a circle of `diameter`. Empty when the radius is
+/// not positive all round.
 Points fourier_grain(double diameter, const std::vector<double>& descriptors, std::int64_t seed);
 
 /// The same with given phases, rad, one a descriptor.

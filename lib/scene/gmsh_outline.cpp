@@ -28,7 +28,8 @@ struct Mesh {
 
 Edge edge_of(int a, int b) { return std::minmax(a, b); }
 
-/// Reads the sections of a gmsh file, https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format (4.1) and #MSH-file-format-version-2.
+/// Reads the sections of a gmsh file, https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format (4.1) and
+/// #MSH-file-format-version-2.
 class GmshReader {
  public:
   GmshReader(const std::string& file, const std::string& text) : reader_(file, text) {}

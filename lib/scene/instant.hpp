@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// A time, and from which side a step looks at it. What sets in or ends just then has not done so yet for the step that ends there, and has for the
-/// next one.
+/// A time, and from which side a step looks at it. What sets in or ends just then has not done so yet for the step that
+/// ends there, and has for the next one.
 struct Instant {
   double time = 0;         ///< s
   bool ends_step = false;  ///< else it begins one

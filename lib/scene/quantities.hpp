@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-/// What a probe may measure: everything but the function, which results/probes/probe_functions.cpp holds under the same name.
+/// What a probe may measure: everything but the function, which results/probes/probe_functions.cpp holds under the same
+/// name.
 struct ProbeQuantity {
   enum class Of { whole, walls, grains, compliant, any };  ///< `any`: walls and grains
 

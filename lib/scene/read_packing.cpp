@@ -68,7 +68,8 @@ int count_for(const TableReader& table, const Scene& scene, const Grains& grains
   return static_cast<int>(count);
 }
 
-/// Either key says how many grains of their own size there are; with both, grains take the size that fits, where they may.
+/// Either key says how many grains of their own size there are; with both, grains take the size that fits, where they
+/// may.
 void read_filling(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
   read_region(table, scene, packing);
   const bool sized = packing.kind == PackingKind::random;

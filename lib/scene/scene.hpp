@@ -177,7 +177,8 @@ struct OutlinePart {
   Vec2 side{0, 0};               ///< side: outward normals less than 45 degrees from this direction
 };
 
-/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines (docs/method.md 5).
+/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines
+/// (docs/method.md 5).
 struct BoundaryCondition {
   enum class Kind { drive, pressure, support } kind = Kind::drive;
   std::string grains;                         ///< name of a set of grains ...

@@ -50,7 +50,8 @@ struct ContactElement {
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
-/// What the energy of a contact adds where the length that its node stands for changes with the places of seven nodes: see NodeLength.
+/// What the energy of a contact adds where the length that its node stands for changes with the places of seven nodes:
+/// see NodeLength.
 struct LengthElement {
   std::array<int, 7> node;                ///< in the list of all outline nodes
   Eigen::Matrix<double, 14, 1> force;     ///< residual, N/m

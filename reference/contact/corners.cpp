@@ -56,8 +56,8 @@ bool is_beyond(const Face& master, int segment, const SlaveNode& node) {
          (master.corners.at(segment + 1) && is_past(master, segment + 1, 1, node.at));
 }
 
-/// The segment of the face beyond a corner that the node stands beside. One that is a corner itself may also stand inside
-/// a blunt corner, past the beginning of that face.
+/// The segment of the face beyond a corner that the node stands beside. One that is a corner itself may also stand
+/// inside a blunt corner, past the beginning of that face.
 std::optional<int> beside_face(const Face& master, int corner, int way, const SlaveNode& node, double outward) {
   int segment = way < 0 ? corner - 1 : corner;
   if (is_past(master, corner, -way, node.at))

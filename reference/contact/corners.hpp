@@ -49,8 +49,9 @@ struct Face {
   double sight = 0;  ///< how far along a face its corner counts: the lesser of both outlines' longest segments, m
 };
 
-/// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its neighbour after, the segment's
-/// two, and the corners before and after it that are less than two of the slave's segments away.
+/// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its
+/// neighbour after, the segment's two, and the corners before and after it that are less than two of the slave's
+/// segments away.
 struct NodeLength {
   Jet<14> value;  ///< m
   int corner[2]{
@@ -63,8 +64,8 @@ struct Footing {
   NodeLength length;
 };
 
-/// Of a node that stands beside the given segment (docs/method.md 4): that one, or beyond a near corner one of the next face,
-/// where the node would store more; none beyond a corner that ends the face.
+/// Of a node that stands beside the given segment (docs/method.md 4): that one, or beyond a near corner one of the next
+/// face, where the node would store more; none beyond a corner that ends the face.
 std::optional<Footing> footing(const Face& master, int segment, const SlaveNode& node, double outward);
 
 }  // namespace pliant::reference

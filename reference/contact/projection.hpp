@@ -44,8 +44,8 @@ inline JetVector unit(const JetVector& a) {
   return {a.x / length, a.y / length};
 }
 
-/// Of the segments [first, first + count) whose wedge between the bisectors holds a point the one with the least height; for points steeply beyond
-/// an end, and not higher than `outward`, the one that is truly nearest.
+/// Of the segments [first, first + count) whose wedge between the bisectors holds a point the one with the least
+/// height; for points steeply beyond an end, and not higher than `outward`, the one that is truly nearest.
 struct Nearest {
   int segment = 0;
   double height = 0;  ///< outside positive, m
@@ -53,7 +53,8 @@ struct Nearest {
 std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point,
                                        double outward);
 
-/// A point against a segment, by the coordinates of the point and of the segment's first and second node (docs/method.md 4).
+/// A point against a segment, by the coordinates of the point and of the segment's first and second node
+/// (docs/method.md 4).
 struct Projection {
   Jet<6> gap;     ///< m
   Jet<6> height;  ///< over the segment's line, m

@@ -75,8 +75,8 @@ int old_segment(const PresentOutline& master, int remembered, int segment) {
   return remembered + turns * master.count();
 }
 
-/// Between the flanks of a fold: the displacement, the old gap taken as the present one, along the mean of the tangents at its ends. Derivatives by
-/// the old segment's nodes are left out: a Newton step over a fold converges slower.
+/// Between the flanks of a fold: the displacement, the old gap taken as the present one, along the mean of the tangents
+/// at its ends. Derivatives by the old segment's nodes are left out: a Newton step over a fold converges slower.
 Jet<6> across_fold(const PresentOutline& master, const ContactMemory& memory, int old, int segment,
                    const Projection& now) {
   const JetVector a = JetVector::point(master.node(segment), 1), b = JetVector::point(master.node(segment + 1), 2);

@@ -7,9 +7,9 @@
 
 namespace pliant::reference {
 
-/// Moving least squares of a linear basis over scattered nodes (docs/method.md 2): cubic spline weights, a node's radius its
-/// distance to the `support`-th nearest other node. Every place is a dense least squares problem of its own, solved by
-/// orthogonalisation; gradients come from differentiating that whole solution.
+/// Moving least squares of a linear basis over scattered nodes (docs/method.md 2): cubic spline weights, a node's
+/// radius its distance to the `support`-th nearest other node. Every place is a dense least squares problem of its own,
+/// solved by orthogonalisation; gradients come from differentiating that whole solution.
 class MovingLeastSquares {
  public:
   /// `nodes` in lengths of about the node distance: rounding is then the same for all sizes. Throws InputError when

@@ -32,7 +32,8 @@ struct Space {
   Eigen::SparseMatrix<double> consistent;  ///< [nodes x nodes], density 1, m2
 };
 
-/// Discretises a mesh by the scene's recipe. Throws InputError for `rpim`, which this solver does not have, and for meshes without a solution.
+/// Discretises a mesh by the scene's recipe. Throws InputError for `rpim`, which this solver does not have, and for
+/// meshes without a solution.
 Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings);
 
 }  // namespace pliant::reference

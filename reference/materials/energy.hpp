@@ -42,7 +42,8 @@ Scalar linear_elastic_energy(const Moduli& m, const Deformation<Scalar>& F) {
   return m.mu * (xx * xx + yy * yy + zz * zz + 2.0 * xy * xy) + 0.5 * m.lambda * trace * trace;
 }
 
-/// Strain energy per reference volume, Pa (docs/method.md 3), of what never relaxes. Not a number where J <= 0, but for `linear_elastic`.
+/// Strain energy per reference volume, Pa (docs/method.md 3), of what never relaxes. Not a number where J <= 0, but for
+/// `linear_elastic`.
 template <class Scalar>
 Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   using std::log, std::pow;
@@ -79,8 +80,10 @@ Symmetric<Scalar> inverse_metric(const Deformation<Scalar>& F) {
           (F.xx * F.xx + F.yx * F.yx) / square};
 }
 
-/// What a Maxwell branch stores per reference volume, Pa: neo-Hookean in the part of the strain that its dashpot has not taken up, G the inverse of
-/// that, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt = ((F^T F)^-1 - G) / relaxation time.
+/// What a Maxwell branch stores per reference volume, Pa: neo-Hookean in the part of the strain that its dashpot has
+/// not taken up, G the inverse of
+/// that, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt = ((F^T F)^-1 - G) /
+/// relaxation time.
 template <class Scalar>
 Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, const Symmetric<Scalar>& G) {
   using std::log;
@@ -89,8 +92,9 @@ Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, con
   return 0.5 * material.branch_modulus * (trace - 3.0 - 2.0 * log(jacobian(F)) - log(G.xx * G.yy - G.xy * G.xy));
 }
 
-/// Kelvin-Voigt damping (docs/method.md 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot : E_dot. Its derivative by the rate
-/// of F is F S with the second Piola stress S = 2 eta E_dot. E: Green-Lagrange strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
+/// Kelvin-Voigt damping (docs/method.md 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot
+/// : E_dot. Its derivative by the rate of F is F S with the second Piola stress S = 2 eta E_dot. E: Green-Lagrange
+/// strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
 template <class Scalar>
 Scalar viscous_potential(double viscosity, const Deformation<Scalar>& F, const Deformation<Scalar>& rate) {
   const Scalar xx = F.xx * rate.xx + F.yx * rate.yx, yy = F.xy * rate.xy + F.yy * rate.yy;

@@ -57,7 +57,8 @@ Eigen::SparseMatrix<double> InternalForces::at_nodes(const std::vector<Eigen::Ma
   return Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
 }
 
-/// dG/dt by the trapezoidal rule: G = (1 - 2 s) G_old + s (goal_old + goal), s = z / (2 + z), z the time over the relaxation time.
+/// dG/dt by the trapezoidal rule: G = (1 - 2 s) G_old + s (goal_old + goal), s = z / (2 + z), z the time over the
+/// relaxation time.
 void InternalForces::add_branch(Eigen::Index point, const Deformation<double>& F, double elapsed,
                                 Eigen::Vector4d& stress, Eigen::Matrix4d& stiffness, InternalState& state) const {
   const BranchPoint& old = branch_[std::size_t(point)];

@@ -9,7 +9,8 @@
 
 namespace pliant::reference {
 
-/// A Maxwell branch at one point: the inverse of the strain that its dashpot has taken up, and what that creeps towards.
+/// A Maxwell branch at one point: the inverse of the strain that its dashpot has taken up, and what that creeps
+/// towards.
 struct BranchPoint {
   Symmetric<double> viscous, goal;
 };
@@ -45,8 +46,8 @@ class InternalForces {
  public:
   InternalForces(const Space& space, const Material& material, double size, double angle);
 
-  /// At positions q, m, from any origin, so long after what the points remember, s. Where that is infinite, branches have relaxed. With a branch the
-  /// tangent is not symmetric.
+  /// At positions q, m, from any origin, so long after what the points remember, s. Where that is infinite, branches
+  /// have relaxed. With a branch the tangent is not symmetric.
   InternalState evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed = 0) const;
   /// From then on the points remember this.
   void accept(std::vector<BranchPoint> branch) { branch_ = std::move(branch); }
@@ -63,7 +64,8 @@ class InternalForces {
   template <class Scalar>
   Deformation<Scalar> measured(const Deformation<Scalar>& F) const;
 
-  /// Adds what the branch of a point does over some time, from its deformation on, to its stress, stiffness and energy by area.
+  /// Adds what the branch of a point does over some time, from its deformation on, to its stress, stiffness and energy
+  /// by area.
   void add_branch(Eigen::Index point, const Deformation<double>& F, double elapsed, Eigen::Vector4d& stress,
                   Eigen::Matrix4d& stiffness, InternalState& state) const;
 

@@ -10,8 +10,8 @@ from matplotlib.patches import Rectangle
 from matplotlib.tri import Triangulation
 
 from plots import units
-from plots.run_data import WALL
 from plots.scenery import Scenery
+from run_data import WALL
 
 KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
 EDGE = "#2b2b2b"

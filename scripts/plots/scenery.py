@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from plots.run_data import WALL, Frames, Run
 from plots.wrapping import body_shifts, edge_copies, wrapped_segments
+from run_data import WALL, Frames, Run
 
 
 @dataclass

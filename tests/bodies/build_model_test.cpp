@@ -191,7 +191,8 @@ TEST(InitialState, VelocityFields) {
   EXPECT_EQ(v.rigid, (std::vector<double>{0.5, -1, 2}));
 }
 
-// EXACT: bodies carry the shapes and sizes of their packing, in any kind of body; shapes fitted to cells join the scene's.
+// EXACT: bodies carry the shapes and sizes of their packing, in any kind of body; shapes fitted to cells join the
+// scene's.
 TEST(BuildModel, PackingsGiveShapesAndSizes) {
   Scene scene = mixed_scene(10, 4, {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}});
   scene.shapes.push_back(disc_shape("large", 1.2, 20, 50));

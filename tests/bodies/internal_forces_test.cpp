@@ -71,8 +71,8 @@ struct Loaded {
 
 const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody};
 
-// EXACT: f_i = - sum_g w_g P(F_g) b_gi in plain scalars, point after point, also for tables of very few points. Rounding of
-// some 100 terms of order 0.1.
+// EXACT: f_i = - sum_g w_g P(F_g) b_gi in plain scalars, point after point, also for tables of very few points.
+// Rounding of some 100 terms of order 0.1.
 TEST(InternalForces, AreTheSumOverThePoints) {
   Loaded loaded(ten_discs());
   const Batch& batch = loaded.model.batches[0];

@@ -1,4 +1,5 @@
-// Bodies of related shapes in the lanes of one batch against the same bodies spread, each by the table of its own shape.
+// Bodies of related shapes in the lanes of one batch against the same bodies spread, each by the table of its own
+// shape.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -126,7 +127,8 @@ TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {
   EXPECT_EQ(hashes[0], hashes[2]);
 }
 
-/// EXACT: the rule. Small scenes are left alone, as are shapes with many bodies, polygons and fewer than three relatives.
+/// EXACT: the rule. Small scenes are left alone, as are shapes with many bodies, polygons and fewer than three
+/// relatives.
 TEST(RelatedBodies, are_few_of_many_smooth_shapes) {
   Scene scene = heap(Recipe::es_t3, Integrator::verlet);
   const Model small = build_model(scene);  // 880 nodes

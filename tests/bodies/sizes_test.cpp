@@ -16,8 +16,8 @@ struct Grain {
   std::string material;
 };
 
-/// Two compliant discs of different size and material on a floor, a small and a large rigid one beside and above them, all in touch
-/// after a while, and two free ones that stretch and turn as they fly.
+/// Two compliant discs of different size and material on a floor, a small and a large rigid one beside and above them,
+/// all in touch after a while, and two free ones that stretch and turn as they fly.
 const std::vector<Grain> grains_of_all_sizes = {
     {1, BodyKind::compliant, {1.5, 0.99}, 0.3, "soft"},   {0.5, BodyKind::compliant, {2.92, 0.49}, 1.1, "tough"},
     {2.3, BodyKind::rigid, {6.5, 2.29}, 0.2, "hard"},     {0.5, BodyKind::rigid, {3.7, 1.05}, 0.7, "hard"},
@@ -55,7 +55,8 @@ BuildOptions sizes() {
   return options;
 }
 
-/// Tables of two sizes of a shape differ by the solver's 1e-12; what is compared below is of order 1, over some hundred steps.
+/// Tables of two sizes of a shape differ by the solver's 1e-12; what is compared below is of order 1, over some hundred
+/// steps.
 constexpr double rounding = 1e-9;
 
 class Sizes : public ::testing::TestWithParam<std::tuple<Integrator, Recipe>> {};

@@ -108,8 +108,8 @@ Dofs deformed(const Model& model, std::uint64_t seed) {
   return q;
 }
 
-/// EXACT: energies and least Jacobians of a state; forces are minus the gradient of the energy (central differences: 1e-10 of forces
-/// of order 1 by rounding over 1e-5, and 1e-9 by the third derivative).
+/// EXACT: energies and least Jacobians of a state; forces are minus the gradient of the energy (central differences:
+/// 1e-10 of forces of order 1 by rounding over 1e-5, and 1e-9 by the third derivative).
 TEST(SpreadForces, belong_to_the_energy) {
   for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
     const Model spread = build_model(pile(recipe), always_spread), lanes = build_model(pile(recipe), never_spread);
@@ -192,8 +192,8 @@ TEST(SpreadShape, is_the_table_in_another_order) {
     EXPECT_EQ(shape.unit_mass[n / 8][n % 8] * shape.inverse_unit_mass[n / 8][n % 8] > 0.99, true);
 }
 
-/// Neighbours in space are neighbours in memory: the mean distance of the places of nodes that share a point. The mesh's own order has
-/// a sixth of all nodes.
+/// Neighbours in space are neighbours in memory: the mean distance of the places of nodes that share a point. The
+/// mesh's own order has a sixth of all nodes.
 TEST(SpreadShape, keeps_neighbours_together) {
   const Model model = build_model(pile(Recipe::mls), always_spread);
   const SpreadShape& shape = model.spread_shapes[0];

@@ -1,4 +1,5 @@
-// Loads shorter than a step: impulses are those of the histories and windows, to rounding, with both integrators (docs/method.md 5).
+// Loads shorter than a step: impulses are those of the histories and windows, to rounding, with both integrators
+// (docs/method.md 5).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -149,7 +150,8 @@ TEST(Impulse, of_a_servo_wall) {
   EXPECT_EQ(rigid(simulation.state().velocity, 1)[1], v) << "EXACT: it flies on";
 }
 
-/// The dashpots of a support of which only the far end moves, by leaps shorter than a step, on a body that hardly gives: damping x length x way.
+/// The dashpots of a support of which only the far end moves, by leaps shorter than a step, on a body that hardly
+/// gives: damping x length x way.
 TEST(Impulse, of_a_support_whose_target_leaps) {
   Scene scene = two_boxes(Integrator::verlet, 3);
   BoundaryCondition support;
@@ -163,7 +165,8 @@ TEST(Impulse, of_a_support_whose_target_leaps) {
       << "EXACT: length 6, way 1; the body goes along by damping x length x way / mass x time, way and time 3 at most";
 }
 
-/// EXACT: a load that ends leaves no work unbooked, and what still acts at the time of its end has done half of nothing.
+/// EXACT: a load that ends leaves no work unbooked, and what still acts at the time of its end has done half of
+/// nothing.
 TEST(Impulse, of_windows_closes_the_books) {
   Scene scene = two_boxes(Integrator::verlet, 2);
   BoundaryCondition drive;

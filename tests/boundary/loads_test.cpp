@@ -128,8 +128,8 @@ TEST(Work, of_gravity_is_the_kinetic_energy_gained) {
   EXPECT_LT(simulation.balance_error(energy), 1e-11) << "EXACT";
 }
 
-/// EXACT: velocities get the integral of a linear history by the trapezoidal rule; both kinds of body. RATE: the work, as positions do not: at most
-/// dt^2 / 8 times the mass and all changes of g^2, 0.16 of x and 2 of y.
+/// EXACT: velocities get the integral of a linear history by the trapezoidal rule; both kinds of body. RATE: the work,
+/// as positions do not: at most dt^2 / 8 times the mass and all changes of g^2, 0.16 of x and 2 of y.
 TEST(Gravity, may_have_a_history) {
   Scene scene = falling(Integrator::verlet);
   scene.gravity_history = {{{0, 2}, {0, 0.4}}, {{0, 2}, {-1, 1}}};
@@ -164,8 +164,8 @@ TEST(Gravity, leaves_padding_lanes_alone) {
           << "rounding of internal forces at rest";
 }
 
-/// EXACT: the whole force until the load's end, none behind it, wherever the steps end; a step's work too much or too little, 2 a dt / v, where
-/// state.time + dt misses the end by a rounding.
+/// EXACT: the whole force until the load's end, none behind it, wherever the steps end; a step's work too much or too
+/// little, 2 a dt / v, where state.time + dt misses the end by a rounding.
 TEST(Work, of_a_load_that_ends_is_the_kinetic_energy) {
   for (int i = 1; i <= 40; ++i) {
     const double end = 0.1 + 0.037 * i;

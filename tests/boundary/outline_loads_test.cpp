@@ -40,8 +40,8 @@ double largest_force(const Bench& bench) {
 /// Nominal stress of a disc stretched by a in all directions, neo-Hookean: mu (a - 1/a) + 2 lambda ln(a)/a.
 double nominal_stress(double a) { return (a - 1 / a) + 4 * 2 * std::log(a) / a; }
 
-/// A disc of another size is in equilibrium everywhere, inside and at its nodes (docs/method.md 2, condition 2), with the
-/// pressure -P on its first outline, or -P/a on its present one.
+/// A disc of another size is in equilibrium everywhere, inside and at its nodes (docs/method.md 2, condition 2), with
+/// the pressure -P on its first outline, or -P/a on its present one.
 TEST(Pressure, holds_a_shrunken_disc_in_equilibrium) {
   for (const bool following : {true, false}) {
     constexpr double a = 0.8;
@@ -257,8 +257,9 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
   EXPECT_NEAR(observed_order(middle, fine), 2, 0.5) << "RATE";
 }
 
-/// A pulled square is let go at one side while the other holds on: what the books lose over the step of the release, over the energy in the
-/// springs that end. RATE: the cube of the step, as in any other; with the energy of the springs alone it is the first order.
+/// A pulled square is let go at one side while the other holds on: what the books lose over the step of the release,
+/// over the energy in the springs that end. RATE: the cube of the step, as in any other; with the energy of the springs
+/// alone it is the first order.
 TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
   const auto loss = [](double safety) {
     BoundaryCondition bottom = support_of("square", 5, 0), top = bottom;

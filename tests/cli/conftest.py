@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +13,9 @@ import pytest
 ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
 REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
+sys.path.insert(0, str(ROOT / "scripts"))
+
+from run_data import Table, read_json, read_table
 
 
 @dataclass
@@ -40,7 +43,12 @@ class Desk:
         return self.engine("run", self.scene, *arguments)
 
     def summary(self, out: str | Path) -> dict:
-        return json.loads((self.folder / out / "summary.json").read_text())
+        return read_json(self.folder / out / "summary.json")
+
+    def table(self, file: str | Path) -> Table:
+        table = read_table(self.folder / file)
+        assert table is not None, f"{file} has no row"
+        return table
 
     def content(self) -> set[Path]:
         return set(self.folder.rglob("*"))

@@ -35,7 +35,8 @@ TEST(LargestPressure, IsThatOfTheWallsUntilTheEnd) {
 }
 
 TEST(Penetration, OfRigidDiscsCarriesTheForceOfItsSegment) {
-  // INDEPENDENT: pressure kn (depth - curvature x^2 / 2), summed by the midpoint rule over the overlap of two parabolas.
+  // INDEPENDENT: pressure kn (depth - curvature x^2 / 2), summed by the midpoint rule over the overlap of two
+  // parabolas.
   ContactPair pair;
   pair.stiffness = 3e9;
   pair.curvature = 2 / 0.05 + 2 / 0.08;

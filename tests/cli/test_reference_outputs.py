@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import Desk
+from run_data import read_table
 
 PROBES = [("position", "all", 'reduce = "mean"'), ("position", "turner", ""), ("position", "soft 1", "node = 3"),
           ("displacement", "compliant", 'reduce = "max"'), ("displacement", "turner", "node = 1"),
@@ -87,14 +87,13 @@ Values = dict[str, np.ndarray]  # by name; [times, ...]
 
 def probes_of(folder: Path) -> Values:
     """Of a probe all columns together: they have one unit, but for angles."""
-    with (folder / "probes.csv").open() as file:
-        header, *rows = csv.reader(file)
-    table = np.array([[float(cell or "nan") for cell in row] for row in rows])
+    table = read_table(folder / "probes.csv")
+    assert table is not None
     values = {}
     for number, probe in enumerate(PROBES):
-        columns = [k for k, name in enumerate(header) if name.startswith(f"p{number}.") and "error" not in name]
+        columns = [c.values for c in table.columns if c.source == f"p{number}" and "error" not in c.name]
         assert columns, probe
-        values[f"{number}: {' '.join(probe)}"] = table[:, columns]
+        values[f"{number}: {' '.join(probe)}"] = np.array(columns).T
     return values
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import csv
 import os
 import re
+import subprocess
 
 import h5py
 import numpy as np
 import pytest
+from conftest import ENGINE, REFERENCE, ROOT
 from scenes import TWO_DISCS
 
 SUMMARY_KEYS = {"state_hash", "evaluations", "steps", "rejections", "preparation_seconds", "wall_seconds",
@@ -76,9 +78,33 @@ def test_frames_read_back(finished) -> None:  # EXACT
 def test_until_ends_the_run(desk) -> None:  # EXACT: steps end on output times
     desk.write(TWO_DISCS)
     assert desk.run("--out", "out", "--until", "3 ns", "--quiet").returncode == 0
-    last = list(csv.DictReader((desk.folder / "out/steps.csv").open()))[-1]
-    time = next(float(value) for name, value in last.items() if name.startswith("time"))
-    assert time == pytest.approx(3e-9, rel=1e-12)
+    assert desk.table("out/steps.csv").time[-1] == pytest.approx(3e-9, rel=1e-12)
+
+
+@pytest.mark.parametrize("program, options, folder", [
+    ("engine", [], "results/scene"), ("engine", ["--out", "my results"], "my results"),
+    ("reference", [], "results/scene_reference"), ("reference", ["--out=o"], "o")])
+def test_where_results_go_is_told(desk, monkeypatch, program: str, options: list[str], folder: str) -> None:  # EXACT
+    monkeypatch.setenv("PLIANT_TELL_FOLDER", str(desk.folder / "told"))
+    desk.write(TWO_DISCS)
+    start = desk.run if program == "engine" else desk.reference
+    for again in ([], ["--resume"] if program == "engine" else ["--force"]):  # "nothing to do" has a folder too
+        assert start("--until", "1 ns", "--quiet", *options, *again).returncode == 0
+        assert (desk.folder / "told").read_text() == f"{folder}\n"
+        assert (desk.folder / folder / "summary.json").is_file()
+        (desk.folder / "told").unlink()
+
+
+@pytest.mark.parametrize("command, program", [
+    ("run", [ENGINE, "run"]), ("check", [ENGINE, "check"]), ("modes", [ENGINE, "modes"]), ("reference", [REFERENCE])])
+def test_help_of_the_launcher_has_the_options_of_the_program(command: str, program: list[str]) -> None:  # EXACT
+    said = subprocess.run([*program, "--help"], capture_output=True, text=True).stdout
+    told = (ROOT / f"launcher/help/{command}.txt").read_text()
+    assert options_in(said) - {"--help"} == options_in(told.rpartition("Example:")[0]) - {"--no-plot"}
+
+
+def options_in(text: str) -> set[str]:
+    return set(re.findall(r"(?<![\w-])--[a-z-]+", text))
 
 
 def test_default_folder_is_named_after_the_scene(desk) -> None:  # EXACT

@@ -1,5 +1,6 @@
-// Restitution with friction: a rigid body hits a floor at an angle. What the normal force does in all, friction does in the share mu while it slides;
-// while it sticks, spring and dashpot are those of one degree of freedom each (docs/method.md 4).
+// Restitution with friction: a rigid body hits a floor at an angle. What the normal force does in all, friction does in
+// the share mu while it slides; while it sticks, spring and dashpot are those of one degree of freedom each
+// (docs/method.md 4).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +28,8 @@ struct Impact {
   Eigen::Vector3d change() const { return after - before; }
 };
 
-/// From above the floor until nothing touches any more. A contact without force may still overlap: the body leaves with its speed.
+/// From above the floor until nothing touches any more. A contact without force may still overlap: the body leaves with
+/// its speed.
 Impact impact(const Scene& scene, double level) {
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -44,7 +46,8 @@ Impact impact(const Scene& scene, double level) {
   return result;
 }
 
-/// A block of 2 x 1 that cannot turn, its corners between nodes of the floor all through the impact: mass 2 on a face of 2, so w^2 = kn.
+/// A block of 2 x 1 that cannot turn, its corners between nodes of the floor all through the impact: mass 2 on a face
+/// of 2, so w^2 = kn.
 Scene thrown_block(const ContactRule& rule, double slide, double safety) {
   Scene scene = on_a_floor(1e9, 8, 0.25, {0, 0});
   scene.shapes = {box_shape("block", 2, 1, 0.25)};
@@ -58,8 +61,8 @@ Scene thrown_block(const ContactRule& rule, double slide, double safety) {
   return scene;
 }
 
-/// EXACT: a block that slides all through loses mu (1 + e) v of its speed. One step slides it further than the slip mu p/kt that friction takes to
-/// build up, so that nothing is missing.
+/// EXACT: a block that slides all through loses mu (1 + e) v of its speed. One step slides it further than the slip mu
+/// p/kt that friction takes to build up, so that nothing is missing.
 TEST(ObliqueImpact, a_sliding_block_loses_mu_times_the_normal_impulse) {
   constexpr double friction = 0.3, slide = 0.5;
   for (const double e : {0.3, 0.6, 1.0}) {
@@ -69,8 +72,8 @@ TEST(ObliqueImpact, a_sliding_block_loses_mu_times_the_normal_impulse) {
   }
 }
 
-/// EXACT: a block that sticks swings sideways with w_t = sqrt(kt/kn) w until the normal force is over, after 2 acos(z) / (w sqrt(1 - z^2)). The
-/// shear that is left then does nothing more, as its limit is gone.
+/// EXACT: a block that sticks swings sideways with w_t = sqrt(kt/kn) w until the normal force is over, after 2 acos(z)
+/// / (w sqrt(1 - z^2)). The shear that is left then does nothing more, as its limit is gone.
 TEST(ObliqueImpact, a_sticking_block_swings_sideways_while_it_is_pressed) {
   constexpr double slide = 0.003;
   for (const double e : {0.3, 0.6})
@@ -96,9 +99,9 @@ Scene thrown_disc(const ContactRule& rule, double slide, double spin) {
   return scene;
 }
 
-/// EXACT: friction turns a disc that slides all through, I = m R^2/2: R dw = 2 dv, whichever way it slides; both go with the normal impulse. The
-/// lever is R less the depth, some 1e-3 here, and a facet's. A disc that spins bounces elastically: nodes of a dashpot that come down push more than
-/// those that go up, and so hinder its spin.
+/// EXACT: friction turns a disc that slides all through, I = m R^2/2: R dw = 2 dv, whichever way it slides; both go
+/// with the normal impulse. The lever is R less the depth, some 1e-3 here, and a facet's. A disc that spins bounces
+/// elastically: nodes of a dashpot that come down push more than those that go up, and so hinder its spin.
 TEST(ObliqueImpact, a_sliding_disc_starts_to_spin) {
   constexpr double friction = 0.2;
   for (const auto& [slide, spin, e] :

@@ -37,13 +37,14 @@ double rebound(const ContactRule& rule, double safety) {
     touched |= gap < 0;
     if (touched && gap > 1e-4) break;
   }
-  // Of m v^2 / 2: (z w dt)^2 for the dashpot's force 2 z w m v, which sets in within a step and costs dt^2 force^2 / (8 m), and (w dt)^2 / 4 wherever a
-  // spring's contact begins or ends; w dt is at most 2 safety (sqrt(1 + 4 z^2) - 2 z).
+  // Of m v^2 / 2: (z w dt)^2 for the dashpot's force 2 z w m v, which sets in within a step and costs dt^2 force^2 / (8
+  // m), and (w dt)^2 / 4 wherever a spring's contact begins or ends; w dt is at most 2 safety (sqrt(1 + 4 z^2) - 2 z).
   EXPECT_LT(balance(simulation), 2 * safety * safety) << "RATE: the square of the step";
   return simulation.state().velocity.rigid[1] / 0.1;
 }
 
-/// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and the figures of docs/method.md 4.
+/// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and the figures of
+/// docs/method.md 4.
 TEST(Restitution, damping_ratio_inverts_both_end_rules) {
   const auto restitution = [](double z, bool pull) {
     double x = 0, v = 1;  // depth and its rate, w = 1
@@ -90,7 +91,8 @@ TEST(Restitution, of_one_is_elastic) {
   EXPECT_EQ(final_state(bouncing(1, false)), final_state(smooth(100)));
 }
 
-/// RATE: under gravity each bounce reaches e^2 of the height before. The impact lasts: its depth, a hundredth of the height here, counts.
+/// RATE: under gravity each bounce reaches e^2 of the height before. The impact lasts: its depth, a hundredth of the
+/// height here, counts.
 TEST(Restitution, bounce_heights) {
   const double e = 0.8;
   Scene scene = block_above_floor(bouncing(e, false, 1e5), 1, 0, {0, -1}, 0.05);
@@ -148,14 +150,15 @@ double rebound_from(double held_until, double speed_at_2) {
   return (simulation.state().velocity.rigid[3] - simulation.state().velocity.rigid[0]) / 0.1;
 }
 
-/// Infinite mass while it is held, the reduced mass of two when it is let go before the impact. RATE as above; with the other case's mass the
-/// damping ratio is off by sqrt(2) and e = 0.38 or 0.6.
+/// Infinite mass while it is held, the reduced mass of two when it is let go before the impact. RATE as above; with the
+/// other case's mass the damping ratio is off by sqrt(2) and e = 0.38 or 0.6.
 TEST(Restitution, of_a_block_that_is_held_for_a_time) {
   EXPECT_NEAR(rebound_from(1.5, 0), 0.5, 0.005) << "held";
   EXPECT_NEAR(rebound_from(0.01, 0.075), 0.5, 0.005) << "let go before: (1 + e)/2 of the speed";
 }
 
-/// EXACT: a law follows from the time alone, as a resumed run needs it: sqrt(2) times the dashpot while the other block is held.
+/// EXACT: a law follows from the time alone, as a resumed run needs it: sqrt(2) times the dashpot while the other block
+/// is held.
 TEST(Restitution, laws_follow_drives_in_time) {
   Scene scene = empty_scene(10);
   scene.shapes = {box_shape("block", 1, 1, 0.25)};
@@ -178,7 +181,8 @@ TEST(Restitution, laws_follow_drives_in_time) {
   EXPECT_EQ(root(2), root(0));
 }
 
-/// EXACT: the bound of the time step falls with the damping ratio of docs/method.md 6; the run at full safety stays bounded: a block at rest settles.
+/// EXACT: the bound of the time step falls with the damping ratio of docs/method.md 6; the run at full safety stays
+/// bounded: a block at rest settles.
 TEST(Restitution, shortens_the_time_step_and_settles) {
   const Model elastic = build_model(block_above_floor(smooth(100), -0.001, 0, {0, -0.1}, 0.8)),
               damped = build_model(block_above_floor(bouncing(0.1, false), -0.001, 0, {0, -0.1}, 0.8));

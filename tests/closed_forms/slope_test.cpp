@@ -1,5 +1,5 @@
-// Blocks on slopes, rigid and compliant, from any start on floors of any nodes: Coulomb's law in slip and in stick. Gravity is turned,
-// not the floor. Units: the block's width, its density and gravity are 1; it is 1 x 0.5.
+// Blocks on slopes, rigid and compliant, from any start on floors of any nodes: Coulomb's law in slip and in stick.
+// Gravity is turned, not the floor. Units: the block's width, its density and gravity are 1; it is 1 x 0.5.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,10 +70,12 @@ struct Slider {
   double start_ = mean_of(simulation.state().position).x();
 };
 
-/// EXACT: while all of it slips, friction is mu times the normal force, whatever that is, so u + mu v grows as if pressed by gravity, by
-/// (sin - mu cos) times 3/4 s of it. A node that comes under the block rubs from its second step on, when it has come in by v dt at most and stands
-/// for 7/2 (v dt / s)^2 of its segment s: missing is 7/4 v dt (v dt / s)^2 / L of the friction. Half of the pressure acts on the block's own face,
-/// which is tilted by less than twice the depth over its length, or an end would lift.
+/// EXACT: while all of it slips, friction is mu times the normal force, whatever that is, so u + mu v grows as if
+/// pressed by gravity, by
+/// (sin - mu cos) times 3/4 s of it. A node that comes under the block rubs from its second step on, when it has come
+/// in by v dt at most and stands for 7/2 (v dt / s)^2 of its segment s: missing is 7/4 v dt (v dt / s)^2 / L of the
+/// friction. Half of the pressure acts on the block's own face, which is tilted by less than twice the depth over its
+/// length, or an end would lift.
 TEST(BlockOnASlope, slips_as_coulomb_says) {
   const double slope = std::numbers::pi / 6, speed = 0.5;
   const History down{{0, 0.5, 1}, {0, std::sin(slope), std::sin(slope)}};

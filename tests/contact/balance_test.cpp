@@ -190,8 +190,8 @@ TEST(ContactEnergy, StickingForceIsItsGradientUnderPressure) {
   }
 }
 
-// Pulled, beside and beyond the ends of faces. The shear strength tapers with the gap, so that nodes as near to the range
-// as a share 0.3/1e6 of it would slip: none.
+// Pulled, beside and beyond the ends of faces. The shear strength tapers with the gap, so that nodes as near to the
+// range as a share 0.3/1e6 of it would slip: none.
 TEST(ContactEnergy, StickingForceIsItsGradientBesideCorners) {
   for (int sample = 0; sample < 48; ++sample) {
     SCOPED_TRACE(sample);

@@ -47,8 +47,8 @@ struct Pair {
   }
 };
 
-// docs/method.md 4: no contact may be missed. A node within the margin of a segment must be among its side's nodes, and the
-// segment among the other's.
+// docs/method.md 4: no contact may be missed. A node within the margin of a segment must be among its side's nodes, and
+// the segment among the other's.
 int missed(const Pair& pair, int turns) {
   int result = 0;
   for (int side = 0; side < 2; ++side) {

@@ -32,9 +32,10 @@ const double spacings[] = {0.25, 0.1, 1.0 / 16, 0.037};
 /// The length that a bar of half width 1.2 and a block of half width 0.5 share.
 double shared(double shift) { return std::max(0.0, std::min(0.5 + shift, 1.2) - std::max(shift - 0.5, -1.2)); }
 
-// EXACT: flat faces press over the length that they share, wherever their nodes are, aligned or not, and whoever is finer; what they store is that
-// length times the law's energy. Along the faces nothing pulls but the ends: minus the energy a length for each end of the block on the bar, plus
-// one for each end of the bar under the block, so nothing while the block stands on the bar, else that energy, off the bar. Rounding of 40 nodes' forces.
+// EXACT: flat faces press over the length that they share, wherever their nodes are, aligned or not, and whoever is
+// finer; what they store is that length times the law's energy. Along the faces nothing pulls but the ends: minus the
+// energy a length for each end of the block on the bar, plus one for each end of the bar under the block, so nothing
+// while the block stands on the bar, else that energy, off the bar. Rounding of 40 nodes' forces.
 TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
   const double energy = 0.5 * stiffness * depth * depth;
   for (const int segments : {4, 6, 8, 16})
@@ -53,7 +54,8 @@ TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
         }
 }
 
-// EXACT: the strength of a face is that of its length, for a cohesive one too, which a node beyond a corner would add to.
+// EXACT: the strength of a face is that of its length, for a cohesive one too, which a node beyond a corner would add
+// to.
 TEST(Corners, AFaceIsAsStrongAsItIsLong) {
   const double strength = 0.5;
   for (const int segments : {4, 6, 16})
@@ -66,8 +68,8 @@ TEST(Corners, AFaceIsAsStrongAsItIsLong) {
       }
 }
 
-// EXACT: a block that slides over a bar, past its nodes and off its end, meets no barrier: the work along the way is the energy's change, and on the
-// bar no step meets more than rounding.
+// EXACT: a block that slides over a bar, past its nodes and off its end, meets no barrier: the work along the way is
+// the energy's change, and on the bar no step meets more than rounding.
 TEST(Corners, NothingLocks) {
   for (const double spacing : spacings) {
     ContactRig rig(block_on_bar(frictionless(stiffness), 8, spacing, -0.6));
@@ -81,8 +83,8 @@ TEST(Corners, NothingLocks) {
   }
 }
 
-// EXACT: a corner that pokes into a flat face presses with its own length, of whose two segments each stands for half; turned until one lies flat,
-// with that one's half alone. Nodes of the face beside the tip are left to it.
+// EXACT: a corner that pokes into a flat face presses with its own length, of whose two segments each stands for half;
+// turned until one lies flat, with that one's half alone. Nodes of the face beside the tip are left to it.
 TEST(Corners, ACornerPokesWithItsOwnLength) {
   constexpr double segment = 0.1;
   const auto force = [&](double degrees) {
@@ -103,7 +105,8 @@ TEST(Corners, ACornerPokesWithItsOwnLength) {
   EXPECT_NEAR(force(37), segment / 2, 1e-12) << "that of the flatter segment";
 }
 
-// EXACT: corner against corner, head on and aside, a contact there is, and it pushes them apart; a tip of another angle too.
+// EXACT: corner against corner, head on and aside, a contact there is, and it pushes them apart; a tip of another angle
+// too.
 TEST(Corners, CornersMeet) {
   for (const double half_angle : {45.0, 20.0, 60.0})
     for (const double aside : {0.0, 0.003, -0.006})
@@ -174,9 +177,9 @@ TEST(Corners, PassWithoutJumps) {
   EXPECT_GT(touched, 2 * steps);
 }
 
-// EXACT: a tip in the top of a bar, beside its flank, that goes to and fro where it changes from the one to the other: off
-// the bisector, as both its sides count on the top. What is stored, dissipated and done as work stays together; a way
-// counted at each change would make as much from nothing.
+// EXACT: a tip in the top of a bar, beside its flank, that goes to and fro where it changes from the one to the other:
+// off the bisector, as both its sides count on the top. What is stored, dissipated and done as work stays together; a
+// way counted at each change would make as much from nothing.
 TEST(Corners, FacesChangedAreNoSlip) {
   constexpr double segment = 0.1, deep = 0.05 * segment;
   constexpr int steps = 200;

@@ -49,8 +49,8 @@ class Path {
 
 double lost(Path& path) { return path.rig.dissipated; }
 
-// EXACT: opening and shear, apart and together, with damage on the way, closed again: tractions are straight in each step between damage and
-// damage, so that their work is stored or dissipated to rounding, whatever the steps.
+// EXACT: opening and shear, apart and together, with damage on the way, closed again: tractions are straight in each
+// step between damage and damage, so that their work is stored or dissipated to rounding, whatever the steps.
 TEST(Fatigue, WorkIsStoredOrDissipated) {
   for (const int steps : {1, 3, 40}) {
     Path path(bond_rule());
@@ -87,8 +87,8 @@ int bonded_nodes(const ContactRig& rig) {
   return nodes;
 }
 
-// EXACT: tearing costs strength x range / 2 a unit of length, in shear the same, in steps that end at the corners of the law. On the way the
-// traction falls in a straight line, and steps that are straight lose nothing.
+// EXACT: tearing costs strength x range / 2 a unit of length, in shear the same, in steps that end at the corners of
+// the law. On the way the traction falls in a straight line, and steps that are straight lose nothing.
 TEST(Fatigue, TearingTakesTheFractureEnergy) {
   const double critical = strength / kn;
   for (const bool shear : {false, true}) {
@@ -107,7 +107,8 @@ TEST(Fatigue, TearingTakesTheFractureEnergy) {
   }
 }
 
-// EXACT: a torn contact presses with kn, and pulls and slips like the cohesive law of the residual strength, and friction.
+// EXACT: a torn contact presses with kn, and pulls and slips like the cohesive law of the residual strength, and
+// friction.
 TEST(Fatigue, LeavesTheResidualLaw) {
   ContactRule rule = bond_rule();
   rule.residual_strength = 0.2, rule.friction = 0.3;
@@ -122,7 +123,8 @@ TEST(Fatigue, LeavesTheResidualLaw) {
   EXPECT_NEAR(path.rig.force(1).x() / length, -(0.2 / ratio + 0.3 * kn * 0.005), 1e-12);
 }
 
-// INDEPENDENT: dD = rate (p - threshold) / (strength - threshold) dp along p = (1 - D) kn g, in a million small steps. The engine's are fewer, and their
+// INDEPENDENT: dD = rate (p - threshold) / (strength - threshold) dp along p = (1 - D) kn g, in a million small steps.
+// The engine's are fewer, and their
 // damage counts from the next one on: RATE, half of the damage of a step.
 TEST(Fatigue, EachLoadAddsItsDamage) {
   ContactRule rule = bond_rule();
@@ -148,7 +150,8 @@ TEST(Fatigue, EachLoadAddsItsDamage) {
   EXPECT_NEAR(path.imbalance(), 0, 1e-13) << "EXACT: rounding of 1600 steps";
 }
 
-// EXACT: bonds are there where the gap is small at the start, and nowhere else; what meets later finds none. A refresh keeps them.
+// EXACT: bonds are there where the gap is small at the start, and nowhere else; what meets later finds none. A refresh
+// keeps them.
 TEST(Fatigue, BondsAreThereFromTheStart) {
   Scene scene = block_on_bar(bond_rule(), 0.0005);
   add_body(scene, outline_shape("far", rectangle(0.5, 0.3, 0.1)), BodyKind::rigid, {1.2, 0.402});
@@ -183,7 +186,8 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
   EXPECT_EQ(damaged(1), 1);
 }
 
-// EXACT: bodies that are out of each other's sight at the start, so that there is no record at all, find no bond when they meet.
+// EXACT: bodies that are out of each other's sight at the start, so that there is no record at all, find no bond when
+// they meet.
 TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
   ContactRig rig(block_on_bar(bond_rule(), 2));
   rig.step();

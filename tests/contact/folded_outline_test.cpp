@@ -102,7 +102,8 @@ TEST(FoldedOutline, SlipDoesNotRunAroundASlit) {
   step_to(rig, mouth + Vec2(-0.04, -0.6));
   EXPECT_EQ(rig.totals.contacts, 1);
   EXPECT_LT(std::abs(rig.dissipated), 1e-14);
-  // Of the pin's two sides the one that lies along the flank counts: half of its tip's length, half of that in this pass.
+  // Of the pin's two sides the one that lies along the flank counts: half of its tip's length, half of that in this
+  // pass.
   EXPECT_NEAR(rig.force(1, 0).x(), 0.5 * tip_weight(rig) * stiffness * 0.03, 1e-12);
 }
 

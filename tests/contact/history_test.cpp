@@ -136,8 +136,8 @@ TEST(ContactHistory, PassesTheSeamOfTheOutline) {
   EXPECT_LT(largest_shear, 0.08);
 }
 
-// EXACT: a disc that turns beside one at rest slides alike with each of its facets, in steps of a fortieth of one: also those at the end and the start
-// of its outline. A record that is lost there has to slip anew, two steps to the limit.
+// EXACT: a disc that turns beside one at rest slides alike with each of its facets, in steps of a fortieth of one: also
+// those at the end and the start of its outline. A record that is lost there has to slip anew, two steps to the limit.
 TEST(ContactHistory, FacetsSlideAlikeAllAroundTheOutline) {
   constexpr int sides = 40, per_facet = 40;
   Scene scene = bare_scene();

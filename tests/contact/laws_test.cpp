@@ -63,8 +63,8 @@ TEST(ContactLaws, Cohesive) {
                                              {"apart", 0.9, 0, 0, 0}});
 }
 
-// kn = 10, smooth over 0.2: the straight branch starts at a pressure of 1 and meets zero at 0.1. Energy: 10 x^3/1.2, then the parabola about 0.1 and
-// 10 x 0.04/24.
+// kn = 10, smooth over 0.2: the straight branch starts at a pressure of 1 and meets zero at 0.1. Energy: 10 x^3/1.2,
+// then the parabola about 0.1 and 10 x 0.04/24.
 TEST(ContactLaws, Smoothed) {
   expect_table(Smoothed<Frictionless>{{10, 0, 0}, 0.2}, {{"end of the start", -0.2, 1, 0, 10 * 0.008 / 1.2},
                                                          {"half way", -0.1, 0.25, 0, 10 * 0.001 / 1.2},

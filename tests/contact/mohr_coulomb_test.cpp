@@ -12,7 +12,8 @@ using namespace testing;
 
 constexpr double stiffness = 100, friction = 0.4, cohesion = 0.3, tension = 0.5, spacing = 0.1, length = 1.1;
 
-// The block's ends stand midway between nodes of the bar, whose nodes below it have its length in all. They stay there within +-0.04.
+// The block's ends stand midway between nodes of the bar, whose nodes below it have its length in all. They stay there
+// within +-0.04.
 Scene block_on_bar() {
   Scene scene = bare_scene();
   scene.contacts = {mohr_coulomb(stiffness, friction, cohesion, tension)};
@@ -90,7 +91,8 @@ TEST(MohrCoulomb, cohesion_works_without_pressure) {
     rig.step();
   }
   const double touching = -rig.force(1).x() / cohesion;  // length that carries its cohesion
-  // Radial return works with the mean of two tractions, of which the first step beyond the limit sees one below it: half a step of the limit.
+  // Radial return works with the mean of two tractions, of which the first step beyond the limit sees one below it:
+  // half a step of the limit.
   EXPECT_NEAR(rig.dissipated / touching, cohesion * (far - cohesion / stiffness), cohesion * far / 50);
 }
 

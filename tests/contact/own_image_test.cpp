@@ -129,8 +129,8 @@ TEST(OwnImages, meet_between_plates) {
   EXPECT_NEAR(2 * one, force(2), 1e-9 * one) << "EXACT: plates of twice the length; 1e-12 on gaps at stiffness 200";
 }
 
-// EXACT: where soft corners, those of the images and the plates' nodes come together, each node's face and length change
-// without a jump; allowed is a tenth of what a run warns of, at any step. Faces that change at once made 3.4 %.
+// EXACT: where soft corners, those of the images and the plates' nodes come together, each node's face and length
+// change without a jump; allowed is a tenth of what a run warns of, at any step. Faces that change at once made 3.4 %.
 TEST(OwnImages, soft_corners_pressed_deep_make_no_energy) {
   const auto balance = [](double safety) {
     Scene scene = squeezed_blocks(1);

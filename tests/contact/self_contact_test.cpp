@@ -124,7 +124,8 @@ struct RigidMotion {
   Vec2 operator()(const Vec2& x) const { return Eigen::Rotation2Dd(turn) * x + shift; }
 };
 
-/// The clamp, of finite elements, whose nodes stand on the outline itself; and its jaws as rigid bodies of the same outline nodes.
+/// The clamp, of finite elements, whose nodes stand on the outline itself; and its jaws as rigid bodies of the same
+/// outline nodes.
 class Jaws {
  public:
   static constexpr double cut = -0.3;  ///< jaws begin to the right of it

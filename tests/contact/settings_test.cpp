@@ -1,4 +1,5 @@
-// Options of contact: refresh at fixed times, present lengths, a smooth start of the pressure, law by law as the scene has them.
+// Options of contact: refresh at fixed times, present lengths, a smooth start of the pressure, law by law as the scene
+// has them.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -30,7 +31,8 @@ TEST(FixedRefresh, keeps_its_period) {
   EXPECT_LE(by_time, 11);
 }
 
-/// EXACT: often enough, it sees all that the safe refresh sees. Equal steps, as the bound of the step is looked up at each refresh.
+/// EXACT: often enough, it sees all that the safe refresh sees. Equal steps, as the bound of the step is looked up at
+/// each refresh.
 TEST(FixedRefresh, often_enough_changes_nothing) {
   const auto position = [](int refresh_steps) {
     Scene scene = flight_and_impact(1e300);
@@ -58,7 +60,8 @@ TEST(FixedRefresh, too_seldom_misses_contacts) {
   EXPECT_NEAR(simulation.state().position.rigid[1], -1.5, 1e-12) << "EXACT: free flight";
 }
 
-/// A compliant block 1 x 0.5, its nodes moved to the right by stretch(X), pressed by `depth` into a rigid plate of nodes every `spacing`.
+/// A compliant block 1 x 0.5, its nodes moved to the right by stretch(X), pressed by `depth` into a rigid plate of
+/// nodes every `spacing`.
 struct StretchedBlock {
   static constexpr double stiffness = 100, depth = 0.01;
   testing::ContactRig rig;
@@ -84,8 +87,8 @@ struct StretchedBlock {
   }
 };
 
-/// EXACT: half of its two segments as they are now for each node of the lower face but its corners, that have a side as well. The plate's nodes are
-/// far away, so that the block's own pass is all there is.
+/// EXACT: half of its two segments as they are now for each node of the lower face but its corners, that have a side as
+/// well. The plate's nodes are far away, so that the block's own pass is all there is.
 TEST(CurrentLength, is_half_of_the_two_present_segments) {
   const StretchedBlock block(3, [](double x) { return x * (0.1 + 0.3 * x); });
   double narrowest = 1, widest = 0;
@@ -97,14 +100,15 @@ TEST(CurrentLength, is_half_of_the_two_present_segments) {
   EXPECT_GT(widest, 1.5 * narrowest) << "else one segment would do for the other";
 }
 
-/// EXACT: a face stretched by a tenth carries the pressure on its present length. The face ends midway between nodes of the plate, whose nodes below
-/// it have its length in all.
+/// EXACT: a face stretched by a tenth carries the pressure on its present length. The face ends midway between nodes of
+/// the plate, whose nodes below it have its length in all.
 TEST(CurrentLength, of_a_stretched_face_carries_its_pressure) {
   const StretchedBlock block(0.1, [](double x) { return 0.1 * x; });
   EXPECT_NEAR(block.rig.force(1).y(), block.stiffness * block.depth * 1.1, 1e-12);
 }
 
-/// RATE: what the present length costs in energy, 0.05 to 0.3 % in a prototype; the reference length keeps it to the integrator's error.
+/// RATE: what the present length costs in energy, 0.05 to 0.3 % in a prototype; the reference length keeps it to the
+/// integrator's error.
 TEST(CurrentLength, costs_energy) {
   const auto error = [](ContactLength length) {
     Scene scene = flight_and_impact(1e-2);
@@ -138,8 +142,8 @@ Vec2 after_bounce(double smoothing, int steps) {
   return velocity;
 }
 
-/// RATE: Verlet's second order once the steps resolve the smooth start of the pressure. With a sudden one the errors of these steps fall by anything
-/// between 0.2 and 16 from halving to halving.
+/// RATE: Verlet's second order once the steps resolve the smooth start of the pressure. With a sudden one the errors of
+/// these steps fall by anything between 0.2 and 16 from halving to halving.
 TEST(SmoothStart, gives_second_order) {
   const Vec2 exact = after_bounce(0.02, 12800);
   const double coarse = (after_bounce(0.02, 800) - exact).norm(), middle = (after_bounce(0.02, 1600) - exact).norm(),

@@ -94,9 +94,9 @@ TEST(ContactSlip, HysteresisLoop) {
   EXPECT_NEAR(balance.stored_change, 0, 1e-14);
 }
 
-// RATE: a tip inside one segment of a turning bar, far from its corners, slipping to and fro: forces change direction along the way, and the
-// trapezoidal rule errs by O(steps^-2). Kinks where slip turns make single ratios uneven: order over a factor of 8, 2
-// +- 0.25.
+// RATE: a tip inside one segment of a turning bar, far from its corners, slipping to and fro: forces change direction
+// along the way, and the trapezoidal rule errs by O(steps^-2). Kinks where slip turns make single ratios uneven: order
+// over a factor of 8, 2 +- 0.25.
 double turning_defect(const ContactRule& rule, int steps) {
   Scene scene = bare_scene();
   scene.contacts = {rule};

@@ -84,12 +84,12 @@ const ContactRule rules[] = {frictionless(300), mohr_coulomb(300, 0.5, 1), cohes
 // How loose a bound may be: 2 for neighbours that the fastest motion does not move against each other, and half as much
 // again for nodes within the skin that are not in touch yet.
 constexpr double loosest = 3;
-// Where nothing rubs, discs turn freely; the bound has springs along the faces too, with them turning is the fastest, twice as
-// fast in w^2 as moving aside, and half as much again is for springs along that way.
+// Where nothing rubs, discs turn freely; the bound has springs along the faces too, with them turning is the fastest,
+// twice as fast in w^2 as moving aside, and half as much again is for springs along that way.
 constexpr double loosest_where_discs_turn = 3 * loosest;
 
-// A face of 11 segments between corners: either of its end nodes may come to stand for its other half too, and for half as much again of the
-// next one's.
+// A face of 11 segments between corners: either of its end nodes may come to stand for its other half too, and for half
+// as much again of the next one's.
 constexpr double loosest_between_corners = 13.0 / 11 * loosest;
 
 // EXACT: an upper bound, and not a useless one.
@@ -206,8 +206,8 @@ TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
     }
 }
 
-// EXACT: a corner of a heavy block in the tip of a light soft bar, whose end node the corner presses from one face of the tip or from the other: a bound,
-// and no looser than elsewhere, as it never does from both.
+// EXACT: a corner of a heavy block in the tip of a light soft bar, whose end node the corner presses from one face of
+// the tip or from the other: a bound, and no looser than elsewhere, as it never does from both.
 TEST(StiffnessBound, CornerInASoftCorner) {
   Random random(11);
   double closest = 0;

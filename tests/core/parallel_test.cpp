@@ -18,8 +18,8 @@ auto with_threads(int count, Action&& action) {
   return result;
 }
 
-// EXACT: the sum has the same bits for any number of threads (docs/design.md 5); numbers of very different size would betray
-// another order.
+// EXACT: the sum has the same bits for any number of threads (docs/design.md 5); numbers of very different size would
+// betray another order.
 TEST(Parallel, OrderedSumDoesNotDependOnThreads) {
   testing::Random random(4);
   for (const int size : {0, 1, 255, 256, 257, 10000}) {

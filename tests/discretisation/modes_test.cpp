@@ -80,9 +80,9 @@ TEST(DiscModes, ErrorsAreThoseOfThePrototype) {
   expect_errors(700, {.recipe = Recipe::mls, .support = 9}, 0.36e-2, 1.1e-2);
 }
 
-// INDEPENDENT: linear triangles with row-sum mass in the prototype of docs/method.md 2: oval 0.3 %, rms 1.1 %; too stiff and too heavy
-// cancel. EXACT: smoothed over edges the stiffness is nearly right and what lumping does is seen: frequencies too low,
-// yet less so than with moving least squares (rms 4.1 %), whose functions are wider.
+// INDEPENDENT: linear triangles with row-sum mass in the prototype of docs/method.md 2: oval 0.3 %, rms 1.1 %; too
+// stiff and too heavy cancel. EXACT: smoothed over edges the stiffness is nearly right and what lumping does is seen:
+// frequencies too low, yet less so than with moving least squares (rms 4.1 %), whose functions are wider.
 TEST(DiscModes, Triangles) {
   const ModeErrors plain = mode_errors(168, {.recipe = Recipe::t3}),
                    smoothed = mode_errors(168, {.recipe = Recipe::es_t3});
@@ -92,8 +92,9 @@ TEST(DiscModes, Triangles) {
   EXPECT_LT(smoothed.rms, 0.041) << fmt::format("oval {:.4f}, rms {:.4f}", smoothed.oval, smoothed.rms);
 }
 
-// INDEPENDENT: the prototype of docs/method.md 2 with corrected mass, rms of the first ten modes: mls-gauss 0.9 %, mls 0.8 %, es-t3 0.10 % at
-// 168 nodes, mls 0.06 % at 700; none of ours may be a fifth above on a mesh of its own. What is left of 4.9 % and 5.7 % shows that lumping was most of it.
+// INDEPENDENT: the prototype of docs/method.md 2 with corrected mass, rms of the first ten modes: mls-gauss 0.9 %, mls
+// 0.8 %, es-t3 0.10 % at 168 nodes, mls 0.06 % at 700; none of ours may be a fifth above on a mesh of its own. What is
+// left of 4.9 % and 5.7 % shows that lumping was most of it.
 TEST(DiscModes, CorrectedMass) {
   const auto rms = [](int nodes, DiscretisationSettings settings) {
     settings.mass = Mass::corrected;

@@ -121,7 +121,8 @@ TEST(PatchTest, RpimFails) {
   RecordProperty("rms_strain_error", fmt::format("{:.2e}", error));
 }
 
-// INDEPENDENT: the prototype of docs/method.md 2 has 2e-2 with 3 points; ours must be of that size, within a factor of 3 either
+// INDEPENDENT: the prototype of docs/method.md 2 has 2e-2 with 3 points; ours must be of that size, within a factor of
+// 3 either
 // way: the known flaw of the paper's recipe.
 TEST(PatchTest, MlsGaussFailsAsKnown) {
   const Discretisation d = discretise(unit_mesh(testing::disc(168)), {.recipe = Recipe::mls_gauss, .gauss_points = 3});

@@ -23,7 +23,8 @@ double length_of(const Discretisation& d) {
   return std::sqrt(polygon_properties(outline_of(d.mesh)).area / static_cast<double>(d.mesh.nodes.size()));
 }
 
-// EXACT: linear completeness at every point, (1) of docs/method.md 2; rounding of sums of 12 terms b X, each up to 10: 1e-12.
+// EXACT: linear completeness at every point, (1) of docs/method.md 2; rounding of sums of 12 terms b X, each up to 10:
+// 1e-12.
 void expect_complete(const Discretisation& d) {
   const double length = length_of(d);
   for (std::size_t g = 0; g < d.table.weight.size(); ++g) {

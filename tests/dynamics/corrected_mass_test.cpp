@@ -75,7 +75,8 @@ double energy_error(Scene scene, Integrator integrator, bool fine) {
   return worst;
 }
 
-/// Verlet's energy error is of second order in dt; the paper's scheme is of first order, and its step goes as the root of the target.
+/// Verlet's energy error is of second order in dt; the paper's scheme is of first order, and its step goes as the root
+/// of the target.
 TEST_P(CorrectedMassIntegrators, energy_error_falls_with_the_step) {
   const Scene scene = corrected(free_disc(60, 5, stretching(0.3)));
   const double order = observed_order(energy_error(scene, GetParam(), false), energy_error(scene, GetParam(), true),
@@ -113,7 +114,8 @@ double oval_frequency(Mass mass) {
   return 2 * M_PI * 11 / (upward.back() - upward.front());
 }
 
-/// EXACT: the continuum's oval mode, a Bessel root: 2.35106 at nu = 0.4. docs/method.md 2: 0.3 % with corrected mass, 1.6 % with lumped mass.
+/// EXACT: the continuum's oval mode, a Bessel root: 2.35106 at nu = 0.4. docs/method.md 2: 0.3 % with corrected mass,
+/// 1.6 % with lumped mass.
 TEST(CorrectedMass, oval_mode_has_the_right_frequency) {
   EXPECT_NEAR(oval_frequency(Mass::corrected) / 2.3510613358274024, 1, 0.4e-2);
   EXPECT_LT(oval_frequency(Mass::lumped) / 2.3510613358274024, 1 - 0.8e-2) << "else this test says nothing";
@@ -149,7 +151,8 @@ Scene damped() {
 
 constexpr double damped_end = 1.6;
 
-/// u' = C y and y' = f(u, C y)/D by the classical Runge-Kutta scheme: forces depend on velocities, not on what the state holds.
+/// u' = C y and y' = f(u, C y)/D by the classical Runge-Kutta scheme: forces depend on velocities, not on what the
+/// state holds.
 State runge_kutta(int steps) {
   Bench bench(damped());
   const double h = damped_end / steps;
@@ -201,8 +204,8 @@ DampedRun damped_run(Integrator integrator, int steps) {
   return {run.bench.state, run.auditor.balance_error(energy)};
 }
 
-/// RATE, INDEPENDENT: the motion, and its books, go to those of another scheme as the step falls: the paper's by its first order, Verlet by its
-/// second.
+/// RATE, INDEPENDENT: the motion, and its books, go to those of another scheme as the step falls: the paper's by its
+/// first order, Verlet by its second.
 TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
   const State truth = runge_kutta(640);
   ASSERT_LT(distance(runge_kutta(320), truth), 1e-6) << "of fourth order: the finer one is good to a fifteenth of that";

@@ -152,8 +152,9 @@ TEST(KelvinVoigt, oval_mode_of_a_disc_decays_at_its_rate) {
   }
 }
 
-/// All modes decay by exp(- rate t/2). Their extremes come earlier by rate/(2 w^2), in which the decay is (rate/2w)^2, 2e-4 of the oval mode, w = 1.85;
-/// their frequencies fall by half of that, 2e-3 rad until then, by which higher modes of the start are out of step.
+/// All modes decay by exp(- rate t/2). Their extremes come earlier by rate/(2 w^2), in which the decay is (rate/2w)^2,
+/// 2e-4 of the oval mode, w = 1.85; their frequencies fall by half of that, 2e-3 rad until then, by which higher modes
+/// of the start are out of step.
 TEST(MassDamping, all_modes_of_a_disc_decay_at_half_its_rate) {
   const double rate = 0.05;
   const Ring free = ring(damped_disc(60, 0, 0, 0.4, stretching(1e-3)), 9);
@@ -172,7 +173,8 @@ Scene sliding_bodies(double mass_damping) {
   return scene;
 }
 
-/// Exactly by `verlet`. Step doubling, semi-implicit Euler, is of the first order: v falls by 1 - rate h in each half step h.
+/// Exactly by `verlet`. Step doubling, semi-implicit Euler, is of the first order: v falls by 1 - rate h in each half
+/// step h.
 TEST(MassDamping, speed_falls_exponentially) {
   const double rate = 0.4;
   const auto error = [&](Integrator integrator, double target) {

@@ -101,8 +101,8 @@ double swing(double w, double z, double x, double v, double t) {
   return (((slow * x - v) * std::exp(fast * t) - (fast * x - v) * std::exp(slow * t)) / (slow - fast)).real();
 }
 
-/// Of the first degree of freedom y of a rigid body that swings about its equilibrium on a contact spring. `pull`: of a force other than spring and
-/// dashpot; `rate`: coefficient of the dashpot over the mass, 1/s, as a function of w.
+/// Of the first degree of freedom y of a rigid body that swings about its equilibrium on a contact spring. `pull`: of a
+/// force other than spring and dashpot; `rate`: coefficient of the dashpot over the mass, 1/s, as a function of w.
 template <class Rate>
 void expect_swing(Scene scene, std::size_t rigid_body, double depth, double pull, Rate&& rate) {
   without_error_control(scene, 0.9);

@@ -1,4 +1,5 @@
-// A rejected step leaves no trace: the state goes on as if only the accepted step had been tried (docs/design.md 5, docs/method.md 6).
+// A rejected step leaves no trace: the state goes on as if only the accepted step had been tried (docs/design.md 5,
+// docs/method.md 6).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -124,7 +125,8 @@ TEST(Rejection, a_trial_far_away_loses_no_record) {
   EXPECT_TRUE(same_bits(trial.force.rigid, state.force.rigid)) << "EXACT";
 }
 
-/// New candidates lay out the accepted memory anew, whatever trial asked for them: here they drop a first block, so that the records of a second move.
+/// New candidates lay out the accepted memory anew, whatever trial asked for them: here they drop a first block, so
+/// that the records of a second move.
 TEST(Rejection, a_refresh_lays_out_the_accepted_history) {
   Scene scene = fast_slide(Integrator::step_doubling);
   scene.grains.push_back(grains("second", "block", BodyKind::rigid, {{8, 0.245}}, moving({2, 0})));

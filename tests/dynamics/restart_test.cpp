@@ -1,5 +1,5 @@
-// A simulation that is read back goes on with the same bits, from any step, with any number of threads (docs/design.md 5). All
-// EXACT. A new feature that keeps something from step to step joins by a scene in `scenes`.
+// A simulation that is read back goes on with the same bits, from any step, with any number of threads (docs/design.md
+// 5). All EXACT. A new feature that keeps something from step to step joins by a scene in `scenes`.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -29,8 +29,8 @@ Scene friction_and_cohesion() {
   return scene;
 }
 
-/// The same with what else lives from step to step: bonds that wear between grains of one kind, a servo wall, viscosity, corrected mass, and
-/// candidates found anew at fixed times.
+/// The same with what else lives from step to step: bonds that wear between grains of one kind, a servo wall,
+/// viscosity, corrected mass, and candidates found anew at fixed times.
 Scene bonds_and_servo() {
   Scene scene = friction_and_cohesion();
   scene.grains[0].velocity.rotation = 0.02;

@@ -148,8 +148,8 @@ double lightest_direction(const Scene& scene) {
   return std::atan2(point.y(), point.x());
 }
 
-/// Two equal discs, their lightest nodes face to face: a pair of one mass on one spring. Twice the stiffness over the mass is then the very w^2 of
-/// contact, and the bound has least to give away.
+/// Two equal discs, their lightest nodes face to face: a pair of one mass on one spring. Twice the stiffness over the
+/// mass is then the very w^2 of contact, and the bound has least to give away.
 TEST(TimeStepBound, covers_light_nodes_face_to_face) {
   for (const auto& [contact, mass] :
        {std::pair(smooth(3000), Mass::lumped), std::pair(rough(3000, 100), Mass::lumped),

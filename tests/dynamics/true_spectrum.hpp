@@ -32,9 +32,9 @@ inline std::vector<Coordinate> coordinates(Bench& bench, Dofs& force) {
   return all;
 }
 
-/// Largest w^2 of M^-1 K, or W K, at the bench's state, K = - d force / d position by central differences of all forces, 1/s2.
-/// The step is small against penetrations and large against rounding; contacts stay where they are when they are not
-/// at their edge.
+/// Largest w^2 of M^-1 K, or W K, at the bench's state, K = - d force / d position by central differences of all
+/// forces, 1/s2. The step is small against penetrations and large against rounding; contacts stay where they are when
+/// they are not at their edge.
 inline double largest_square_frequency(Bench& bench, double step = 1e-6) {
   Trial trial(bench.model);
   Dofs& force = trial.force;

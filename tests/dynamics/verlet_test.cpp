@@ -121,7 +121,8 @@ TEST(Verlet, steps_never_exceed_the_bound) {
   }
 }
 
-/// EXACT: dt^2 |a_new - a_old| / (6 d) of what moves most on a rigid outline: forces and a moment that end at once, each alone and together.
+/// EXACT: dt^2 |a_new - a_old| / (6 d) of what moves most on a rigid outline: forces and a moment that end at once,
+/// each alone and together.
 TEST(Verlet, error_of_rigid_bodies_counts_translation_and_spin) {
   Scene scene = empty_scene(1e9);
   scene.shapes = {box_shape("block", 2, 1, 0.25)};

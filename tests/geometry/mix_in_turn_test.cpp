@@ -83,7 +83,8 @@ TEST(MixInTurn, KindsAlternateUpEachColumnAndFromOneToTheNext) {
     }
 }
 
-// Rows of one kind: of 29 pairs of neighbours a column, 10 in the mean are of one row, 9.5 of two and 9.5 of the column.
+// Rows of one kind: of 29 pairs of neighbours a column, 10 in the mean are of one row, 9.5 of two and 9.5 of the
+// column.
 TEST(MixInTurn, LikeNeighboursOfTheThirdBody) {
   Scene scene = mixed(PackingKind::hexagonal, 10, 20);
   const std::vector<PlacedBody> bodies = place_bodies(scene);

@@ -28,8 +28,8 @@ void expect_within(const std::vector<Points>& outlines, const Packing& region, b
     }
 }
 
-// EXACT: no two outlines share a point, by a test of all pairs that the packing does not use; all lie in the region; each
-// grain has its shape and size. A strip, and a box without a period.
+// EXACT: no two outlines share a point, by a test of all pairs that the packing does not use; all lie in the region;
+// each grain has its shape and size. A strip, and a box without a period.
 TEST(RandomPacking, IsFreeOfOverlap) {
   for (const bool box : {false, true}) {
     Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.7, 80);
@@ -76,7 +76,8 @@ int overlaps_with_walls(const Scene& scene, const std::vector<Points>& outlines,
   return count;
 }
 
-// EXACT: caps that stand in the region meet no grain, by a test that the packing does not use; without the walls they would.
+// EXACT: caps that stand in the region meet no grain, by a test that the packing does not use; without the walls they
+// would.
 TEST(RandomPacking, SeesTheCapsOfWalls) {
   Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.6, 60);
   const std::vector<Wall> walls{capped_wall("lower", Wall::Solid::below, -3),
@@ -88,7 +89,8 @@ TEST(RandomPacking, SeesTheCapsOfWalls) {
   EXPECT_EQ(overlapping_pairs(outlines, scene.period), 0);
 }
 
-// EXACT: grains come as near to caps as the clearance lets them: a lone grain between two walls a little further apart than it.
+// EXACT: grains come as near to caps as the clearance lets them: a lone grain between two walls a little further apart
+// than it.
 TEST(RandomPacking, FillsTheRoomBetweenCaps) {
   Scene scene = packing_scene(PackingKind::random, {disc(80, 1)}, 0.5, 8);
   scene.grains[0].size = {};

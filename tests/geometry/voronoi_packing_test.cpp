@@ -54,8 +54,8 @@ int owner(const std::vector<Points>& cells, const Vec2& x) {
   return count == 1 ? found : -1;
 }
 
-// INDEPENDENT: brute force says whose cell a point is in. EXACT: the cells cover the strip. Few generators, so that cells meet
-// their own images, and many, with weights that leave some without a cell.
+// INDEPENDENT: brute force says whose cell a point is in. EXACT: the cells cover the strip. Few generators, so that
+// cells meet their own images, and many, with weights that leave some without a cell.
 TEST(PowerDiagram, AgreesWithBruteForce) {
   for (const auto& [count, weight] : {std::pair{1, 0.0}, {2, 1.0}, {5, 3.0}, {60, 0.0}, {60, 2.0}}) {
     const Generators all = random_generators(count, weight);
@@ -69,7 +69,8 @@ TEST(PowerDiagram, AgreesWithBruteForce) {
   }
 }
 
-// EXACT up to the sweeps: areas are those asked for. Their number is fixed (lib/geometry/power_diagram.cpp), and leaves 2 % rms for
+// EXACT up to the sweeps: areas are those asked for. Their number is fixed (lib/geometry/power_diagram.cpp), and leaves
+// 2 % rms for
 // areas in the ratio 1 : 3; all cells alike would be 50 % off.
 TEST(PowerDiagram, CellsTakeTheirAreas) {
   std::vector<double> areas;
@@ -124,8 +125,9 @@ double brute_force_scale(const Points& cell, const Points& grain) {
   return best;
 }
 
-// EXACT: the copy lies within the cell and touches at least three of its edges. INDEPENDENT: no copy of a search by brute force
-// is larger, but for the half percent by which the nearest tabulated direction can choose a worse angle, nor much smaller.
+// EXACT: the copy lies within the cell and touches at least three of its edges. INDEPENDENT: no copy of a search by
+// brute force is larger, but for the half percent by which the nearest tabulated direction can choose a worse angle,
+// nor much smaller.
 TEST(CellFilling, FillsRandomCells) {
   const Points grain = make_outline(curve("pebble", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 168));
   const Generators all = random_generators(30, 0.5);
@@ -164,8 +166,8 @@ std::vector<ShapeSpec> pebbles() {
   return shapes;
 }
 
-// EXACT: the solid fraction asked for, to the bisection's 1e-12, so close to what fits that some grains have less room than
-// they want; no overlap by a test of all pairs; all within the strip.
+// EXACT: the solid fraction asked for, to the bisection's 1e-12, so close to what fits that some grains have less room
+// than they want; no overlap by a test of all pairs; all within the strip.
 TEST(VoronoiPacking, HasItsSolidFractionAndNoOverlap) {
   const Scene scene = packing_scene(PackingKind::fourier_voronoi, pebbles(), 0.78, 70);
   const Packed packed = pack(scene);

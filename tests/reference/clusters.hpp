@@ -18,8 +18,9 @@ inline Points hexagonal_cluster(int rings) {
   return centres;
 }
 
-/// The outermost grains move by a share of their distance towards the centre, until t = `ramp`: compliant ones by a support of
-/// their outer half, rigid ones as a whole. `mixed`: every other grain is rigid, the one at the centre compliant.
+/// The outermost grains move by a share of their distance towards the centre, until t = `ramp`: compliant ones by a
+/// support of their outer half, rigid ones as a whole. `mixed`: every other grain is rigid, the one at the centre
+/// compliant.
 inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule& rule, double share, double end,
                             double ramp = 20) {
   using namespace dynamics_tests;

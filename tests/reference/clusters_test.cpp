@@ -71,8 +71,8 @@ struct ClusterCase {
 
 class ReferenceClusters : public ::testing::TestWithParam<ClusterCase> {};
 
-// INDEPENDENT: equilibrium does not depend on the way to it when nothing rubs; what is left is the engine's motion that damping has not
-// taken out yet (exp(-t) of its slowest modes) and Newton's tolerance.
+// INDEPENDENT: equilibrium does not depend on the way to it when nothing rubs; what is left is the engine's motion that
+// damping has not taken out yet (exp(-t) of its slowest modes) and Newton's tolerance.
 TEST_P(ReferenceClusters, frictionless_equilibrium_agrees_with_the_damped_engine) {
   const Scene scene = pushed_cluster(GetParam().rings, GetParam().nodes, GetParam().mixed, smooth(60), 0.04, 40);
   const Differences difference = compare_at_rest(scene, 20);
@@ -96,9 +96,10 @@ ContactRule glue() {
   return rule;
 }
 
-// INDEPENDENT: grains that stick together, and may not turn on each other, so that all positions can be compared. Slip is the sum of l d(xi) over the way,
-// which depends on the way to second order, strain times slip: the bonds are open by up to a hundredth at the start, the engine relaxes from there with a
-// few damped oscillations and the static solver in one step. Neither slower loads nor more load steps change the difference. Friction alone could not be
+// INDEPENDENT: grains that stick together, and may not turn on each other, so that all positions can be compared. Slip
+// is the sum of l d(xi) over the way, which depends on the way to second order, strain times slip: the bonds are open
+// by up to a hundredth at the start, the engine relaxes from there with a few damped oscillations and the static solver
+// in one step. Neither slower loads nor more load steps change the difference. Friction alone could not be
 // compared: where a node first stuck depends on the way to first order.
 TEST(ReferenceClusters, sticking_equilibrium_agrees_with_the_damped_engine_but_for_the_way_there) {
   for (const bool mixed : {false, true}) {

@@ -1,4 +1,5 @@
-// Contact of the reference solver at sharp corners: lengths that change with the places of nodes, and their derivatives.
+// Contact of the reference solver at sharp corners: lengths that change with the places of nodes, and their
+// derivatives.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -16,7 +17,8 @@ using reference::Contacts;
 
 constexpr double kn = 100;
 
-/// Two blocks face to face, one shifted along the other so that both faces end within a segment of a node, every node shaken.
+/// Two blocks face to face, one shifted along the other so that both faces end within a segment of a node, every node
+/// shaken.
 struct Blocks {
   Blocks(const ContactRule& rule, double shift, double gap, double tilt, int sample) {
     Scene scene = bare_scene();
@@ -93,8 +95,8 @@ int on_blocks(Check&& check) {
   return varying;
 }
 
-// INDEPENDENT: forces are minus the differences of the stored energy. Energies of order 0.01 round to 1e-18: 1e-12 over the step; third
-// derivatives, of shares of a quarter of a segment, 0.025: 1e-12 x 0.01 / 1.6e-5, tenfold by powers.
+// INDEPENDENT: forces are minus the differences of the stored energy. Energies of order 0.01 round to 1e-18: 1e-12 over
+// the step; third derivatives, of shares of a quarter of a segment, 0.025: 1e-12 x 0.01 / 1.6e-5, tenfold by powers.
 TEST(ReferenceContactCorners, ForceIsMinusTheEnergyGradient) {
   on_blocks([](Blocks& blocks) {
     const Eigen::VectorXd residual = blocks.residual();

@@ -15,7 +15,8 @@ namespace pliant::testing {
 
 constexpr double kn = 100;  ///< stiffness in these tests, Pa/m
 
-// A polygon with edges of 1 that turn by 30 degrees, too little for a corner, and a needle whose tip alone comes near. By its reference outline the tip
+// A polygon with edges of 1 that turn by 30 degrees, too little for a corner, and a needle whose tip alone comes near.
+// By its reference outline the tip
 // is flat, and no corner either: contact_corners_test.cpp is about those.
 struct Needle {
   explicit Needle(const ContactRule& rule, int sides = 12) : corners(regular(sides, 0.5 / std::sin(M_PI / sides))) {

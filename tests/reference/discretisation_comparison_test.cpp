@@ -1,5 +1,5 @@
-// As verify/frozen_states: the reference solver's discretisation against the engine's, on the same meshes. INDEPENDENT: the two
-// share no line between mesh and table.
+// As verify/frozen_states: the reference solver's discretisation against the engine's, on the same meshes. INDEPENDENT:
+// the two share no line between mesh and table.
 #include <gtest/gtest.h>
 
 #include <Eigen/SparseCore>

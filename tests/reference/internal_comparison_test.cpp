@@ -1,5 +1,5 @@
-// As verify/frozen_states: internal and viscous forces, energies and stresses of the reference solver against the engine's, on
-// random deformed states. INDEPENDENT: they share the mesh and the scene.
+// As verify/frozen_states: internal and viscous forces, energies and stresses of the reference solver against the
+// engine's, on random deformed states. INDEPENDENT: they share the mesh and the scene.
 #include <gtest/gtest.h>
 
 #include "bodies/body_view.hpp"
@@ -109,8 +109,8 @@ double compare_forces(const Both& both) {
   return worst;
 }
 
-/// Returns the largest relative difference. In the plane the stress of small strains is P itself; the engine turns it to P F^T/J, the share of a
-/// strain away.
+/// Returns the largest relative difference. In the plane the stress of small strains is P itself; the engine turns it
+/// to P F^T/J, the share of a strain away.
 double compare_stresses(const Both& both, const Body& body) {
   const std::vector<reference::PointStress> own = both.reference_of(body).stresses(of_body(both.model, body, both.q));
   const std::vector<PointState> engine = point_states(both.model, body, both.q, initial_memory(both.model));
@@ -219,7 +219,8 @@ double difference_after(const Remembering& both, double dt) {
   return worst;
 }
 
-/// INDEPENDENT at a state; RATE in time: the engine's exponential and the reference's trapezoidal rule differ by the third order of a step.
+/// INDEPENDENT at a state; RATE in time: the engine's exponential and the reference's trapezoidal rule differ by the
+/// third order of a step.
 TEST(ReferenceAgainstEngine, maxwell_branches_agree) {
   for (const bool spread : {false, true}) {
     const Remembering both(spread ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
@@ -231,7 +232,8 @@ TEST(ReferenceAgainstEngine, maxwell_branches_agree) {
   }
 }
 
-/// EXACT: the tangent is the derivative of the residual (central differences: 1e-10 by rounding, as much by the third derivative).
+/// EXACT: the tangent is the derivative of the residual (central differences: 1e-10 by rounding, as much by the third
+/// derivative).
 TEST(ReferenceAgainstEngine, maxwell_tangent_is_the_derivative) {
   const Remembering both;
   const Body& body = both.model.bodies[0];

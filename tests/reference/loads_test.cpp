@@ -42,8 +42,9 @@ Outcome by_reference(const Scene& scene, int steps, const SolverOptions& options
           (Vector(5) << b.kinetic, b.strain, b.boundary, b.dissipated(), b.external_work()).finished()};
 }
 
-/// INDEPENDENT: both are of second order. Halving a step takes three quarters of an error away, so that a third of what it changed is left; as much
-/// again is allowed, because the engine's steps are halved but for what it takes to meet points of histories.
+/// INDEPENDENT: both are of second order. Halving a step takes three quarters of an error away, so that a third of what
+/// it changed is left; as much again is allowed, because the engine's steps are halved but for what it takes to meet
+/// points of histories.
 void expect_agreement(const Scene& scene, int steps, double safety, double most_left = 2e-3) {
   const Outcome engine = by_engine(scene, safety), finer_engine = by_engine(scene, safety / 2);
   const Outcome reference = by_reference(scene, steps), finer = by_reference(scene, 2 * steps);
@@ -143,8 +144,8 @@ TEST(ReferenceLoads, windows_open_and_close_as_in_the_engine) {
       << "EXACT: and the point of the histories";
 }
 
-/// EXACT: momenta are the areas of the histories, cut off by their windows, however long the steps that are asked for are; points within rounding of
-/// each other do no harm. The square's pressure does not follow.
+/// EXACT: momenta are the areas of the histories, cut off by their windows, however long the steps that are asked for
+/// are; points within rounding of each other do no harm. The square's pressure does not follow.
 TEST(ReferenceLoads, impulses_shorter_than_a_step_are_those_of_their_histories) {
   const double close = std::nextafter(0.7, 1);
   const History pulse{{0.1, 0.11, 0.12, 0.7, close, 0.8}, {0, 1, 0, 0, 3, 0}};
@@ -214,7 +215,8 @@ TEST(ReferenceLoads, drives_and_walls_act_as_in_the_engine) {
   expect_agreement(scene, 50, 0.1);
 }
 
-/// EXACT: where all targets go at one speed V, they work V times the impulse that they give, which is the disc's momentum.
+/// EXACT: where all targets go at one speed V, they work V times the impulse that they give, which is the disc's
+/// momentum.
 TEST(ReferenceLoads, targets_that_move_their_dashpots_work) {
   constexpr double speed = 0.3;
   Scene scene = free_disc(30, 4);
@@ -236,7 +238,8 @@ TEST(ReferenceLoads, targets_that_move_their_dashpots_work) {
   EXPECT_GT(observed_order({2, 1}, {missing[0], missing[1]}), 1.8);
 }
 
-/// EXACT: everything imposed leaves no equation; positions are integrals of histories, and the work is the kinetic energy.
+/// EXACT: everything imposed leaves no equation; positions are integrals of histories, and the work is the kinetic
+/// energy.
 TEST(ReferenceLoads, scenes_without_free_bodies_move_as_told) {
   Scene scene = empty_scene(2);
   scene.shapes = {box_shape("box", 2, 1, 0.5)};

@@ -1,4 +1,5 @@
-// The reference solver's energies, their stresses and tangents by automatic differentiation, and the forces of one body.
+// The reference solver's energies, their stresses and tangents by automatic differentiation, and the forces of one
+// body.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

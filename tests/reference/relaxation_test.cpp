@@ -83,7 +83,8 @@ TEST(ReferenceRelaxation, goes_on_over_kinks_on_the_way_down) {
   EXPECT_NEAR(x, 10.05, 1e-8);
 }
 
-/// A disc that nothing keeps from spinning and from creeping sideways, closed in upon without friction by a tenth of its diameter.
+/// A disc that nothing keeps from spinning and from creeping sideways, closed in upon without friction by a tenth of
+/// its diameter.
 Scene between_plates(double angle) {
   Scene scene = empty_scene(10);
   scene.period = 4;

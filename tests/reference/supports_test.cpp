@@ -53,7 +53,8 @@ TEST(ReferenceStatics, knows_no_damping) {
   EXPECT_LT(apart(run_reference(damped, 4, options), rest), 1e-12);
 }
 
-// INDEPENDENT: two supports of the same nodes whose dashpots are dragged at different speeds. RATE: the engine's dashpots see the half step before.
+// INDEPENDENT: two supports of the same nodes whose dashpots are dragged at different speeds. RATE: the engine's
+// dashpots see the half step before.
 TEST(ReferenceSupports, add_up_on_a_node) {
   const Scene scene = held({dragged(0.2, 3), dragged(-0.1, 1)}, 0.5);
   const Vector reference = run_reference(scene, 200);

@@ -15,8 +15,8 @@ using reference::Motion;
 using reference::System;
 using reference::Vector;
 
-/// Everything at once: compliant and rigid discs between walls, touching, with friction, gravity, a pressure that follows, a soft support with a
-/// dashpot, mass damping, viscosity and a servo wall.
+/// Everything at once: compliant and rigid discs between walls, touching, with friction, gravity, a pressure that
+/// follows, a soft support with a dashpot, mass damping, viscosity and a servo wall.
 Scene everything() {
   Scene scene = small_third_body(1);
   scene.gravity = {0.01, -0.02};
@@ -98,8 +98,8 @@ TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
   const Motion motion = shaken(system, 5, 0.004);
   const Forces forces = system.evaluate(motion, true);
   ASSERT_GT(forces.contacts.elements.size(), 20U);
-  // INDEPENDENT: the remainder of central differences, third derivative x step^2 / 6, is of that size; contacts that close within the step would
-  // be seen as more.
+  // INDEPENDENT: the remainder of central differences, third derivative x step^2 / 6, is of that size; contacts that
+  // close within the step would be seen as more.
   EXPECT_LT(tangent_error(system, motion, true, 1e-6), 1e-6);
   EXPECT_LT(tangent_error(system, motion, false, 1e-3), 1e-9);
 }

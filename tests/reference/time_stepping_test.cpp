@@ -48,7 +48,8 @@ TEST(ReferenceTimeStepping, newmark_and_hht_are_of_order_two_on_an_oscillator) {
   }
 }
 
-/// RATE: friction is no part of it, so that only the rate of E_dot can spoil the order: halving the step quarters the changes.
+/// RATE: friction is no part of it, so that only the rate of E_dot can spoil the order: halving the step quarters the
+/// changes.
 TEST(ReferenceTimeStepping, viscosity_is_of_order_two) {
   Scene scene = free_disc(30, 0.8, stretching(0.5));
   scene.materials[0].viscosity = 0.2;

@@ -116,8 +116,8 @@ TEST(ContactProbes, partners_select) {
   EXPECT_EQ(coordination, (std::vector<double>{1.5, 2, 0.5})) << "EXACT: the lower touches two, the upper rattles";
 }
 
-/// EXACT: a block over the seam of a period, its nodes on those of two walls: each carries kn times the depth over its length, the nodes beside the
-/// seam as well. The lower wall runs one way, the upper one the other.
+/// EXACT: a block over the seam of a period, its nodes on those of two walls: each carries kn times the depth over its
+/// length, the nodes beside the seam as well. The lower wall runs one way, the upper one the other.
 TEST(ContactProbes, tractions_of_walls_go_on_across_the_period) {
   Scene scene = block_on_floor(0.004);
   scene.grains[0].packing.positions = {{0, 0.246}};
@@ -232,7 +232,8 @@ TEST(PackingProbes, solid_fraction_of_a_hexagonal_packing) {
   Probe probe = probe_of("solid_fraction", "all");
   const double exact = std::numbers::pi / (2 * std::sqrt(3));
   const double column = std::sqrt(3) / 2;
-  // EXACT: boxes of whole cells, wherever they begin; across the period, and longer than it. Polygons have their discs' area.
+  // EXACT: boxes of whole cells, wherever they begin; across the period, and longer than it. Polygons have their discs'
+  // area.
   for (const Vec2& low : {Vec2(0.05, 1.1), Vec2(1.3, 0.73), Vec2(3.1, 1.9), Vec2(-7.2, 1.4)})
     for (int cells : {1, 2, 4}) {
       probe.box = ProbeBox{low, low + Vec2(2 * cells * column, 2)};

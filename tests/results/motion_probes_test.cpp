@@ -97,7 +97,8 @@ TEST(MotionProbes, a_node_must_be_there) {
   }
 }
 
-/// Grains of both kinds between a wall that stands and one that is pressed, and shears faster and faster, under gravity.
+/// Grains of both kinds between a wall that stands and one that is pressed, and shears faster and faster, under
+/// gravity.
 Scene loaded_layer() {
   Scene scene = small_third_body(1);
   scene.gravity = {0, -0.01};

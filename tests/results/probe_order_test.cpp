@@ -38,7 +38,8 @@ TEST(ProbeOrder, shows_the_force_of_the_step) {
       << "sums in another order";
 }
 
-/// EXACT: outputs after a step in which candidates were found anew see the present lengths, not those of the start of it.
+/// EXACT: outputs after a step in which candidates were found anew see the present lengths, not those of the start of
+/// it.
 TEST(CurrentLength, is_that_of_the_accepted_positions) {
   Scene scene = flight_and_impact(1e-2);
   scene.contact.length = ContactLength::current;

@@ -107,7 +107,8 @@ const std::vector<Bad> bad_values{
     {"UnknownField", "\"von_mises\"", "\"von_mise\"", "\"von_mise\"", {"unknown field", "nearest: von_mises"}},
     {"FieldTwice", "\"von_mises\"", "\"velocity\"", "[\"velocity\", \"velocity\"]", {"twice"}},
 };
-/// A key that must be there, under a wrong name: the wrong name is shown with its place, and what it is likely meant as.
+/// A key that must be there, under a wrong name: the wrong name is shown with its place, and what it is likely meant
+/// as.
 Bad misspelt(const std::string& name, const std::string& from, const std::string& to, const std::string& key,
              const std::string& meant) {
   return {name, from, to, key, {"unknown key '" + key + "'", "perhaps meant as '" + meant + "', which is missing"}};

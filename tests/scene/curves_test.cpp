@@ -14,8 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// What rounding makes of a polygon's area at most: its n terms are of the order of the area, as the origin lies inside or on
-/// it; each product, and each of n sums of up to twice the area, errs by half a unit in the last place.
+/// What rounding makes of a polygon's area at most: its n terms are of the order of the area, as the origin lies inside
+/// or on it; each product, and each of n sums of up to twice the area, errs by half a unit in the last place.
 double rounding_of_area(const Points& polygon) {
   return 1.5 * static_cast<double>(polygon.size()) * std::numeric_limits<double>::epsilon() * signed_area(polygon);
 }
@@ -51,8 +51,8 @@ TEST(Curves, FourierGrainsDifferBySeed) {
   EXPECT_TRUE(fourier_grain(1, {1.2}, 1).empty());
 }
 
-// EXACT: a square with arcs has area a^2 - (4 - pi) r^2 and perimeter 4 a - (8 - 2 pi) r, to the (pi/1440)^2/6 of a chord; its
-// points lie on the edges or at distance r from the corners' centres. With r = a/2 it is a circle.
+// EXACT: a square with arcs has area a^2 - (4 - pi) r^2 and perimeter 4 a - (8 - 2 pi) r, to the (pi/1440)^2/6 of a
+// chord; its points lie on the edges or at distance r from the corners' centres. With r = a/2 it is a circle.
 TEST(Curves, RoundedSquare) {
   const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
   const Points rounded = rounded_polygon(square, 0.3);

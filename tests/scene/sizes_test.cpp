@@ -21,8 +21,8 @@ double mean_of(const std::vector<double>& sizes, double power) {
   return sum / static_cast<double>(sizes.size());
 }
 
-// EXACT: moments of the distributions. Tolerance: quantiles of count n replace an integral by a midpoint rule; its error is
-// below range^2/n, and 10/n^2 of it where the density is smooth at the limits.
+// EXACT: moments of the distributions. Tolerance: quantiles of count n replace an integral by a midpoint rule; its
+// error is below range^2/n, and 10/n^2 of it where the density is smooth at the limits.
 TEST(Sizes, HaveTheMomentsOfTheirDistribution) {
   const std::vector<double> uniform = draw_sizes(distribution(Kind::uniform, 0.5, 1.5), 1000, 1);
   EXPECT_NEAR(mean_of(uniform, 1), 1, 1e-12);
@@ -61,7 +61,8 @@ TEST(Sizes, SeedsShuffle) {
   EXPECT_EQ(a, b);
 }
 
-// EXACT: the mean of the square that gives the number of grains is that of the sizes drawn, and 1 without a distribution.
+// EXACT: the mean of the square that gives the number of grains is that of the sizes drawn, and 1 without a
+// distribution.
 TEST(Sizes, MeanSquareIsThatOfTheDraw) {
   for (const SizeDistribution& one :
        {distribution(Kind::uniform, 0.5, 1.5), distribution(Kind::normal, 0.6, 1.2, 1, 0.3),

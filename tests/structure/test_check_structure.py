@@ -39,6 +39,7 @@ BAD = {
     "cycle": ("lib/core/sums.hpp", '#pragma once\n#include "core/sums.hpp"\n', "include cycle"),
     "long file": ("lib/core/long.cpp", "int f();\n" * 401, "401 lines"),
     "long test": ("tests/core/long_test.cpp", "int f();\n" * 401, "401 lines"),
+    "wide comment": ("lib/core/wide.cpp", f"// {'x' * 118}\n", "wide.cpp:1: 121 columns"),
     "no pragma": ("lib/core/twice.hpp", "int f();\n", "#pragma once"),
     "relative include in brackets": ("lib/core/near.cpp", "#include<../core/sums.hpp>\n", "root of lib/"),
     "relative include": ("lib/core/near.cpp", '#include "../core/sums.hpp"\n', "root of lib/"),

@@ -11,8 +11,8 @@
 #include "reference/contact_pair.hpp"
 #include "support/contact_rig.hpp"
 
-/// Contact of docs/method.md 4 once more: scalars, all nodes against all segments, no candidates, no windows. Deliberately
-/// slow. The rules of corners are the reference solver's.
+/// Contact of docs/method.md 4 once more: scalars, all nodes against all segments, no candidates, no windows.
+/// Deliberately slow. The rules of corners are the reference solver's.
 namespace pliant::testing {
 
 struct OracleLaw {
@@ -39,7 +39,8 @@ struct OracleLaw {
     if (cohesive()) return *rule.shear_strength * share(gap) + rule.friction * std::max(pressure(gap), 0.0);
     return rule.law == ContactLawKind::mohr_coulomb ? rule.cohesion + rule.friction * std::max(pressure(gap), 0.0) : 0;
   }
-  /// Integral of the pressure from the gap to the reach: Simpson's rule on each of the law's pieces, straight or square, is exact.
+  /// Integral of the pressure from the gap to the reach: Simpson's rule on each of the law's pieces, straight or
+  /// square, is exact.
   double energy(double gap) const {
     if (gap >= reach()) return 0;
     const double corner = cohesive() ? rule.strength / kn() : rule.smoothing > 0 ? -rule.smoothing * h : reach();
@@ -167,7 +168,8 @@ class ContactOracle {
     return cross(outward_sum, p - x) >= 0;
   }
 
-  /// Distance to a segment's nearest point; nothing when the bisectors exclude it. However deep: the engine's limit is none where it is kept.
+  /// Distance to a segment's nearest point; nothing when the bisectors exclude it. However deep: the engine's limit is
+  /// none where it is kept.
   std::optional<OraclePoint> on_segment(int body, int k, const Vec2& p) const {
     if (!is_past(body, k, p) || is_past(body, k + 1, p)) return {};
     return beside(body, k, p);
@@ -272,7 +274,8 @@ class ContactOracle {
     share_force(slave, k, master, *point, weight * law.pressure(point->gap), -weight * law.kt() * slip, result);
   }
 
-  /// A bond that goes on to the point, or breaks there or before. What its tractions did and is not stored is dissipated.
+  /// A bond that goes on to the point, or breaks there or before. What its tractions did and is not stored is
+  /// dissipated.
   void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
     const auto [slave, k, master, image] = key;
     const ContactRule& rule = law_.rule;
@@ -332,8 +335,8 @@ class ContactOracle {
     trial_[key] = {point.segment, point.xi, point.angle(), slip, damage, opening, point.gap};
   }
 
-  /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the normal
-  /// at the corners passed. A node under a convex corner, or over a re-entrant one, jumps from face to face.
+  /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the
+  /// normal at the corners passed. A node under a convex corner, or over a re-entrant one, jumps from face to face.
   /// Between the flanks of a fold: the displacement along the mean of the tangents.
   double way(int master, const Memory& from, const OraclePoint& to) const {
     const int n = rig_.count(master);

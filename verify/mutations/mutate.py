@@ -27,7 +27,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+VERIFY = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(VERIFY), str(VERIFY.parent / "scripts")]
 
 from report import report
 from unit_tests import in_short, red_tests

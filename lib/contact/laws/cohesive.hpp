@@ -4,8 +4,9 @@
 
 namespace pliant {
 
-/// Reversible cohesion (docs/method.md 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`; |tau| <= shear strength
-/// with the same taper. The energy is that of separated surfaces less what pulling them apart would take.
+/// Reversible cohesion (docs/method.md 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`; |tau| <=
+/// shear strength with the same taper. The energy is that of separated surfaces less what pulling them apart would
+/// take.
 struct Cohesive {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive";

@@ -5,12 +5,13 @@
 
 namespace pliant {
 
-/// Bonds with damage D (docs/method.md 4). One potential, psi = kn min(g, 0)^2 / 2 + (1 - D) (kn max(g, 0)^2 + kt s^2) / 2, gives pressure and shear: so the
-/// shear stiffness is kn / r^2 for strengths in the ratio r. With the opening delta = sqrt(max(g, 0)^2 + (s/r)^2) the energy release rate is
-/// -dpsi/dD = kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta (g_max - g_c)) makes the traction fall in a straight line from
-/// the strength at g_c = strength / kn to zero at g_max, which takes strength g_max / 2.
-/// Above a threshold stress each growing stress p adds dD = rate (p - threshold) / (strength - threshold) dp, in shear with stresses times r.
-/// The bond has no limit of slip but its damage. Where D = 1, at any time, the cohesive law is left with the residual strength, and friction.
+/// Bonds with damage D (docs/method.md 4). One potential, psi = kn min(g, 0)^2 / 2 + (1 - D) (kn max(g, 0)^2 + kt s^2)
+/// / 2, gives pressure and shear: so the shear stiffness is kn / r^2 for strengths in the ratio r. With the opening
+/// delta = sqrt(max(g, 0)^2 + (s/r)^2) the energy release rate is -dpsi/dD = kn delta^2 / 2. Along a growing opening D
+/// = g_max (delta - g_c) / (delta (g_max - g_c)) makes the traction fall in a straight line from the strength at g_c =
+/// strength / kn to zero at g_max, which takes strength g_max / 2. Above a threshold stress each growing stress p adds
+/// dD = rate (p - threshold) / (strength - threshold) dp, in shear with stresses times r. The bond has no limit of slip
+/// but its damage. Where D = 1, at any time, the cohesive law is left with the residual strength, and friction.
 struct CohesiveFatigue {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive-fatigue";
@@ -104,8 +105,8 @@ struct CohesiveFatigue {
     return min(max(bond.damage + by_loads, by_opening), broadcast(1));
   }
 
-  /// Work that the bond's growing damage takes in a step, J/m2: the mean of the old and the new traction along the way, less what is stored, is
-  /// exactly this.
+  /// Work that the bond's growing damage takes in a step, J/m2: the mean of the old and the new traction along the way,
+  /// less what is stored, is exactly this.
   Lanes damage_work(const Bond& bond, Lanes damage, Lanes opening, Lanes slip) const {
     return 0.5 * (damage - bond.damage) *
            (normal_stiffness * bond.opening * opening + shear_stiffness * bond.slip * slip);

@@ -5,7 +5,8 @@
 namespace pliant {
 
 /// p = -kn g down to the tensile cut-off -t, nothing beyond; |tau| <= c + friction max(p, 0) (docs/method.md 4).
-/// The cut-off is a jump of the force between two branches of one potential: closing again gives back what opening took.
+/// The cut-off is a jump of the force between two branches of one potential: closing again gives back what opening
+/// took.
 struct MohrCoulomb {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "mohr-coulomb";

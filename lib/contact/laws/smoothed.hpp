@@ -4,8 +4,9 @@
 
 namespace pliant {
 
-/// A law without tension whose pressure sets in smoothly (docs/method.md 4): kn x^2 / (2 width) over the first `width` of the penetration x, then
-/// kn (x - width/2). Forces are then once continuously differentiable in the gap, and an integrator of order 2 shows that order.
+/// A law without tension whose pressure sets in smoothly (docs/method.md 4): kn x^2 / (2 width) over the first `width`
+/// of the penetration x, then kn (x - width/2). Forces are then once continuously differentiable in the gap, and an
+/// integrator of order 2 shows that order.
 template <class Law>
 struct Smoothed : Law {
   double width = 0;  ///< m

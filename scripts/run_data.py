@@ -1,6 +1,9 @@
-"""Reads what a run wrote. Nothing here draws."""
+"""Reads what a run wrote: of scripts/, verify/ and tests. Nothing here draws."""
+
+from __future__ import annotations
 
 import io
+import json
 import re
 import sys
 import tomllib
@@ -29,6 +32,10 @@ class Column:
     unit: str
     values: np.ndarray
 
+    @property
+    def full_name(self) -> str:
+        return f"{self.source}.{self.name}" if self.source else self.name
+
 
 @dataclass
 class Table:
@@ -36,6 +43,13 @@ class Table:
 
     time: np.ndarray
     columns: list[Column]
+
+    def column(self, full_name: str) -> Column:
+        """Of a name such as "lower.force_x"; KeyError: there is none."""
+        found = [c for c in self.columns if c.full_name == full_name]
+        if not found:
+            raise KeyError(f"no column {full_name}; there are {', '.join(c.full_name for c in self.columns)}")
+        return found[0]
 
     def get(self, name: str, source: str | None = None) -> Column | None:
         found = (c for c in self.columns if c.name == name and source in (None, c.source))
@@ -55,7 +69,7 @@ class Grid:
     kind: np.ndarray  # [cells]
     body: np.ndarray  # [cells]
 
-    def closed_across(self) -> "Grid":
+    def closed_across(self) -> Grid:
         """With one more segment for each wall, from its last point to its first: a wall is an open line that goes on in
         the next period."""
         uses = np.bincount(self.cells.ravel())
@@ -79,6 +93,16 @@ class Grid:
         bodies = np.zeros(self.cells.max(initial=-1) + 1, dtype=int)
         bodies[self.cells] = self.body[:, None]
         return bodies
+
+
+def read_json(file: Path) -> dict:
+    """{} when there is none."""
+    try:
+        return json.loads(file.read_text())
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError) as error:
+        raise BadFolder(f"{file}: cannot be read: {error}") from error
 
 
 def read_table(file: Path) -> Table | None:

@@ -1,0 +1,151 @@
+# Commands for who works on Pliant itself.
+
+read_preset() {  # sets preset, units and rest
+  preset=release units='' rest=()
+  while [ $# -gt 0 ]; do
+    case $1 in
+      --preset) preset=${2:-release}; [ $# -lt 2 ] || shift ;;
+      --preset=*) preset=${1#*=} ;;
+      --units) units=yes ;;
+      *) rest+=("$1") ;;
+    esac
+    shift
+  done
+  local known
+  known=$(sed -nE 's/^ *"name": "(.*)",?$/\1/p' "$root/CMakePresets.json" | grep -vx base)
+  grep -qxF -e "$preset" <<<"$known" && return 0
+  echo "pliant: no preset '$preset'; there are:" $known >&2
+  exit 2
+}
+
+# The thread sanitizer must not judge by what it cannot see in libraries that are not instrumented, libomp first of all;
+# libarcher, which libomp loads by itself, tells it about the barriers. The symbolizer names the source lines.
+set_sanitizer_defaults() {
+  local symbolizer=/usr/lib/llvm-19/bin/llvm-symbolizer
+  export TSAN_OPTIONS=${TSAN_OPTIONS-ignore_noninstrumented_modules=1:external_symbolizer_path=$symbolizer}
+}
+
+build_only() {
+  local preset units rest
+  read_preset "$@"
+  [ -z "$units" ] || rest+=(--units)
+  [ ${#rest[@]} = 0 ] || fail "build: unknown option ${rest[0]}; see ./pliant build --help"
+  prepare "$preset" all
+  say "build/$preset is up to date"
+}
+
+# Without the lines of tests that passed; ctest prints the output of those that failed.
+without_passed() {
+  grep --line-buffered -vE '^ *Start +[0-9]+: |^ *[0-9]+/[0-9]+ Test +#[0-9]+: .* Passed +[0-9.]+ sec *$'
+}
+
+count_tests() {  # junit file -> the closing line
+  sed -nE '/<testsuite/,/>/ s/.*(tests|failures|skipped|disabled)="([0-9]+)".*/\1 \2/p' "$1" |
+    awk '{ n[$1] = $2 }
+         END { skipped = n["skipped"] + n["disabled"]
+               passed = n["tests"] - n["failures"] - skipped
+               printf "%d passed, %d failed, %d skipped\n", passed, n["failures"], skipped }'
+}
+
+run_tests() {
+  local preset units rest target=all
+  read_preset "$@"
+  if [ -n "$units" ]; then
+    target=pliant_tests rest+=(-L '^unit$')
+    ready test
+  else
+    ready test verify
+  fi
+  prepare "$preset" "$target" pliant_tests
+  # Tests run side by side: their threads must neither be bound to the same cores nor wait actively.
+  export OMP_PROC_BIND=${OMP_PROC_BIND-false} OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
+  set_sanitizer_defaults
+  local counts="$root/build/$preset/tests.xml"
+  rm -f "$counts"
+  say "testing build/$preset"
+  ctest --test-dir "$root/build/$preset" -j "$(nproc)" --output-on-failure --no-tests=error \
+    --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
+  local code=${PIPESTATUS[0]}
+  [ ! -f "$counts" ] || count_tests "$counts"
+  return "$code"
+}
+
+read_verify_options() {  # sets full and folders
+  full='' folders=()
+  local argument
+  for argument in "$@"; do
+    case $argument in
+      --full) full=1; continue ;;
+      --mutate)
+        echo "pliant: verify: --mutate comes first: ./pliant verify --mutate [MUTATION...]; see --help" >&2
+        exit 2
+        ;;
+      -*) echo "pliant: verify: unknown option $argument; see ./pliant verify --help" >&2; exit 2 ;;
+    esac
+    if [[ $argument == */* ]] || [ ! -f "$root/verify/$argument/check_$argument.py" ]; then
+      echo "pliant: verify: no case '$argument'; there are:" \
+        "$(cd "$root/verify" && echo */check_*.py | sed 's,/[^ ]*,,g')" >&2
+      exit 2
+    fi
+    folders+=("$root/verify/$argument")
+  done
+  [ ${#folders[@]} -gt 0 ] || folders=("$root/verify")
+}
+
+verify() {
+  local full folders code=0 interrupted=''
+  if [ "${1-}" = --mutate ]; then
+    prepare_verification
+    "$python" -B "$root/verify/mutations/mutate.py" "${@:2}" </dev/null || exit $?
+    return
+  fi
+  read_verify_options "$@"
+  prepare_verification
+  trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
+  PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
+    -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1
+  trap - INT
+  [ -z "$interrupted" ] || code=130
+  exit "$code"
+}
+
+prepare_verification() {
+  ready test verify
+  prepare release pliant_engine
+  prepare release pliant_reference_solver
+  prepare release pliant_agreement pliant_agreement
+}
+
+bench() {
+  if [ "${1-}" = --instructions ]; then
+    ready counting
+    prepare counting pliant_engine
+    "$python" "$root/benchmarks/marginal_cost.py" "${@:2}"
+    return
+  fi
+  if [ "${1-}" = --reference ]; then
+    prepare release pliant_reference_solver
+    exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
+  fi
+  ready bench
+  prepare release pliant_bench pliant_bench
+  set_thread_defaults
+  exec "$root/build/release/pliant_bench" "$@"
+}
+
+lint() {
+  prepare release all
+  ready lint
+  local files=("$@")
+  [ $# -gt 0 ] || mapfile -t files < <(find "$root/lib" -name '*.cpp' | sort)
+  say "clang-tidy over ${#files[@]} files"
+  printf '%s\0' "${files[@]}" |
+    xargs -0 -n 1 -P "$(nproc)" clang-tidy-19 --quiet -p "$root/build/release" 2>"$root/build/lint.log" ||
+    fail "clang-tidy complains; .clang-tidy has the reason of each rule"
+  say "clang-tidy has no complaint"
+}
+
+format() {
+  ready
+  "$root/tests/structure/format.sh" --write
+}

@@ -1,0 +1,97 @@
+# Commands that simulate, and that look at what came out.
+
+# Threads wait actively: waking a sleeping team costs 12 to 25 us a step. They are not bound: a second OpenMP runtime,
+# which a linear algebra library brings along, would bind the first thread and leave the engine one core.
+set_thread_defaults() { export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-active}; }
+
+draw() {  # folder, or the options of plot.py
+  say "drawing $1"
+  if [ -n "$quiet" ]; then
+    "$python" "$root/scripts/plot.py" "$@" >/dev/null
+  else
+    "$python" "$root/scripts/plot.py" "$@"
+  fi
+}
+
+# Runs a command and hands SIGINT and SIGTERM on to it: a run answers them by ending in order. Job control keeps the
+# terminal from sending it SIGINT as well, which would be a second one.
+forward_signals_to() {
+  local pid code=0
+  set -m
+  "$@" </dev/null &
+  pid=$!
+  set +m
+  trap 'kill -INT $pid 2>/dev/null' INT
+  trap 'kill -TERM $pid 2>/dev/null' TERM
+  while wait "$pid"; code=$?; kill -0 "$pid" 2>/dev/null; do :; done
+  trap - INT TERM
+  return "$code"
+}
+
+run_and_draw() {  # program, its arguments, --no-plot (ours): it tells its folder (lib/files/output_folder.hpp)
+  local program=$1 argument plot=yes arguments=() told folder code=0
+  shift
+  for argument in "$@"; do
+    case $argument in
+      --no-plot) plot=; continue ;;
+      --quiet) quiet=yes ;;
+    esac
+    arguments+=("$argument")
+  done
+  prepare release "$program"
+  told=$(mktemp) || fail "no temporary file can be made"
+  export PLIANT_TELL_FOLDER=$told
+  forward_signals_to "$root/build/release/$program" "${arguments[@]}" || code=$?
+  folder=$(<"$told")
+  rm -f "$told"
+  [ "$code" = 0 ] || exit "$code"
+  [ -z "$plot" ] || [ -z "$folder" ] || draw "$folder"
+}
+
+run() {
+  set_thread_defaults
+  run_and_draw pliant_engine run "$@"
+}
+
+reference() { run_and_draw pliant_reference_solver "$@"; }
+
+check() {
+  prepare release pliant_engine
+  set_thread_defaults
+  exec "$root/build/release/pliant_engine" check "$@"
+}
+
+modes() {
+  prepare release pliant_engine
+  exec "$root/build/release/pliant_engine" modes "$@"
+}
+
+plot() {
+  ready
+  draw "$@"
+}
+
+shape-functions() {
+  prepare release pliant_engine
+  "$python" "$root/scripts/shape_functions.py" "$@"
+}
+
+export_frame() {
+  ready
+  exec "$python" "$root/scripts/export.py" "$@"
+}
+
+info() {
+  ready
+  exec "$python" "$root/scripts/info.py" "$@"
+}
+
+compare() {
+  ready
+  exec "$python" "$root/scripts/compare.py" "$@"
+}
+
+schema() {
+  prepare release pliant_engine
+  exec "$root/build/release/pliant_engine" schema "$root"/docs/keys/*.toml "$root"/cases/*.toml
+}
