@@ -7,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "reference/relaxation.hpp"
+#include "reference/selection.hpp"
 
 namespace pliant::reference {
 namespace {
@@ -16,19 +17,6 @@ constexpr int most_bisections = 10;  ///< of a step: to a thousandth of it
 constexpr double longest_pseudo_step = 0.2;  ///< contacts cannot be missed
 constexpr double furthest = 10;              ///< what moves on does not come to rest
 constexpr double lost_penetration = 1;       ///< over a segment's length: deeper ones cannot be told from the far side
-
-/// Picks the free degrees of freedom: [dofs x free].
-SparseMatrix selection(const std::vector<int>& free, int dofs) {
-  Triplets entries;
-  for (std::size_t i = 0; i < free.size(); ++i) entries.emplace_back(free[i], static_cast<int>(i), 1.0);
-  SparseMatrix matrix(dofs, static_cast<int>(free.size()));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-SparseMatrix restricted(const SparseMatrix& matrix, const SparseMatrix& select) {
-  return SparseMatrix(select.transpose()) * matrix * select;
-}
 
 std::string trouble_of(const Forces& forces, const Bodies& bodies) {
   if (!(forces.least_jacobian > 0))

@@ -22,8 +22,8 @@ from run_data import BadFolder, Frames, Run, Table, read_json, read_run
 
 EQUAL, DIFFERENT, NOT_COMPARABLE = 0, 1, 2
 # Of the machine and the day, not of the run.
-NOT_OF_THE_RUN = {"preparation_seconds", "wall_seconds", "evaluations_per_second", "peak_memory_bytes", "threads",
-                  "resumed", "checkpoint_time", "commit", "compiler", "scene", "title"}
+NOT_OF_THE_RUN = {"preparation_seconds", "wall_seconds", "phase_seconds", "evaluations_per_second",
+                  "peak_memory_bytes", "threads", "resumed", "checkpoint_time", "commit", "compiler", "scene", "title"}
 SAME_TIME = 1e-9  # relative: outputs of the same instant
 
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "bodies/auto_stiffness.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
 #include "core/errors.hpp"
@@ -13,8 +14,6 @@
 
 namespace pliant {
 namespace {
-
-constexpr double auto_stiffness_factor = 8;  ///< times E/h, as of contacts
 
 /// A segment of an outline at the start.
 struct Segment {
@@ -90,7 +89,7 @@ class Target {
       result.length.push_back(length(node));
       result.start.push_back(outlines_.at(first_ + node.node));
     }
-    result.stiffness = condition.stiffness.value_or(auto_stiffness_factor * young / mean_spacing());
+    result.stiffness = condition.stiffness.value_or(auto_stiffness(young, mean_spacing()));
     return result;
   }
 

@@ -6,40 +6,40 @@
 namespace pliant {
 
 /// Where the degrees of freedom of one compliant body stand in Dofs::compliant, whatever its layout.
-class BodyPlaces {
+class BodyOffsets {
  public:
-  BodyPlaces(const Model& model, const Body& body)
+  BodyOffsets(const Model& model, const Body& body)
       : first_(model.batches[body.batch].offset * lane_count + static_cast<std::size_t>(body.lane)) {
     const Batch& batch = model.batches[body.batch];
-    if (batch.layout == Layout::spread) place_ = model.spread_shape_of(batch).place.data();
+    if (batch.layout == Layout::spread) offset_ = model.spread_shape_of(batch).offset.data();
   }
   /// Of a node's x, counted in doubles; its y stands lane_count further.
   std::size_t operator[](std::size_t node) const {
-    return first_ + (place_ ? static_cast<std::size_t>(place_[node]) : 2 * lane_count * node);
+    return first_ + (offset_ ? static_cast<std::size_t>(offset_[node]) : 2 * lane_count * node);
   }
 
  private:
   std::size_t first_;
-  const int* place_ = nullptr;
+  const int* offset_ = nullptr;
 };
 
 /// One body's degrees of freedom in the units they are stored in: those of its scale.
 class BodyView {
  public:
   BodyView(const Model& model, const Body& body, const Dofs& dofs)
-      : places_(model, body), values_(reinterpret_cast<const double*>(dofs.compliant.data())) {}
+      : offsets_(model, body), values_(reinterpret_cast<const double*>(dofs.compliant.data())) {}
   Vec2 operator[](std::size_t node) const {
-    const double* x = values_ + places_[node];
+    const double* x = values_ + offsets_[node];
     return {x[0], x[lane_count]};
   }
 
  private:
-  BodyPlaces places_;
+  BodyOffsets offsets_;
   const double* values_;
 };
 
-inline void set_node(const BodyPlaces& places, std::size_t node, const Vec2& value, Dofs& dofs) {
-  double* x = reinterpret_cast<double*>(dofs.compliant.data()) + places[node];
+inline void set_node(const BodyOffsets& offsets, std::size_t node, const Vec2& value, Dofs& dofs) {
+  double* x = reinterpret_cast<double*>(dofs.compliant.data()) + offsets[node];
   x[0] = value.x(), x[lane_count] = value.y();
 }
 

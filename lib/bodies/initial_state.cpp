@@ -23,10 +23,10 @@ Dofs initial_positions(const Model& model) {
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
     const Points& nodes = model.shape_of(body).space.mesh.nodes;
-    const BodyPlaces places(model, body);
+    const BodyOffsets offsets(model, body);
     const double c = std::cos(body.angle), s = std::sin(body.angle);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      set_node(places, i, {c * nodes[i].x() - s * nodes[i].y(), s * nodes[i].x() + c * nodes[i].y()}, q);
+      set_node(offsets, i, {c * nodes[i].x() - s * nodes[i].y(), s * nodes[i].x() + c * nodes[i].y()}, q);
   }
   fill_padding(model, q);
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
@@ -43,12 +43,12 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
     const InitialVelocity& field = model.scene.grains[body.grains].velocity;
-    const BodyPlaces places(model, body);
+    const BodyOffsets offsets(model, body);
     const BodyView positions(model, body, q);
     for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
       const Vec2 r = positions[static_cast<std::size_t>(i)];
       const Vec2 velocity = field.uniform / body.scale + field.rotation * Vec2(-r.y(), r.x()) + field.gradient * r;
-      set_node(places, static_cast<std::size_t>(i), velocity, v);
+      set_node(offsets, static_cast<std::size_t>(i), velocity, v);
     }
   }
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {

@@ -52,7 +52,7 @@ struct LaneTable {
   std::vector<LaneVector> gradient;  ///< [entries], 1/m
 };
 
-/// As ShapeRows, likewise.
+/// ShapeRows of all lanes' shapes together, in the same way.
 struct LaneRows {
   std::vector<int> start;    ///< [rows + 1]
   std::vector<int> node;     ///< [entries]
@@ -68,7 +68,7 @@ struct RelatedShapes {
 };
 
 /// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that
-/// slots, points and the threads' shares of them are patches of the body. A `place` is where x of a node stands from
+/// slots, points and the threads' shares of them are patches of the body. An `offset` is where x of a node stands from
 /// the batch's first entry, counted in doubles; y stands lane_count further.
 struct SpreadShape {
   static constexpr int region_slots = 64;    ///< slots of a region: 512 nodes
@@ -76,14 +76,14 @@ struct SpreadShape {
   static constexpr int chunk_nodes = 128;    ///< outline nodes of a chunk
 
   std::vector<int> order;                           ///< [nodes], the node that is the n-th in memory
-  std::vector<int> place;                           ///< [nodes], of each node
+  std::vector<int> offset;                          ///< [nodes], of each node
   std::vector<Lanes> unit_mass, inverse_unit_mass;  ///< [slots]
   std::vector<Lanes> nodal_distance;                ///< [slots], m; 1 in padding
 
   std::vector<int> point_number;  ///< [points of the IntegrationTable], where each stands among the following
   std::vector<double> weight;     ///< [points, whole lanes], m2; 0 in padding
   std::vector<int> start;         ///< [points, whole lanes, + 1], rows of the two following
-  std::vector<int> node;          ///< [entries], places
+  std::vector<int> node;          ///< [entries], offsets
   Points gradient;                ///< [entries], 1/m
 
   std::vector<int> node_start;  ///< [8 x slots + 1]: the same table by nodes, rows of the two following
@@ -92,7 +92,7 @@ struct SpreadShape {
 
   /// Share of an outline node's force that goes to a node.
   struct OutlineEntry {
-    int node;     ///< place
+    int node;     ///< offset
     int outline;  ///< number of the outline node
     double value;
   };
@@ -103,7 +103,7 @@ struct SpreadShape {
   int points() const { return static_cast<int>(weight.size()); }
 };
 
-/// Place of the number-th node in the order of a spread shape.
-inline int place_of(int number) { return number / lane_count * 2 * lane_count + number % lane_count; }
+/// Offset of the number-th node in the order of a spread shape.
+inline int offset_of(int number) { return number / lane_count * 2 * lane_count + number % lane_count; }
 
 }  // namespace pliant

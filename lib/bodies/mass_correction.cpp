@@ -18,15 +18,15 @@ void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
   v[2 * node + 1] = y_sum;
 }
 
-/// The same of one body, whose nodes stand at `place`.
-void correct_spread(const ShapeRows& rows, int node, const int* place, const double* y, double* v) {
+/// The same of one body, whose nodes stand at `offset`.
+void correct_spread(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
   double x_sum = 0, y_sum = 0;
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
-    x_sum += rows.value[e] * y[place[rows.node[e]]];
-    y_sum += rows.value[e] * y[place[rows.node[e]] + lane_count];
+    x_sum += rows.value[e] * y[offset[rows.node[e]]];
+    y_sum += rows.value[e] * y[offset[rows.node[e]] + lane_count];
   }
-  v[place[node]] = x_sum;
-  v[place[node] + lane_count] = y_sum;
+  v[offset[node]] = x_sum;
+  v[offset[node] + lane_count] = y_sum;
 }
 
 }  // namespace
@@ -39,9 +39,9 @@ void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, La
     });
   const ShapeRows& rows = shape.space.mass_correction;
   v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
-  const int* place = model.spread_shape_of(batch).place.data();
+  const int* offset = model.spread_shape_of(batch).offset.data();
   parallel_for(shape.nodes(), [&](int i) {
-    correct_spread(rows, i, place, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
+    correct_spread(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
   });
 }
 

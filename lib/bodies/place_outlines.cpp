@@ -18,7 +18,7 @@ void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
 }
 
 template <bool scaled, class Rows>
-void place_batch(const Model& model, const Batch& batch, const Rows& rows, const Lanes* q, OutlineField& place) {
+void place_batch(const Model& model, const Batch& batch, const Rows& rows, const Lanes* q, OutlineField& outlines) {
   const CompliantShape& shape = model.shape_of(batch);
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
@@ -39,18 +39,18 @@ void place_batch(const Model& model, const Batch& batch, const Rows& rows, const
     transpose(x, x_of_body);
     transpose(y, y_of_body);
     for (int lane = 0; lane < batch.count; ++lane) {  // the last ones reach into the cyclic copies, which come after
-      store(&place.x[model.outline_offset[bodies[lane]] + first], x_of_body[lane]);
-      store(&place.y[model.outline_offset[bodies[lane]] + first], y_of_body[lane]);
+      store(&outlines.x[model.outline_offset[bodies[lane]] + first], x_of_body[lane]);
+      store(&outlines.y[model.outline_offset[bodies[lane]] + first], y_of_body[lane]);
     }
   }
   for (int lane = 0; lane < batch.count; ++lane) {
     const int offset = model.outline_offset[bodies[lane]];
-    extend_cyclically(model.outlines[shape.outline], &place.x[offset], &place.y[offset]);
+    extend_cyclically(model.outlines[shape.outline], &outlines.x[offset], &outlines.y[offset]);
   }
 }
 
 /// One chunk of a spread body's outline nodes.
-void place_chunk(const Model& model, const Chunk& chunk, const Dofs& positions, OutlineField& place) {
+void place_chunk(const Model& model, const Chunk& chunk, const Dofs& positions, OutlineField& outlines) {
   const Batch& batch = model.batches[chunk.batch];
   const int number = model.groups[batch.group].bodies[batch.first];
   const Body& body = model.bodies[number];
@@ -61,26 +61,26 @@ void place_chunk(const Model& model, const Chunk& chunk, const Dofs& positions, 
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
       x += rows.value[e] * q[static_cast<std::size_t>(rows.node[e])];
     x = body.centre + body.scale * x;
-    place.x[model.outline_offset[number] + k] = x.x();
-    place.y[model.outline_offset[number] + k] = x.y();
+    outlines.x[model.outline_offset[number] + k] = x.x();
+    outlines.y[model.outline_offset[number] + k] = x.y();
   }
 }
 
-void place_spread(const Model& model, const Dofs& positions, OutlineField& place) {
+void place_spread(const Model& model, const Dofs& positions, OutlineField& outlines) {
   parallel_for(static_cast<int>(model.outline_chunks.size()),
-               [&](int c) { place_chunk(model, model.outline_chunks[c], positions, place); });
+               [&](int c) { place_chunk(model, model.outline_chunks[c], positions, outlines); });
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b) {
     const int body = model.groups[model.batches[b].group].bodies[model.batches[b].first];
     const int offset = model.outline_offset[body];
-    extend_cyclically(model.outline_of(body), &place.x[offset], &place.y[offset]);
+    extend_cyclically(model.outline_of(body), &outlines.x[offset], &outlines.y[offset]);
   }
 }
 
-void place_rigid(const Model& model, const RigidBody& rigid, const double* position, OutlineField& place) {
+void place_rigid(const Model& model, const RigidBody& rigid, const double* position, OutlineField& outlines) {
   const OutlineShape& shape = model.outlines[rigid.outline];
   const double c = std::cos(position[2]), s = std::sin(position[2]);
-  double* x = &place.x[model.outline_offset[rigid.body]];
-  double* y = &place.y[model.outline_offset[rigid.body]];
+  double* x = &outlines.x[model.outline_offset[rigid.body]];
+  double* y = &outlines.y[model.outline_offset[rigid.body]];
   for (int k = 0; k < shape.count; ++k) {
     const Vec2& p = shape.points[k];
     x[k] = position[0] + (c * p.x() - s * p.y());
@@ -157,7 +157,7 @@ void add_outline_forces(const Model& model, const Region& region, const OutlineF
   });
 }
 
-void outline_force_resultant(const Model& model, const RigidBody& rigid, const OutlineField& places,
+void outline_force_resultant(const Model& model, const RigidBody& rigid, const OutlineField& outlines,
                              const OutlineField& on_outlines, const double* position, double* resultant) {
   const int offset = model.outline_offset[rigid.body];
   Lanes fx{}, fy{}, moment{};
@@ -166,7 +166,7 @@ void outline_force_resultant(const Model& model, const RigidBody& rigid, const O
     const Lanes nodal_x = load(&on_outlines.x[i]), nodal_y = load(&on_outlines.y[i]);
     fx += nodal_x;
     fy += nodal_y;
-    moment += (load(&places.x[i]) - position[0]) * nodal_y - (load(&places.y[i]) - position[1]) * nodal_x;
+    moment += (load(&outlines.x[i]) - position[0]) * nodal_y - (load(&outlines.y[i]) - position[1]) * nodal_x;
   }
   resultant[0] = sum(fx);
   resultant[1] = sum(fy);

@@ -20,7 +20,7 @@ void show_outlines(const Model& model, const Motion& motion, Outlines& outlines)
 void add_outline_forces(const Model& model, const Region& region, const OutlineField& on_outlines, Lanes* forces);
 
 /// Force and moment of the forces on a rigid body's outline: [x, y, moment about its centre].
-void outline_force_resultant(const Model& model, const RigidBody& rigid, const OutlineField& places,
+void outline_force_resultant(const Model& model, const RigidBody& rigid, const OutlineField& outlines,
                              const OutlineField& on_outlines, const double* position, double* resultant);
 
 }  // namespace pliant

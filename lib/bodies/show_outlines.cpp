@@ -12,11 +12,11 @@ void compliant_velocities(const Model& model, const Body& body, const Dofs& velo
   for (std::size_t k = 0; k < nodal.size(); ++k) x[k] = nodal[k].x(), y[k] = nodal[k].y();
 }
 
-void rigid_velocities(const OutlineField& place, int offset, int count, const double* q, const double* v, double* x,
+void rigid_velocities(const OutlineField& position, int offset, int count, const double* q, const double* v, double* x,
                       double* y) {
   for (int k = 0; k < count; ++k) {
-    x[k] = v[0] - v[2] * (place.y[offset + k] - q[1]);
-    y[k] = v[1] + v[2] * (place.x[offset + k] - q[0]);
+    x[k] = v[0] - v[2] * (position.y[offset + k] - q[1]);
+    y[k] = v[1] + v[2] * (position.x[offset + k] - q[0]);
   }
 }
 

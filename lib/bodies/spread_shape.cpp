@@ -45,13 +45,13 @@ Points point_positions(const Discretisation& space) {
 void add_nodes(const Discretisation& space, SpreadShape& shape) {
   const std::vector<int>& order = shape.order = spatial_order(space.mesh.nodes);
   const std::size_t nodes = order.size(), slots = (nodes + lane_count - 1) / lane_count;
-  shape.place.resize(nodes);
+  shape.offset.resize(nodes);
   shape.unit_mass.assign(slots, Lanes{});
   shape.inverse_unit_mass.assign(slots, Lanes{});
   shape.nodal_distance.assign(slots, broadcast(1));
   for (std::size_t n = 0; n < nodes; ++n) {
     const int node = order[n];
-    shape.place[node] = place_of(static_cast<int>(n));
+    shape.offset[node] = offset_of(static_cast<int>(n));
     shape.unit_mass[n / lane_count][n % lane_count] = space.unit_mass[node];
     shape.inverse_unit_mass[n / lane_count][n % lane_count] = 1 / space.unit_mass[node];
     shape.nodal_distance[n / lane_count][n % lane_count] = space.nodal_distance[node];
@@ -71,21 +71,21 @@ void add_points(const Discretisation& space, SpreadShape& shape) {
     const int g = order[p];
     shape.weight.push_back(p < points ? table.weight[g] : 0);
     for (int e = table.start[g]; e < table.start[g + 1]; ++e) {
-      shape.node.push_back(shape.place[table.node[e]]);
+      shape.node.push_back(shape.offset[table.node[e]]);
       shape.gradient.push_back(table.gradient[e]);
     }
     shape.start.push_back(static_cast<int>(shape.node.size()));
   }
 }
 
-/// Number, in the order of the shape, of the node at a place.
-int number_of(int place) { return place / (2 * lane_count) * lane_count + place % lane_count; }
+/// Number, in the order of the shape, of the node at an offset.
+int number_of(int offset) { return offset / (2 * lane_count) * lane_count + offset % lane_count; }
 
 /// The table by nodes: each node's points in ascending order.
 void transpose_points(SpreadShape& shape) {
   std::vector<int>& start = shape.node_start;
   start.assign(static_cast<std::size_t>(lane_count * shape.slots()) + 1, 0);
-  for (int place : shape.node) ++start[number_of(place) + 1];
+  for (int offset : shape.node) ++start[number_of(offset) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
   std::vector<int> next(start.begin(), start.end() - 1);
   shape.point.resize(shape.node.size());
@@ -104,7 +104,7 @@ void add_outline(const ShapeRows& rows, SpreadShape& shape) {
   };
   for (int k = 0; k + 1 < static_cast<int>(rows.start.size()); ++k)
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
-      shape.outline_entries.push_back({shape.place[rows.node[e]], k, rows.value[e]});
+      shape.outline_entries.push_back({shape.offset[rows.node[e]], k, rows.value[e]});
   std::stable_sort(shape.outline_entries.begin(), shape.outline_entries.end(),
                    [&](const auto& a, const auto& b) { return region_of(a) < region_of(b); });
   const int regions = (shape.slots() + SpreadShape::region_slots - 1) / SpreadShape::region_slots;

@@ -159,10 +159,10 @@ class OutlineForces {
  private:
   void add_to_field(int node, const Vec2& f) {
     const ShapeRows& rows = model_.shape_of(body_).space.outline_rows;
-    const BodyPlaces places(model_, body_);
+    const BodyOffsets offsets(model_, body_);
     double* values = reinterpret_cast<double*>(force_.compliant.data());
     for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
-      double* at = values + places[static_cast<std::size_t>(rows.node[e])];
+      double* at = values + offsets[static_cast<std::size_t>(rows.node[e])];
       at[0] += rows.value[e] * f.x();
       at[lane_count] += rows.value[e] * f.y();
     }
@@ -213,12 +213,12 @@ double add_support_change(const Model& model, const OutlineSupport& support, con
 bool has_outline_loads(const Model& model) { return !model.pressures.empty() || !model.supports.empty(); }
 
 double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force) {
-  const OutlineField& place = outlines.position;
+  const OutlineField& position = outlines.position;
   const auto add = [&](int index, const Vec2& f) { force.x[index] += f.x(), force.y[index] += f.y(); };
   for (const OutlinePressure& load : model.pressures) {
     const int first = model.outline_offset[load.body], count = model.outline_of(load.body).count;
     for_each_load(
-        load, count, pressure_of(load, at), [&](int k) { return place.at(first + k); },
+        load, count, pressure_of(load, at), [&](int k) { return position.at(first + k); },
         [&](int k, const Vec2& f) { add(first + k, f); });
   }
   double damping_power = 0;
@@ -228,7 +228,7 @@ double add_outline_loads(const Model& model, const Instant& at, const Outlines& 
     for (std::size_t i = 0; i < support.nodes.size(); ++i) {
       const int k = model.outline_offset[support.body] + support.nodes[i];
       const Vec2 velocity = support.damping > 0 ? outlines.velocity.at(k) : Vec2(0, 0);
-      const Pull pull = pull_on(support, i, target, place.at(k), velocity);
+      const Pull pull = pull_on(support, i, target, position.at(k), velocity);
       damping_power += support.length[i] * pull.power;
       add(k, support.length[i] * pull.force);
     }

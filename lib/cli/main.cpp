@@ -5,12 +5,12 @@
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
+#include "bodies/natural_modes.hpp"
 #include "build_info.hpp"
 #include "cli/check.hpp"
 #include "cli/modes.hpp"
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
-#include "dynamics/natural_modes.hpp"
 #include "files/output_folder.hpp"
 #include "results/run.hpp"
 #include "scene/late_conditions.hpp"

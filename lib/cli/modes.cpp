@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "bodies/natural_modes.hpp"
 #include "core/errors.hpp"
-#include "dynamics/natural_modes.hpp"
 #include "files/text_files.hpp"
 #include "scene/names.hpp"
 

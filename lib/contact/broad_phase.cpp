@@ -48,10 +48,10 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
 
 }  // namespace
 
-Box bounding_box(const Model& model, const OutlineField& place, int body) {
+Box bounding_box(const Model& model, const OutlineField& position, int body) {
   const int offset = model.outline_offset[body], count = model.outline_of(body).count;
-  const auto [x_min, x_max] = std::minmax_element(&place.x[offset], &place.x[offset] + count);
-  const auto [y_min, y_max] = std::minmax_element(&place.y[offset], &place.y[offset] + count);
+  const auto [x_min, x_max] = std::minmax_element(&position.x[offset], &position.x[offset] + count);
+  const auto [y_min, y_max] = std::minmax_element(&position.y[offset], &position.y[offset] + count);
   return {*x_min, *x_max, *y_min, *y_max};
 }
 

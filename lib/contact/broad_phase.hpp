@@ -19,7 +19,7 @@ struct BodyPair {
   auto operator<=>(const BodyPair&) const = default;
 };
 
-Box bounding_box(const Model& model, const OutlineField& place, int body);
+Box bounding_box(const Model& model, const OutlineField& position, int body);
 
 /// Sweep and prune on x, then y, periodic in x (docs/method.md 4, stage 1). Pairs are sorted. Walls span all x, and
 /// meet no image of theirs.

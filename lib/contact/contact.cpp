@@ -59,9 +59,9 @@ ContactSystem::ContactSystem(const Model& model) : model_(model), laws_(model) {
   motion_.resize(model.bodies.size());
 }
 
-bool ContactSystem::candidates_hold(const OutlineField& place, const RunClock& clock) {
+bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
-  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !moved_by_the_skin(place);
+  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !moved_by_the_skin(position);
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {
@@ -70,8 +70,8 @@ bool ContactSystem::period_is_over(const RunClock& clock) const {
   return clock.time >= refreshed_.time + settings.refresh_period;
 }
 
-void ContactSystem::warn_of_missed_contacts(const OutlineField& place) {
-  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !moved_by_the_skin(place)) return;
+void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
+  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !moved_by_the_skin(position)) return;
   warned_ = true;
   spdlog::warn(
       "bodies move further than the contact skin, {:.3g} m, from one contact refresh to the next: contacts can be "
@@ -79,10 +79,10 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& place) {
       skin_);
 }
 
-bool ContactSystem::moved_by_the_skin(const OutlineField& place) {
+bool ContactSystem::moved_by_the_skin(const OutlineField& position) {
   const int bodies = static_cast<int>(model_.bodies.size());
   parallel_for(bodies, [&](int b) {
-    motion_[b] = motion_box(found_at_.position, place, model_.outline_offset[b], model_.outline_of(b).count);
+    motion_[b] = motion_box(found_at_.position, position, model_.outline_offset[b], model_.outline_of(b).count);
   });
   const Vec2 drift = common_motion();
   const double largest_own = parallel_max(bodies, 0, [&](int b) {

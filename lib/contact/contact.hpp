@@ -33,7 +33,7 @@ class ContactSystem {
   /// False when some close pair may have moved by the skin since the candidates were found, or always before the first
   /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
   /// ContactLaws::era.
-  bool candidates_hold(const OutlineField& place, const RunClock& clock = {});
+  bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
@@ -79,10 +79,10 @@ class ContactSystem {
     int begin, count, force;  ///< outline node of the first entry (not reduced), entries, place in the buffers
   };
 
-  bool moved_by_the_skin(const OutlineField& place);
+  bool moved_by_the_skin(const OutlineField& position);
   Vec2 common_motion() const;
   bool period_is_over(const RunClock& clock) const;
-  void warn_of_missed_contacts(const OutlineField& place);
+  void warn_of_missed_contacts(const OutlineField& position);
   void find_patches(const std::vector<Box>& boxes);
   void add_self_patches();
   void refuse_self_overlap() const;

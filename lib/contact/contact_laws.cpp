@@ -6,14 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "bodies/auto_stiffness.hpp"
 #include "core/errors.hpp"
 #include "scene/contact_rules.hpp"
 
 namespace pliant {
 namespace {
 
-/// docs/method.md 4: 6 to 8 % of h penetration at p = E/2.
-constexpr double auto_stiffness_factor = 8;
 constexpr double auto_range_factor = 0.12;
 /// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they
 /// sink in by a segment length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before
@@ -184,7 +183,7 @@ double ContactLaws::auto_stiffness(const Side& a, const Side& b) const {
   double young = 1e300;
   for (const Side* side : {&a, &b})
     if (parties_[side->party].kind == BodyKind::compliant) young = std::min(young, parties_[side->party].young);
-  return young < 1e300 ? auto_stiffness_factor * young / std::min(a.h, b.h) : 0;
+  return young < 1e300 ? pliant::auto_stiffness(young, std::min(a.h, b.h)) : 0;
 }
 
 ContactLaw ContactLaws::make_law(const Side& a, const Side& b) const {

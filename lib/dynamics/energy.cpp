@@ -72,11 +72,12 @@ Audit Auditor::audit(const State& state) {
   warn_of_strain(state);
   Audit result;
   // The same forces once more: the memory stands still at an accepted state, so nothing slips.
-  const Evaluation evaluation = forces_.evaluate({state.position, material_velocity(model, state.velocity), state.time},
-                                                 state.outlines, {state.memory}, {force_, contact_force_, memory_});
+  const Evaluation evaluation =
+      forces_.evaluate({state.position, material_velocity(model, state.reduced_momentum), state.time}, state.outlines,
+                       {state.memory}, {force_, contact_force_, memory_});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
-  result.energy.kinetic = kinetic_energy(model, state.velocity);
+  result.energy.kinetic = kinetic_energy(model, state.reduced_momentum);
   std::vector<double> strain(model.batches.size());
   for_each_batch(model, [&](int b) {
     strain[b] = sum(strain_energy(model, model.batches[b], motion_of(model.batches[b], state.position, state.memory)));

@@ -32,17 +32,21 @@ Forces::Forces(const Model& model)
 }
 
 Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
+  phases_.enter(Phase::candidates);
   const RunClock clock{time, accepted.steps};
   if (contact_.candidates_hold(trial, clock)) return {};
-  contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock);
+  phases_.apart(Phase::candidates,
+                [&] { contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock); });
   return {true, contact_.candidates_hold(trial, clock)};
 }
 
 Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
                             const RegionWork& afterwards) {
   Evaluation result;
+  phases_.enter(Phase::contact);
   result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
   result.damping_power = result.contact.damping_power;
+  phases_.enter(Phase::internal);
   const OutlineField* on_outlines = &to.contact_force;
   if (has_outline_loads(model_)) {
     loaded_ = to.contact_force;
@@ -53,6 +57,7 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   lane_forces(motion, *on_outlines, from, to, afterwards);
   if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, afterwards);
   rigid_forces(motion, outlines.position, *on_outlines, to.force);
+  phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.sound = result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
@@ -109,12 +114,12 @@ void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines
   });
 }
 
-void Forces::rigid_forces(const Motion& motion, const OutlineField& place, const OutlineField& on_outlines,
+void Forces::rigid_forces(const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
                           Dofs& force) {
   const Vec2 gravity = model_.scene.gravity_at(motion.time);
   parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model_.rigid_bodies[r];
-    outline_force_resultant(model_, rigid, place, on_outlines, &motion.position.rigid[3 * r], &force.rigid[3 * r]);
+    outline_force_resultant(model_, rigid, position, on_outlines, &motion.position.rigid[3 * r], &force.rigid[3 * r]);
     add_rigid_loads(rigid, gravity, motion.instant(), &force.rigid[3 * r]);
   });
 }

@@ -7,6 +7,7 @@
 #include "bodies/outline.hpp"
 #include "bodies/spread_forces.hpp"
 #include "contact/contact.hpp"
+#include "core/phase_times.hpp"
 #include "dynamics/state.hpp"
 
 namespace pliant {
@@ -54,6 +55,7 @@ class Forces {
 
   const Model& model() const { return model_; }
   const ContactSystem& contact() const { return contact_; }
+  PhaseTimes& phases() { return phases_; }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -67,7 +69,7 @@ class Forces {
                    const RegionWork& afterwards);
   void spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
                      const RegionWork& afterwards);
-  void rigid_forces(const Motion& motion, const OutlineField& place, const OutlineField& on_outlines, Dofs& force);
+  void rigid_forces(const Motion& motion, const OutlineField& position, const OutlineField& on_outlines, Dofs& force);
 
   const Model& model_;
   ContactSystem contact_;
@@ -76,6 +78,7 @@ class Forces {
   std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty where none dissipates
   std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]
   bool warned_deep_ = false;
+  PhaseTimes phases_;
 };
 
 }  // namespace pliant

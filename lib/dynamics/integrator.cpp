@@ -17,7 +17,8 @@ namespace {
 /// Of pressures and soft supports.
 double work_on_outlines(const Model& model, const State& state, const Trial& trial, double end_time) {
   if (!has_outline_loads(model)) return 0;
-  const Dofs before = material_velocity(model, state.velocity), after = material_velocity(model, trial.velocity);
+  const Dofs before = material_velocity(model, state.reduced_momentum),
+             after = material_velocity(model, trial.reduced_momentum);
   return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time, true});
 }
 
@@ -26,17 +27,20 @@ double work_on_outlines(const Model& model, const State& state, const Trial& tri
 void pass_switch(const Model& model, State& state) {
   const Instant before{state.time, true}, after{state.time};
   state.external_work += support_energy(model, state.position, after) - support_energy(model, state.position, before);
-  const Dofs velocity = material_velocity(model, state.velocity);
+  const Dofs velocity = material_velocity(model, state.reduced_momentum);
   state.damping_power += add_load_change(model, {state.position, velocity, state.time, true}, after, state.force);
 }
 
 }  // namespace
 
 Trial::Trial(const Model& model)
-    : position(zero_dofs(model)), velocity(position), force(position), contact_force(model.outline_offset.back()) {}
+    : position(zero_dofs(model)),
+      reduced_momentum(position),
+      force(position),
+      contact_force(model.outline_offset.back()) {}
 
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
-  const Dofs velocity = material_velocity(forces.model(), state.velocity);
+  const Dofs velocity = material_velocity(forces.model(), state.reduced_momentum);
   const Motion motion{state.position, velocity, state.time};
   show_outlines(forces.model(), motion, state.outlines);
   forces.ensure_candidates(state, state.outlines.position, state.time);
@@ -49,22 +53,22 @@ Evaluation find_forces(Forces& forces, State& state) {
   std::swap(state.force, trial.force);
   std::swap(state.contact_force, trial.contact_force);
   std::swap(state.memory, trial.memory);
-  add_drag(forces.model(), {state.time}, state.velocity, state.force);
+  add_drag(forces.model(), {state.time}, state.reduced_momentum, state.force);
   state.damping_power = found.damping_power;
   return found;
 }
 
 void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report) {
   const double end_time = trial.time;
-  state.external_work += external_work(model, state.position, trial.position, state.velocity, trial.velocity,
-                                       state.force, trial.force, state.time, end_time) +
+  state.external_work += external_work(model, state.position, trial.position, state.reduced_momentum,
+                                       trial.reduced_momentum, state.force, trial.force, state.time, end_time) +
                          work_on_outlines(model, state, trial, end_time);
-  state.gravity_work +=
-      gravity_work(model, {state.position, state.velocity, state.time}, {trial.position, trial.velocity, end_time});
+  state.gravity_work += gravity_work(model, {state.position, state.reduced_momentum, state.time},
+                                     {trial.position, trial.reduced_momentum, end_time});
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;
   std::swap(state.position, trial.position);
-  std::swap(state.velocity, trial.velocity);
+  std::swap(state.reduced_momentum, trial.reduced_momentum);
   std::swap(state.force, trial.force);
   std::swap(state.memory, trial.memory);
   std::swap(state.outlines, trial.outlines);

@@ -11,7 +11,7 @@ namespace pliant {
 
 Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
   state_.position = initial_positions(model);
-  state_.velocity = initial_velocities(model, state_.position);
+  state_.reduced_momentum = initial_velocities(model, state_.position);
   state_.force = zero_dofs(model);
   state_.memory = initial_memory(model);
   refuse_deep_overlap(model, placed_outlines(model, state_.position));
@@ -28,12 +28,14 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
 }
 
 StepReport Simulation::step(double until) {
+  phases().begin_step(state_.steps);
   const auto& times = model_.switch_times;
   const auto next = std::upper_bound(times.begin(), times.end(), state_.time);
   if (next != times.end()) until = std::min(until, *next);
   const StepReport report =
       std::visit([&](auto& integrator) { return take_step(*integrator, forces_, state_, until); }, integrator_);
   statistics_.add(report, state_.time);
+  phases().end_step();
   return report;
 }
 

@@ -28,6 +28,7 @@ class Simulation {
   const Forces& forces() const { return forces_; }
   const InitialOverlap& overlap() const { return overlap_; }
   const StepStatistics& statistics() const { return statistics_; }
+  PhaseTimes& phases() { return forces_.phases(); }
   double largest_dt() const;      ///< stability bound, s; infinite for step-doubling
   std::string governing() const;  ///< what limits the stability bound
 

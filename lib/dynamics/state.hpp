@@ -47,7 +47,9 @@ struct State {
   double damped = 0;         ///< of that, by forces that depend on velocities, J/m
   double damping_power = 0;  ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
-  Dofs position, velocity, force;
+  Dofs position;          ///< m
+  Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
+  Dofs force;             ///< N/m
   Memory memory;
   // They go with the positions, and are no part of the motion:
   Outlines outlines;           ///< with the velocities that dashpots saw
@@ -74,7 +76,7 @@ struct State {
     visitor("rejections", rejections);
     visitor("evaluations", evaluations);
     visitor("position", position);
-    visitor("velocity", velocity);
+    visitor("reduced_momentum", reduced_momentum);
     visitor("force", force);
     visitor("memory", memory);
   }

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "bodies/damping_forces.hpp"
+#include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
-#include "dynamics/accelerations.hpp"
 #include "dynamics/drag.hpp"
 
 namespace pliant {
@@ -55,7 +55,7 @@ LanePair displacement(const ShapeRows& rows, const SpreadShape& shape, const dou
   for (int lane = 0; lane < count; ++lane) {
     const int node = shape.order[first + lane];
     for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
-      const double* of_node = d + shape.place[rows.node[e]];
+      const double* of_node = d + shape.offset[rows.node[e]];
       u.x[lane] += rows.value[e] * of_node[0];
       u.y[lane] += rows.value[e] * of_node[lane_count];
     }
@@ -101,11 +101,11 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   const double half = 0.5 * proposal.dt, middle = state.time + half;
   const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
   find_start_force(state, half);
-  half_step(state.position, state.velocity, start_force_, state.time, half);
+  half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
   const bool hold = show(state, first, report).hold;
   if (!evaluate(first, {state.memory, half}, half_memory_, report) || !hold) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
-  half_step(trial_.position, trial_.velocity, trial_.force, middle, half);
+  half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
   if (!(report.error <= model_.scene.time.alpha * model_.scene.time.target)) return Halves::done;
   if (show(state, second, report).found_anew) return Halves::voided;
@@ -119,18 +119,19 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
 void StepDoubling::find_start_force(const State& state, double half) {
   start_force_ = state.force;
   if (model_.switch_times.empty() || state.time >= model_.switch_times.back()) return;
-  const Dofs velocity = material_velocity(model_, state.velocity);
+  const Dofs velocity = material_velocity(model_, state.reduced_momentum);
   add_load_change(model_, {state.position, velocity, state.time}, {state.time + 0.5 * half}, start_force_);
 }
 
 Motion StepDoubling::motion(const Instant& at) const {
-  return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.velocity, at.time, at.ends_step};
+  return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.reduced_momentum, at.time, at.ends_step};
 }
 
 /// The trial's outlines, and candidates that hold for them. `at`: the time of the loads.
 Forces::Candidates StepDoubling::show(State& state, const Instant& at, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
+  forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion(at), trial_.outlines);
   return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
 }
@@ -139,8 +140,8 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, StepRepor
 bool StepDoubling::evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
-  add_drag(model_, at, trial_.velocity, trial_.force);
-  report.evaluation.damping_power += drag_power(model_, at, trial_.velocity);
+  add_drag(model_, at, trial_.reduced_momentum, trial_.force);
+  report.evaluation.damping_power += drag_power(model_, at, trial_.reduced_momentum);
   return report.evaluation.sound;
 }
 
@@ -150,16 +151,17 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
-        trial_.velocity.compliant[i] = velocity.compliant[i] + half * inverse_mass * force.compliant[i];
-        if (!corrected) trial_.position.compliant[i] = position.compliant[i] + half * trial_.velocity.compliant[i];
+        trial_.reduced_momentum.compliant[i] = velocity.compliant[i] + half * inverse_mass * force.compliant[i];
+        if (!corrected)
+          trial_.position.compliant[i] = position.compliant[i] + half * trial_.reduced_momentum.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
         const double x = position.rigid[i], v = velocity.rigid[i] + half * dof.inverse_mass * force.rigid[i];
-        trial_.velocity.rigid[i] = dof.velocity_after(time, time + half, v);
+        trial_.reduced_momentum.rigid[i] = dof.velocity_after(time, time + half, v);
         trial_.position.rigid[i] = dof.position_after(time, half, x, x + half * v);
       });
   if (!corrected) return;
-  moving_velocity_ = material_velocity(model_, trial_.velocity);
+  moving_velocity_ = material_velocity(model_, trial_.reduced_momentum);
   for (std::size_t i = 0; i < position.compliant.size(); ++i)
     trial_.position.compliant[i] = position.compliant[i] + half * moving_velocity_.compliant[i];
 }

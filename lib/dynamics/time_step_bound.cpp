@@ -15,6 +15,7 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
 #include "core/parallel.hpp"
+#include "dynamics/body_frame.hpp"
 
 namespace pliant {
 namespace {
@@ -40,61 +41,13 @@ std::vector<Lanes> start_directions(const Model& model) {
   Dofs start = zero_dofs(model);
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
-    const BodyPlaces places(model, body);
-    for (int i = 0; i < model.shape_of(body).nodes(); ++i) set_node(places, static_cast<std::size_t>(i), own[i], start);
+    const BodyOffsets offsets(model, body);
+    for (int i = 0; i < model.shape_of(body).nodes(); ++i)
+      set_node(offsets, static_cast<std::size_t>(i), own[i], start);
   }
   fill_padding(model, start);
   return start.compliant;
 }
-
-/// Positions from the body's first node: rounding goes with a body's size then, not with how far it has come.
-std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
-  std::vector<Lanes> result(position, position + 2 * static_cast<std::size_t>(batch.slots));
-  for (std::size_t c = 0; c < 2; ++c) {
-    const Lanes first = batch.layout == Layout::spread ? broadcast(position[c][0]) : position[c];
-    for (std::size_t i = c; i < result.size(); i += 2) result[i] -= first;
-  }
-  return result;
-}
-
-/// A frame that turns with each body of a batch: its x axis leads from the body's first node to the one that is
-/// farthest from it in the reference shape. Power iterations keep their vectors in it: two iterations an update would
-/// not follow a body that spins.
-struct BodyFrame {
-  Lanes cosine, sine;
-
-  BodyFrame(const Model& model, const Batch& batch, const Lanes* position) {
-    const Points& reference = model.shape_of(batch).space.mesh.nodes;
-    const auto farthest = std::max_element(reference.begin(), reference.end(), [&](const Vec2& a, const Vec2& b) {
-      return (a - reference[0]).squaredNorm() < (b - reference[0]).squaredNorm();
-    });
-    const auto node = static_cast<std::size_t>(farthest - reference.begin());
-    Lanes x, y;
-    if (batch.layout == Layout::spread) {
-      const auto& place = model.spread_shape_of(batch).place;
-      const auto* entries = reinterpret_cast<const double*>(position);
-      const auto along = [&](int c) {
-        return broadcast(entries[place[node] + c * lane_count] - entries[place[0] + c * lane_count]);
-      };
-      x = along(0), y = along(1);
-    } else {
-      x = position[2 * node] - position[0], y = position[2 * node + 1] - position[1];
-    }
-    const Lanes length = sqrt(x * x + y * y);
-    cosine = x / length, sine = y / length;
-  }
-
-  void into_space(const Batch& batch, Lanes* u) const { turn(batch, u, sine); }
-  void into_body(const Batch& batch, Lanes* u) const { turn(batch, u, -sine); }
-
- private:
-  void turn(const Batch& batch, Lanes* u, Lanes s) const {
-    for (int i = 0; i < batch.slots; ++i) {
-      const Lanes x = u[2 * i], y = u[2 * i + 1];
-      u[2 * i] = cosine * x - s * y, u[2 * i + 1] = s * x + cosine * y;
-    }
-  }
-};
 
 /// Finite-difference step of each body in a batch, in its units.
 Lanes probe_step(const Model& model, const Batch& batch) {

@@ -7,7 +7,7 @@ namespace pliant {
 /// A motion under trial and the forces that it meets: they become the state's own when the step is accepted.
 struct Trial {
   double time = 0;  ///< of the last evaluation, s
-  Dofs position, velocity, force;
+  Dofs position, reduced_momentum, force;
   Memory memory;
   Outlines outlines;
   OutlineField contact_force;

@@ -5,11 +5,11 @@
 #include <limits>
 
 #include "bodies/damping_forces.hpp"
+#include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
-#include "dynamics/accelerations.hpp"
 #include "dynamics/drag.hpp"
 
 namespace pliant {
@@ -36,9 +36,11 @@ Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces),
       model_(forces.model()),
       drag_(has_drag(forces.model())),
+      needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
       trial_(model_),
       mean_velocity_(zero_dofs(model_)),
+      end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       change_(model_.regions.size()) {
   bound_.update_internal(state.position, state.memory);
   bound_.update_contact(forces_.contact());
@@ -61,10 +63,11 @@ Proposal Verlet::propose(const State& state, double next_dt, double until) const
 void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report) {
   trial_.time = proposal.end_time;
   predict(state, proposal.dt);
-  const Motion motion{trial_.position, trial_.velocity, proposal.end_time, true};
+  const Motion motion{trial_.position, end_velocity_, proposal.end_time, true};
+  forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion, trial_.outlines);
   const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
-  if (candidates.found_anew) bound_.update_contact(forces_.contact());
+  if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt},
                                        {trial_.force, trial_.contact_force, trial_.memory},
                                        [&](int r) { finish_region(state, proposal.dt, r); });
@@ -85,7 +88,7 @@ Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& 
 
 /// Positions at the end of the step and, for forces that depend on them, velocities there.
 void Verlet::predict(const State& state, double dt) {
-  if (drag_ || model_.rates || model_.corrected_mass) {
+  if (needs_velocities_) {
     predict_velocities(state, dt);
     return move_by_mean_velocity(state, dt);
   }
@@ -93,12 +96,12 @@ void Verlet::predict(const State& state, double dt) {
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
-        trial_.position.compliant[i] = state.position.compliant[i] + dt * state.velocity.compliant[i] +
+        trial_.position.compliant[i] = state.position.compliant[i] + dt * state.reduced_momentum.compliant[i] +
                                        half * inverse_mass * state.force.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
         const double x = state.position.rigid[i],
-                     free = x + dt * state.velocity.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
+                     free = x + dt * state.reduced_momentum.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
         trial_.position.rigid[i] = dof.position_after(state.time, dt, x, free);
       });
 }
@@ -113,20 +116,20 @@ void Verlet::predict_velocities(const State& state, double dt) {
       for (int i = 2 * region.first; i < 2 * region.last; ++i) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
         const Lanes change = dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density) * state.force.compliant[at];
-        mean_velocity_.compliant[at] = state.velocity.compliant[at] + drag.mean * change;
-        trial_.velocity.compliant[at] = state.velocity.compliant[at] + drag.end * change;
+        mean_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.mean * change;
+        end_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.end * change;
       }
     });
   });
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
-    const double x = state.position.rigid[i], v = state.velocity.rigid[i];
+    const double x = state.position.rigid[i], v = state.reduced_momentum.rigid[i];
     const Drag<double> drag = drag_over(dt * drag_rate(dof, {state.time}));
     const double change = dt * dof.inverse_mass * state.force.rigid[i];
     mean_velocity_.rigid[i] =
         dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + drag.mean * change;
-    trial_.velocity.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + drag.end * change);
+    end_velocity_.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + drag.end * change);
   });
-  if (model_.corrected_mass) trial_.velocity = material_velocity(model_, trial_.velocity);
+  if (model_.corrected_mass) end_velocity_ = material_velocity(model_, end_velocity_);
 }
 
 void Verlet::move_by_mean_velocity(const State& state, double dt) {
@@ -148,8 +151,9 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];
   const Lanes* old_force = &state.force.compliant[batch.offset];
-  const Lanes *old_velocity = &state.velocity.compliant[batch.offset], *mean = &mean_velocity_.compliant[batch.offset];
-  Lanes *velocity = &trial_.velocity.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
+  const Lanes *old_velocity = &state.reduced_momentum.compliant[batch.offset],
+              *mean = &mean_velocity_.compliant[batch.offset];
+  Lanes *velocity = &trial_.reduced_momentum.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
   const Lanes z = dt * batch.mass_damping, drag = batch.mass_damping * batch.density;
   const Lanes upper_inverse_density =
       with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
@@ -190,7 +194,7 @@ double Verlet::change_of_rigid(const State& state, std::size_t r) const {
   const auto change = [&](std::size_t c) {
     const RigidDof& dof = body.dof[c];
     const double before =
-        state.force.rigid[3 * r + c] + drag_coefficient(dof, {state.time}) * state.velocity.rigid[3 * r + c];
+        state.force.rigid[3 * r + c] + drag_coefficient(dof, {state.time}) * state.reduced_momentum.rigid[3 * r + c];
     return std::abs(trial_.force.rigid[3 * r + c] - before) * dof.inverse_mass_at(state.time);
   };
   const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
@@ -201,22 +205,23 @@ double Verlet::change_of_rigid(const State& state, std::size_t r) const {
 void Verlet::finish_rigid(const State& state, double dt) {
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
     const double coefficient = drag_coefficient(dof, {state.time});
-    const double before = state.velocity.rigid[i];
+    const double before = state.reduced_momentum.rigid[i];
     double free = before + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
     if (coefficient > 0) free += dt * coefficient * dof.inverse_mass * (0.5 * before - mean_velocity_.rigid[i]);
-    trial_.velocity.rigid[i] = dof.velocity_after(state.time, trial_.time, free);
-    trial_.force.rigid[i] -= coefficient * trial_.velocity.rigid[i];
+    trial_.reduced_momentum.rigid[i] = dof.velocity_after(state.time, trial_.time, free);
+    trial_.force.rigid[i] -= coefficient * trial_.reduced_momentum.rigid[i];
   });
 }
 
 void Verlet::finish(const State& state, StepReport& report) {
   finish_rigid(state, report.dt);
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
-  if (drag_) report.damping_work += drag_work(model_, {state.time}, report.dt, state.velocity, mean_velocity_);
+  if (drag_) report.damping_work += drag_work(model_, {state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
 void Verlet::accepted(const State& state) {
-  if (state.steps % bound_period == 0) bound_.update_internal(state.position, state.memory);
+  if (state.steps % bound_period == 0)
+    forces_.phases().apart(Phase::bound, [&] { bound_.update_internal(state.position, state.memory); });
 }
 
 }  // namespace pliant

@@ -41,10 +41,12 @@ class Verlet {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;  ///< something meets it
+  const bool drag_;              ///< something meets it
+  const bool needs_velocities_;  ///< with drag, rates or corrected mass
   TimeStepBound bound_;
   Trial trial_;
-  Dofs mean_velocity_;          ///< of the step, with drag, rates or corrected mass only; as a state holds it
+  Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
+  Dofs end_velocity_;           ///< that forces see at the end of the step, where needed
   std::vector<double> change_;  ///< [regions], of the acceleration over the nodal distance, 1/s2
 };
 

@@ -18,27 +18,8 @@ constexpr double clearance = 0.01;
 // A stage is over when no node lies deeper in the clearance than this share of it.
 constexpr double settled = 0.9;
 constexpr double skin = 0.3;  // of the mean radius: neighbours further off are not watched
-// A node pushes with its share of the outline, so that a contact has a stiffness of some 0.1 and a grain one of 1 in
-// all.
-constexpr double first_step = 0.3, longest_step = 1.5;
 
 }  // namespace
-
-/// The constants are those of its authors.
-struct GrainRelaxation::Fire {
-  static constexpr int patience = 5;
-  static constexpr double growth = 1.1, cut = 0.5, first_alpha = 0.1, fade = 0.99;
-  double dt = first_step, alpha = first_alpha;
-  int downhill = 0;
-
-  void adapt(bool down) {
-    if (!down) {
-      dt *= cut, alpha = first_alpha, downhill = 0;
-    } else if (++downhill > patience) {
-      dt = std::min(dt * growth, longest_step), alpha *= fade;
-    }
-  }
-};
 
 GrainRelaxation::Shape GrainRelaxation::make_shape(const Points& outline) {
   Shape shape{outline, {}, DistanceField(outline), perimeter(outline), 0, 0};

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "geometry/distance_field.hpp"
+#include "geometry/fire.hpp"
 #include "geometry/placement.hpp"
 #include "geometry/wall_profile.hpp"
 
@@ -48,8 +49,6 @@ class GrainRelaxation {
   struct Pair {
     int first, second;
   };
-
-  struct Fire;
 
   static Shape make_shape(const Points& outline);
   const Shape& shape_of(const Placement& grain) const { return shapes_[index_[grain.shape]]; }

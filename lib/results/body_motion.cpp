@@ -53,7 +53,7 @@ Points displacements_at(const Snapshot& snapshot, const Body& body, const Points
 Points velocities_at(const Snapshot& snapshot, const Body& body, const Points& reference) {
   const State& state = snapshot.state();
   if (body.kind == BodyKind::compliant) return nodal_values(snapshot.model(), body, snapshot.velocities());
-  const double *q = rigid_values(body, state.position), *v = rigid_values(body, state.velocity);
+  const double *q = rigid_values(body, state.position), *v = rigid_values(body, state.reduced_momentum);
   Points points = positions_at(snapshot, body, reference);
   for (Vec2& p : points) p = Vec2(v[0], v[1]) + v[2] * turned_left(p - Vec2(q[0], q[1]));
   return points;
@@ -64,7 +64,7 @@ Points accelerations_at(const Snapshot& snapshot, const Body& body, const Points
   const Dofs& acceleration = snapshot.accelerations();
   if (body.kind == BodyKind::compliant) return nodal_values(snapshot.model(), body, acceleration);
   const double *q = rigid_values(body, state.position), *a = rigid_values(body, acceleration);
-  const double spin = rigid_values(body, state.velocity)[2];
+  const double spin = rigid_values(body, state.reduced_momentum)[2];
   Points points = positions_at(snapshot, body, reference);
   for (Vec2& p : points) {
     const Vec2 arm = p - Vec2(q[0], q[1]);

@@ -31,7 +31,8 @@ void Recorder::record_step(Simulation& simulation, const StepReport& report) {
 void Recorder::flush() {
   probes_.flush();
   steps_.flush();
-  figures.wall_seconds = seconds_before_ + progress_.seconds();
+  figures.process_seconds = progress_.seconds();
+  figures.wall_seconds = seconds_before_ + figures.process_seconds;
 }
 
 void Recorder::sync() {

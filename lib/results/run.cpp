@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <functional>
+#include <numeric>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -35,9 +37,11 @@ struct Run {
   Clock::time_point last_checkpoint = Clock::now();
 
   void write_checkpoint(const std::string& status) {
-    pliant::write_checkpoint(options.out, scene_text, simulation, recorder);
-    recorder.figures.checkpoint_time = simulation.state().time;
-    recorder.write_summary(simulation, status);
+    simulation.phases().apart(Phase::output, [&] {
+      pliant::write_checkpoint(options.out, scene_text, simulation, recorder);
+      recorder.figures.checkpoint_time = simulation.state().time;
+      recorder.write_summary(simulation, status);
+    });
     last_checkpoint = Clock::now();
   }
 
@@ -61,11 +65,16 @@ void advance(Run& run) {
   const double end = simulation.model().scene.time.end;
   const StopSignals signals;
   run.recorder.begin(simulation);
-  run.recorder.record_outputs(simulation);
+  simulation.phases() = {};
+  const auto record_outputs = [&] {
+    simulation.phases().apart(Phase::output, [&] { run.recorder.record_outputs(simulation); });
+  };
+  record_outputs();
   run.recorder.write_summary(simulation, "running");
   while (simulation.state().time < end) {
-    const StepReport report = simulation.step(run.recorder.next_output(end));
-    run.recorder.record_outputs(simulation);
+    const double next = run.recorder.next_output(end);
+    const StepReport report = simulation.step(next);
+    if (simulation.state().time >= next * (1 - 1e-12)) record_outputs();  // a product may be its time but for rounding
     run.recorder.record_step(simulation, report);
     if (simulation.state().time < end) stop_if_asked(run);
     if (run.checkpoint_due()) run.write_checkpoint("running");
@@ -88,15 +97,28 @@ std::string last_words(Run& run, const Error& error) {
                      time < 0 ? "no checkpoint yet" : fmt::format("last good checkpoint: t = {:.6g} s", time));
 }
 
+/// Such as "contact 41 %, internal 39 %": what takes most comes first, without what takes less than half a percent.
+std::string shares(const PhaseTimes::Seconds& seconds) {
+  const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  std::vector<std::pair<double, const char*>> phases;
+  for (std::size_t p = 0; p < seconds.size(); ++p)
+    if (seconds[p] >= 0.005 * all) phases.emplace_back(100 * seconds[p] / all, phase_names[p]);
+  std::sort(phases.begin(), phases.end(), std::greater<>());
+  std::vector<std::string> texts;
+  for (const auto& [percent, name] : phases) texts.push_back(fmt::format("{} {:.0f} %", name, percent));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 void print_summary(Simulation& simulation, const RunFigures& figures, const RunOptions& options) {
   const State& state = simulation.state();
   const Audit audit = simulation.audit();
   fmt::print(
       "{}: t = {:.6g} s in {:.1f} s, {} steps, {} rejected, {} evaluations ({:.0f}/s), energy balance {:.2e}, momentum "
-      "{:.1e}\n",
+      "{:.1e}; time: {}\n",
       options.out.string(), state.time, figures.wall_seconds, state.steps, state.rejections, state.evaluations,
       static_cast<double>(state.evaluations) / figures.wall_seconds, simulation.balance_error(audit.energy),
-      std::max(audit.momentum_error, figures.worst_momentum_error));
+      std::max(audit.momentum_error, figures.worst_momentum_error),
+      shares(simulation.phases().seconds(figures.process_seconds)));
 }
 
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.

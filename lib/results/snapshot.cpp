@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/mass_correction.hpp"
 #include "core/parallel.hpp"
-#include "dynamics/accelerations.hpp"
 
 namespace pliant {
 
@@ -26,7 +26,7 @@ const std::vector<int>& Snapshot::contact_counts() const {
 }
 
 const Dofs& Snapshot::velocities() const {
-  if (!velocities_) velocities_ = material_velocity(model(), state().velocity);
+  if (!velocities_) velocities_ = material_velocity(model(), state().reduced_momentum);
   return *velocities_;
 }
 

@@ -29,6 +29,8 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   json["wall_seconds"] = figures.wall_seconds;
   json["evaluations_per_second"] =
       figures.wall_seconds > 0 ? static_cast<double>(state.evaluations) / figures.wall_seconds : 0.0;
+  const PhaseTimes::Seconds seconds = simulation.phases().seconds(figures.process_seconds);
+  for (std::size_t p = 0; p < seconds.size(); ++p) json["phase_seconds"][phase_names[p]] = seconds[p];
   json["energy"] = {{"kinetic", e.kinetic},
                     {"strain", e.strain},
                     {"contact", e.contact},

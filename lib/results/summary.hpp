@@ -10,6 +10,7 @@ namespace pliant {
 struct RunFigures {
   double preparation_seconds = 0;  ///< of this process
   double wall_seconds = 0;
+  double process_seconds = 0;       ///< of these, of this process
   double worst_momentum_error = 0;  ///< over all audits of the run
   int threads = 1;
   int resumed = 0;              ///< times that the run went on from a checkpoint

@@ -9,44 +9,16 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator
 
 from plots import units
+from plots.history import DENSE, draw_history
 from run_data import Column, Run, Table
 
 # Okabe and Ito's colours, told apart by the colour-blind.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
-# More rows than this are drawn as a band from least to largest with the mean in it.
-_DENSE = 1500
-_BINS = 500
 # A curve this much smaller than the largest of its panel is a line at zero: it is named, not drawn.
 _NEGLIGIBLE = 1e-9
 _LEGEND_COLUMNS = 6
 # Estimates of nearly nothing (free flight, a start at rest) shall not squeeze the others.
 _DECADES = 8
-
-
-def _binned(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Centres of equal bins of time, and least, mean, largest value of those that have any."""
-    edges = np.linspace(time[0], time[-1], _BINS + 1)
-    index = np.clip(np.searchsorted(edges, time, side="right") - 1, 0, _BINS - 1)
-    count = np.bincount(index, minlength=_BINS)
-    least, largest = np.full(_BINS, np.inf), np.full(_BINS, -np.inf)
-    np.minimum.at(least, index, values)
-    np.maximum.at(largest, index, values)
-    filled = count > 0
-    mean = np.bincount(index, values, minlength=_BINS)[filled] / count[filled]
-    return (0.5 * (edges[1:] + edges[:-1])[filled], least[filled], mean, largest[filled])
-
-
-def _draw_history(
-    axes: Axes, time: np.ndarray, values: np.ndarray, colour: str, name: str | None = None, style: str = "-"
-) -> None:
-    """Values that are NaN leave a gap."""
-    if len(time) <= _DENSE:
-        axes.plot(time, values, style, color=colour, linewidth=1.1, label=name)
-        return
-    there = np.isfinite(values)
-    centre, least, mean, largest = _binned(time[there], values[there])
-    axes.fill_between(centre, least, largest, color=colour, alpha=0.25, linewidth=0)
-    axes.plot(centre, mean, style, color=colour, linewidth=1.1, label=name)
 
 
 def _panels(count: int, title: str, table: Table) -> tuple[Figure, list[Axes], float]:
@@ -94,7 +66,7 @@ def steps(run: Run) -> Figure | None:
             panel.axhline(run.tolerance, color=COLOURS[7], linewidth=0.8, linestyle="--", label="tolerance")
             panel.set_ylim(top=max(panel.get_ylim()[1], 2 * run.tolerance))
             _legend(panel, 1)
-    notes = [_rejection_note(table), "line: mean, band: least to largest" if len(table.time) > _DENSE else ""]
+    notes = [_rejection_note(table), "line: mean, band: least to largest" if len(table.time) > DENSE else ""]
     figure.supxlabel("; ".join(note for note in notes if note), fontsize=9)
     return figure
 
@@ -112,7 +84,7 @@ def _draw_step_column(axes: Axes, table: Table, column: Column, time_factor: flo
         _logarithmic(axes, values)
     elif column.name in ("rejections", "contacts"):
         axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=6))
-    _draw_history(axes, time * time_factor, values * factor, colour)
+    draw_history(axes, time * time_factor, values * factor, colour)
     if column.name in ("rejections", "dt"):
         axes.set_ylim(bottom=0)
     axes.set_ylabel(units.label(name, unit))
@@ -200,7 +172,7 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
             continue
         if column is normal and values.mean() < 0:
             values = -values  # compression is positive on either wall
-        _draw_history(axes, time * time_factor, values * factor, colour, name)
+        draw_history(axes, time * time_factor, values * factor, colour, name)
         captions.append(_caption(name, column.unit, time, values))
     axes.set_ylabel(units.label("force", unit))
     axes.set_title(f"wall '{run.probe_of.get(source) or source}'\n" + "\n".join(captions), fontsize=9, loc="left")
@@ -210,7 +182,7 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
 def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor: float) -> None:
     time, values = _friction(run, table, source)
     values = np.where(_loaded(table, source, time), values, np.nan)
-    _draw_history(axes, time * time_factor, values, COLOURS[2])
+    draw_history(axes, time * time_factor, values, COLOURS[2])
     axes.set_ylabel("friction factor")
     axes.set_title(_caption("friction factor", "-", time, values), fontsize=9, loc="left")
 
@@ -244,7 +216,7 @@ def _draw_together(
             vanishing.append(name_of(column))
             continue
         style = "--" if column.name == "external_work" else "-"  # what came in lies on what is stored in slow scenes
-        _draw_history(axes, time * time_factor, values * factor, colour, name_of(column), style)
+        draw_history(axes, time * time_factor, values * factor, colour, name_of(column), style)
     axes.set_ylabel(units.label(quantity, unit))
     _legend(axes, len(columns) - len(vanishing))
     if vanishing:
@@ -256,7 +228,7 @@ def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, co
     time, values = table.sampled(column)
     there = values != 0
     name = column.name.removesuffix("_error").replace("_", " ")
-    _draw_history(axes, time[there] * time_factor, np.abs(values[there]), colour)
+    draw_history(axes, time[there] * time_factor, np.abs(values[there]), colour)
     _logarithmic(axes, np.abs(values[there]))
     axes.set_ylabel(units.label(f"{name} error", column.unit))
     unit = "" if column.unit == "-" else f" {column.unit}"

@@ -73,7 +73,8 @@ TEST_P(Spread, bodies_move_as_those_in_lanes) {
                         "node");
     expect_equal_points(outline_values(spread, body, x.position), outline_values(lanes, other, y.position), rounding,
                         "outline node");
-    expect_equal_points(nodal_values(spread, body, x.velocity), nodal_values(lanes, other, y.velocity), 100 * rounding,
+    expect_equal_points(nodal_values(spread, body, x.reduced_momentum), nodal_values(lanes, other, y.reduced_momentum),
+                        100 * rounding,
                         "velocity");  // a frequency of 100
     EXPECT_LT((mean_value(spread, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding)
         << "EXACT";
@@ -96,13 +97,13 @@ Dofs deformed(const Model& model, std::uint64_t seed) {
   Random random(seed);
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
-    const BodyPlaces places(model, body);
+    const BodyOffsets offsets(model, body);
     const BodyView view(model, body, q);
     for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
       const auto node = static_cast<std::size_t>(i);
       const Vec2 x = view[node];
       const Vec2 noise{random.uniform(-1, 1), random.uniform(-1, 1)};
-      set_node(places, node, x + 0.1 * Vec2(x.y() * x.y(), -x.x() * x.y()) + 0.002 * noise, q);
+      set_node(offsets, node, x + 0.1 * Vec2(x.y() * x.y(), -x.x() * x.y()) + 0.002 * noise, q);
     }
   }
   return q;
@@ -139,9 +140,9 @@ TEST(SpreadForces, belong_to_the_energy) {
       const auto energy = [&] { return strain_energy(spread, batch, {.position = &q.compliant[batch.offset]})[0]; };
       EXPECT_NEAR(energy(), strain_energy(lanes, lane_batch, {.position = &p.compliant[lane_batch.offset]})[other.lane],
                   1e-13);
-      const BodyPlaces places(spread, body);
+      const BodyOffsets offsets(spread, body);
       for (std::size_t i = 0; i < 60; i += 7) {
-        double& x = reinterpret_cast<double*>(q.compliant.data())[places[i]];
+        double& x = reinterpret_cast<double*>(q.compliant.data())[offsets[i]];
         const double here = x;
         x = here + 1e-5;
         const double above = energy();
@@ -179,9 +180,9 @@ TEST(SpreadShape, is_the_table_in_another_order) {
   const Model model = build_model(pile(Recipe::mls), always_spread);
   const SpreadShape& shape = model.spread_shapes[0];
   const Discretisation& space = model.shapes[0].space;
-  std::vector<int> places = shape.place;
-  std::sort(places.begin(), places.end());
-  for (int n = 0; n < static_cast<int>(places.size()); ++n) EXPECT_EQ(places[n], place_of(n));
+  std::vector<int> offsets = shape.offset;
+  std::sort(offsets.begin(), offsets.end());
+  for (int n = 0; n < static_cast<int>(offsets.size()); ++n) EXPECT_EQ(offsets[n], offset_of(n));
   EXPECT_NEAR(std::accumulate(shape.weight.begin(), shape.weight.end(), 0.0), M_PI, 1e-12);
   EXPECT_EQ(shape.points() % lane_count, 0);
   EXPECT_EQ(shape.point.size(), shape.node.size());
@@ -209,8 +210,8 @@ TEST(SpreadShape, keeps_neighbours_together) {
 TEST(SpreadBodies, fail_by_name) {
   Bench bench(build_model(pile(Recipe::mls), always_spread));
   const Body& body = bench.model.bodies[1];
-  const BodyPlaces places(bench.model, body);
-  set_node(places, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
+  const BodyOffsets offsets(bench.model, body);
+  set_node(offsets, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
   Trial trial(bench.model);
   const Evaluation evaluation = bench.evaluate(trial);
   EXPECT_LT(evaluation.least_jacobian, 0);

@@ -33,7 +33,7 @@ TEST(RigidGrain, obeys_one_drive_an_axis_and_its_fellow_none) {
     Simulation simulation(model);
     advance(simulation, 2);
     const RigidBody& body = model.rigid_bodies[1];
-    const Eigen::Vector3d x = rigid(simulation.state().position, 1), v = rigid(simulation.state().velocity, 1);
+    const Eigen::Vector3d x = rigid(simulation.state().position, 1), v = rigid(simulation.state().reduced_momentum, 1);
     const double turn = -0.2 / body.dof[2].mass, push = 0.3 / body.dof[1].mass;
     EXPECT_NEAR(x[0], 6, 1e-13) << "EXACT";
     EXPECT_NEAR(v[0], 1, 1e-13) << "EXACT";
@@ -56,10 +56,10 @@ TEST(RigidGrain, that_is_fixed_stays_whatever_speed_it_was_given) {
   scene.grains[0].velocity = moving({1, 2}, 3);
   const Model model = build_model(scene);
   Simulation simulation(model);
-  EXPECT_EQ(rigid(simulation.state().velocity, 0), Eigen::Vector3d(0, 0, 0)) << "EXACT";
+  EXPECT_EQ(rigid(simulation.state().reduced_momentum, 0), Eigen::Vector3d(0, 0, 0)) << "EXACT";
   advance(simulation, 1);
   EXPECT_EQ(rigid(simulation.state().position, 0), Eigen::Vector3d(0, 0, 0)) << "EXACT";
-  EXPECT_EQ(rigid(simulation.state().velocity, 1), Eigen::Vector3d(1, 2, 3)) << "EXACT: the other one";
+  EXPECT_EQ(rigid(simulation.state().reduced_momentum, 1), Eigen::Vector3d(1, 2, 3)) << "EXACT: the other one";
 }
 
 /// Pushed from 0.5 to 1.25, carried at speed 2 from rest or flight until 1: free before and after.
@@ -80,7 +80,7 @@ TEST(Window, holds_a_drive_from_its_start_to_its_end) {
     double longest = 0;
     while (simulation.state().time < 2) longest = std::max(longest, simulation.step(2).dt);
     if (integrator == Integrator::verlet) longest = 0;
-    const Eigen::Vector3d x = rigid(simulation.state().position, 0), v = rigid(simulation.state().velocity, 0);
+    const Eigen::Vector3d x = rigid(simulation.state().position, 0), v = rigid(simulation.state().reduced_momentum, 0);
     const double push = 0.4 / model.rigid_bodies[0].dof[1].mass;
     EXPECT_NEAR(v[0], 2 - 0.5, 1e-12) << "EXACT: let go with the speed it had, then gravity";
     EXPECT_NEAR(x[0], 2 + 2 - 0.25, 0.5 * longest / 4 + 1e-12) << "EXACT; RATE: Euler steps lag by a t dt/4";
@@ -100,7 +100,7 @@ TEST(Window, of_a_wall_lets_it_go) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  EXPECT_NEAR(rigid(simulation.state().velocity, 1)[1], 0.5 - 0.3, 1e-12) << "EXACT: free after 1";
+  EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], 0.5 - 0.3, 1e-12) << "EXACT: free after 1";
   EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT: constant forces";
 }
 
@@ -117,7 +117,7 @@ TEST(ServoWall, approaches_the_speed_of_pressure_over_damping) {
   advance(simulation, end);
   const double rate = damping * 3 / model.rigid_bodies[1].dof[1].mass;
   const double exact = pressure / damping * (1 - std::exp(-rate * end));
-  EXPECT_NEAR(rigid(simulation.state().velocity, 1)[1], exact, 1e-12) << "EXACT: at default settings";
+  EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], exact, 1e-12) << "EXACT: at default settings";
   EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT";
 }
 

@@ -45,7 +45,8 @@ struct Speeds {
 
 Speeds speeds(const Simulation& simulation) {
   const Model& model = simulation.model();
-  return {rigid(simulation.state().velocity, 0), mass_mean(model, model.bodies[1], simulation.state().velocity)};
+  return {rigid(simulation.state().reduced_momentum, 0),
+          mass_mean(model, model.bodies[1], simulation.state().reduced_momentum)};
 }
 
 Speeds speeds_at_end(const Scene& scene) {
@@ -97,7 +98,7 @@ TEST(Impulse, of_a_following_pressure_on_a_deforming_outline) {
   Simulation simulation(model);
   const auto load = [&](bool ends_step) {
     const State& state = simulation.state();
-    return outline_load(model, 1, {state.position, state.velocity, state.time, ends_step});
+    return outline_load(model, 1, {state.position, state.reduced_momentum, state.time, ends_step});
   };
   Vec2 impulse(0, 0);
   while (simulation.state().time < 3) {
@@ -136,18 +137,18 @@ TEST(Impulse, of_a_servo_wall) {
     const Model model = build_model(servo_wall(integrator, 0));
     Simulation simulation(model);
     advance(simulation, 3);
-    EXPECT_NEAR(rigid(simulation.state().velocity, 1)[1], until_1_025 * period / mass, rounding) << "EXACT";
+    EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], until_1_025 * period / mass, rounding) << "EXACT";
   }
   const Model model = build_model(servo_wall(Integrator::verlet, 4));
   Simulation simulation(model);
   while (simulation.state().time < 1.025) simulation.step(3);
-  const double v = rigid(simulation.state().velocity, 1)[1], y = rigid(simulation.state().position, 1)[1];
+  const double v = rigid(simulation.state().reduced_momentum, 1)[1], y = rigid(simulation.state().position, 1)[1];
   EXPECT_GT(y, 1e-5);
   EXPECT_NEAR(mass * v + 4 * period * y, until_1_025 * period, rounding) << "EXACT";
   EXPECT_EQ(simulation.state().time, 1.025);
   EXPECT_EQ(simulation.state().force.rigid[4], 0) << "EXACT: load and dashpot are gone";
   advance(simulation, 3);
-  EXPECT_EQ(rigid(simulation.state().velocity, 1)[1], v) << "EXACT: it flies on";
+  EXPECT_EQ(rigid(simulation.state().reduced_momentum, 1)[1], v) << "EXACT: it flies on";
 }
 
 /// The dashpots of a support of which only the far end moves, by leaps shorter than a step, on a body that hardly
@@ -192,7 +193,7 @@ int steps_with(const History& gravity, Integrator integrator) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 4);
-  EXPECT_NEAR(rigid(simulation.state().velocity, 0)[0], gravity.integral(0, 4), 1e-11) << "EXACT";
+  EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 0)[0], gravity.integral(0, 4), 1e-11) << "EXACT";
   return static_cast<int>(simulation.state().steps);
 }
 

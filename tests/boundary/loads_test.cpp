@@ -34,7 +34,7 @@ TEST(ImposedMotion, follows_the_integral_of_its_history) {
       simulation.step(4);
       const double t = simulation.state().time;
       const Eigen::Vector3d x = rigid(simulation.state().position, wall_index),
-                            v = rigid(simulation.state().velocity, wall_index);
+                            v = rigid(simulation.state().reduced_momentum, wall_index);
       EXPECT_NEAR(x[0], history.integral(0, t), 1e-13) << "EXACT: rounding of some hundred steps";
       EXPECT_NEAR(x[1], -0.25 * t, 1e-13) << "EXACT";
       EXPECT_NEAR(v[0], history.at(t), 1e-12) << "EXACT";
@@ -56,7 +56,7 @@ TEST(Pressure, accelerates_a_wall_by_pressure_times_period_over_mass) {
     const double acceleration = (solid == Wall::Solid::below ? 1 : -1) * 0.7 * 3 / 1.5;
     EXPECT_NEAR(rigid(simulation.state().position, wall_index)[1], 0.5 * acceleration * 4, 1e-12)
         << "EXACT: Verlet, constant force";
-    EXPECT_NEAR(rigid(simulation.state().velocity, wall_index)[1], acceleration * 2, 1e-12) << "EXACT";
+    EXPECT_NEAR(rigid(simulation.state().reduced_momentum, wall_index)[1], acceleration * 2, 1e-12) << "EXACT";
     EXPECT_EQ(rigid(simulation.state().position, wall_index)[0], 0) << "EXACT: x is fixed";
   }
 }
@@ -67,7 +67,7 @@ TEST(Force, accelerates_a_wall_and_gives_it_the_impulse_of_a_ramp) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  EXPECT_NEAR(rigid(simulation.state().velocity, wall_index)[0], 3 / 1.5, 1e-12)
+  EXPECT_NEAR(rigid(simulation.state().reduced_momentum, wall_index)[0], 3 / 1.5, 1e-12)
       << "EXACT: the trapezoidal rule of a linear force";
 }
 
@@ -141,8 +141,8 @@ TEST(Gravity, may_have_a_history) {
   double dt = 0;
   while (simulation.state().time < 2) dt = std::max(dt, simulation.step(2).dt);
   const Vec2 gained(0.4, 0), start(0.5, 0.7);
-  EXPECT_LT((mass_mean(model, model.bodies[0], simulation.state().velocity) - start - gained).norm(), 1e-11);
-  EXPECT_LT((rigid(simulation.state().velocity, 0).head<2>() - start - gained).norm(), 1e-11);
+  EXPECT_LT((mass_mean(model, model.bodies[0], simulation.state().reduced_momentum) - start - gained).norm(), 1e-11);
+  EXPECT_LT((rigid(simulation.state().reduced_momentum, 0).head<2>() - start - gained).norm(), 1e-11);
   const Energies energy = simulation.audit().energy;
   double mass = 0;
   for (const Body& body : model.bodies) mass += body.mass;
@@ -176,7 +176,7 @@ TEST(Work, of_a_load_that_ends_is_the_kinetic_energy) {
     Simulation simulation(model);
     advance(simulation, 2);
     const Energies energy = simulation.audit().energy;
-    EXPECT_NEAR(rigid(simulation.state().velocity, wall_index)[0], 3 / 1.5 * end, 1e-12) << end;
+    EXPECT_NEAR(rigid(simulation.state().reduced_momentum, wall_index)[0], 3 / 1.5 * end, 1e-12) << end;
     EXPECT_NEAR(energy.external_work / energy.kinetic, 1, 1e-11) << end;
   }
 }

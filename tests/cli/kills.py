@@ -12,8 +12,8 @@ import numpy as np
 from conftest import ENGINE, Desk
 
 # Figures that the processes taking part decide; the momentum error's is looked at with each line of progress.
-OF_THE_PROCESS = {"preparation_seconds", "wall_seconds", "evaluations_per_second", "peak_memory_bytes", "threads",
-                  "resumed", "momentum_error"}
+OF_THE_PROCESS = {"preparation_seconds", "wall_seconds", "phase_seconds", "evaluations_per_second",
+                  "peak_memory_bytes", "threads", "resumed", "momentum_error"}
 EACH_STEP = ["--checkpoint-every", "1 ns"]  # a time that every step takes
 
 

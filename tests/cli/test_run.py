@@ -13,7 +13,7 @@ import pytest
 from conftest import ENGINE, REFERENCE, ROOT
 from scenes import TWO_DISCS
 
-SUMMARY_KEYS = {"state_hash", "evaluations", "steps", "rejections", "preparation_seconds", "wall_seconds",
+SUMMARY_KEYS = {"state_hash", "evaluations", "steps", "rejections", "preparation_seconds", "wall_seconds", "phase_seconds",
                 "evaluations_per_second", "energy", "momentum_error", "peak_memory_bytes", "bodies", "nodes", "dofs",
                 "commit", "compiler", "threads"}
 ENERGY_KEYS = {"kinetic", "strain", "contact", "dissipated", "external_work", "balance_error"}

@@ -29,7 +29,7 @@ Bounce bounce(double safety, double height) {
   while (result.energy_ratio == 0) {
     const StepReport report = simulation.step(1e9);
     const State& state = simulation.state();
-    const double gap = state.position.rigid[1] - 0.5, speed = state.velocity.rigid[1];
+    const double gap = state.position.rigid[1] - 0.5, speed = state.reduced_momentum.rigid[1];
     if (gap < 0 && depth == 0) {
       result.square = report.dt * report.dt * state.force.rigid[1] * model.rigid_bodies[0].dof[1].inverse_mass / -gap;
       result.first = -gap / (speed_before * report.dt);

@@ -23,9 +23,9 @@ Momentum momentum_of(const Model& model, const State& state) {
       const std::vector<double> masses = node_masses(model, body);
       for (int i = 0; i < static_cast<int>(masses.size()); ++i)
         add(masses[i], body.centre + node_value(model, body, state.position, i),
-            node_value(model, body, state.velocity, i));
+            node_value(model, body, state.reduced_momentum, i));
     } else {
-      const Eigen::Vector3d x = rigid(state.position, body.rigid), v = rigid(state.velocity, body.rigid);
+      const Eigen::Vector3d x = rigid(state.position, body.rigid), v = rigid(state.reduced_momentum, body.rigid);
       add(body.mass, x.head<2>(), v.head<2>());
       total.angular += model.rigid_bodies[body.rigid].dof[2].mass * v[2];
     }
@@ -69,7 +69,7 @@ std::vector<double> apexes(double safety, int count) {
   double before = 0;
   while (static_cast<int>(heights.size()) < count) {
     simulation.step(1e9);
-    const double speed = rigid(simulation.state().velocity, 0)[1];
+    const double speed = rigid(simulation.state().reduced_momentum, 0)[1];
     // In free flight y + v^2/(2 g) is the apex, at any time.
     if (before > 0 && speed <= 0) heights.push_back(rigid(simulation.state().position, 0)[1] + speed * speed / 2);
     before = speed;
@@ -102,11 +102,11 @@ TEST(TwoDiscs, exchange_momentum_symmetrically) {
   Simulation simulation(model);
   while (simulation.state().time < 20) {
     simulation.step(20);
-    const Vec2 left = mass_mean(model, model.bodies[0], simulation.state().velocity);
-    const Vec2 right = mass_mean(model, model.bodies[1], simulation.state().velocity);
+    const Vec2 left = mass_mean(model, model.bodies[0], simulation.state().reduced_momentum);
+    const Vec2 right = mass_mean(model, model.bodies[1], simulation.state().reduced_momentum);
     EXPECT_LT((left + right).norm(), 1e-13) << "EXACT: equal masses, momentum 0";
   }
-  const double speed = -mass_mean(model, model.bodies[0], simulation.state().velocity).x();
+  const double speed = -mass_mean(model, model.bodies[0], simulation.state().reduced_momentum).x();
   EXPECT_GT(speed, 0.9 * 0.05) << "EXACT: slower than 5 % of the wave speed, little vibration";
   EXPECT_LE(speed, 0.05) << "EXACT: no more than came";
   EXPECT_LT(simulation.balance_error(simulation.audit().energy), 0.01) << "EXACT: the promise of 1 %";

@@ -33,7 +33,7 @@ struct Impact {
 Impact impact(const Scene& scene, double level) {
   const Model model = build_model(scene);
   Simulation simulation(model);
-  Impact result{rigid(simulation.state().velocity, 0), {}};
+  Impact result{rigid(simulation.state().reduced_momentum, 0), {}};
   bool touched = false;
   for (;;) {
     const StepReport report = simulation.step(1e9);
@@ -42,7 +42,7 @@ Impact impact(const Scene& scene, double level) {
     touched |= gap < 0;
     if (touched && gap > 0) break;
   }
-  result.after = rigid(simulation.state().velocity, 0);
+  result.after = rigid(simulation.state().reduced_momentum, 0);
   return result;
 }
 

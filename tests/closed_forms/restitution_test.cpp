@@ -40,7 +40,7 @@ double rebound(const ContactRule& rule, double safety) {
   // Of m v^2 / 2: (z w dt)^2 for the dashpot's force 2 z w m v, which sets in within a step and costs dt^2 force^2 / (8
   // m), and (w dt)^2 / 4 wherever a spring's contact begins or ends; w dt is at most 2 safety (sqrt(1 + 4 z^2) - 2 z).
   EXPECT_LT(balance(simulation), 2 * safety * safety) << "RATE: the square of the step";
-  return simulation.state().velocity.rigid[1] / 0.1;
+  return simulation.state().reduced_momentum.rigid[1] / 0.1;
 }
 
 /// EXACT: the damping ratio gives back the restitution, by integrating the motion with small steps, and the figures of
@@ -102,7 +102,7 @@ TEST(Restitution, bounce_heights) {
   double last = 0;
   while (peaks.size() < 2) {
     simulation.step(1e9);
-    const double rate = simulation.state().velocity.rigid[1];
+    const double rate = simulation.state().reduced_momentum.rigid[1];
     if (last > 0 && rate <= 0) peaks.push_back(simulation.state().position.rigid[1] - 0.5);
     last = rate;
   }
@@ -124,7 +124,8 @@ TEST(Restitution, of_two_blocks) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  const double left = simulation.state().velocity.rigid[0], right = simulation.state().velocity.rigid[3];
+  const double left = simulation.state().reduced_momentum.rigid[0],
+               right = simulation.state().reduced_momentum.rigid[3];
   EXPECT_NEAR((right - left) / 0.1, 0.5, 0.005);
   EXPECT_NEAR((left + 3 * right) / 0.1, 1, 1e-13) << "EXACT: rounding";
 }
@@ -146,8 +147,8 @@ double rebound_from(double held_until, double speed_at_2) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  EXPECT_NEAR(simulation.state().velocity.rigid[3], speed_at_2, 0.001);
-  return (simulation.state().velocity.rigid[3] - simulation.state().velocity.rigid[0]) / 0.1;
+  EXPECT_NEAR(simulation.state().reduced_momentum.rigid[3], speed_at_2, 0.001);
+  return (simulation.state().reduced_momentum.rigid[3] - simulation.state().reduced_momentum.rigid[0]) / 0.1;
 }
 
 /// Infinite mass while it is held, the reduced mass of two when it is let go before the impact. RATE as above; with the
@@ -190,7 +191,7 @@ TEST(Restitution, shortens_the_time_step_and_settles) {
   const double z = damping_ratio(0.1, false);
   EXPECT_LE(with.largest_dt(), without.largest_dt() * (std::sqrt(1 + 4 * z * z) - 2 * z) * (1 + 1e-12));
   advance(with, 200);
-  EXPECT_NEAR(with.state().velocity.rigid[1], 0, 1e-12);
+  EXPECT_NEAR(with.state().reduced_momentum.rigid[1], 0, 1e-12);
   EXPECT_GT(with.state().dissipated, 0);
 }
 

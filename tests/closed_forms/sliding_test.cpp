@@ -30,9 +30,10 @@ struct Stop {
 /// When and where the block's velocity first reaches zero.
 Stop run_to_stop(Simulation& simulation, double end) {
   while (simulation.state().time < end) {
-    const double before = rigid(simulation.state().velocity, 0)[0], x = rigid(simulation.state().position, 0)[0];
+    const double before = rigid(simulation.state().reduced_momentum, 0)[0],
+                 x = rigid(simulation.state().position, 0)[0];
     const StepReport report = simulation.step(end);
-    const double after = rigid(simulation.state().velocity, 0)[0];
+    const double after = rigid(simulation.state().reduced_momentum, 0)[0];
     if (after <= 0) return {simulation.state().time - report.dt * after / (after - before), x - 0.3};
   }
   return {};
@@ -123,7 +124,7 @@ Rolling slide_and_roll(double stiffness, double friction) {
   result.penetration = radius - rigid(simulation.state().position, 0)[1];
   while (result.meeting_time == 0 && simulation.state().time < 1) {
     const StepReport report = simulation.step(1);
-    const Eigen::Vector3d v = rigid(simulation.state().velocity, 0);
+    const Eigen::Vector3d v = rigid(simulation.state().reduced_momentum, 0);
     if (-v[2] * radius >= v[0]) result.meeting_time = simulation.state().time - report.dt / 2;
   }
   advance(simulation, 0.25);
@@ -159,7 +160,7 @@ Descent roll_down(double degrees, double friction, int sides) {
   Simulation simulation(model);
   const double penetration = radius - rigid(simulation.state().position, 0)[1];
   advance(simulation, 0.3);
-  return {rigid(simulation.state().position, 0)[0] - 0.3, -rigid(simulation.state().velocity, 0)[2] * radius,
+  return {rigid(simulation.state().position, 0)[0] - 0.3, -rigid(simulation.state().reduced_momentum, 0)[2] * radius,
           penetration};
 }
 

@@ -56,7 +56,7 @@ struct Slider {
   double longest_step = 0;
 
   explicit Slider(const Scene& scene) : model(build_model(scene)) {}
-  Vec2 velocity() const { return mean_of(simulation.state().velocity); }
+  Vec2 velocity() const { return mean_of(simulation.state().reduced_momentum); }
   double way() const { return mean_of(simulation.state().position).x() - start_; }
   void advance(double until) {
     while (simulation.state().time < until) longest_step = std::max(longest_step, simulation.step(until).dt);

@@ -152,7 +152,7 @@ TEST(OwnImages, do_not_push) {
   const Model model = build_model(ellipses(BodyKind::rigid, 1, rough(100, 0.4)));
   Simulation simulation(model);
   advance(simulation, 1);
-  const Eigen::Vector3d velocity = rigid(simulation.state().velocity, 0);
+  const Eigen::Vector3d velocity = rigid(simulation.state().reduced_momentum, 0);
   EXPECT_NEAR(velocity.x(), 0.2, 1e-13);
   EXPECT_NEAR(velocity.y(), 0.1, 1e-13);
   EXPECT_GT(velocity.z(), -0.4) << "it came to rub";

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "bodies/damping_forces.hpp"
+#include "bodies/for_each_dof.hpp"
 #include "bodies/mass_correction.hpp"
-#include "dynamics/accelerations.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
 
@@ -17,7 +17,7 @@ Scene corrected(Scene scene) {
 
 TEST(CorrectedMass, momentum_gives_back_the_velocities) {
   const Model model = build_model(corrected(free_disc(60, 1, stretching(1))));
-  const Dofs y = Simulation(model).state().velocity;
+  const Dofs y = Simulation(model).state().reduced_momentum;
   const Dofs v = material_velocity(model, y);
   double largest_change = 0;
   for (int i = 0; i < model.shapes[0].nodes(); ++i) {
@@ -35,7 +35,7 @@ double angular_momentum(const Model& model, const State& state) {
   double total = 0;
   for (int i = 0; i < static_cast<int>(masses.size()); ++i)
     total += masses[static_cast<std::size_t>(i)] * cross(node_value(model, model.bodies[0], state.position, i),
-                                                         node_value(model, model.bodies[0], state.velocity, i));
+                                                         node_value(model, model.bodies[0], state.reduced_momentum, i));
   return total;
 }
 
@@ -52,7 +52,8 @@ TEST_P(CorrectedMassIntegrators, momentum_and_energy_stay) {
   const double start = angular_momentum(model, simulation.state());
   advance(simulation, 10);
   const State& state = simulation.state();
-  EXPECT_LT((mass_mean(model, model.bodies[0], state.velocity) - Vec2(0.1, -0.2)).norm(), 1e-12) << "EXACT: rounding";
+  EXPECT_LT((mass_mean(model, model.bodies[0], state.reduced_momentum) - Vec2(0.1, -0.2)).norm(), 1e-12)
+      << "EXACT: rounding";
   EXPECT_LT((mass_mean(model, model.bodies[0], state.position) - Vec2(1, -2)).norm(), 1e-11) << "EXACT: rounding";
   EXPECT_NEAR(angular_momentum(model, state), start + cross(Vec2(1, -2), M_PI * Vec2(0.1, -0.2)), 1e-10)
       << "EXACT: rounding; about the origin the centre's own path adds nothing";
@@ -165,13 +166,13 @@ State runge_kutta(int steps) {
     if (before)
       for (std::size_t i = 0; i < before->u.size(); ++i) {
         at.position.compliant[i] += share * h * before->u[i];
-        at.velocity.compliant[i] += share * h * before->y[i];
+        at.reduced_momentum.compliant[i] += share * h * before->y[i];
       }
-    const Dofs v = material_velocity(bench.model, at.velocity);
+    const Dofs v = material_velocity(bench.model, at.reduced_momentum);
     Trial trial(bench.model);
     evaluate_at(bench.forces, at, trial);
     at.force = trial.force;
-    add_drag(bench.model, {0}, at.velocity, at.force);  // the integrators take it by its exponential
+    add_drag(bench.model, {0}, at.reduced_momentum, at.force);  // the integrators take it by its exponential
     Slope result{v.compliant, at.force.compliant};
     for_each_dof(
         bench.model, [&](std::size_t i, Lanes inverse_mass) { result.y[i] *= inverse_mass; },
@@ -182,7 +183,7 @@ State runge_kutta(int steps) {
     const Slope a = slope(nullptr, 0), b = slope(&a, 0.5), c = slope(&b, 0.5), d = slope(&c, 1);
     for (std::size_t i = 0; i < a.u.size(); ++i) {
       state.position.compliant[i] += h / 6 * (a.u[i] + 2.0 * b.u[i] + 2.0 * c.u[i] + d.u[i]);
-      state.velocity.compliant[i] += h / 6 * (a.y[i] + 2.0 * b.y[i] + 2.0 * c.y[i] + d.y[i]);
+      state.reduced_momentum.compliant[i] += h / 6 * (a.y[i] + 2.0 * b.y[i] + 2.0 * c.y[i] + d.y[i]);
     }
   }
   return state;

@@ -37,7 +37,7 @@ void set_motion(Bench& bench, const Eigen::Matrix2d& F, const Eigen::Matrix2d& L
     const Vec2 x = F * node_value(bench.model, body, bench.state.position, i), v = L * x;
     for (std::size_t c = 0; c < 2; ++c) {
       bench.state.position.compliant[at + c][body.lane] = x[static_cast<Eigen::Index>(c)];
-      bench.state.velocity.compliant[at + c][body.lane] = v[static_cast<Eigen::Index>(c)];
+      bench.state.reduced_momentum.compliant[at + c][body.lane] = v[static_cast<Eigen::Index>(c)];
     }
   }
 }
@@ -50,7 +50,7 @@ struct Viscous {
 Viscous viscous_forces(const Bench& bench) {
   Viscous result{std::vector<Lanes>(bench.model.compliant_size, Lanes{}), 0};
   const BatchMotion motion{.position = bench.state.position.compliant.data(),
-                           .velocity = bench.state.velocity.compliant.data(),
+                           .velocity = bench.state.reduced_momentum.compliant.data(),
                            .elastic = false};
   result.power = add_internal_forces(bench.model, bench.model.batches[0], motion, result.force.data()).power[0];
   return result;
@@ -78,7 +78,8 @@ TEST(KelvinVoigt, power_is_that_of_its_forces_and_of_a_homogeneous_flow) {
   set_motion(bench, large_strain, L);
   const Viscous flow = viscous_forces(bench);
   double work = 0;
-  for (std::size_t i = 0; i < flow.force.size(); ++i) work += flow.force[i][0] * bench.state.velocity.compliant[i][0];
+  for (std::size_t i = 0; i < flow.force.size(); ++i)
+    work += flow.force[i][0] * bench.state.reduced_momentum.compliant[i][0];
   const Eigen::Matrix2d rate = large_strain.transpose() * L * large_strain, strain = 0.5 * (rate + rate.transpose());
   EXPECT_NEAR(flow.power, 2 * 0.7 * bench.model.bodies[0].area * strain.squaredNorm(), 1e-12) << "EXACT";
   EXPECT_NEAR(work, -flow.power, 1e-12) << "EXACT";
@@ -88,9 +89,9 @@ TEST(KelvinVoigt, power_is_that_of_its_forces_and_of_a_homogeneous_flow) {
 TEST(KelvinVoigt, keeps_momentum_and_angular_momentum) {
   Bench bench(damped_disc(60, 0.7, 0));
   testing::Random random(3);
-  for (Lanes& v : bench.state.velocity.compliant) v = broadcast(random.uniform(-1, 1));
+  for (Lanes& v : bench.state.reduced_momentum.compliant) v = broadcast(random.uniform(-1, 1));
   set_motion(bench, large_strain, Eigen::Matrix2d::Zero());
-  for (Lanes& v : bench.state.velocity.compliant) v = broadcast(random.uniform(-1, 1));
+  for (Lanes& v : bench.state.reduced_momentum.compliant) v = broadcast(random.uniform(-1, 1));
   const Viscous noise = viscous_forces(bench);
   double x = 0, y = 0, moment = 0, magnitude = 0;
   for (std::size_t i = 0; i < noise.force.size(); i += 2) {
@@ -184,8 +185,8 @@ TEST(MassDamping, speed_falls_exponentially) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 3);
-    const Eigen::Vector3d v = rigid(simulation.state().velocity, 0);
-    const Vec2 soft = mass_mean(model, model.bodies[0], simulation.state().velocity);
+    const Eigen::Vector3d v = rigid(simulation.state().reduced_momentum, 0);
+    const Vec2 soft = mass_mean(model, model.bodies[0], simulation.state().reduced_momentum);
     EXPECT_NEAR(v[0] / 0.5, v[2] / 1.5, 1e-13) << "EXACT: all degrees of freedom alike";
     EXPECT_NEAR(soft.x(), v[0], 1e-12) << "EXACT: both kinds of body alike";
     EXPECT_NEAR(soft.y(), v[1], 1e-12) << "EXACT";
@@ -221,12 +222,12 @@ double true_largest_dt(Bench& bench) {
   Eigen::MatrixXd rates(size, size);
   const CompliantShape& shape = bench.model.shapes[0];
   for (std::size_t j = 0; j < size; ++j) {
-    for (Lanes& v : bench.state.velocity.compliant) v = Lanes{};
-    bench.state.velocity.compliant[j] = broadcast(1);
+    for (Lanes& v : bench.state.reduced_momentum.compliant) v = Lanes{};
+    bench.state.reduced_momentum.compliant[j] = broadcast(1);
     const Viscous unit = viscous_forces(bench);
     for (std::size_t i = 0; i < size; ++i) rates(i, j) = -unit.force[i][0] * shape.inverse_unit_mass[i / 2];
   }
-  for (Lanes& v : bench.state.velocity.compliant) v = Lanes{};
+  for (Lanes& v : bench.state.reduced_momentum.compliant) v = Lanes{};
   const double c = Eigen::EigenSolver<Eigen::MatrixXd>(rates, false).eigenvalues().real().maxCoeff();
   const double w2 = largest_square_frequency(bench);
   const double z = c / (2 * std::sqrt(w2));

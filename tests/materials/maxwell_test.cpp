@@ -223,7 +223,7 @@ struct Deformed {
     for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
       const auto node = static_cast<std::size_t>(i);
       const Vec2 x = BodyView(model, body, position)[node], noise{random.uniform(-1, 1), random.uniform(-1, 1)};
-      set_node(BodyPlaces(model, body), node, x + 0.01 * noise + 0.05 * Vec2(x.y() * x.y(), x.x()), position);
+      set_node(BodyOffsets(model, body), node, x + 0.01 * noise + 0.05 * Vec2(x.y() * x.y(), x.x()), position);
     }
     fill_padding(model, position);
   }

@@ -42,12 +42,12 @@ Scene some_grains(MaterialLaw law, const DiscretisationSettings& settings, int c
 
 /// Smooth large strains and a little noise, in units of the body's size.
 void deform(const Model& model, const Body& body, Random& random, Dofs& q) {
-  const BodyPlaces places(model, body);
+  const BodyOffsets offsets(model, body);
   const BodyView view(model, body, q);
   const double a = random.uniform(-0.15, 0.15), b = random.uniform(-0.15, 0.15), c = random.uniform(-0.15, 0.15);
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.shape_of(body).nodes()); ++i) {
     const Vec2 x = view[i], noise{random.uniform(-1, 1), random.uniform(-1, 1)};
-    set_node(places, i, x + Vec2(a * x.x() + b * x.y() * x.y(), c * x.x() - a * x.x() * x.y()) + 0.003 * noise, q);
+    set_node(offsets, i, x + Vec2(a * x.x() + b * x.y() * x.y(), c * x.x() - a * x.x() * x.y()) + 0.003 * noise, q);
   }
 }
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "dynamics/natural_modes.hpp"
+#include "bodies/natural_modes.hpp"
 #include "reference/natural_modes.hpp"
 #include "reference/shapes.hpp"
 #include "support/scenes.hpp"

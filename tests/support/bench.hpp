@@ -19,7 +19,7 @@ struct Bench {
   explicit Bench(const Scene& scene) : Bench(build_model(scene)) {}
   explicit Bench(Model built) : model(std::move(built)), forces(model) {
     state.position = initial_positions(model);
-    state.velocity = initial_velocities(model, state.position);
+    state.reduced_momentum = initial_velocities(model, state.position);
     state.force = zero_dofs(model);
     state.memory = initial_memory(model);
     evaluate_here();
@@ -50,7 +50,7 @@ inline double distance(const State& a, const State& b) {
   for (std::size_t i = 0; i < a.position.compliant.size(); ++i)
     largest_difference =
         std::max({largest_difference, std::abs(a.position.compliant[i][0] - b.position.compliant[i][0]),
-                  std::abs(a.velocity.compliant[i][0] - b.velocity.compliant[i][0])});
+                  std::abs(a.reduced_momentum.compliant[i][0] - b.reduced_momentum.compliant[i][0])});
   return largest_difference;
 }
 

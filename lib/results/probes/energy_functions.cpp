@@ -26,7 +26,7 @@ Samples works(const Snapshot& snapshot, const Selection&) {
 
 double kinetic_energy_of(const Snapshot& snapshot, const Body& body) {
   const Model& model = snapshot.model();
-  const Dofs& velocity = snapshot.state().velocity;
+  const Dofs& velocity = snapshot.state().reduced_momentum;
   double energy = 0;
   if (body.kind == BodyKind::rigid) {
     const double* v = rigid_values(body, velocity);

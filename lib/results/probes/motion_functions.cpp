@@ -82,9 +82,9 @@ Vec2 rotation_of(const Snapshot& snapshot, const Body& body) {
   const State& state = snapshot.state();
   const Model& model = snapshot.model();
   if (body.kind == BodyKind::rigid)
-    return {rigid_values(body, state.position)[2] - body.angle, rigid_values(body, state.velocity)[2]};
-  const Points x = dof_values(model, body, state.position), v = dof_values(model, body, state.velocity);
-  const Vec2 centre = mean_value(model, body, state.position), drift = mean_value(model, body, state.velocity);
+    return {rigid_values(body, state.position)[2] - body.angle, rigid_values(body, state.reduced_momentum)[2]};
+  const Points x = dof_values(model, body, state.position), v = dof_values(model, body, state.reduced_momentum);
+  const Vec2 centre = mean_value(model, body, state.position), drift = mean_value(model, body, state.reduced_momentum);
   const Discretisation& space = model.shape_of(body).space;
   double sine = 0, cosine = 0, momentum = 0, inertia = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -1,4 +1,4 @@
-#include "dynamics/natural_modes.hpp"
+#include "bodies/natural_modes.hpp"
 
 #include <algorithm>
 

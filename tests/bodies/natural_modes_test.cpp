@@ -1,6 +1,6 @@
 // Small motions from the kernels of a run: stiffness against the linear one of the table, inverse mass, frequencies,
 // size and turn.
-#include "dynamics/natural_modes.hpp"
+#include "bodies/natural_modes.hpp"
 
 #include <gtest/gtest.h>
 
