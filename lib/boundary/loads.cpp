@@ -60,9 +60,8 @@ double add_load_change(const Model& model, const Motion& at, const Instant& to, 
   return add_outline_load_change(model, at, to, force);
 }
 
-double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
-                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
-                     double end_time) {
+double external_work(const Model& model, const Motion& before, const Dofs& force, const Motion& after,
+                     const Dofs& next_force) {
   double work = 0;
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const RigidBody& rigid = model.rigid_bodies[r];
@@ -70,12 +69,12 @@ double external_work(const Model& model, const Dofs& position, const Dofs& next_
     for (int c = 0; c < 3; ++c) {
       const std::size_t i = 3 * r + static_cast<std::size_t>(c);
       const RigidDof& dof = rigid.dof[c];
-      const double moved = next_position.rigid[i] - position.rigid[i];
-      if (dof.imposed(time)) {
-        const double v0 = velocity.rigid[i], v1 = next_velocity.rigid[i];
+      const double moved = after.position.rigid[i] - before.position.rigid[i];
+      if (dof.imposed(before.time)) {
+        const double v0 = before.velocity.rigid[i], v1 = after.velocity.rigid[i];
         work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
       } else {
-        work += 0.5 * (applied_load(dof, {time}) + applied_load(dof, {end_time, true})) * moved;
+        work += 0.5 * (applied_load(dof, before.instant()) + applied_load(dof, after.instant())) * moved;
       }
     }
   }

@@ -22,9 +22,8 @@ double add_load_change(const Model& model, const Motion& at, const Instant& to, 
 /// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion
 /// does the change of kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`:
 /// as it ended with. Gravity is booked apart.
-double external_work(const Model& model, const Dofs& position, const Dofs& next_position, const Dofs& velocity,
-                     const Dofs& next_velocity, const Dofs& force, const Dofs& next_force, double time,
-                     double end_time);
+double external_work(const Model& model, const Motion& before, const Dofs& force, const Motion& after,
+                     const Dofs& next_force);
 
 /// sum of m g . x over all bodies, J/m: the work of a constant gravity is its growth.
 double gravity_moment(const Model& model, const Vec2& g, const Dofs& position);

@@ -60,11 +60,12 @@ Evaluation find_forces(Forces& forces, State& state) {
 
 void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report) {
   const double end_time = trial.time;
-  state.external_work += external_work(model, state.position, trial.position, state.reduced_momentum,
-                                       trial.reduced_momentum, state.force, trial.force, state.time, end_time) +
-                         work_on_outlines(model, state, trial, end_time);
-  state.gravity_work += gravity_work(model, {state.position, state.reduced_momentum, state.time},
-                                     {trial.position, trial.reduced_momentum, end_time});
+  // Of velocities only those of rigid bodies count here: reduced momenta are no others.
+  const Motion before{state.position, state.reduced_momentum, state.time},
+      after{trial.position, trial.reduced_momentum, end_time, true};
+  state.external_work +=
+      external_work(model, before, state.force, after, trial.force) + work_on_outlines(model, state, trial, end_time);
+  state.gravity_work += gravity_work(model, before, after);
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;
   std::swap(state.position, trial.position);

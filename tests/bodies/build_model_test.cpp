@@ -29,7 +29,7 @@ Scene mixed_scene(int columns, int rows, std::vector<MixEntry> mix, std::uint64_
   scene.contacts = {frictionless(1)};
   scene.materials.push_back({"tough", MaterialLaw::neo_hookean, 2, 1, 0.3});
   scene.materials.push_back({"other", MaterialLaw::melody, 3, 1, 0.3});
-  scene.shapes = {disc_shape("disc", 1, 24, 50)};
+  scene.shapes = {polygonal_disc("disc", 1, 24, 50)};
   scene.grains = {grid_of(columns, rows, std::move(mix), seed)};
   return scene;
 }
@@ -79,7 +79,7 @@ TEST(BuildModel, RigidMassAndInertia) {
     Scene scene = bare_scene();
     scene.contacts = {frictionless(1)};
     scene.materials[1].density = 2.5;
-    add_body(scene, disc_shape("disc", 3, n), BodyKind::rigid, {1, 2}, 0.3);
+    add_body(scene, polygonal_disc("disc", 3, n), BodyKind::rigid, {1, 2}, 0.3);
     const Model model = build_model(scene);
     const double turn = 2 * M_PI / n, R2 = 1.5 * 1.5 * turn / std::sin(turn), mass = 2.5 * M_PI * 1.5 * 1.5;
     const RigidBody& rigid = model.rigid_bodies.at(0);
@@ -146,7 +146,7 @@ TEST(BuildModel, Walls) {
   scene.period = 4;
   scene.contacts = {frictionless(1)};
   scene.materials[1].density = 3;
-  scene.shapes = {disc_shape("disc", 1, 24)};
+  scene.shapes = {polygonal_disc("disc", 1, 24)};
   add_grain(scene, "disc", BodyKind::rigid, {1, 1});
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0.5, 0.1), flat_wall("lid", Wall::Solid::above, 2, 0)};
   scene.walls[0].thickness = 0.7;
@@ -195,7 +195,7 @@ TEST(InitialState, VelocityFields) {
 // scene's.
 TEST(BuildModel, PackingsGiveShapesAndSizes) {
   Scene scene = mixed_scene(10, 4, {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}});
-  scene.shapes.push_back(disc_shape("large", 1.2, 20, 50));
+  scene.shapes.push_back(polygonal_disc("large", 1.2, 20, 50));
   Grains& grains = scene.grains[0];
   grains.shape.clear();
   grains.shapes = {{"disc", 0.25}, {"large", 0.75}};

@@ -18,7 +18,7 @@ Scene ten_discs(MaterialLaw law = MaterialLaw::neo_hookean, Recipe recipe = Reci
   scene.contacts = {frictionless(1)};
   scene.materials[0].law = law;
   scene.materials.push_back({"stiff", law, 3, 5, 0.3});
-  scene.shapes = {disc_shape("disc", 1, 26, 50)};
+  scene.shapes = {polygonal_disc("disc", 1, 26, 50)};
   for (int i = 0; i < 10; ++i)
     add_grain(scene, "disc", BodyKind::compliant, {2.0 * i, 0.3 * i}, 0.4 * i, i % 3 == 1 ? "stiff" : "soft");
   return scene;

@@ -21,7 +21,7 @@ Scene free_disc(int nodes, const DiscretisationSettings& settings, double angle 
   scene.grains = {grains("disc", "disc", BodyKind::compliant, {{0, 0}})};
   scene.grains[0].angle = angle;
   scene.grains[0].size.factors = {size};
-  scene.contacts = {smooth(1)};
+  scene.contacts = {frictionless(1)};
   return scene;
 }
 

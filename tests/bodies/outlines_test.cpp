@@ -49,7 +49,7 @@ Scene scene_of_all_kinds() {
   Scene scene = bare_scene();
   scene.period = 6;
   scene.contacts = {frictionless(1)};
-  scene.shapes = {disc_shape("disc", 1, 24, 50), outline_shape("triangle", {{0, 0}, {1, 0}, {0, 0.8}})};
+  scene.shapes = {polygonal_disc("disc", 1, 24, 50), outline_shape("triangle", {{0, 0}, {1, 0}, {0, 0.8}})};
   for (int i = 0; i < 9; ++i) add_grain(scene, "disc", BodyKind::compliant, {0.6 * i, 2.0 + i}, 0.3 * i);
   add_grain(scene, "triangle", BodyKind::rigid, {3, 20}, 0.7);
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.2), flat_wall("lid", Wall::Solid::above, 30, 0.2)};

@@ -27,7 +27,7 @@ Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
     scene.discretisation.mass = Mass::corrected;
     for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
   }
-  scene.contacts = {rough(60, 0.3)};
+  scene.contacts = {mohr_coulomb(60, 0.3)};
   for (int i = 0; i < grains_in_all; ++i) {
     ShapeSpec shape;
     shape.name = "grain" + std::to_string(i);

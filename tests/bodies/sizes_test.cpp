@@ -31,7 +31,7 @@ Scene scene_of(bool shared, Integrator integrator, Recipe recipe) {
   scene.time.integrator = integrator;
   scene.time.tolerance = scene.time.target = 1;  // steps are given
   scene.materials.push_back({"tough", MaterialLaw::neo_hookean, 1.7, 4, 0.3});
-  scene.contacts = {rough(60, 0.3)};
+  scene.contacts = {mohr_coulomb(60, 0.3)};
   scene.shapes = {disc_shape("disc", 2, 60)};
   for (const Grain& grain : grains_of_all_sizes) {
     std::string shape = "disc";

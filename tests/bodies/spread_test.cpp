@@ -29,7 +29,7 @@ Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
   scene.time.integrator = integrator;
   scene.time.tolerance = scene.time.target = 1;  // steps are given
   scene.materials.push_back({"other", MaterialLaw::melody, 1.5, 2, 0.3});
-  scene.contacts = {rough(60, 0.3)};
+  scene.contacts = {mohr_coulomb(60, 0.3)};
   scene.shapes = {disc_shape("large", 2, 603), disc_shape("small", 1, 60)};
   InitialVelocity velocity = moving({0.03, -0.05}, 0.02);
   velocity.gradient << 0.01, 0.03, 0, -0.02;

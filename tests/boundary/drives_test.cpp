@@ -8,7 +8,7 @@ namespace {
 
 Scene rigid_disc(double end, const BoundaryCondition& condition) {
   Scene scene = empty_scene(end);
-  scene.shapes = {many_sided_disc("disc", 2, 40)};
+  scene.shapes = {polygonal_disc("disc", 2, 40)};
   scene.grains = {grains("disc", "disc", BodyKind::rigid, {{0, 0}, {5, 100}})};
   scene.boundary = {condition};
   return scene;

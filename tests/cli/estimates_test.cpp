@@ -78,7 +78,7 @@ Scene three_discs_and_a_wall() {
   Scene scene = testing::bare_scene();
   scene.period = 10;
   scene.time.end = 1e-3;
-  scene.shapes = {testing::disc_shape("disc", 1, 24, 40)};
+  scene.shapes = {testing::polygonal_disc("disc", 1, 24, 40)};
   for (const char* material : {"soft", "hard"}) {
     Grains grains;
     grains.name = material;

@@ -20,7 +20,7 @@ Bounce bounce(double safety, double height) {
   Scene scene = on_a_floor(1e9, 8, 0.25, {0, 0});
   scene.shapes = {box_shape("block", 2, 1, 0.25)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.5 + height}}, moving({0, -speed_before}))};
-  scene.contacts = {smooth(100)};
+  scene.contacts = {frictionless(100)};
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);

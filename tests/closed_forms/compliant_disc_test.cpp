@@ -24,7 +24,7 @@ Scene disc_between_plates(int nodes) {
   scene.period = 4;
   scene.shapes = {disc_shape("disc", 2, nodes)};
   scene.grains = {grains("disc", "disc", BodyKind::compliant, {{2, 0}})};
-  scene.contacts = {smooth(3e3)};
+  scene.contacts = {frictionless(3e3)};
   scene.time.tolerance = 1e-3;
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1 - gap, 0),
                  flat_wall("upper", Wall::Solid::above, 1 + gap, 0)};

@@ -59,9 +59,9 @@ TEST(FreeFlight, momenta_stay_and_centres_move_straight) {
 /// Heights of the first apexes of a rigid disc that falls without friction from a gap of 0.5 radii.
 std::vector<double> apexes(double safety, int count) {
   Scene scene = on_a_floor(1e3, 4, 0.1, {0, -1});
-  scene.shapes = {many_sided_disc("disc", 2, 200)};
+  scene.shapes = {polygonal_disc("disc", 2, 200)};
   scene.grains = {grains("disc", "disc", BodyKind::rigid, {{2, 1.5}})};
-  scene.contacts = {smooth(1e5)};
+  scene.contacts = {frictionless(1e5)};
   scene.time.safety = safety;
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -98,7 +98,7 @@ Scene head_on(const Vec2& offset, const ContactRule& contact) {
 }
 
 TEST(TwoDiscs, exchange_momentum_symmetrically) {
-  const Model model = build_model(head_on({0, 0}, smooth(100)));
+  const Model model = build_model(head_on({0, 0}, frictionless(100)));
   Simulation simulation(model);
   while (simulation.state().time < 20) {
     simulation.step(20);
@@ -114,7 +114,7 @@ TEST(TwoDiscs, exchange_momentum_symmetrically) {
 
 /// Off-centre and with friction the discs spin away; both momenta are those of the start.
 TEST(TwoDiscs, momenta_balance_through_an_oblique_collision_with_friction) {
-  const Model model = build_model(head_on({0, 0.8}, rough(300, 0.5)));
+  const Model model = build_model(head_on({0, 0.8}, mohr_coulomb(300, 0.5)));
   Simulation simulation(model);
   const Momentum start = momentum_of(model, simulation.state());
   double worst = 0;

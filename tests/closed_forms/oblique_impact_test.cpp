@@ -16,7 +16,7 @@ constexpr double stiffness = 100;  ///< kn
 constexpr double fall = 0.01;      ///< speed of the fall
 
 ContactRule rough_and_bouncing(double friction, double restitution) {
-  ContactRule rule = rough(stiffness, friction);
+  ContactRule rule = mohr_coulomb(stiffness, friction);
   rule.restitution = restitution;
   return rule;
 }
@@ -92,7 +92,7 @@ TEST(ObliqueImpact, a_sticking_block_swings_sideways_while_it_is_pressed) {
 /// A disc of so many sides that falls between two nodes of the floor: only its own nodes touch, with upright normals.
 Scene thrown_disc(const ContactRule& rule, double slide, double spin) {
   Scene scene = on_a_floor(1e9, 8, 0.5, {0, 0});
-  scene.shapes = {many_sided_disc("disc", 2, 1000)};
+  scene.shapes = {polygonal_disc("disc", 2, 1000)};
   scene.grains = {grains("disc", "disc", BodyKind::rigid, {{4.2, 1.0 + 1e-4}}, moving({slide, -fall}, spin))};
   scene.contacts = {rule};
   without_error_control(scene, 0.02);

@@ -8,7 +8,7 @@ namespace pliant::dynamics_tests {
 namespace {
 
 ContactRule bouncing(double restitution, bool pull, double stiffness = 100) {
-  ContactRule rule = smooth(stiffness);
+  ContactRule rule = frictionless(stiffness);
   rule.restitution = restitution;
   rule.pull = pull;
   return rule;
@@ -88,7 +88,7 @@ TEST(Restitution, of_one_is_elastic) {
     advance(simulation, 1);
     return state_hash(simulation.state());
   };
-  EXPECT_EQ(final_state(bouncing(1, false)), final_state(smooth(100)));
+  EXPECT_EQ(final_state(bouncing(1, false)), final_state(frictionless(100)));
 }
 
 /// RATE: under gravity each bounce reaches e^2 of the height before. The impact lasts: its depth, a hundredth of the
@@ -185,7 +185,7 @@ TEST(Restitution, laws_follow_drives_in_time) {
 /// EXACT: the bound of the time step falls with the damping ratio of docs/method.md 6; the run at full safety stays
 /// bounded: a block at rest settles.
 TEST(Restitution, shortens_the_time_step_and_settles) {
-  const Model elastic = build_model(block_above_floor(smooth(100), -0.001, 0, {0, -0.1}, 0.8)),
+  const Model elastic = build_model(block_above_floor(frictionless(100), -0.001, 0, {0, -0.1}, 0.8)),
               damped = build_model(block_above_floor(bouncing(0.1, false), -0.001, 0, {0, -0.1}, 0.8));
   Simulation without(elastic), with(damped);
   const double z = damping_ratio(0.1, false);

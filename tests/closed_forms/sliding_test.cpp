@@ -18,7 +18,7 @@ Scene sliding_block(double friction, double speed, double safety) {
   scene.shapes = {box_shape("block", 0.1, height, 0.01)};
   const double penetration = density * g * height / stiffness;
   scene.grains = {grains("block", "block", BodyKind::rigid, {{0.3, height / 2 - penetration}}, moving({speed, 0}))};
-  scene.contacts = {rough(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(stiffness, friction)};
   scene.time.safety = safety;
   return scene;
 }
@@ -101,11 +101,11 @@ constexpr double radius = 0.05;
 Scene disc_on_floor(int sides, double stiffness, double friction, const Vec2& gravity, double speed) {
   Scene scene = on_a_floor(1, 1, 2 * std::numbers::pi * radius / sides, gravity);
   scene.materials[1].density = 2000;
-  scene.shapes = {many_sided_disc("disc", 2 * radius, sides)};
+  scene.shapes = {polygonal_disc("disc", 2 * radius, sides)};
   const double weight = 2000 * std::numbers::pi * radius * radius * -gravity.y();
   const double penetration = std::pow(3 * weight / (4 * stiffness * std::sqrt(2 * radius)), 2.0 / 3);
   scene.grains = {grains("disc", "disc", BodyKind::rigid, {{0.3, radius - penetration}}, moving({speed, 0}))};
-  scene.contacts = {rough(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(stiffness, friction)};
   scene.time.tolerance = 1e-3;
   return scene;
 }

@@ -45,7 +45,7 @@ Scene on_a_slope(const Block& block, double speed, const History& down, const Hi
   if (block.compliant) scene.shapes[0].nodes = block.segments * block.segments + 14;
   scene.grains = {grains("block", "block", block.compliant ? BodyKind::compliant : BodyKind::rigid,
                          {{block.place, height / 2}}, moving({speed, 0}))};
-  scene.contacts = {rough(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(stiffness, friction)};
   return scene;
 }
 

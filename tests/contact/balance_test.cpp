@@ -17,7 +17,7 @@ Scene pair_scene(Random& random, const ContactRule& rule, bool compliant) {
   scene.contacts = {rule};
   add_random_body(scene, random, random.below(5));
   if (compliant)
-    add_body(scene, disc_shape("disc", 1.6, 36, 90), BodyKind::compliant, {0, 0}, random.uniform(0, 6));
+    add_body(scene, polygonal_disc("disc", 1.6, 36, 90), BodyKind::compliant, {0, 0}, random.uniform(0, 6));
   else
     add_random_body(scene, random, random.below(5));
   return scene;
@@ -86,7 +86,7 @@ TEST(ContactBalance, AcrossThePeriod) {
     scene.period = 10;
     scene.contacts = {rule};
     for (int i = 0; i < 2; ++i)
-      add_body(scene, disc_shape("disc", 2, 41), BodyKind::rigid, {1.97 * i + 30 * (1 - i) + 9, 0.1 * i}, i);
+      add_body(scene, polygonal_disc("disc", 2, 41), BodyKind::rigid, {1.97 * i + 30 * (1 - i) + 9, 0.1 * i}, i);
     ContactRig rig(scene);
     rig.step();
     rig.move(0, {0.003, 0.02});
@@ -180,8 +180,8 @@ TEST(ContactEnergy, StickingForceIsItsGradientUnderPressure) {
     Random random(sample + 700);
     Scene scene = bare_scene();
     scene.contacts = {cohesive(100, 0.01, 0.0002, 100)};
-    add_body(scene, disc_shape("disc", 2, 60), BodyKind::rigid, {0, 0}, 0.3);
-    add_body(scene, disc_shape("disc", 1.6, 36, 90), sample % 2 ? BodyKind::compliant : BodyKind::rigid, {0, 0},
+    add_body(scene, polygonal_disc("disc", 2, 60), BodyKind::rigid, {0, 0}, 0.3);
+    add_body(scene, polygonal_disc("disc", 1.6, 36, 90), sample % 2 ? BodyKind::compliant : BodyKind::rigid, {0, 0},
              random.uniform(0, 6));
     ContactRig rig(scene);
     press_together(rig, random, 0.02);

@@ -103,7 +103,7 @@ TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
     scene.period = 5;
     scene.contacts = {frictionless(1)};
     const double x = random.uniform(-7, 7);
-    add_body(scene, disc_shape("disc", 2, 20 + random.below(30)), BodyKind::rigid, {x, 1.2}, 1);
+    add_body(scene, polygonal_disc("disc", 2, 20 + random.below(30)), BodyKind::rigid, {x, 1.2}, 1);
     add_body(scene, outline_shape("outline", random_outline(random, random.below(4))), BodyKind::rigid,
              {x + 2 - 10, 1.5}, 2);
     scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.2), flat_wall("lid", Wall::Solid::above, 2.3, 0.2)};
@@ -120,7 +120,7 @@ TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
 TEST(ClosePhase, ArcsAreShort) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 100), BodyKind::rigid, {1.99 * i, 0.3 * i});
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {1.99 * i, 0.3 * i});
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
   for (int side = 0; side < 2; ++side)
@@ -134,7 +134,7 @@ TEST(ClosePhase, ArcsAreShort) {
 TEST(ClosePhase, NothingBetweenBodiesApart) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 100), BodyKind::rigid, {2.2 * i, 0});
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {2.2 * i, 0});
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
   for (int side = 0; side < 2; ++side) {

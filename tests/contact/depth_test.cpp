@@ -146,8 +146,8 @@ TEST(LostContact, StopsTheRun) {
     for (const double speed : {3.0, 10.0, 100.0}) {
       Scene scene = on_a_floor(2, 4, 0.1, {0, 0});
       scene.time.integrator = integrator;
-      scene.contacts = {smooth(100)};
-      scene.shapes = {many_sided_disc("disc", 2, 60)};
+      scene.contacts = {frictionless(100)};
+      scene.shapes = {polygonal_disc("disc", 2, 60)};
       scene.grains = {grains("disc", "disc", BodyKind::rigid, {{2, 1.2}}, moving({0, -speed}))};
       const Model model = build_model(scene);
       Simulation simulation(model);

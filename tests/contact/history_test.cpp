@@ -17,7 +17,7 @@ Scene block_on_floor(double x, const ContactRule& rule = mohr_coulomb(100, frict
   scene.period = 4;
   scene.contacts = {rule};
   add_body(scene, outline_shape("block", rectangle(1.03, 0.5, 0.1)), BodyKind::rigid, {x, 0.25 - depth});
-  scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.1, true)};
+  scene.walls = {free_wall("floor", Wall::Solid::below, 0, 0.1)};
   return scene;
 }
 
@@ -53,7 +53,7 @@ TEST(ContactHistory, TravelsWithTheBodies) {
   Scene scene = bare_scene();
   scene.period = 5;
   scene.contacts = {cohesive(100, 0.5, 0.02, 1)};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 41), BodyKind::rigid, {1.97 * i, 0.2 * i}, i);
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 41), BodyKind::rigid, {1.97 * i, 0.2 * i}, i);
   ContactRig rig(scene);
   rig.step();
   rig.move(0, {0, 0.004});
@@ -73,7 +73,7 @@ TEST(ContactHistory, TravelsWithTheBodies) {
 TEST(ContactHistory, WholePeriodsChangeNothing) {
   const auto forces = [](double shift) {
     Scene scene = block_on_floor(1 + shift);
-    add_body(scene, disc_shape("disc", 1, 31), BodyKind::rigid, {1.1 - 2 * shift, 0.97}, 0.2);
+    add_body(scene, polygonal_disc("disc", 1, 31), BodyKind::rigid, {1.1 - 2 * shift, 0.97}, 0.2);
     ContactRig rig(scene);
     rig.step();
     rig.move(0, {0.004, 0});
@@ -121,7 +121,7 @@ TEST(ContactHistory, SurvivesARefresh) {
 TEST(ContactHistory, PassesTheSeamOfTheOutline) {
   Scene scene = bare_scene();
   scene.contacts = {mohr_coulomb(100, friction)};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {2.02 * i, 0});
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.02 * i, 0});
   ContactRig rig(scene);
   constexpr int steps = 1600;
   double largest_shear = 0;
@@ -142,7 +142,7 @@ TEST(ContactHistory, FacetsSlideAlikeAllAroundTheOutline) {
   constexpr int sides = 40, per_facet = 40;
   Scene scene = bare_scene();
   scene.contacts = {mohr_coulomb(100, friction)};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, sides), BodyKind::rigid, {1.98 * i, 0});
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, sides), BodyKind::rigid, {1.98 * i, 0});
   for (const int direction : {1, -1}) {
     ContactRig rig(scene);
     std::vector<Vec2> forces;

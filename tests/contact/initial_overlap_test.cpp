@@ -22,7 +22,7 @@ TEST(InitialOverlap, discs_a_diameter_apart) {
   constexpr double turn = 2 * std::numbers::pi / 48;
   const double reach = std::sqrt(turn / std::sin(turn)), half_side = reach * std::sin(turn / 2);
   const double depth = 2 * (reach - 1) * std::cos(turn / 2);
-  const Model model = build_model(with(many_sided_disc("disc", 2, 48), {{0, 0}, {2, 0}}));
+  const Model model = build_model(with(polygonal_disc("disc", 2, 48), {{0, 0}, {2, 0}}));
   const InitialOverlap overlap = Simulation(model).overlap();
   EXPECT_EQ(overlap.pairs, 1) << "EXACT";
   EXPECT_NEAR(overlap.depth, depth, 1e-12) << "EXACT";
@@ -42,10 +42,10 @@ TEST(InitialOverlap, discs_a_diameter_apart) {
 // gained seven times what was stored, whatever the step.
 TEST(InitialOverlap, of_corner_in_corner_sets_free_what_it_stores) {
   const auto balance = [](double safety) {
-    Scene scene = with(many_sided_disc("disc", 2, 8), {{0, 0}});
+    Scene scene = with(polygonal_disc("disc", 2, 8), {{0, 0}});
     scene.grains.push_back(grains("turned", "disc", BodyKind::rigid, {{1.8, 0.3}}));
     scene.grains[1].angle = 20 * std::numbers::pi / 180;
-    scene.contacts = {smooth(80)};
+    scene.contacts = {frictionless(80)};
     scene.time.end = 3;
     scene.time.safety = safety;
     const Model model = build_model(scene);
@@ -59,7 +59,7 @@ TEST(InitialOverlap, of_corner_in_corner_sets_free_what_it_stores) {
 }
 
 TEST(InitialOverlap, goes_with_the_advised_distance) {  // EXACT
-  const ShapeSpec disc = many_sided_disc("disc", 2, 48), block = box_shape("block", 1, 1, 0.1);
+  const ShapeSpec disc = polygonal_disc("disc", 2, 48), block = box_shape("block", 1, 1, 0.1);
   for (const auto& [shape, second] : {std::pair(disc, Vec2(2, 0)), std::pair(block, Vec2(0.95, 0)),
                                       std::pair(block, Vec2(0.95, 0.47)), std::pair(block, Vec2(0.02, -0.97))}) {
     const Model model = build_model(with(shape, {{0, 0}, second}));
@@ -74,7 +74,7 @@ TEST(InitialOverlap, goes_with_the_advised_distance) {  // EXACT
 }
 
 TEST(InitialOverlap, of_a_lattice_goes_with_the_advised_pitch) {  // EXACT
-  Scene scene = with(many_sided_disc("disc", 2, 48), {});
+  Scene scene = with(polygonal_disc("disc", 2, 48), {});
   Packing& packing = scene.grains[0].packing;
   packing.kind = PackingKind::hexagonal;
   packing.columns = 3, packing.rows = 3, packing.pitch = std::sqrt(3.0), packing.row_pitch = 2;
@@ -108,7 +108,7 @@ TEST(InitialOverlap, is_not_cohesion) {  // EXACT
     EXPECT_EQ(describe(Simulation(joined).overlap(), joined), "");
     scene.grains[0].packing.positions[1].x() = 0.99;
     const InitialOverlap cohesive = Simulation(build_model(scene)).overlap();
-    scene.contacts = {smooth(100)};
+    scene.contacts = {frictionless(100)};
     const InitialOverlap loose = Simulation(build_model(scene)).overlap();
     EXPECT_EQ(cohesive.pairs, 1);
     EXPECT_NEAR(cohesive.stored, loose.stored, 1e-14) << "of compression alone";

@@ -111,7 +111,7 @@ TEST(ContactLaws, LanesAreIndependent) {
 Scene five_bodies() {
   Scene scene = bare_scene();
   scene.materials.push_back({"stiff", MaterialLaw::neo_hookean, 1, 5, 0.3});
-  scene.shapes = {disc_shape("coarse", 1, 20, 40), disc_shape("fine", 1, 40, 120)};
+  scene.shapes = {polygonal_disc("coarse", 1, 20, 40), polygonal_disc("fine", 1, 40, 120)};
   add_grain(scene, "coarse", BodyKind::compliant, {0, 0});
   add_grain(scene, "coarse", BodyKind::compliant, {3, 0});
   add_grain(scene, "fine", BodyKind::compliant, {6, 0}, 0, "stiff");
@@ -192,7 +192,7 @@ TEST(LawsOfPairs, RefusesWhatCannotWork) {
   EXPECT_EQ(error_of(scene), "");
   scene = bare_scene();
   scene.contacts = {with_auto_stiffness(frictionless(0))};
-  for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 1, 20), BodyKind::rigid, {2.0 * i, 0});
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 1, 20), BodyKind::rigid, {2.0 * i, 0});
   EXPECT_NE(error_of(scene).find("\"auto\" needs a compliant body"), std::string::npos);
 }
 

@@ -45,7 +45,7 @@ Scene squeezed_blocks(int copies) {
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, period / 10),
                  flat_wall("top", Wall::Solid::above, 0.5, period / 10)};
   scene.walls[1].y = {Drive::Mode::velocity, {{0, 20}, {-0.02, -0.02}}};
-  scene.contacts = {rough(200, 0.2)};
+  scene.contacts = {mohr_coulomb(200, 0.2)};
   return scene;
 }
 
@@ -103,7 +103,7 @@ Seen run_both(const Scene& single, const Scene& twice) {
 class OwnImage : public ::testing::TestWithParam<BodyKind> {};
 
 TEST_P(OwnImage, is_another_body_in_twice_the_period) {
-  for (const ContactRule& rule : {smooth(100), rough(100, 0.4), sticky(), bonded()}) {
+  for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.4), sticky(), bonded()}) {
     SCOPED_TRACE(static_cast<int>(rule.law));
     const Seen seen = run_both(ellipses(GetParam(), 1, rule), ellipses(GetParam(), 2, rule));
     EXPECT_GT(seen.contacts, 3) << "it must touch, or this test says nothing";
@@ -134,7 +134,7 @@ TEST(OwnImages, meet_between_plates) {
 TEST(OwnImages, soft_corners_pressed_deep_make_no_energy) {
   const auto balance = [](double safety) {
     Scene scene = squeezed_blocks(1);
-    scene.contacts = {smooth(235)};
+    scene.contacts = {frictionless(235)};
     scene.walls[1].y = {Drive::Mode::velocity, {{0, 20, 20.001}, {-0.01, -0.01, 0}}};
     scene.time.end = 30;
     scene.time.safety = safety;
@@ -149,7 +149,7 @@ TEST(OwnImages, soft_corners_pressed_deep_make_no_energy) {
 
 /// EXACT: forces from its own image cannot move a rigid body, only turn it.
 TEST(OwnImages, do_not_push) {
-  const Model model = build_model(ellipses(BodyKind::rigid, 1, rough(100, 0.4)));
+  const Model model = build_model(ellipses(BodyKind::rigid, 1, mohr_coulomb(100, 0.4)));
   Simulation simulation(model);
   advance(simulation, 1);
   const Eigen::Vector3d velocity = rigid(simulation.state().reduced_momentum, 0);
@@ -180,7 +180,7 @@ TEST(OwnImages, count_as_in_twice_the_period) {
 /// EXACT: self-contact looks at one outline, images at two: neither takes the other's patches for its own.
 TEST(OwnImages, are_no_self_contact) {
   const auto end = [](bool self_contact) {
-    Scene scene = ellipses(BodyKind::compliant, 1, rough(100, 0.4));
+    Scene scene = ellipses(BodyKind::compliant, 1, mohr_coulomb(100, 0.4));
     scene.contact.self_contact = self_contact;
     const Model model = build_model(scene);
     Simulation simulation(model);
@@ -192,7 +192,7 @@ TEST(OwnImages, are_no_self_contact) {
 
 /// EXACT: as between any two bodies.
 TEST(OwnImages, are_not_to_overlap_at_the_start) {
-  Scene scene = ellipses(BodyKind::rigid, 1, smooth(100));
+  Scene scene = ellipses(BodyKind::rigid, 1, frictionless(100));
   scene.period = 0.9;
   const Model model = build_model(scene);
   try {
@@ -206,7 +206,7 @@ TEST(OwnImages, are_not_to_overlap_at_the_start) {
 /// Contact may come before the next refresh: its bound is there from the start, 2/w about 2/sqrt(100 x 4.6 m / 1.25
 /// kg/m) = 0.1 s.
 TEST(OwnImages, bound_the_step_of_a_lone_body) {
-  Scene scene = ellipses(BodyKind::rigid, 1, smooth(100));
+  Scene scene = ellipses(BodyKind::rigid, 1, frictionless(100));
   scene.grains[0].velocity = moving({0, 0}, -1e-6);
   const Model model = build_model(scene);
   Simulation simulation(model);

@@ -30,7 +30,7 @@ Scene two_rows(Random& random, const Course& course, bool floor) {
   }
   if (floor) {
     scene.period = 3;
-    scene.walls = {flat_wall("floor", Wall::Solid::below, 0.005, 0.15, true)};
+    scene.walls = {free_wall("floor", Wall::Solid::below, 0.005, 0.15)};
   }
   return scene;
 }

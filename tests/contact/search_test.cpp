@@ -85,7 +85,7 @@ Scene heap(Random& random, const ContactRule& rule, bool caps) {
     const Vec2 centre(random.uniform(-9, 9), 0.98 + 1.96 * (i / 2));
     const Vec2 beside(i % 2 == 0 ? 0 : scene.grains.back().packing.positions[0].x() + 1.98 - centre.x(), 0);
     const bool compliant = i % 3 == 1;
-    add_body(scene, disc_shape("disc", 2, 30, compliant ? std::optional<int>(60) : std::nullopt),
+    add_body(scene, polygonal_disc("disc", 2, 30, compliant ? std::optional<int>(60) : std::nullopt),
              compliant ? BodyKind::compliant : BodyKind::rigid, centre + beside, random.uniform(0, 6));
   }
   scene.walls = {flat_wall("floor", Wall::Solid::below, caps ? -0.46 : 0.0, 0.15),
@@ -230,7 +230,7 @@ TEST(ContactSearch, AsksForARefreshInTime) {
   const auto asks = [](double first, double second, double turn) {
     Scene scene = bare_scene();
     scene.contacts = {rules[0]};
-    for (int i = 0; i < 2; ++i) add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {2.01 * i, 0});
+    for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.01 * i, 0});
     ContactRig rig(scene);
     rig.refresh();
     const double skin = rig.contact.skin();
@@ -273,7 +273,7 @@ TEST(ContactSearch, DoesNotDependOnThreads) {
 TEST(ContactSearch, BodiesApartDoNotTouch) {
   Scene scene = bare_scene();
   scene.contacts = {rules[2]};
-  for (int i = 0; i < 3; ++i) add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {2.5 * i, 0});
+  for (int i = 0; i < 3; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.5 * i, 0});
   ContactRig rig(scene);
   rig.step();
   EXPECT_EQ(rig.totals.contacts, 0);

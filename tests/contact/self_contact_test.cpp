@@ -20,7 +20,7 @@ Scene clamp(bool self_contact, double friction = 0, double safety = 0.4) {
   InitialVelocity closing = moving({0.1, 0.05}, 0.05);
   closing.gradient << 0, 0, 0, -0.35;
   scene.grains = {grains("clamp", "clamp", BodyKind::compliant, {{0, 0}}, closing)};
-  scene.contacts = {friction > 0 ? rough(300, friction) : smooth(300)};
+  scene.contacts = {friction > 0 ? mohr_coulomb(300, friction) : frictionless(300)};
   scene.contact.self_contact = self_contact;
   scene.time.safety = safety;
   return scene;

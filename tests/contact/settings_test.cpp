@@ -36,7 +36,7 @@ TEST(FixedRefresh, keeps_its_period) {
 TEST(FixedRefresh, often_enough_changes_nothing) {
   const auto position = [](int refresh_steps) {
     Scene scene = flight_and_impact(1e300);
-    scene.contacts = {rough(300, 0.3)};
+    scene.contacts = {mohr_coulomb(300, 0.3)};
     scene.contact.refresh_steps = refresh_steps;
     Bench bench(scene);
     Verlet integrator(bench.forces, bench.state);

@@ -146,7 +146,7 @@ TEST(ContactSlip, WorkPastConvexCorners) {
     Scene scene = bare_scene();
     scene.contacts = {mohr_coulomb(100, 0.3)};
     add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
-    add_body(scene, disc_shape("disc", 2, 48), BodyKind::rigid, {-0.5, 1 - depth}, 0.1);
+    add_body(scene, polygonal_disc("disc", 2, 48), BodyKind::rigid, {-0.5, 1 - depth}, 0.1);
     ContactRig rig(scene);
     const WorkBalance balance = follow(rig, [](double s) { return Vec2(s, 0); }, 8000);
     EXPECT_GT(balance.dissipated, 0.02);

@@ -100,7 +100,7 @@ TEST(Controller, step_grows_back_slowly) {
 /// A bounce in which the error governs: with a step that followed each error up and down it lost 1.4 % of its energy.
 TEST(Controller, error_control_does_not_damp) {
   Scene scene = flight_and_impact(1e-4);
-  scene.contacts = {smooth(1000)};
+  scene.contacts = {frictionless(1000)};
   scene.grains[0].velocity.uniform = {0, -0.1};
   scene.grains[0].packing.positions = {{4, 1.05}};
   const Model model = build_model(scene);

@@ -55,7 +55,7 @@ TEST(Failure, time_step_under_its_floor_says_so) {
 /// A floor too soft to stop the disc within a segment length: contacts would be lost, and no smaller step helps.
 TEST(Failure, stops_at_the_last_good_state) {
   Scene scene = flight_and_impact(1e-2);
-  scene.contacts = {smooth(1)};
+  scene.contacts = {frictionless(1)};
   const Model model = build_model(scene);
   Simulation simulation(model);
   State before;
@@ -138,7 +138,7 @@ TEST(Failure, initial_overlap_is_named) {
 TEST(Failure, a_trial_that_inverts_a_grain_is_rejected) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     Scene scene = flight_and_impact(1e-2);
-    scene.contacts = {smooth(1e4)};
+    scene.contacts = {frictionless(1e4)};
     scene.grains[0].velocity.uniform = {0, -0.5};
     scene.time.integrator = integrator;
     const Model model = build_model(scene);

@@ -130,7 +130,7 @@ TEST(Rate, of_contact_dashpots) {
   Scene scene = on_a_floor(1, 8, 0.25, {0, -1});
   scene.shapes = {box_shape("block", 2, 1, 0.25)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.495}})};
-  scene.contacts = {smooth(100)};
+  scene.contacts = {frictionless(100)};
   scene.contacts[0].restitution = 0.5;
   scene.contacts[0].pull = true;
   expect_swing(scene, 0, 0.005, -2, [](double w) { return 2 * damping_ratio(0.5, true) * w; });
@@ -148,7 +148,7 @@ TEST(Rate, of_dashpots_beside_loads) {
   scene.boundary = {held};
   scene.walls = {flat_wall("lid", Wall::Solid::above, 1, 0.25, 0.25)};
   scene.walls[0].y = {Drive::Mode::pressure, constant(0.25), 1};
-  scene.contacts = {smooth(100)};
+  scene.contacts = {frictionless(100)};
   expect_swing(scene, 1, 0.005, -2, [](double) { return 1 * 8 / 2.0; });
 }
 

@@ -72,7 +72,7 @@ Scene impact(Integrator integrator) {
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("thrown", "disc", BodyKind::compliant, {{3, 3.2}}, moving({0.15, -0.3})),
                   grains("lying", "disc", BodyKind::rigid, {{4, 0.999}})};
-  scene.contacts = {rough(200, 0.4)};
+  scene.contacts = {mohr_coulomb(200, 0.4)};
   scene.time.integrator = integrator;
   scene.time.tolerance = 1e-4;
   return scene;
@@ -84,7 +84,7 @@ Scene fast_slide(Integrator integrator) {
   Scene scene = on_a_floor(20, 8, 0.1, {0.2, -1});
   scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{2, 0.245}}, moving({3, 0}))};
-  scene.contacts = {rough(100, 0.5)};
+  scene.contacts = {mohr_coulomb(100, 0.5)};
   scene.time.integrator = integrator;
   scene.time.tolerance = 1e-4;
   scene.time.target = 1e-2;
@@ -155,7 +155,7 @@ TEST(Rejection, a_step_that_fails_changes_nothing) {
     for (const double speed : {0.2, 0.25, 0.3, 0.35}) {
       Scene scene = impact(kind);
       scene.grains = {grains("falls", "disc", BodyKind::compliant, {{3, 1.1}}, moving({0.1, -speed}, 0.3))};
-      scene.contacts = {rough(1, 0.4)};
+      scene.contacts = {mohr_coulomb(1, 0.4)};
       const Model model = build_model(scene);
       Simulation simulation(model);
       std::uint64_t before = 0;

@@ -59,7 +59,7 @@ Scene fast_blocks() {
   scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
   scene.grains = {grains("fast", "block", BodyKind::rigid, {{10, 0.245}}, moving({3, 0})),
                   grains("slow", "block", BodyKind::rigid, {{2, 0.245}}, moving({1, 0}))};
-  scene.contacts = {rough(100, 0.5)};
+  scene.contacts = {mohr_coulomb(100, 0.5)};
   scene.time.tolerance = 1e-4;
   scene.time.target = 1e-2;
   return scene;
@@ -74,7 +74,7 @@ Scene own_images() {
                   grains("hard", "disc", BodyKind::rigid, {{1.3, 1.74}}, moving({0, -0.1}, 0.2))};
   Material& soft = scene.materials[0];
   soft.law = MaterialLaw::neo_hookean_maxwell, soft.branch_modulus = 1, soft.relaxation_time = 0.1;
-  scene.contacts = {rough(100, 0.4)};
+  scene.contacts = {mohr_coulomb(100, 0.4)};
   return scene;
 }
 

@@ -102,7 +102,7 @@ Scene collision() {
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("soft", "disc", BodyKind::compliant, {{0, 0}}, moving({0.3, 0})),
                   grains("hard", "disc", BodyKind::rigid, {{2.05, 0.7}}, moving({0, 0}, 2))};
-  scene.contacts = {rough(100, 0.3)};
+  scene.contacts = {mohr_coulomb(100, 0.3)};
   scene.time.integrator = Integrator::step_doubling;
   return scene;
 }

@@ -125,7 +125,7 @@ class ContactBound : public ::testing::TestWithParam<double> {};
 
 /// Sticking contacts: shear of the same stiffness acts as well. Corrected mass makes what is light lighter.
 TEST_P(ContactBound, covers_contacts_of_every_kind_of_body) {
-  for (const ContactRule& contact : {smooth(GetParam()), rough(GetParam(), 100)})
+  for (const ContactRule& contact : {frictionless(GetParam()), mohr_coulomb(GetParam(), 100)})
     for (Scene scene : touching_scenes(contact)) {
       scene.discretisation.mass = contact.friction > 0 ? Mass::corrected : Mass::lumped;
       Bench bench(scene);
@@ -152,8 +152,8 @@ double lightest_direction(const Scene& scene) {
 /// mass is then the very w^2 of contact, and the bound has least to give away.
 TEST(TimeStepBound, covers_light_nodes_face_to_face) {
   for (const auto& [contact, mass] :
-       {std::pair(smooth(3000), Mass::lumped), std::pair(rough(3000, 100), Mass::lumped),
-        std::pair(smooth(3000), Mass::corrected), std::pair(rough(3000, 100), Mass::corrected)}) {
+       {std::pair(frictionless(3000), Mass::lumped), std::pair(mohr_coulomb(3000, 100), Mass::lumped),
+        std::pair(frictionless(3000), Mass::corrected), std::pair(mohr_coulomb(3000, 100), Mass::corrected)}) {
     Scene scene = free_disc(40, 1);
     scene.discretisation.recipe = Recipe::es_t3;
     scene.discretisation.mass = mass;
@@ -173,7 +173,7 @@ TEST(TimeStepBound, covers_light_nodes_face_to_face) {
 /// The bound gives away a factor of at most 2 in w^2 for two compliant bodies and about 2 for absolute values and the
 /// skin: a time step halved by it, not less, where compliant bodies govern.
 TEST_P(ContactBound, is_of_use) {
-  const ContactRule contact = smooth(GetParam());
+  const ContactRule contact = frictionless(GetParam());
   for (const Scene& scene :
        {two_compliant_discs(contact), disc_on_wall(BodyKind::compliant, contact), mixed_column(contact)}) {
     Bench bench(scene);
@@ -184,7 +184,7 @@ TEST_P(ContactBound, is_of_use) {
 /// A trial that is rejected may have found new neighbours, which lower the bound: the retry keeps to it.
 TEST(TimeStepBound, holds_for_the_retry_after_a_refresh) {
   const auto retry = [](double tolerance, const auto& look) {
-    Scene scene = enclosed_block(smooth(100));
+    Scene scene = enclosed_block(frictionless(100));
     scene.grains[0].packing.positions[0] = {0, 9};  // far from the others, until moved
     scene.time.tolerance = tolerance;
     scene.time.safety = 0.8;

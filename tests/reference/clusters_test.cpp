@@ -74,7 +74,7 @@ class ReferenceClusters : public ::testing::TestWithParam<ClusterCase> {};
 // INDEPENDENT: equilibrium does not depend on the way to it when nothing rubs; what is left is the engine's motion that
 // damping has not taken out yet (exp(-t) of its slowest modes) and Newton's tolerance.
 TEST_P(ReferenceClusters, frictionless_equilibrium_agrees_with_the_damped_engine) {
-  const Scene scene = pushed_cluster(GetParam().rings, GetParam().nodes, GetParam().mixed, smooth(60), 0.04, 40);
+  const Scene scene = pushed_cluster(GetParam().rings, GetParam().nodes, GetParam().mixed, frictionless(60), 0.04, 40);
   const Differences difference = compare_at_rest(scene, 20);
   RecordProperty("centres", std::to_string(difference.centres));
   std::printf("%s: centres %.2e, positions %.2e of the diameter, forces %.2e, kinetic/strain %.1e\n", GetParam().name,

@@ -81,7 +81,7 @@ Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool caps) {
   scene.period = 4.45;
   scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
   const double turn = random.uniform(0, 6), x = random.uniform(-20, 20), y = caps ? 0.99 : 0.79;
-  add_body(scene, disc_shape("disc", 1.6, 30, 60), BodyKind::compliant, {x, y}, turn);
+  add_body(scene, polygonal_disc("disc", 1.6, 30, 60), BodyKind::compliant, {x, y}, turn);
   add_body(scene, outline_shape("square", rectangle(1.3, 1.3, 0.13)), BodyKind::rigid, {x + 1.46, y - 0.13},
            random.uniform(-0.01, 0.01));
   add_body(scene, outline_shape("disc", regular(37, 0.8)), BodyKind::rigid, {x + 2.9, y}, -turn);

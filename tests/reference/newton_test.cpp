@@ -74,13 +74,13 @@ Scene pressed(const ContactRule& rule) {
 }
 
 TEST(ReferenceNewton, converges_quadratically_in_frictionless_contact) {
-  ReferenceRun run(pressed(smooth(40)), {});
+  ReferenceRun run(pressed(frictionless(40)), {});
   run.stepping.step(0.02);
   expect_quadratic(run.stepping.step(0.12));
 }
 
 TEST(ReferenceNewton, converges_quadratically_in_sticking_contact) {
-  ReferenceRun run(pressed(rough(40, 5)), {});
+  ReferenceRun run(pressed(mohr_coulomb(40, 5)), {});
   run.stepping.step(0.02);
   const double before = run.stepping.books().dissipated_by_contact;
   expect_quadratic(run.stepping.step(0.12));

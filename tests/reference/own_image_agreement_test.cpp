@@ -19,7 +19,7 @@ Scene lone_body(Random& random, BodyKind kind, const ContactRule& rule) {
   const double x = random.uniform(-20, 20);
   if (random.below(2) == 0) {
     scene.period = 1.57;
-    add_body(scene, disc_shape("", 1.6, 30, 60), kind, {x, 0.79}, random.uniform(0, 6));
+    add_body(scene, polygonal_disc("", 1.6, 30, 60), kind, {x, 0.79}, random.uniform(0, 6));
   } else {
     scene.period = 1.29;
     add_body(scene, outline_shape("", rectangle(1.3, 0.65, 0.13), 70), kind, {x, 0.32}, random.uniform(-0.01, 0.01));
@@ -104,11 +104,11 @@ using namespace dynamics_tests;
 Scene row(BodyKind kind, int copies) {
   Scene scene = empty_scene(0.5);
   scene.period = 1.99 * copies;
-  scene.shapes = {dynamics_tests::disc_shape("disc", 2, 40)};
+  scene.shapes = {disc_shape("disc", 2, 40)};
   scene.grains = {grains("row", "disc", kind, {}, moving({0, 0.1}, 0.2))};
   for (int i = 0; i < copies; ++i) scene.grains[0].packing.positions.emplace_back(0.3 + 1.99 * i, 0);
   scene.grains[0].angle = 0.1;
-  scene.contacts = {rough(100, 0.3)};
+  scene.contacts = {mohr_coulomb(100, 0.3)};
   return scene;
 }
 

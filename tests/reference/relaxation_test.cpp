@@ -98,7 +98,7 @@ Scene between_plates(double angle) {
     scene.walls[upper].y.mode = Drive::Mode::velocity;
     scene.walls[upper].y.history = constant(upper ? -0.0101 : 0.0101);
   }
-  scene.contacts = {smooth(300)};
+  scene.contacts = {frictionless(300)};
   return scene;
 }
 

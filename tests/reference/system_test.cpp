@@ -20,7 +20,7 @@ using reference::Vector;
 Scene everything() {
   Scene scene = small_third_body(1);
   scene.gravity = {0.01, -0.02};
-  scene.contacts = {rough(40, 0.4)};
+  scene.contacts = {mohr_coulomb(40, 0.4)};
   scene.materials[0].mass_damping = 0.3;
   scene.materials[0].viscosity = 0.2;
   scene.materials[1].mass_damping = 0.1;

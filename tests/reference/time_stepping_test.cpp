@@ -20,7 +20,7 @@ Scene oscillator(double end) {
   Scene scene = on_a_floor(end, 8, 4, {0, -1});
   scene.shapes = {box_shape("block", 4, 1, 4)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.49}})};
-  scene.contacts = {smooth(100)};
+  scene.contacts = {frictionless(100)};
   return scene;
 }
 

@@ -70,7 +70,7 @@ Scene block_on_floor(double depth) {
   Scene scene = on_a_floor(1, 4, 0.1, {0, 0});
   scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{2, 0.25 - depth}})};
-  scene.contacts = {rough(100, 0.3)};
+  scene.contacts = {mohr_coulomb(100, 0.3)};
   return scene;
 }
 
@@ -179,7 +179,7 @@ Scene hexagonal_discs(double pitch, int columns, int rows, int sides) {
   Scene scene = empty_scene(1);
   const double column = pitch * std::sqrt(3) / 2;
   scene.period = columns * column;
-  scene.shapes = {many_sided_disc("disc", 1, sides)};
+  scene.shapes = {polygonal_disc("disc", 1, sides)};
   Grains layer = grains("layer", "disc", BodyKind::rigid, {});
   layer.packing = {PackingKind::hexagonal, columns, rows, column, pitch, {0.1, 0}, {}};
   scene.grains = {layer};
@@ -214,7 +214,7 @@ TEST(PackingProbes, coordination_of_a_hexagonal_packing) {
 
 TEST(PackingProbes, fabric_finds_the_direction) {
   Scene scene = empty_scene(1);
-  scene.shapes = {many_sided_disc("disc", 1, 360)};
+  scene.shapes = {polygonal_disc("disc", 1, 360)};
   const double direction = -0.4;
   scene.grains = {
       grains("pair", "disc", BodyKind::rigid, {{0, 0}, {0.996 * std::cos(direction), 0.996 * std::sin(direction)}})};

@@ -16,7 +16,7 @@ constexpr double rounding = 1e-12;
 Scene thrown_disc(double end) {
   Scene scene = empty_scene(end);
   scene.gravity = {0, -2};
-  scene.shapes = {many_sided_disc("disc", 2, 12)};
+  scene.shapes = {polygonal_disc("disc", 2, 12)};
   scene.grains = {grains("stone", "disc", BodyKind::rigid, {{1, 3}}, moving({0.5, 1}, 0.3))};
   scene.grains[0].angle = 0.2;
   return scene;
@@ -70,7 +70,7 @@ TEST(MotionProbes, compliant_flight) {
 
 TEST(MotionProbes, reductions_go_over_bodies) {
   Scene scene = empty_scene(1);
-  scene.shapes = {many_sided_disc("disc", 1, 12)};
+  scene.shapes = {polygonal_disc("disc", 1, 12)};
   scene.grains = {grains("pair", "disc", BodyKind::rigid, {{0, 1}, {4, 3}})};
   const Model model = build_model(scene);
   Simulation simulation(model);

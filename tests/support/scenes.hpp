@@ -1,41 +1,65 @@
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "geometry/mesh.hpp"
 #include "scene/scene.hpp"
 #include "support/random.hpp"
 
-/// Scenes put together in code, in units of order one: E = 1, density 1, bodies of size one.
+/// Scenes put together in code, and what they are made of, in units of order one.
 namespace pliant::testing {
 
-inline Scene bare_scene() {
-  Scene scene;
-  scene.name = "test";
-  scene.materials = {{"soft", MaterialLaw::neo_hookean, 1, 1, 0.4}, {"hard", MaterialLaw::rigid, 1, 0, 0}};
-  return scene;
+// ---- materials and motions
+
+inline History constant(double value) { return {{0}, {value}}; }
+
+inline Material elastic(const std::string& name = "soft") {
+  return {name, MaterialLaw::neo_hookean, 1.0, 2.8, 0.4};  // E = 2 mu (1 + nu)
 }
 
-inline ContactRule frictionless(double stiffness) {
+inline Material rigid_material(double density = 1, const std::string& name = "hard") {
+  return {name, MaterialLaw::rigid, density, 0, 0};
+}
+
+inline InitialVelocity moving(const Vec2& uniform, double rotation = 0) {
+  InitialVelocity velocity;
+  velocity.uniform = uniform;
+  velocity.rotation = rotation;
+  return velocity;
+}
+
+/// v = rate (X, -Y): stretches in x, shortens in y.
+inline InitialVelocity stretching(double rate) {
+  InitialVelocity velocity;
+  velocity.gradient << rate, 0, 0, -rate;
+  return velocity;
+}
+
+// ---- contact rules
+
+inline ContactRule contact_rule(ContactLawKind law, double stiffness, double friction = 0) {
   ContactRule rule;
   rule.first = rule.second = "all";
-  rule.law = ContactLawKind::frictionless;
+  rule.law = law;
   rule.stiffness = stiffness;
+  rule.friction = friction;
   return rule;
 }
 
+inline ContactRule frictionless(double stiffness) { return contact_rule(ContactLawKind::frictionless, stiffness); }
+
 inline ContactRule mohr_coulomb(double stiffness, double friction, double cohesion = 0, double tension = 0) {
-  ContactRule rule = frictionless(stiffness);
-  rule.law = ContactLawKind::mohr_coulomb;
-  rule.friction = friction;
+  ContactRule rule = contact_rule(ContactLawKind::mohr_coulomb, stiffness, friction);
   rule.cohesion = cohesion;
   rule.tension = tension;
   return rule;
 }
 
 inline ContactRule cohesive(double stiffness, double strength, double range, double shear_strength) {
-  ContactRule rule = frictionless(stiffness);
-  rule.law = ContactLawKind::cohesive;
+  ContactRule rule = contact_rule(ContactLawKind::cohesive, stiffness);
   rule.strength = strength;
   rule.shear_strength = shear_strength;
   rule.range = range;
@@ -44,8 +68,7 @@ inline ContactRule cohesive(double stiffness, double strength, double range, dou
 
 inline ContactRule cohesive_fatigue(double stiffness, double strength, double range, double shear_ratio,
                                     double bond_gap) {
-  ContactRule rule = frictionless(stiffness);
-  rule.law = ContactLawKind::cohesive_fatigue;
+  ContactRule rule = contact_rule(ContactLawKind::cohesive_fatigue, stiffness);
   rule.strength = strength;
   rule.range = range;
   rule.shear_ratio = shear_ratio;
@@ -58,6 +81,8 @@ inline ContactRule smoothed(ContactRule rule, double share) {
   return rule;
 }
 
+// ---- shapes, grains and walls
+
 /// An outline of exactly these corners; with `nodes` also a compliant body of that many field nodes.
 inline ShapeSpec outline_shape(const std::string& name, const Points& points, std::optional<int> nodes = {}) {
   ShapeSpec shape;
@@ -69,14 +94,45 @@ inline ShapeSpec outline_shape(const std::string& name, const Points& points, st
   return shape;
 }
 
-inline ShapeSpec disc_shape(const std::string& name, double diameter, int outline_nodes,
-                            std::optional<int> nodes = {}) {
+/// Of so many field nodes, which give the outline its own.
+inline ShapeSpec disc_shape(const std::string& name, double diameter, int nodes) {
   ShapeSpec shape;
   shape.name = name;
   shape.diameter = diameter;
   shape.nodes = nodes;
-  shape.outline_nodes = outline_nodes;
   return shape;
+}
+
+/// A disc of so many sides; with `nodes` also a compliant body of that many field nodes.
+inline ShapeSpec polygonal_disc(const std::string& name, double diameter, int sides, std::optional<int> nodes = {}) {
+  ShapeSpec shape;
+  shape.name = name;
+  shape.diameter = diameter;
+  shape.nodes = nodes;
+  shape.outline_nodes = sides;
+  return shape;
+}
+
+/// Rectangle about the origin.
+inline ShapeSpec box_shape(const std::string& name, double width, double height, double spacing) {
+  ShapeSpec shape;
+  shape.name = name;
+  shape.kind = ShapeKind::polygon;
+  const double x = width / 2, y = height / 2;
+  shape.points = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+  shape.spacing = spacing;
+  return shape;
+}
+
+inline Grains grains(const std::string& name, const std::string& shape, BodyKind kind, const Points& centres,
+                     const InitialVelocity& velocity = {}) {
+  Grains result;
+  result.name = name;
+  result.shape = shape;
+  result.packing.positions = centres;
+  result.mix = {{kind, kind == BodyKind::compliant ? "soft" : "hard", 1}};
+  result.velocity = velocity;
+  return result;
 }
 
 /// Adds one grain of a shape that the scene already has.
@@ -99,16 +155,21 @@ inline int add_body(Scene& scene, ShapeSpec shape, BodyKind kind, const Vec2& ce
   return static_cast<int>(scene.grains.size()) - 1;
 }
 
-/// A flat wall; `free`: it may move in x and y without load.
-inline Wall flat_wall(const std::string& name, Wall::Solid solid, double level, double spacing, bool free = false) {
+inline Wall flat_wall(const std::string& name, Wall::Solid solid, double level, double spacing, double thickness = 1) {
   Wall wall;
   wall.name = name;
   wall.material = "hard";
   wall.solid = solid;
   wall.level = level;
   wall.spacing = spacing;
-  wall.thickness = 1;
-  if (free) wall.x.mode = wall.y.mode = Drive::Mode::free;
+  wall.thickness = thickness;
+  return wall;
+}
+
+/// It may move in x and y, without load.
+inline Wall free_wall(const std::string& name, Wall::Solid solid, double level, double spacing) {
+  Wall wall = flat_wall(name, solid, level, spacing);
+  wall.x.mode = wall.y.mode = Drive::Mode::free;
   return wall;
 }
 
@@ -160,6 +221,82 @@ inline Points refined(const Points& corners, double spacing) {
 
 inline Points rectangle(double width, double height, double spacing) {
   return refined({{0, 0}, {width, 0}, {width, height}, {0, height}}, spacing);
+}
+
+// ---- scenes
+
+/// Materials alone, of E = 1 and density 1.
+inline Scene bare_scene() {
+  Scene scene;
+  scene.name = "test";
+  scene.materials = {{"soft", MaterialLaw::neo_hookean, 1, 1, 0.4}, {"hard", MaterialLaw::rigid, 1, 0, 0}};
+  return scene;
+}
+
+/// Materials of mu = rho = 1, lambda = 4, and a contact rule; the caller adds shapes and bodies.
+inline Scene empty_scene(double end) {
+  Scene scene;
+  scene.name = scene.title = "test";
+  scene.file = "test.toml";
+  scene.time.end = end;
+  scene.materials = {elastic(), rigid_material()};
+  scene.contacts = {frictionless(100)};
+  return scene;
+}
+
+/// One compliant disc of radius 1 at the origin, nothing to touch.
+inline Scene free_disc(int nodes, double end, const InitialVelocity& velocity = {}) {
+  Scene scene = empty_scene(end);
+  scene.shapes = {disc_shape("disc", 2, nodes)};
+  scene.grains = {grains("disc", "disc", BodyKind::compliant, {{0, 0}}, velocity)};
+  return scene;
+}
+
+/// A floor at y = 0 below a period of `period`, under gravity.
+inline Scene on_a_floor(double end, double period, double spacing, const Vec2& gravity) {
+  Scene scene = empty_scene(end);
+  scene.period = period;
+  scene.gravity = gravity;
+  scene.walls = {flat_wall("floor", Wall::Solid::below, 0, spacing)};
+  return scene;
+}
+
+/// A compliant disc that flies freely and then hits a fixed wall.
+inline Scene flight_and_impact(double tolerance) {
+  Scene scene = on_a_floor(8, 8, 0.25, {0, 0});
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("disc", "disc", BodyKind::compliant, {{4, 1.5}}, moving({0, -0.2}))};
+  scene.contacts = {frictionless(300)};
+  scene.time.tolerance = tolerance;
+  return scene;
+}
+
+/// dt is set by `safety` alone: no error makes a step rejected.
+inline void without_error_control(Scene& scene, double safety) {
+  scene.time.tolerance = 1e300;
+  scene.time.safety = safety;
+}
+
+/// Compliant and rigid discs of radius 1, cohesive, in a periodic layer between a fixed wall and one that presses and
+/// shears.
+inline Scene small_third_body(double end) {
+  Scene scene = empty_scene(end);
+  scene.period = 6;
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  Grains layer = grains("layer", "disc", BodyKind::compliant, {});
+  layer.packing = {PackingKind::grid, 3, 4, 2.0, 2.01, {1, 0}, {}};
+  layer.mix = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
+  layer.seed = 3;
+  layer.angle.reset();
+  scene.grains = {layer};
+  scene.walls = {flat_wall("lower", Wall::Solid::below, -1.02, 0.25),
+                 flat_wall("upper", Wall::Solid::above, 7.05, 0.25)};
+  scene.walls[1].x = {Drive::Mode::velocity, {{0, 1}, {0, 0.1}}};
+  scene.walls[1].y = {Drive::Mode::pressure, {{0, 2}, {0, 0.1}}};
+  scene.contacts = {contact_rule(ContactLawKind::cohesive, 0)};
+  scene.contacts[0].stiffness.reset();
+  scene.contacts[0].strength = 0.1;
+  return scene;
 }
 
 }  // namespace pliant::testing
