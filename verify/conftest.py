@@ -6,6 +6,7 @@ import json
 import os
 import time
 from collections import defaultdict
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
@@ -45,8 +46,9 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     """Rows of an earlier run must not stand for checks that this one does not reach. Workers collect while others run."""
     for case in {item.path.parent.name for item in session.items}:
         for file in (OUT / case / "checks.json", OUT / case / "failures.json"):
-            if file.exists() and file.stat().st_mtime < float(os.environ[BEGIN]):
-                file.unlink(missing_ok=True)
+            with suppress(FileNotFoundError):  # another worker may have been here between the two
+                if file.stat().st_mtime < float(os.environ[BEGIN]):
+                    file.unlink()
 
 
 class Record:
