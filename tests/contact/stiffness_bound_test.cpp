@@ -125,8 +125,8 @@ TEST(StiffnessBound, RigidBodies) {
     for (const double y : {0.0, 0.7}) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
-      add_body(scene, disc_shape("disc", 2, 40), BodyKind::rigid, {0, 0});
-      add_body(scene, disc_shape("disc", 1, 24), BodyKind::rigid, {std::sqrt(1.47 * 1.47 - y * y), y}, 0.1);
+      add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {0, 0});
+      add_body(scene, polygonal_disc("disc", 1, 24), BodyKind::rigid, {std::sqrt(1.47 * 1.47 - y * y), y}, 0.1);
       expect_the_floor(scene, 300);
       Scene blocks = bare_scene();
       blocks.contacts = {rule};
@@ -142,7 +142,7 @@ TEST(StiffnessBound, BlockBetweenWalls) {
     scene.period = 3;
     scene.contacts = {rule};
     add_body(scene, outline_shape("block", rectangle(1.03, 0.5, 0.1)), BodyKind::rigid, {0.5, 0.24});
-    scene.walls = {free_wall("floor", Wall::Solid::below, 0, 0.1), flat_wall("lid", Wall::Solid::above, 0.48, 0.1)};
+    scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.1), free_wall("lid", Wall::Solid::above, 0.48, 0.1)};
     expect_bounded(scene, "block");
   }
 }
@@ -152,8 +152,9 @@ TEST(StiffnessBound, CompliantAndRigidBodies) {
     for (const bool both : {false, true}) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
-      add_body(scene, disc_shape("disc", 2, 36, 90), BodyKind::compliant, {0, 0});
-      add_body(scene, disc_shape("disc", 1.6, 30, 70), both ? BodyKind::compliant : BodyKind::rigid, {1.76, 0.1}, 0.1);
+      add_body(scene, polygonal_disc("disc", 2, 36, 90), BodyKind::compliant, {0, 0});
+      add_body(scene, polygonal_disc("disc", 1.6, 30, 70), both ? BodyKind::compliant : BodyKind::rigid, {1.76, 0.1},
+               0.1);
       expect_bounded(scene, both ? "compliant" : "mixed");
     }
 }
@@ -163,7 +164,7 @@ TEST(StiffnessBound, Cluster) {
   for (const ContactRule& rule : rules) {
     Scene scene = bare_scene();
     scene.contacts = {rule};
-    scene.shapes = {disc_shape("disc", 1, 36)};
+    scene.shapes = {polygonal_disc("disc", 1, 36)};
     add_grain(scene, "disc", BodyKind::rigid, {0, 0}, 0.05);
     for (int i = 0; i < 6; ++i)
       add_grain(scene, "disc", BodyKind::rigid, 0.975 * Vec2(std::cos(i * M_PI / 3), std::sin(i * M_PI / 3)), 0.3 * i);
@@ -190,7 +191,7 @@ TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
       add_body(scene, outline_shape("block", rectangle(2, 1, 0.11)), BodyKind::rigid, {0, 0});
-      add_body(scene, disc_shape("disc", 1, 24), BodyKind::rigid, {random.uniform(-0.8, 0.8), 1.01},
+      add_body(scene, polygonal_disc("disc", 1, 24), BodyKind::rigid, {random.uniform(-0.8, 0.8), 1.01},
                random.uniform(0, 1));
       Loaded loaded(scene);
       const double bound = bound_of(loaded);

@@ -17,7 +17,7 @@ using Matrix = Eigen::Matrix2d;
 const Matrix deformation = (Matrix() << 1.2, 0.3, -0.1, 0.85).finished();
 
 /// A disc of mu = 1, lambda = 4, put in with a turn of 0.7 and then deformed by `deformation`.
-class DeformedDisc : public testing::Test {
+class DeformedDisc : public ::testing::Test {
  protected:
   DeformedDisc() : model_(build_model(scene())), position_(initial_positions(model_)) {
     for (std::size_t i = 0; i < position_.compliant.size(); i += 2)
