@@ -59,7 +59,7 @@ template <class Action>
 auto with_law(MaterialLaw law, const LawConstants& constants, Action&& action) {
   return with_law_type<Lanes>(law, [&]<class Law>(std::type_identity<Law>) {
     Law of_lanes;
-    std::memcpy(&of_lanes, constants.data(), sizeof of_lanes);
+    std::memcpy(static_cast<void*>(&of_lanes), constants.data(), sizeof of_lanes);
     return action(of_lanes);
   });
 }

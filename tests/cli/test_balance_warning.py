@@ -64,24 +64,30 @@ shear_stiffness = 900
 def run(desk, time: str, displacement: float, place: float = 0.25) -> tuple[str, float]:
     """Warnings and balance error."""
     desk.write(ROOFS.format(time=time, displacement=displacement, place=place))
-    result = desk.run("--out", "out", "--threads", "1")
+    result = desk.run("--out", "out", "--threads", "1", "--force")
     assert result.returncode == 0, result.stderr
     warned = "".join(line for line in result.stderr.splitlines() if line.startswith("warning"))
     return warned, desk.summary("out")["energy"]["balance_error"]
 
 
+# Nodes go on and off the other side in time with the steps, or by rounding they do not: of eight ways and two compilers
+# one run made 0.04 %, all others 3 to 11 %. So of some ways the one that heats most.
+WAYS = [-1.8e-3, -2.2e-3, -2.5e-3]
+
+
 def test_heating_contacts_are_told_of(desk) -> None:  # EXACT
-    said, error = run(desk, "tolerance = 1\nsafety = 1", -2e-3)
-    assert error > 0.01, "5 to 8 %, by rounding, when written: nodes on and off the other side in time with the steps"
+    said, error = max((run(desk, "tolerance = 1\nsafety = 1", way) for way in WAYS), key=lambda found: found[1])
+    assert error > 0.01
     assert said.count("warning") == 1, said
     assert "energy balance at t = 6 s" in said and "gained without cause" in said, said
     assert f"{100 * error:.3g} % of what came in" in said, said
     assert "safety = 0.4 instead of 1" in said, said
 
 
-def test_what_is_advised_helps(desk) -> None:  # EXACT: 0.34 % when written, whatever the rounding
-    said, error = run(desk, "tolerance = 1\nsafety = 0.4", -2e-3)
-    assert error < 0.01 and said == ""
+def test_what_is_advised_helps(desk) -> None:  # EXACT: 0.5 to 0.6 %, whatever the rounding
+    for way in WAYS:
+        said, error = run(desk, "tolerance = 1\nsafety = 0.4", way)
+        assert error < 0.01 and said == "", way
 
 
 def test_step_doubling_is_told_to_leave_it(desk) -> None:  # EXACT; the means is that of test_what_is_advised_helps

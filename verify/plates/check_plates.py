@@ -177,11 +177,11 @@ def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements
     draw_forces(axes[0], runs, 100 * np.array(APPROACHES))
     draw_checked_ratios(axes[1], {recipe: runs[recipe][168][0].force for recipe in RECIPES},
                         {recipe: rests.force for recipe, rests in references.items()}, elements)
-    axes[1].set_title("168 nodes, corner at the pole: over finite elements, less 1 [%]", fontsize=10, loc="left")
+    axes[1].set_title("168 nodes, corner at the pole: over FEM, less 1 [%]", fontsize=10, loc="left")
     draw_checked_ratios(axes[2], {recipe: mean(runs[recipe][700]) for recipe in RECIPES}, {}, elements)
     draw_limits(axes[2], limits(runs, stiff))
     axes[2].axhspan(-100 * ACCEPTED, 100 * ACCEPTED, color="0.9")
-    axes[2].set_title("700 nodes, both ways to lie: over finite elements, less 1 [%]", fontsize=10, loc="left")
+    axes[2].set_title("700 nodes, both ways to lie: over FEM, less 1 [%]", fontsize=10, loc="left")
     draw_convergence(axes[3], runs, elements)
     for panel in axes:
         legend(panel)
