@@ -91,11 +91,11 @@ TEST(BlockOnASlope, slips_as_coulomb_says) {
   });
 }
 
-/// INDEPENDENT, estimates as bounds: pressed first, then pulled along a slope that is too flat, it stays where its springs carry
-/// it: m g sin (1 / (kt L) + 3 h^2 / (kn L^3)) for shear and tilt of its contact; a compliant block leans by
-/// m g sin (h / (3 G L) + 3 h^3 / (5 E' L^3)) more, as a column does. Bounds are estimates: few nodes stand for the
-/// face, which makes it twice as stiff against tilt or half; what corners give way is half of all that at most.
-/// Pulled no more, it comes back, but for half of the tilt.
+/// INDEPENDENT, estimates as bounds: pressed first, then pulled along a slope that is too flat, it stays where its
+/// springs carry it: m g sin (1 / (kt L) + 3 h^2 / (kn L^3)) for shear and tilt of its contact; a compliant block leans
+/// by m g sin (h / (3 G L) + 3 h^3 / (5 E' L^3)) more, as a column does. Few nodes stand for the face, which makes it
+/// twice as stiff against tilt or half; what corners give way is half of all that at most. Pulled no more, it comes
+/// back, but for half of the tilt.
 TEST(BlockOnASlope, sticks_as_coulomb_says) {
   const double slope = 10 * std::numbers::pi / 180, pull = mass * std::sin(slope);
   const double shear = pull / stiffness, tilt = pull * 3 * height * height / stiffness;
