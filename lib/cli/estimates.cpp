@@ -83,8 +83,10 @@ ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first,
   pair.automatic = laws.automatic_stiffness(first, second);
   std::visit([&](const auto& l) { pair.stiffness = l.normal_stiffness; }, law);
   std::visit([&](const auto& l) { pair.shear_stiffness = l.has_shear ? l.shear_stiffness : 0; }, law);
-  if (const Cohesive* cohesive = std::get_if<Cohesive>(&law)) pair.strength = cohesive->strength;
-  if (const CohesiveFatigue* bond = std::get_if<CohesiveFatigue>(&law)) pair.strength = bond->strength;
+  const auto find_strength = [&](const auto& l) {
+    if constexpr (requires { l.strength; }) pair.strength = l.strength;
+  };
+  std::visit(find_strength, law);
   pair.reach = reach_of(law);
   pair.spacing = std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing);
   if (a.kind == BodyKind::compliant || b.kind == BodyKind::compliant) return pair;

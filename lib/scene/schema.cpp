@@ -22,7 +22,8 @@ std::string merged(const std::vector<std::string>& texts) {
     common.resize(static_cast<std::size_t>(std::mismatch(common.begin(), common.end(), text.begin(), text.end()).first -
                                            common.begin()));
   const bool names = common.find('(') != std::string::npos;
-  if (different.size() == 2 && !names) return fmt::format("{}, or {}", different[0], different[1]);
+  const bool choices = common.starts_with("one of");
+  if (!names && (choices || different.size() == 2)) return fmt::format("{}", fmt::join(different, ", or "));
   common.resize(std::min({common.size(), common.find_last_of(",("), common.rfind(" from")}));
   while (common.ends_with(' ')) common.pop_back();
   return common + (names ? " of the scene" : ", within limits that the scene sets");

@@ -68,6 +68,21 @@ TEST(Schema, a_choice_that_decides_is_named) {
   EXPECT_NE(text.find("| `solid` | one of \"below\", \"above\" | required |  |\n"), std::string::npos);
 }
 
+// EXACT: a key with another list of choices in each of several tables has all of them.
+TEST(Schema, lists_of_choices_stand_side_by_side) {
+  SceneSchema schema;
+  const int root = schema.begin_table(top_pattern);
+  schema.asked(root, "probes", true);
+  for (const char* allowed : {"one of \"a\", \"b\"", "one of \"c\", \"a\"", "one of \"c\""}) {
+    const int table = schema.begin_table("[[probes]]");
+    schema.asked(table, "reduce", true);
+    schema.note(table, "reduce", {"name", allowed, "", true});
+  }
+  const std::string text = schema.markdown();
+  const std::string row = "one of \"a\", \"b\", or one of \"c\", \"a\", or one of \"c\"";
+  EXPECT_NE(text.find(row), std::string::npos) << text;
+}
+
 TEST(Schema, reading_is_the_same_with_and_without) {
   const scene_tests::SceneFile file(scene_tests::good_scene);
   SceneSchema schema;

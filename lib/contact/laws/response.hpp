@@ -19,13 +19,19 @@ struct Contact {
   Lanes slip, slip_work;          ///< slip_work: dissipated per length, by whatever, J/m2
 };
 
-/// A law that remembers something besides place and slip (core/remembered.hpp) brings
+/// Every law has has_shear, name, normal_stiffness and, with shear, shear_stiffness, Pa/m; reach, m: nodes with smaller
+/// gaps touch; and Traction operator()(Lanes gap) const. One that remembers something besides place and slip
+/// (core/remembered.hpp) brings
 ///
 ///     Contact respond(const Encounter&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
-///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, of nodes that left the master
-///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to start_reach()
+///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight is beside the master
+///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to
+///     double start_reach() const;                                   m
 ///
-/// Nothing else need know.
+/// respond is asked for lanes that are not beside, do not touch or are padding as well: what single nodes remember that
+/// left, and what that sets free, is its own. Asked once more at the same place, from `now` and the new slip, it must
+/// answer the same tractions: audits and probes do that. The limit of shear in the Traction is what operator() says of
+/// the gap; respond may set another. Nothing else need know.
 
 /// The tangential part of a contact that slips beyond its limit.
 template <class Law>
