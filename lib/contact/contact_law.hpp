@@ -9,13 +9,18 @@
 #include "contact/laws/damped.hpp"
 #include "contact/laws/frictionless.hpp"
 #include "contact/laws/mohr_coulomb.hpp"
+#include "contact/laws/response.hpp"
 #include "contact/laws/smoothed.hpp"
 
 namespace pliant {
 
+/// One of several.
+template <CompleteContactLaw... Laws>
+using AnyOf = std::variant<Laws...>;
+
 /// The law of one pair of bodies.
-using ContactLaw = std::variant<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, Smoothed<Frictionless>,
-                                Smoothed<MohrCoulomb>, Damped<Frictionless>, Damped<MohrCoulomb>>;
+using ContactLaw = AnyOf<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, Smoothed<Frictionless>,
+                         Smoothed<MohrCoulomb>, Damped<Frictionless>, Damped<MohrCoulomb>>;
 
 inline double reach_of(const ContactLaw& law) {
   return std::visit([](const auto& l) { return l.reach; }, law);

@@ -6,6 +6,9 @@
 
 namespace pliant {
 
+// Functions that laws call at every point and step. For others, and constants of a step, core/lanes.hpp's in_each_lane
+// calls any function lane by lane.
+
 /// Scalars of any kind, complex numbers for complex-step checks among them.
 template <class T>
 T natural_log(T x) {

@@ -3,30 +3,155 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
 namespace pliant {
 
-std::string_view scene_keys() {
-  static constexpr std::string_view keys =
-      " alpha angle angles beta between body bond_gap bottom boundary box branch_modulus caps checkpoint cohesion "
-      "columns contact contacts count damping density descriptors deviation diameter direction discretisation "
-      "displacement distribution domain end factors fatigue_rate fatigue_threshold fields file first force frames "
-      "friction from gauss_points gradient grains gravity half_angles height heights high integrator kind law left "
-      "length level low mass mass_damping material materials mean median mix mix_order mode moment name node nodes "
-      "of origin outline outline_nodes packing part period pitch points poisson positions pressure probes pull "
-      "quantity range recipe reduce refresh relaxation_time residual_strength restitution right rotation rounding "
-      "row_pitch rows safety seed self_contact shape shapes share shares shear_fatigue_rate shear_ratio "
-      "shear_stiffness shear_strength side sides size skin smoothing solid solid_fraction spacing stiffness "
-      "strength support target tension thickness time title tolerance top uniform unit until variants velocity "
-      "viscosity walls width with x y young ";
+std::span<const std::string_view> scene_keys() {
+  static constexpr std::string_view keys[] = {
+      "alpha",
+      "angle",
+      "angles",
+      "beta",
+      "between",
+      "body",
+      "bond_gap",
+      "bottom",
+      "boundary",
+      "box",
+      "branch_modulus",
+      "caps",
+      "checkpoint",
+      "cohesion",
+      "columns",
+      "contact",
+      "contacts",
+      "count",
+      "damping",
+      "density",
+      "descriptors",
+      "deviation",
+      "diameter",
+      "direction",
+      "discretisation",
+      "displacement",
+      "distribution",
+      "domain",
+      "end",
+      "factors",
+      "fatigue_rate",
+      "fatigue_threshold",
+      "fields",
+      "file",
+      "first",
+      "force",
+      "frames",
+      "friction",
+      "from",
+      "gauss_points",
+      "gradient",
+      "grains",
+      "gravity",
+      "half_angles",
+      "height",
+      "heights",
+      "high",
+      "integrator",
+      "kind",
+      "law",
+      "left",
+      "length",
+      "level",
+      "low",
+      "mass",
+      "mass_damping",
+      "material",
+      "materials",
+      "mean",
+      "median",
+      "mix",
+      "mix_order",
+      "mode",
+      "moment",
+      "name",
+      "node",
+      "nodes",
+      "of",
+      "origin",
+      "outline",
+      "outline_nodes",
+      "packing",
+      "part",
+      "period",
+      "pitch",
+      "points",
+      "poisson",
+      "positions",
+      "pressure",
+      "probes",
+      "pull",
+      "quantity",
+      "range",
+      "recipe",
+      "reduce",
+      "refresh",
+      "relaxation_time",
+      "residual_strength",
+      "restitution",
+      "right",
+      "rotation",
+      "rounding",
+      "row_pitch",
+      "rows",
+      "safety",
+      "seed",
+      "self_contact",
+      "shape",
+      "shapes",
+      "share",
+      "shares",
+      "shear_fatigue_rate",
+      "shear_ratio",
+      "shear_stiffness",
+      "shear_strength",
+      "side",
+      "sides",
+      "size",
+      "skin",
+      "smoothing",
+      "solid",
+      "solid_fraction",
+      "spacing",
+      "stiffness",
+      "strength",
+      "support",
+      "target",
+      "tension",
+      "thickness",
+      "time",
+      "title",
+      "tolerance",
+      "top",
+      "uniform",
+      "unit",
+      "until",
+      "variants",
+      "velocity",
+      "viscosity",
+      "walls",
+      "width",
+      "with",
+      "x",
+      "y",
+      "young",
+  };
+  static_assert(std::is_sorted(std::begin(keys), std::end(keys)));
   return keys;
 }
 
-bool is_scene_key(std::string_view word) {
-  return word.find(' ') == word.npos && scene_keys().find(fmt::format(" {} ", word)) != std::string_view::npos;
-}
+bool is_scene_key(std::string_view word) { return std::binary_search(scene_keys().begin(), scene_keys().end(), word); }
 
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> before(b.size() + 1), row(b.size() + 1), next(b.size() + 1);

@@ -230,7 +230,8 @@ std::vector<FrameField> all_fields() {
       field(outlines, point, "contact_shear", "Pa", "its tangential part, along the outline"),
       field(outlines, point, "contact_damage", "-", "least of the node's bonds, 0 whole to 1 torn; 1 without"),
       field(outlines, point, "contact_gap", "m", "least of the node's contacts; NaN without"),
-      field(outlines, point, "contact_slip", "m", "largest elastic tangential displacement of its contacts; 0 without"),
+      field(outlines, point, "contact_slip", "m",
+            "of its contacts' elastic tangential displacements the largest, with its sign; 0 without"),
   };
   for (const char* component : {"xx", "yy", "xy", "zz"})
     all.push_back(field(bodies, cell, fmt::format("stress_{}", component), "Pa", "Cauchy stress, tension positive"));

@@ -6,6 +6,8 @@ namespace pliant {
 
 namespace {
 
+const QuantityOr automatic_stiffness{"auto", {"Pa/m", positive}};
+
 /// What a side of a rule may be called.
 std::vector<std::string> party_names(const Scene& scene) {
   std::vector<std::string> names = names_of(scene.materials);
@@ -57,6 +59,7 @@ void read_impact(TableReader& table, ContactRule& rule) {
 }
 
 void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
+  table.optional("shear_stiffness", rule.shear_stiffness, automatic_stiffness);
   table.required("friction", rule.friction, Quantity{"1", non_negative});
   table.optional("cohesion", rule.cohesion, Quantity{"Pa", non_negative});
   table.optional("tension", rule.tension, Quantity{"Pa", non_negative});
@@ -75,6 +78,7 @@ void read_strength(TableReader& table, ContactRule& rule) {
 }
 
 void read_cohesive(TableReader& table, ContactRule& rule) {
+  table.optional("shear_stiffness", rule.shear_stiffness, automatic_stiffness);
   read_strength(table, rule);
   table.optional("shear_strength", rule.shear_strength, QuantityOr{"auto", {"Pa", non_negative}});
 }
@@ -109,10 +113,7 @@ ContactRule read_contact(TableReader table, const Scene& scene) {
                                          {"mohr-coulomb", ContactLawKind::mohr_coulomb},
                                          {"cohesive", ContactLawKind::cohesive},
                                          {"cohesive-fatigue", ContactLawKind::cohesive_fatigue}}});
-  const QuantityOr stiffness{"auto", {"Pa/m", positive}};
-  table.optional("stiffness", rule.stiffness, stiffness);
-  const bool own_shear = rule.law == ContactLawKind::mohr_coulomb || rule.law == ContactLawKind::cohesive;
-  if (own_shear) table.optional("shear_stiffness", rule.shear_stiffness, stiffness);
+  table.optional("stiffness", rule.stiffness, automatic_stiffness);
   switch (rule.law) {
     case ContactLawKind::frictionless:
       read_impact(table, rule);

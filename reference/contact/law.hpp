@@ -22,8 +22,28 @@ struct Law {
   double bond_gap = 0;              ///< m
   double threshold = 0;             ///< Pa
   double rate = 0, shear_rate = 0;  ///< 1/Pa
-  bool shears() const { return kind != ContactLawKind::frictionless; }
-  bool bonds() const { return kind == ContactLawKind::cohesive_fatigue; }
+  bool shears() const {
+    switch (kind) {
+      case ContactLawKind::frictionless:
+        return false;
+      case ContactLawKind::mohr_coulomb:
+      case ContactLawKind::cohesive:
+      case ContactLawKind::cohesive_fatigue:
+        return true;
+    }
+    return true;
+  }
+  bool bonds() const {
+    switch (kind) {
+      case ContactLawKind::frictionless:
+      case ContactLawKind::mohr_coulomb:
+      case ContactLawKind::cohesive:
+        return false;
+      case ContactLawKind::cohesive_fatigue:
+        return true;
+    }
+    return false;
+  }
 };
 
 /// Tractions at one node and what they leave behind.

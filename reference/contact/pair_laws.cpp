@@ -99,10 +99,16 @@ Law make_law(const ContactRule& rule, double kn, double spacing) {
   law.threshold = rule.fatigue_threshold;
   law.rate = rule.fatigue_rate;
   law.shear_rate = rule.shear_fatigue_rate;
-  if (rule.law == ContactLawKind::mohr_coulomb) law.reach = rule.tension / kn;
-  if (rule.law == ContactLawKind::cohesive || law.bonds()) {
-    law.reach = rule.range.value_or(0.12 * spacing);
-    check_range(rule, law);
+  switch (rule.law) {
+    case ContactLawKind::frictionless:
+      break;
+    case ContactLawKind::mohr_coulomb:
+      law.reach = rule.tension / kn;
+      break;
+    case ContactLawKind::cohesive:
+    case ContactLawKind::cohesive_fatigue:
+      law.reach = rule.range.value_or(0.12 * spacing);
+      check_range(rule, law);
   }
   return law;
 }

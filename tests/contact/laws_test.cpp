@@ -5,6 +5,7 @@
 
 #include "bodies/model.hpp"
 #include "contact/contact_laws.hpp"
+#include "support/random.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {
@@ -103,6 +104,74 @@ TEST(ContactLaws, LanesAreIndependent) {
     EXPECT_DOUBLE_EQ(together.shear_limit[lane], alone.shear_limit[7 - lane]);
     EXPECT_DOUBLE_EQ(together.energy[lane], alone.energy[7 - lane]);
   }
+}
+
+// ---- what all laws promise
+
+const std::vector<ContactLaw> one_of_each = {
+    Frictionless{10, 0, 0},
+    MohrCoulomb{10, 8, 0.1, 0.5, 0.2},
+    Cohesive{10, 8, 0.6, 2, 3},
+    CohesiveFatigue{10, 2.5, 0.6, 2, 2, 0.7, 0.3, 0.2, 0.05, 0.02, 0.02},
+    Smoothed<Frictionless>{{10, 0, 0}, 0.2},
+    Smoothed<MohrCoulomb>{{10, 8, 0, 0.5, 0.2}, 0.2},
+    Damped<Frictionless>{{10, 0, 0}, 0.3, 0.1},
+    Damped<MohrCoulomb>{{10, 8, 0, 0.5, 0.2}, 0.3, 0.1},
+};
+
+TEST(AllContactLaws, stand_in_the_list_above) {
+  ASSERT_EQ(one_of_each.size(), std::variant_size_v<ContactLaw>) << "EXACT";
+  for (std::size_t i = 0; i < one_of_each.size(); ++i) EXPECT_EQ(one_of_each[i].index(), i) << "EXACT";
+}
+
+/// A step's answer, and what the node then remembers.
+template <class Law>
+struct Answer {
+  Contact contact;
+  Record<Law> record;
+};
+
+template <class Law>
+Answer<Law> answer(const Law& law, Lanes gap, LaneBits beside, Lanes moved, Lanes slip, const Record<Law>& old) {
+  Answer<Law> now;
+  const Encounter at{gap, beside, beside & (gap < law.reach), moved};
+  now.contact = respond(law, at, law(gap), slip, old, now.record);
+  return now;
+}
+
+Lanes uniform_lanes(Random& random, double low, double high) {
+  return in_each_lane(Lanes{}, [&](double) { return random.uniform(low, high); });
+}
+
+/// EXACT: asked again without motion from what it remembers since, a law answers the same; numbers of order 10 and a
+/// few dozen roundings. Audits, probes and the drawing of forces ask so.
+TEST(AllContactLaws, answer_the_same_again_at_rest) {
+  Random random(71);
+  for (const ContactLaw& any_law : one_of_each)
+    std::visit(
+        [&]<class Law>(const Law& law) {
+          for (int sample = 0; sample < 50; ++sample) {
+            Lanes slip{};
+            Record<Law> record{};
+            if constexpr (remembers<Law>) record = law.at_start(uniform_lanes(random, 0, 0.04), first_lanes(8));
+            for (int step = 0; step < 20; ++step) {
+              const Lanes gap = uniform_lanes(random, -0.4, 0.7);
+              const Lanes moved = Law::has_shear ? uniform_lanes(random, -0.3, 0.3) : Lanes{};
+              const LaneBits beside = uniform_lanes(random, 0, 1) < 0.9;
+              const Answer<Law> first = answer(law, gap, beside, moved, slip, record);
+              const Answer<Law> again = answer(law, gap, beside, Lanes{}, first.contact.slip, first.record);
+              for (int lane = 0; lane < lane_count; ++lane) {
+                if (!beside[lane]) continue;
+                EXPECT_NEAR(again.contact.pressure[lane], first.contact.pressure[lane], 1e-13) << Law::name;
+                EXPECT_NEAR(again.contact.shear[lane], first.contact.shear[lane], 1e-13) << Law::name;
+                EXPECT_NEAR(again.contact.energy[lane], first.contact.energy[lane], 1e-13) << Law::name;
+                EXPECT_NEAR(again.contact.slip_work[lane], 0, 1e-13) << Law::name;
+              }
+              slip = first.contact.slip, record = first.record;
+            }
+          }
+        },
+        any_law);
 }
 
 // ---- which law a pair gets

@@ -38,6 +38,14 @@ TEST(Quantities, have_functions_and_columns) {
         << "EXACT: " << quantity.name;
 }
 
+/// A '|' would end a table's column in docs/probes.md.
+TEST(Quantities, meanings_fit_into_tables) {
+  for (const ProbeQuantity& quantity : probe_quantities())
+    EXPECT_EQ(std::string(quantity.meaning).find('|'), std::string::npos) << "EXACT: " << quantity.name;
+  for (const FrameField& field : frame_fields())
+    EXPECT_EQ(std::string(field.meaning).find('|'), std::string::npos) << "EXACT: " << field.name;
+}
+
 TEST(Quantities, fields_have_functions) {
   for (const FrameField& field : frame_fields()) {
     if (field.constant)

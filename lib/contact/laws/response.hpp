@@ -1,5 +1,8 @@
 #pragma once
 
+#include <concepts>
+#include <type_traits>
+
 #include "contact/laws/traction.hpp"
 #include "core/remembered.hpp"
 
@@ -19,7 +22,7 @@ struct Contact {
   Lanes slip, slip_work;          ///< slip_work: dissipated per length, by whatever, J/m2
 };
 
-/// Every law has has_shear, name, normal_stiffness and, with shear, shear_stiffness, Pa/m; reach, m: nodes with smaller
+/// Every law has has_shear, name, normal_stiffness shear_stiffness, Pa/m; reach, m: nodes with smaller
 /// gaps touch; and Traction operator()(Lanes gap) const. One that remembers something besides place and slip
 /// (core/remembered.hpp) brings
 ///
@@ -32,6 +35,28 @@ struct Contact {
 /// left, and what that sets free, is its own. Asked once more at the same place, from `now` and the new slip, it must
 /// answer the same tractions: audits and probes do that. The limit of shear in the Traction is what operator() says of
 /// the gap; respond may set another. Nothing else need know.
+
+template <class Law>
+concept AnswersGaps = requires(const Law& law, Lanes gap) {
+  requires std::same_as<std::remove_cv_t<decltype(Law::has_shear)>, bool>;
+  requires std::convertible_to<decltype(Law::name), const char*>;
+  requires std::same_as<std::remove_cvref_t<decltype(law.normal_stiffness)>, double>;
+  requires std::same_as<std::remove_cvref_t<decltype(law.shear_stiffness)>, double>;
+  requires std::same_as<std::remove_cvref_t<decltype(law.reach)>, double>;
+  { law(gap) } -> std::same_as<Traction>;
+};
+template <class Law>
+concept AnswersEncounters = requires(const Law& law, const Encounter& at, const Traction& traction, Lanes number,
+                                     LaneBits which, const Record<Law>& old, Record<Law>& now) {
+  { law.respond(at, traction, number, old, now) } -> std::same_as<Contact>;
+  { law.set_free(number, old) } -> std::same_as<Lanes>;
+  { law.at_start(number, which) } -> std::same_as<Record<Law>>;
+  { law.start_reach() } -> std::convertible_to<double>;
+};
+
+/// What a law lacks is said where it joins the others, contact/contact_law.hpp.
+template <class Law>
+concept CompleteContactLaw = AnswersGaps<Law> && (!remembers<Law> || AnswersEncounters<Law>);
 
 /// The tangential part of a contact that slips beyond its limit.
 template <class Law>
