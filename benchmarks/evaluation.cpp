@@ -1,25 +1,49 @@
 // Cost of the parts of one force evaluation on the headline scene, squeezed by a short run. One thread unless
 // OMP_NUM_THREADS says otherwise.
 //   ./pliant bench
+// PLIANT_BENCH_FROM=DIR: a copy of the checkpoint of that run of any scene instead.
 #include <benchmark/benchmark.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
 
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/place_outlines.hpp"
 #include "dynamics/simulation.hpp"
+#include "results/checkpoint.hpp"
 
 namespace pliant {
 namespace {
 
-/// The full third body after a few hundred steps with a pressed-on wall.
-Simulation& third_body() {
-  static const Model model = [] {
-    Scene scene = read_scene(PLIANT_SOURCE_DIR "/cases/third_body.toml");
-    return build_model(scene);
+const std::optional<Checkpoint>& checkpoint() {
+  static const std::optional<Checkpoint> found = []() -> std::optional<Checkpoint> {
+    const char* folder = std::getenv("PLIANT_BENCH_FROM");
+    if (!folder) return {};
+    return Checkpoint(folder);
   }();
+  return found;
+}
+
+/// The full third body after a few hundred steps with a pressed-on wall, or the checkpoint's scene and state.
+Simulation& third_body() {
+  static const Model model =
+      build_model(read_scene(checkpoint() ? std::filesystem::path(std::getenv("PLIANT_BENCH_FROM")) / "scene.toml"
+                                          : std::filesystem::path(PLIANT_SOURCE_DIR "/cases/third_body.toml")));
   static Simulation simulation(model);
-  if (simulation.state().steps == 0)
-    while (simulation.state().steps < 300) simulation.step(1);
+  if (simulation.state().steps > 0) return simulation;
+  if (checkpoint()) {
+    const std::filesystem::path scratch = std::filesystem::temp_directory_path() / "pliant_bench";
+    std::filesystem::remove_all(scratch);
+    std::filesystem::copy(std::getenv("PLIANT_BENCH_FROM"), scratch);
+    {
+      Recorder recorder(model, scratch, true, Opening::resume);
+      checkpoint()->restore(simulation, recorder);
+    }
+    std::filesystem::remove_all(scratch);
+  }
+  for (int i = 0; i < 300; ++i) simulation.step(1);
   return simulation;
 }
 
@@ -58,6 +82,8 @@ void contact_forces(benchmark::State& state) {
   ContactHistory committed, trial;
   OutlineField force;
   contact.find_candidates(outlines, committed);
+  contact.forces(outlines, committed, trial, force);
+  std::swap(committed, trial);  // with slip
   int nodes = 0;
   for (const Patch& patch : contact.patches()) nodes += patch.nodes[0].count + patch.nodes[1].count;
   state.counters["records"] = nodes;

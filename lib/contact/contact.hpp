@@ -1,14 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
-#include "contact/broad_phase.hpp"
 #include "contact/contact_laws.hpp"
 #include "contact/history.hpp"
+#include "contact/pair_watch.hpp"
 #include "contact/patch.hpp"
 
 namespace pliant {
@@ -37,6 +38,8 @@ class ContactSystem {
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
+  /// The same, but patches of pairs that have used up less than half of their skin stay as they are.
+  void renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
 
   /// Contact forces on outline nodes, N/m, from one history into another.
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
@@ -56,18 +59,20 @@ class ContactSystem {
   const ContactLaws& laws() const { return laws_; }
   const std::vector<Patch>& patches() const { return patches_; }
   long refreshes() const { return refreshes_; }
+  long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
   double skin() const { return skin_; }
 
   /// What a refresh leaves behind; the layout follows from the patches.
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("pairs", pairs_);
+    visitor("watch", watch_);
     visitor("patches", patches_);
     visitor("found_at", found_at_);
     visitor("fresh", fresh_);
     visitor("warned", warned_);
     visitor("refreshed", refreshed_);
     visitor("refreshes", refreshes_);
+    visitor("pairs_searched", pairs_searched_);
   }
   void loaded() {
     for (Patch& patch : patches_) patch.law = laws_.between(patch.first, patch.second, refreshed_.time);
@@ -79,42 +84,42 @@ class ContactSystem {
     int begin, count, force;  ///< outline node of the first entry (not reduced), entries, place in the buffers
   };
 
-  bool moved_by_the_skin(const OutlineField& position);
-  Vec2 common_motion() const;
+  void take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  void find_patches(const std::vector<Box>& boxes);
+  std::vector<char> find_patches(const std::vector<Box>& boxes, const std::vector<Patch>& old);
   void add_self_patches();
   void refuse_self_overlap() const;
   void lay_out_patches();
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
+  void prefetch(const Patch& patch, const OutlineField& position) const;
   void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
-  /// Calls add(node, entry) for every entry of a body's arcs in the force buffers, in a fixed order.
+  /// Calls add(node, entry, count) for runs of consecutive nodes with their entries in the force buffers: all of a
+  /// body's arcs, in a fixed order.
   template <class Add>
-  void for_each_force(int body, int nodes, Add&& add) const {
-    for (const ArcForce& arc : body_arcs_[body]) {
-      int node = arc.begin - turn_of(arc.begin, nodes) * nodes;
-      for (int i = 0; i < arc.count; ++i) {
-        add(node, arc.force + i);
-        if (++node == nodes) node = 0;
+  void for_each_run(int body, int nodes, Add&& add) const {
+    for (const ArcForce& arc : body_arcs_[body])
+      for (int done = 0; done < arc.count;) {
+        const int at = arc.begin + done, node = at - turn_of(at, nodes) * nodes;
+        const int count = std::min(arc.count - done, nodes - node);
+        add(node, arc.force + done, count);
+        done += count;
       }
-    }
   }
 
   const Model& model_;
   ContactLaws laws_;
-  double skin_ = 0, broad_margin_ = 0;
-  std::vector<BodyPair> pairs_;  ///< of the broad phase
-  std::vector<Patch> patches_;
+  double skin_;
+  PairWatch watch_;
+  std::vector<Patch> patches_;                    ///< in the order of their pairs
   std::vector<std::vector<ArcForce>> body_arcs_;  ///< [bodies], in the order of the patches
   int records_ = 0;
   PatchForces forces_;
   std::vector<PatchTotals> totals_;  ///< [patches]
-  Outlines found_at_;                ///< where the candidates were found
-  std::vector<Box> motion_;          ///< [bodies], box of the outline nodes' displacements since then
+  Outlines found_at_;                ///< where some candidates were found last
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
-  long refreshes_ = 0;
+  long refreshes_ = 0, pairs_searched_ = 0;
 };
 
 }  // namespace pliant

@@ -21,7 +21,9 @@ std::vector<double> ContactSystem::stiffness_bound(const std::vector<double>& co
   std::vector<double> result(static_cast<std::size_t>(model_.outline_offset.back()), 0.0);
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     double* stiffness = &result[model_.outline_offset[b]];
-    for_each_force(b, model_.outline_of(b).count, [&](int node, int entry) { stiffness[node] += entries[entry]; });
+    for_each_run(b, model_.outline_of(b).count, [&](int node, int entry, int count) {
+      for (int i = 0; i < count; ++i) stiffness[node + i] += entries[entry + i];
+    });
   });
   return result;
 }

@@ -60,7 +60,7 @@ class Faces {
   /// The end of a row's face, no further off than `limit` from beside the node.
   std::optional<FaceEnd> end_of_face(const SlaveNode& node, int row, int way, double limit) const {
     if (!shape_.has_corners()) return {};
-    const MasterSegment& s = window_[row];
+    const MasterSegment s = window_[row];
     const double along = std::clamp((node.at - start(s)).dot(tangent(s)), 0.0, s.length);
     double distance = way < 0 ? along : s.length - along;
     while (distance <= limit && !ends_at_corner(row, way)) {
@@ -74,7 +74,7 @@ class Faces {
 
   /// Whether a point lies beyond the end of a face.
   bool is_past(const FaceEnd& end, int way, const Vec2& point) const {
-    const MasterSegment& s = window_[end.row];
+    const MasterSegment s = window_[end.row];
     return way * (point - start(window_[end.corner])).dot(tangent(s)) > tie * s.length;
   }
 
@@ -101,7 +101,7 @@ class Faces {
       return node.corner && h <= outward && h >= -window_.depth() ? row : -1;
     }
     const auto past_bisector = [&](int r) {
-      const MasterSegment& s = way < 0 ? window_[r] : window_[r + 1];
+      const MasterSegment s = way < 0 ? window_[r] : window_[r + 1];
       const double from = (node.at - start(s)).dot(Vec2(s.bisector_x, s.bisector_y));
       return way < 0 ? from < 0 : from >= 0;
     };

@@ -58,7 +58,7 @@ Footholds possible_footholds(const Pass& pass, const MasterWindow& window, const
     if (!node.corner && faces.end_of_face(node, row, way, 2 * std::max(node.present[0], node.present[1]) + outward))
       result.factor += more;
     if (const int other = faces.beyond(node, row, way, outward); other >= 0) {
-      const MasterSegment& s = window[other];
+      const MasterSegment s = window[other];
       const double along = (node.at - start(s)).dot(tangent(s));
       result.may_touch(other, std::clamp(along / s.length, 0.0, 1.0));
       if (!node.corner) result.factor = std::max(result.factor, 1 + more);

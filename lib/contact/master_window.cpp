@@ -12,22 +12,30 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
                         const Arc& segments, double shift, double inward) {
   count_ = segments.count;
   outline_count_ = shape.count;
-  first_number_ = segments.begin - turn_of(segments.begin, shape.count) * shape.count;
+  const int first_turn = turn_of(segments.begin, shape.count);
+  first_number_ = segments.begin - first_turn * shape.count;
   const int rows = count_ + 2;
-  if (static_cast<int>(rows_.size()) < rows + lane_count) rows_.resize(static_cast<std::size_t>(rows + lane_count));
+  // Whole lanes, and what look_up may see beyond them.
+  const std::size_t wanted = static_cast<std::size_t>(padded(rows) / lane_count) + 2;
+  if (stride_ < wanted) stride_ = wanted, entries_.assign(columns * stride_, Lanes{});
+  const Vec2 origin(outline_x[first_number_] + shift + first_turn * shape.turn_shift, outline_y[first_number_]);
   // Of the segment before the first, only the tangent is of use: for the bisector at the first node.
   Lanes last_tx{}, last_ty{}, longest{};
   for (int w = 0; w < rows; w += lane_count) {
     const int index = segments.begin - 1 + w, turn = turn_of(index, shape.count), node = index - turn * shape.count;
-    const Lanes x = load(outline_x + node), y = load(outline_y + node);
-    const Lanes dx = load(outline_x + node + 1) - x, dy = load(outline_y + node + 1) - y;
-    const Lanes length = sqrt(dx * dx + dy * dy), inverse = 1.0 / length, tx = dx * inverse, ty = dy * inverse;
-    longest = max(longest, select(first_lanes(rows - w), length, Lanes{}));
-    Lanes transposed[8];
-    transpose({x + (shift + turn * shape.turn_shift), y, tx, ty, length, inverse, after(last_tx, tx) + tx,
-               after(last_ty, ty) + ty},
-              transposed);
-    for (int lane = 0; lane < lane_count; ++lane) store(&rows_[w + lane].x, transposed[lane]);
+    const Lanes px = load(outline_x + node), py = load(outline_y + node);
+    const Lanes dx = load(outline_x + node + 1) - px, dy = load(outline_y + node + 1) - py;
+    const Lanes size = sqrt(dx * dx + dy * dy), inverse = 1.0 / size, tx = dx * inverse, ty = dy * inverse;
+    const Lanes along_x = after(last_tx, tx) + tx, along_y = after(last_ty, ty) + ty,
+                shifted_x = px + (shift + turn * shape.turn_shift);
+    Lanes* at = &entries_[static_cast<std::size_t>(w / lane_count)];
+    const auto put = [&](Column c, Lanes value) { at[c * stride_] = value; };
+    put(x, shifted_x), put(y, py);
+    put(tangent_x, tx), put(tangent_y, ty);
+    put(length, size), put(inverse_length, inverse);
+    put(bisector_x, along_x), put(bisector_y, along_y);
+    put(bisector_at, (shifted_x - origin.x()) * along_x + (py - origin.y()) * along_y);
+    longest = max(longest, select(first_lanes(rows - w), size, Lanes{}));
     last_tx = tx, last_ty = ty;
   }
   longest_ = largest(longest);

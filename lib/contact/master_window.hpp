@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "bodies/outline.hpp"
@@ -8,8 +9,8 @@
 
 namespace pliant {
 
-/// What contact needs to know of one segment, in one cache line.
-struct alignas(64) MasterSegment {
+/// What contact needs to know of one segment.
+struct MasterSegment {
   double x, y;  ///< its first node, m
   double tangent_x, tangent_y;
   double length, inverse_length;
@@ -19,13 +20,32 @@ struct alignas(64) MasterSegment {
 /// The segments of one arc of a master, rebuilt at every evaluation.
 class MasterWindow {
  public:
+  enum Column { x, y, tangent_x, tangent_y, length, inverse_length, bisector_x, bisector_y, bisector_at, columns };
+
   /// `inward`: depth to search below a segment beyond the longest one's length, m.
   void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& segments,
             double shift, double inward);
 
   int count() const { return count_; }
-  /// One more row than segments: the end node of the last.
-  const MasterSegment& operator[](int row) const { return rows_[static_cast<std::size_t>(row + 1)]; }
+  /// Of all rows, from 0 on; one more than segments: the end node of the last.
+  const double* column(Column c) const { return reinterpret_cast<const double*>(&entries_[c * stride_]) + 1; }
+  MasterSegment operator[](int row) const {
+    const auto entry = [&](Column c) { return column(c)[row]; };
+    return {entry(x),          entry(y),         entry(tangent_x),
+            entry(tangent_y),  entry(length),    entry(inverse_length),
+            entry(bisector_x), entry(bisector_y)};
+  }
+  /// Entries of rows in [0, count()], one a lane.
+  Lanes entries(Column c, LaneBits rows) const {
+    if (count_ < 2 * lane_count) return look_up(column(c), rows);
+    Lanes result;
+    for (int lane = 0; lane < lane_count; ++lane) result[lane] = column(c)[rows[lane]];
+    return result;
+  }
+  /// Coordinates along a bisector's normal are counted from here, where the first node is: column bisector_at has those
+  /// of the nodes.
+  double origin_x() const { return column(x)[0]; }
+  double origin_y() const { return column(y)[0]; }
   double longest() const { return longest_; }  ///< segment, m
   double depth() const { return depth_; }      ///< of the contact box below each segment, m
   int outline_count() const { return outline_count_; }
@@ -43,7 +63,8 @@ class MasterWindow {
  private:
   int count_ = 0, outline_count_ = 0, first_number_ = 0;
   double longest_ = 0, depth_ = 0;
-  std::vector<MasterSegment> rows_;  ///< from the segment before the first on
+  std::size_t stride_ = 0;      ///< Lanes in a column
+  std::vector<Lanes> entries_;  ///< [columns][stride], from the segment before the first on
 };
 
 /// One for each thread, so that its memory is found once.

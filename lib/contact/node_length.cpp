@@ -44,7 +44,7 @@ struct Varying {
 /// the foot goes from one segment to the next.
 struct Beside {
   const SlaveNode& node;
-  const MasterSegment& segment;
+  const MasterSegment segment;
   Vec2 t = tangent(segment), n = outward_of(t);
   double along = (node.at - start(segment)).dot(t), height = (node.at - start(segment)).dot(n);
   double clamped = std::clamp(along, 0.0, segment.length);

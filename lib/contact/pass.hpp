@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 #include "contact/master_window.hpp"
 #include "contact/patch.hpp"
 
@@ -38,8 +36,9 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
           load(pass.tributary_length + node)};
 }
 
-/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
-inline Pass make_pass(const PatchView& view, int slave_side) {
+/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round. `force`: where each side's
+/// buffer begins.
+inline Pass make_pass(const PatchView& view, int slave_side, const int (&force)[2]) {
   const Model& model = view.model;
   const Patch& patch = view.patch;
   const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
@@ -51,8 +50,8 @@ inline Pass make_pass(const PatchView& view, int slave_side) {
           patch.nodes[slave_side],
           view.shift(slave_side),
           patch.record[slave_side],
-          patch.force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
-          patch.force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
+          force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
+          force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
           patch.corners};
@@ -62,13 +61,6 @@ inline void fill_window(const PatchView& view, int master_side) {
   const int master = view.body(master_side), offset = view.model.outline_offset[master];
   view.window.fill(view.model.outline_of(master), &view.outlines.position.x[offset], &view.outlines.position.y[offset],
                    view.patch.segments[master_side], view.shift(master_side), view.skin);
-}
-
-inline void clear_forces(const Patch& patch, PatchForces& forces) {
-  for (int side = 0; side < 2; ++side) {
-    std::fill_n(forces.x.begin() + patch.force[side], patch.forces(side).count, 0.0);
-    std::fill_n(forces.y.begin() + patch.force[side], patch.forces(side).count, 0.0);
-  }
 }
 
 }  // namespace pliant

@@ -15,6 +15,7 @@ class MasterWindow;
 struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }
+  bool operator==(const Arc&) const = default;
   Arc with_neighbours() const { return count == 0 ? *this : Arc{begin - 1, count + 2}; }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 #include "contact/encounter.hpp"
@@ -15,20 +17,52 @@ namespace {
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
 
-/// Adds the reaction to the two segment nodes. The couple balances the moment of a shear that acts at the gap's
-/// distance, and makes the force the exact conjugate of the slip.
-void add_reaction(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, Lanes couple, int base,
-                  PatchForces& forces) {
-  const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
-  double reaction[4][lane_count], row[lane_count];
-  store(reaction[0], -fx - bx), store(reaction[1], -fy - by), store(reaction[2], bx), store(reaction[3], by);
-  store(row, p.row);
-  for (unsigned left = bits(touching); left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), at = base + static_cast<int>(row[lane]);
-    forces.x[at] += reaction[0][lane], forces.y[at] += reaction[1][lane];
-    forces.x[at + 1] += reaction[2][lane], forces.y[at + 1] += reaction[3][lane];
-  }
+/// Zeros in whole lanes.
+void clear(std::vector<double>& numbers, std::size_t count) {
+  if (numbers.size() < count) numbers.resize(count);
+  for (std::size_t i = 0; i < count; i += lane_count) store(&numbers[i], Lanes{});
 }
+
+/// Reactions on the master's segments, those on their first and on their second nodes apart: so no sum waits for that
+/// of the segment before.
+class Reactions {
+ public:
+  void clear(int rows) {
+    stride_ = static_cast<std::size_t>(padded(rows + 1)) + lane_count;
+    pliant::clear(entries_, 4 * stride_);
+  }
+
+  /// The couple balances the moment of a shear that acts at the gap's distance, and makes the force the exact conjugate
+  /// of the slip.
+  void add(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, Lanes couple) {
+    const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
+    double reaction[4][lane_count];
+    std::int64_t row[lane_count];
+    store(reaction[0], -fx - bx), store(reaction[1], -fy - by), store(reaction[2], bx), store(reaction[3], by);
+    const LaneBits rows = __builtin_convertvector(p.row, LaneBits);
+    std::memcpy(row, &rows, sizeof row);
+    for (unsigned left = bits(touching); left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      double* at = &entries_[lane_count + static_cast<std::size_t>(row[lane])];
+      for (int k = 0; k < 4; ++k) at[k * stride_] += reaction[k][lane];
+    }
+  }
+
+  /// To nodes, from the window's first on.
+  void add_to(double* x, double* y) const {
+    for (int c = 0; c < 2; ++c) {
+      const double *first = &entries_[c * stride_], *second = first + 2 * stride_;
+      double* node = c == 0 ? x : y;
+      for (std::size_t row = lane_count; row < stride_; row += lane_count, node += lane_count)
+        store(node, load(node) + (load(first + row) + load(second + row - 1)));
+    }
+  }
+
+ private:
+  std::size_t stride_ = 0;
+  /// [x and y of first, then of second nodes][lanes before the first row, and rows]
+  std::vector<double> entries_;
+};
 
 /// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
 /// length.
@@ -103,6 +137,8 @@ template <class Law>
 void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const ContactHistory& from,
                   ContactHistory& to, PatchForces& forces, LaneTotals& totals) {
   const MasterWindow& window = view.window;
+  thread_local Reactions reactions;
+  reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
   const double outward = law.reach + (Law::has_shear ? view.skin : 0);  // see locate_newcomers
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
@@ -137,13 +173,14 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     const Lanes fx = weight * (c.pressure * p.normal_x - c.shear * p.normal_y);
     const Lanes fy = weight * (c.pressure * p.normal_y + c.shear * p.normal_x);
     const Lanes couple = weight * c.shear * p.gap * p.inverse_length;
-    add_reaction(p, touching, fx, fy, couple, pass.master_force, forces);
+    reactions.add(p, touching, fx, fy, couple);
     add(&forces.x[pass.slave_force + i], fx);
     add(&forces.y[pass.slave_force + i], fy);
     if (facing.varying != 0) [[unlikely]]
       add_length_forces(pass, facing, bits(touching), i, c.energy, forces);
     totals.contacts += std::popcount(bits(touching));
   }
+  reactions.add_to(&forces.x[pass.master_force], &forces.y[pass.master_force]);
 }
 
 void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
@@ -154,17 +191,17 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
-/// Both passes of a patch. What a law does not need is neither kept nor added up.
+/// Both passes of a patch, whose sides' forces begin at `begin`. What a law does not need is neither kept nor added up.
 template <class Law>
 PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactHistory& from, ContactHistory& to,
-                           PatchForces& forces) {
+                           const int (&begin)[2], PatchForces& forces) {
   LaneTotals totals;
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.patch.nodes[slave_side].count == 0) continue;
-    Pass pass = make_pass(view, slave_side);
+    Pass pass = make_pass(view, slave_side, begin);
     if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
     fill_window(view, 1 - slave_side);
     compute_pass(law, pass, view, from, to, forces, totals);
@@ -177,8 +214,21 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
 }  // namespace
 
 PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces) {
-  clear_forces(view.patch, forces);
-  return std::visit([&](const auto& law) { return compute_passes(law, view, from, to, forces); }, view.patch.law);
+  // Both passes add to both sides: near at hand, and what comes of it goes out once.
+  thread_local PatchForces near;
+  const Patch& patch = view.patch;
+  const int count[2] = {patch.forces(0).count, patch.forces(1).count}, begin[2] = {0, padded(count[0]) + lane_count};
+  const std::size_t size = static_cast<std::size_t>(begin[1] + padded(count[1]) + lane_count);
+  clear(near.x, size);
+  clear(near.y, size);
+  const PatchTotals totals =
+      std::visit([&](const auto& law) { return compute_passes(law, view, from, to, begin, near); }, patch.law);
+  for (int side = 0; side < 2; ++side)
+    for (int i = 0; i < count[side]; i += lane_count) {
+      store(&forces.x[patch.force[side] + i], load(&near.x[begin[side] + i]));
+      store(&forces.y[patch.force[side] + i], load(&near.y[begin[side] + i]));
+    }
+  return totals;
 }
 
 }  // namespace pliant

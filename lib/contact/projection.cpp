@@ -13,7 +13,7 @@ Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, doub
   Lanes nearest = broadcast(reach * reach), steepest{}, found = broadcast(-1);
   const int last = window.count() - 1;
   for (int row = 0; row <= last; ++row) {
-    const MasterSegment &segment = window[row], &next = window[row + 1];
+    const MasterSegment segment = window[row], next = window[row + 1];
     const Lanes rx = px - segment.x, ry = py - segment.y, qx = px - next.x, qy = py - next.y;
     const Lanes along = rx * segment.tangent_x + ry * segment.tangent_y,
                 height = rx * segment.tangent_y - ry * segment.tangent_x;
@@ -32,6 +32,25 @@ Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, doub
 }
 
 }  // namespace
+
+Lanes find_nearest_wedges(const MasterWindow& window, Lanes px, Lanes py, double reach) {
+  const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
+  const auto beyond = [&](int row) {
+    return rx * window.column(MasterWindow::bisector_x)[row] +
+           (ry * window.column(MasterWindow::bisector_y)[row] - window.column(MasterWindow::bisector_at)[row]);
+  };
+  Lanes nearest = broadcast(reach), found = broadcast(-1), before = beyond(0);
+  for (int row = 0; row < window.count(); ++row) {
+    const MasterSegment segment = window[row];
+    const Lanes distance = abs((px - segment.x) * segment.tangent_y - (py - segment.y) * segment.tangent_x);
+    const Lanes after = beyond(row + 1);
+    const LaneBits nearer = (before >= 0.0) & (after < 0.0) & (distance < nearest);
+    nearest = select(nearer, distance, nearest);
+    found = select(nearer, broadcast(row), found);
+    before = after;
+  }
+  return found;
+}
 
 void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits misled, double reach, double outward,
                         Projection& projection) {

@@ -25,22 +25,28 @@ struct Projection {
 
 /// Row of the nearest segment's line among those whose wedges hold the nodes, at most `reach` off; -1: none. Of equals
 /// the first.
-inline Lanes find_segments(const MasterWindow& window, Lanes px, Lanes py, double reach) {
-  Lanes nearest = broadcast(reach), found = broadcast(-1);
-  const MasterSegment* segment = &window[0];
-  Lanes rx = px - segment->x, ry = py - segment->y;
+Lanes find_nearest_wedges(const MasterWindow& window, Lanes px, Lanes py, double reach);
+
+/// Rows of the segments whose wedges hold the nodes; -1: none.
+struct Wedges {
+  Lanes row;
+  LaneBits in_order;  ///< whoever has passed a bisector has passed all before it, so that no other wedge holds the node
+};
+
+inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
+  const double *bisector_x = window.column(MasterWindow::bisector_x),
+               *bisector_y = window.column(MasterWindow::bisector_y),
+               *bisector_at = window.column(MasterWindow::bisector_at);
+  const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
+  Lanes passed = broadcast(-1), last = passed, row{};
   // Neighbours share the bisector's value, so that every node beside the arc falls to exactly one of them.
-  Lanes before = rx * segment->bisector_x + ry * segment->bisector_y;
-  for (int row = 0; row < window.count(); ++row, ++segment) {
-    const Lanes distance = abs(rx * segment->tangent_y - ry * segment->tangent_x);
-    rx = px - segment[1].x, ry = py - segment[1].y;
-    const Lanes after = rx * segment[1].bisector_x + ry * segment[1].bisector_y;
-    const LaneBits nearer = (before >= 0.0) & (after < 0.0) & (distance < nearest);
-    nearest = select(nearer, distance, nearest);
-    found = select(nearer, broadcast(row), found);
-    before = after;
+  for (int k = 0; k <= window.count(); ++k) {
+    const LaneBits beyond = rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0;
+    passed = select(beyond, passed + 1.0, passed);
+    last = select(beyond, row, last);
+    row += 1.0;
   }
-  return found;
+  return {select(passed < window.count(), passed, broadcast(-1)), passed == last};
 }
 
 /// Where nodes stand beside the segments of the rows given, at most `outward` off.
@@ -50,14 +56,14 @@ inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes r
   p.hit = p.row >= 0.0;
   p.fan = Lanes{};  // read even where nothing is hit
   if (!any(p.hit)) return p;
-  Lanes rows[8], columns[8];
-  for (int lane = 0; lane < lane_count; ++lane)
-    rows[lane] = load(&window[std::max(0, static_cast<int>(p.row[lane]))].x);
-  transpose(rows, columns);
-  const Lanes rx = px - columns[0], ry = py - columns[1];
-  p.tangent_x = columns[2], p.tangent_y = columns[3];
-  p.length = columns[4], p.inverse_length = columns[5];
-  p.number = window.numbers(max(p.row, Lanes{}));
+  const Lanes some_row = max(p.row, Lanes{});
+  const LaneBits rows = __builtin_convertvector(some_row, LaneBits);
+  const Lanes rx = px - window.entries(MasterWindow::x, rows), ry = py - window.entries(MasterWindow::y, rows);
+  p.tangent_x = window.entries(MasterWindow::tangent_x, rows);
+  p.tangent_y = window.entries(MasterWindow::tangent_y, rows);
+  p.length = window.entries(MasterWindow::length, rows);
+  p.inverse_length = window.entries(MasterWindow::inverse_length, rows);
+  p.number = window.numbers(some_row);
   p.height = rx * p.tangent_y - ry * p.tangent_x;
   p.hit = p.hit & (p.height <= outward);
   const Lanes along = rx * p.tangent_x + ry * p.tangent_y;
@@ -86,7 +92,10 @@ void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits
 /// far as its far side does: else nodes outside would be caught from behind.
 inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double outward) {
   const double reach = std::max(outward, window.depth());
-  Projection p = beside(window, px, py, find_segments(window, px, py, reach), outward);
+  const Wedges wedges = find_wedges(window, px, py);
+  const Lanes rows = any(~wedges.in_order) ? find_nearest_wedges(window, px, py, reach) : wedges.row;
+  Projection p = beside(window, px, py, rows, outward);
+  p.hit = p.hit & (abs(p.height) < reach);
   // Up to here a node is at most 1 % nearer to the line than to the segment.
   constexpr double steep = 0.14;
   if (const LaneBits misled = p.hit & (abs(p.fan) > steep); any(misled)) [[unlikely]]

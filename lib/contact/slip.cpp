@@ -39,7 +39,7 @@ double corner(const MasterSegment& before, const MasterSegment& after, const Vec
 
 /// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between
 /// refreshes and stay on it.
-const MasterSegment& at(const MasterWindow& window, int row) {
+MasterSegment at(const MasterWindow& window, int row) {
   const int n = window.count();
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];
 }

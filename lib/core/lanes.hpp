@@ -4,12 +4,19 @@
 #include <cstdint>
 #include <cstring>
 
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
+
 namespace pliant {
 
 /// Eight doubles handled as one: a lane is one body of a batch (bodies/) or one outline node (contact/).
 inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(64)));
 using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison results and bit patterns
+
+/// Room for this many numbers in whole lanes.
+inline int padded(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
 inline Lanes broadcast(double value) { return value - Lanes{}; }
 
@@ -99,13 +106,30 @@ inline void transpose(const Lanes (&rows)[8], Lanes (&columns)[8]) {
   }
 }
 
-/// Sum in a fixed order.
-inline double sum(Lanes a) { return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7])); }
+/// Entries of a table of 16 numbers, one a lane; indices in [0, 16).
+inline Lanes look_up(const double* table, LaneBits index) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Lanes>(_mm512_permutex2var_pd(reinterpret_cast<__m512d>(load(table)),
+                                                        reinterpret_cast<__m512i>(index),
+                                                        reinterpret_cast<__m512d>(load(table + lane_count))));
+#else
+  Lanes result;
+  for (int lane = 0; lane < lane_count; ++lane) result[lane] = table[index[lane]];
+  return result;
+#endif
+}
+
+/// Sum in a fixed order: ((0 + 1) + (2 + 3)) + ((4 + 5) + (6 + 7)).
+inline double sum(Lanes a) {
+  a += __builtin_shufflevector(a, a, 1, 0, 3, 2, 5, 4, 7, 6);
+  a += __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5);
+  return a[0] + a[4];
+}
 
 inline double largest(Lanes a) {
-  double result = a[0];
-  for (int lane = 1; lane < lane_count; ++lane) result = a[lane] > result ? a[lane] : result;
-  return result;
+  a = max(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3));
+  a = max(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5));
+  return a[0] > a[1] ? a[0] : a[1];
 }
 
 }  // namespace pliant

@@ -35,9 +35,15 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
   phases_.enter(Phase::candidates);
   const RunClock clock{time, accepted.steps};
   if (contact_.candidates_hold(trial, clock)) return {};
-  phases_.apart(Phase::candidates,
-                [&] { contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock); });
-  return {true, contact_.candidates_hold(trial, clock)};
+  bool hold = false;
+  phases_.apart(Phase::candidates, [&] {
+    contact_.renew_candidates(accepted.outlines, accepted.memory.contact, clock);
+    hold = contact_.candidates_hold(trial, clock);
+    if (hold) return;  // else a fast one among those that were kept
+    contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock);
+    hold = contact_.candidates_hold(trial, clock);
+  });
+  return {true, hold};
 }
 
 Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,

@@ -89,5 +89,30 @@ TEST(Refresh, does_not_see_a_drift) {
   EXPECT_LT(refreshes, evaluations / 2) << "or there is nothing to see";
 }
 
+/// EXACT: where one body of twelve moves, pairs without it are searched at the start alone.
+TEST(Refresh, searches_pairs_that_moved) {
+  Random random(400);
+  ContactRig rig(two_rows(random, {}, false));
+  rig.evaluate();
+  const long at_first = rig.contact.pairs_searched();
+  const std::vector<Patch> patches = rig.contact.patches();
+  long refreshes = 0;
+  for (int step = 0; step < 100; ++step) {
+    rig.move(11, {0.002, 0});
+    refreshes += rig.evaluate();
+  }
+  EXPECT_GT(refreshes, 3);
+  EXPECT_GT(rig.contact.pairs_searched(), at_first);
+  for (const Patch& patch : patches) {
+    if (patch.second == 11) continue;
+    const auto same = std::ranges::find_if(rig.contact.patches(), [&](const Patch& other) {
+      return other.first == patch.first && other.second == patch.second;
+    });
+    ASSERT_NE(same, rig.contact.patches().end());
+    EXPECT_TRUE(same->nodes[0] == patch.nodes[0] && same->segments[1] == patch.segments[1]);
+  }
+  EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "no more than it has others";
+}
+
 }  // namespace
 }  // namespace pliant

@@ -20,7 +20,7 @@ class ContactRig {
   bool evaluate() {
     show();
     const bool hold = contact.candidates_hold(outlines.position);
-    if (!hold) contact.find_candidates(outlines, committed);
+    if (!hold) contact.renew_candidates(outlines, committed);
     totals = contact.forces(outlines, committed, trial, forces);
     return !hold;
   }
