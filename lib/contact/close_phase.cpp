@@ -66,7 +66,7 @@ Arc covering_arc(const std::vector<char>& flags) {
   const int n = static_cast<int>(flags.size());
   int best_gap = 0, best_end = 0, gap = 0;
   for (int i = 0; i < 2 * n; ++i) {
-    gap = flags[i % n] ? 0 : gap + 1;
+    gap = flags[i < n ? i : i - n] ? 0 : gap + 1;
     if (gap > best_gap) best_gap = gap, best_end = i + 1;
   }
   if (best_gap >= n) return {};
@@ -77,10 +77,12 @@ Arc covering_arc(const std::vector<char>& flags) {
 Arc select_arc(const Side& side, const Box& box, const Vec2& d, double least) {
   const int n = side.shape->count;
   if (side.shape->turn_shift == 0) {
-    std::vector<char> flags(static_cast<std::size_t>(n));
+    thread_local std::vector<char> flags;  // so that its memory is found once
+    flags.resize(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) {
-      const Vec2 p = side.point(0, i);
-      flags[i] = inside(box, p) && p.dot(d) >= least;
+      const double x = side.x[i] + side.shift, y = side.y[i];
+      flags[i] =
+          (x >= box.x_min) & (x <= box.x_max) & (y >= box.y_min) & (y <= box.y_max) & (x * d.x() + y * d.y() >= least);
     }
     return covering_arc(flags);
   }
