@@ -21,7 +21,7 @@ struct Evaluation {
 };
 
 /// What an integrator does with the new forces of a region, an index in Model::regions, while they are in the cache.
-/// Called by several threads at once.
+/// Called by several threads at once. Pass std::cref of a closure: a copy would be allocated, at every step.
 using RegionWork = std::function<void(int region)>;
 
 /// All forces on all degrees of freedom for given positions.

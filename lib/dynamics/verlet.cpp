@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "bodies/damping_forces.hpp"
@@ -68,9 +69,9 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   show_outlines(model_, motion, trial_.outlines);
   const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
+  const auto finish = [&](int r) { finish_region(state, proposal.dt, r); };
   report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt},
-                                       {trial_.force, trial_.contact_force, trial_.memory},
-                                       [&](int r) { finish_region(state, proposal.dt, r); });
+                                       {trial_.force, trial_.contact_force, trial_.memory}, std::cref(finish));
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
   report.error = report.evaluation.sound ? error(state, proposal.dt) : std::numeric_limits<double>::infinity();

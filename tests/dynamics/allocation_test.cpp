@@ -1,0 +1,68 @@
+// A step allocates nothing: memory that a step needs is found when the simulation is built, or with new candidates.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "support/simulations.hpp"
+
+namespace {
+
+std::atomic<long> allocations{0};  // only counts: no result depends on it
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+  if (void* memory = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return memory;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+// Of the whole program: the counter is looked at here alone.
+void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+
+namespace pliant::dynamics_tests {
+namespace {
+
+/// Allocations in the steps of a run that neither search candidates, nor improve the bound of the internal forces, nor
+/// end where a load switches.
+long allocations_of_steps(const Scene& scene) {
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  advance(simulation, 0.5 * scene.time.end);
+  long counted = 0, steps = 0;
+  while (steps < 200) {
+    const long refreshes = simulation.forces().contact().refreshes(), before = allocations;
+    simulation.step(1e300);
+    const State& state = simulation.state();
+    const bool rare = simulation.forces().contact().refreshes() != refreshes || state.steps % 50 == 0 ||
+                      std::ranges::find(model.switch_times, state.time) != model.switch_times.end();
+    if (rare) continue;
+    counted += allocations - before;
+    ++steps;
+  }
+  return counted;
+}
+
+TEST(Allocation, there_is_none_in_a_step) { EXPECT_EQ(allocations_of_steps(small_third_body(2)), 0) << "EXACT"; }
+
+TEST(Allocation, is_seen) {
+  const long before = allocations;
+  const std::vector<double> one(1);
+  EXPECT_EQ(allocations - before, 1) << "EXACT: " << one[0];
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests
