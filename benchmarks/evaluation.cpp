@@ -87,7 +87,7 @@ void contact_forces(benchmark::State& state) {
   int nodes = 0;
   for (const Patch& patch : contact.patches()) nodes += patch.nodes[0].count + patch.nodes[1].count;
   state.counters["records"] = nodes;
-  state.counters["patches"] = static_cast<double>(contact.patches().size());
+  state.counters["pairs"] = static_cast<double>(contact.patches().size());
   for (auto _ : state) state.counters["contacts"] = contact.forces(outlines, committed, trial, force).contacts;
 }
 BENCHMARK(contact_forces)->Unit(benchmark::kMillisecond);

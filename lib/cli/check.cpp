@@ -151,8 +151,8 @@ void print_contacts(const Model& model, const ContactSystem& contact) {
     print_row(heading, describe(pair, largest_pressure(model.scene)));
     heading = "";
   }
-  print_row(heading, fmt::format("pairs of bodies close at the start: {}; skin {}", contact.patches().size(),
-                                 si(contact.skin(), "m")));
+  const auto close = std::ranges::count_if(contact.patches(), [](const Patch& patch) { return !patch.is_empty(); });
+  print_row(heading, fmt::format("pairs of bodies close at the start: {}; skin {}", close, si(contact.skin(), "m")));
 }
 
 void print_overlap(const Simulation& simulation) {

@@ -26,16 +26,6 @@ void add_run(const double* from, int count, double* to) {
     store(to + i, load(to + i) + select(first_lanes(count - i), load(from + i), Lanes{}));
 }
 
-/// Patches are kept in this order.
-auto key(const Patch& p) { return std::tie(p.first, p.second, p.images, p.part); }
-
-/// The patch of the same bodies, if there is one.
-const Patch* find_patch(const std::vector<Patch>& patches, const Patch& like) {
-  const auto at = std::lower_bound(patches.begin(), patches.end(), like,
-                                   [](const Patch& a, const Patch& b) { return key(a) < key(b); });
-  return at == patches.end() || key(*at) != key(like) ? nullptr : &*at;
-}
-
 bool has_fixed_refresh(const ContactSettings& settings) {
   return settings.refresh_steps > 0 || settings.refresh_period > 0;
 }
@@ -49,7 +39,9 @@ double skin_of(const Model& model) {
 }  // namespace
 
 ContactSystem::ContactSystem(const Model& model)
-    : model_(model), laws_(model), skin_(skin_of(model)), watch_(model, skin_, laws_.max_reach()) {}
+    : model_(model), laws_(model), skin_(skin_of(model)), watch_(model, skin_, laws_.max_reach()), table_(model) {}
+
+PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_at_, patch, skin_, thread_scratch()}; }
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
@@ -80,9 +72,7 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
   take_over_patches(outlines, history, clock);
   if (start) refuse_self_overlap();
-  if (start)
-    parallel_for(static_cast<int>(patches_.size()),
-                 [&](int p) { start_records({model_, found_at_, patches_[p], skin_, thread_scratch()}, history); });
+  if (start) parallel_for(table_.count(), [&](int p) { start_records(view(patches()[p]), history); });
   fresh_ = true;
 }
 
@@ -98,106 +88,69 @@ void ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
 void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   found_at_ = outlines;
   refreshed_ = clock;
+  ++refreshes_;
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(static_cast<int>(boxes.size()), [&](int b) { boxes[b] = bounding_box(model_, outlines.position, b); });
-  const std::vector<Patch> old = std::move(patches_);
-  watch_.update(boxes);
-  std::vector<char> anew = find_patches(boxes, old);
-  if (model_.scene.contact.self_contact) {
-    add_self_patches();
-    anew.assign(patches_.size(), 1);
-  }
-  lay_out_patches();
-  carry_history(old, history);
-  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    if (anew[p]) locate_newcomers({model_, found_at_, patches_[p], skin_, thread_scratch()}, history);
-  });
-  ++refreshes_;
+  const bool same_pairs = !watch_.update(boxes);
+  std::vector<Patch> found = search_pairs(boxes);
+  if (same_pairs) {
+    // Patches stand in the order of the pairs.
+    for (const Patch& patch : found)
+      if (!table_.replace(static_cast<int>(table_.find(patch.pair()) - patches().data()), patch, history)) {
+        lay_out_anew(found, history);
+        break;
+      }
+  } else
+    lay_out_anew(found, history);
+  locate(history);
 }
 
-/// Which patches are not among the old ones.
-std::vector<char> ContactSystem::find_patches(const std::vector<Box>& boxes, const std::vector<Patch>& old) {
-  std::vector<Patch> found(static_cast<std::size_t>(watch_.count()));
-  std::vector<char> found_anew(found.size(), 0);
-  parallel_for_uneven(watch_.count(), 64, [&](int p) {
-    const BodyPair& pair = watch_[p];
-    Patch& patch = found[p];
+/// Places of nodes that came near, of all patches that were just found.
+void ContactSystem::locate(ContactHistory& history) const {
+  parallel_for(table_.count(), [&](int p) {
+    if (patches()[p].found == refreshes_) locate_newcomers(view(patches()[p]), history);
+  });
+}
+
+/// Patches of all pairs that may not keep theirs.
+std::vector<Patch> ContactSystem::search_pairs(const std::vector<Box>& boxes) {
+  std::vector<int> used_up;
+  for (int p = 0; p < watch_.count(); ++p)
+    if (!watch_.may_keep(p)) used_up.push_back(p);
+  std::vector<Patch> found(used_up.size());
+  parallel_for_uneven(static_cast<int>(found.size()), 16, [&](int i) {
+    const BodyPair& pair = watch_[used_up[i]];
+    Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
-    if (watch_.may_keep(p)) {
-      if (const Patch* same = find_patch(old, patch)) patch = *same;
-      return;
-    }
-    found_anew[p] = 1;
-    watch_.searched(p);
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.corners = has_corners(pair.first) || has_corners(pair.second);
+    patch.found = refreshes_;
     find_arcs(model_, found_at_.position, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
+    watch_.searched(used_up[i]);
   });
-  pairs_searched_ += std::count(found_anew.begin(), found_anew.end(), 1);
-  patches_.clear();
-  std::vector<char> anew;
-  for (std::size_t p = 0; p < found.size(); ++p)
-    if (found[p].nodes[0].count + found[p].nodes[1].count > 0)
-      patches_.push_back(found[p]), anew.push_back(found_anew[p]);
-  return anew;
+  pairs_searched_ += static_cast<long>(found.size());
+  return found;
 }
 
-void ContactSystem::lay_out_patches() {
-  body_arcs_.assign(model_.bodies.size(), {});
-  int record = 0, force = 0;
-  for (Patch& patch : patches_)
-    for (int side = 0; side < 2; ++side) {
-      const Arc arc = patch.forces(side);
-      patch.record[side] = record;
-      patch.force[side] = force;
-      if (arc.count > 0) body_arcs_[side == 0 ? patch.first : patch.second].push_back({arc.begin, arc.count, force});
-      record += padded(patch.nodes[side].count);
-      force += padded(arc.count);
-    }
-  records_ = record;
-  force += lane_count;  // looked at by whole lanes
-  forces_.x.assign(static_cast<std::size_t>(force), 0.0);
-  forces_.y.assign(static_cast<std::size_t>(force), 0.0);
-  totals_.assign(patches_.size(), {});
+/// A patch for each pair, one just found or that of before.
+void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory& history) {
+  std::vector<Patch> all;
+  all.reserve(static_cast<std::size_t>(watch_.count()));
+  auto next = found.begin();
+  for (int p = 0; p < watch_.count(); ++p) {
+    const bool just_found = next != found.end() && next->pair() == watch_[p];
+    all.push_back(just_found ? *next++ : *table_.find(watch_[p]));
+  }
+  if (model_.scene.contact.self_contact) add_self_patches(all);
+  table_.lay_out(std::move(all), laws_.remembered(), history);
+  make_buffers();
 }
 
-void ContactSystem::carry_history(const std::vector<Patch>& old, ContactHistory& history) const {
-  const std::size_t records = static_cast<std::size_t>(records_);
-  ContactHistory next{std::vector(records, std::numeric_limits<double>::quiet_NaN()), std::vector(records, 0.0),
-                      std::vector(records * laws_.remembered(), 0.0)};
-  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    const Patch& patch = patches_[p];
-    const std::span<const Remembered> remembered = remembered_of(patch.law);
-    for (int side = 0; side < 2; ++side)
-      for (std::size_t k = 0; k < remembered.size(); ++k)
-        std::fill_n(next.field(k) + patch.record[side], padded(patch.nodes[side].count), remembered[k].at_first);
-    const Patch* from = find_patch(old, patch);
-    if (!from) return;
-    const bool two_walls = model_.bodies[patch.first].wall && model_.bodies[patch.second].wall;
-    for (int side = 0; side < 2; ++side) {
-      const int count = patch.nodes[side].count, begin = patch.record[side], old_begin = from->record[side];
-      if (patch.nodes[side] == from->nodes[side]) {
-        std::copy_n(&history.place[old_begin], count, &next.place[begin]);
-        std::copy_n(&history.slip[old_begin], count, &next.slip[begin]);
-        for (std::size_t k = 0; k < remembered.size(); ++k)
-          std::copy_n(std::as_const(history).field(k) + old_begin, count, next.field(k) + begin);
-        continue;
-      }
-      const OutlineShape& shape = model_.outlines[model_.bodies[side == 0 ? patch.first : patch.second].outline];
-      const bool images_apart = shape.turn_shift != 0 && !two_walls;  // nodes of a wall under a body: see find_arcs
-      for (int i = 0; i < count; ++i) {
-        int at = patch.nodes[side].begin + i - from->nodes[side].begin;
-        if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
-        if (at < 0 || at >= from->nodes[side].count) continue;
-        const int record = begin + i, old_record = old_begin + at;
-        next.place[record] = history.place[old_record];
-        next.slip[record] = history.slip[old_record];
-        for (std::size_t k = 0; k < remembered.size(); ++k)
-          next.field(k)[record] = std::as_const(history).field(k)[old_record];
-      }
-    }
-  });
-  history = std::move(next);
+void ContactSystem::make_buffers() {
+  const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // by whole lanes
+  forces_.x.assign(looked_at, 0.0);
+  forces_.y.assign(looked_at, 0.0);
+  totals_.assign(patches().size(), {});
 }
 
 /// Asks for what the patch's windows and nodes look at first: there are many patches, each on places of its own.
@@ -216,15 +169,14 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position) c
 
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                   OutlineField& force) {
-  to.place.resize(from.records());
-  to.slip.resize(from.records());
-  to.of_law = from.of_law;  // laws that remember less than others leave the rest alone
+  if (to.layout != from.layout) to = from;  // also what no patch writes: states are compared by their bits
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
-  const int count = static_cast<int>(patches_.size());
-  parallel_for(count, [&](int p) {
-    if (p + 1 < count) prefetch(patches_[p + 1], outlines.position);
-    totals_[p] = compute_patch({model_, outlines, patches_[p], skin_, thread_scratch()}, from, to, forces_);
+  parallel_for(table_.count(), [&](int p) {
+    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position);
+    totals_[p] = patches()[p].is_empty()
+                     ? PatchTotals()
+                     : compute_patch({model_, outlines, patches()[p], skin_, thread_scratch()}, from, to, forces_);
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     const int n = model_.outline_of(b).count;
@@ -232,7 +184,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     double* y = &force.y[model_.outline_offset[b]];
     std::fill_n(x, n, 0.0);
     std::fill_n(y, n, 0.0);
-    for_each_run(b, n, [&](int node, int entry, int count) {
+    table_.for_each_run(b, [&](int node, int entry, int count) {
       add_run(&forces_.x[entry], count, x + node);
       add_run(&forces_.y[entry], count, y + node);
     });
@@ -248,22 +200,21 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   return total;
 }
 
-void ContactSystem::add_self_patches() {
-  const int pairs = watch_.count();
+void ContactSystem::add_self_patches(std::vector<Patch>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     watch_.add({b, b, 0});  // as any pair: the body's parts may move by the skin against each other
     const ContactLaw law = laws_.between(b, b, refreshed_.time);
-    find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, patches_, thread_scratch());
+    const std::size_t others = all.size();
+    find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, all, thread_scratch());
+    for (std::size_t p = others; p < all.size(); ++p) all[p].found = refreshes_;
   }
-  if (watch_.count() > pairs)
-    std::sort(patches_.begin(), patches_.end(), [](const Patch& a, const Patch& b) { return key(a) < key(b); });
 }
 
 /// A limb thinner than contact sees would press its own far side out.
 void ContactSystem::refuse_self_overlap() const {
-  for (const Patch& patch : patches_)
-    if (patch.of_itself() && overlaps({model_, found_at_, patch, skin_, thread_scratch()}))
+  for (const Patch& patch : patches())
+    if (patch.of_itself() && overlaps(view(patch)))
       throw InputError(fmt::format(
           "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
           "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",

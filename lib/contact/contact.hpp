@@ -11,6 +11,7 @@
 #include "contact/history.hpp"
 #include "contact/pair_watch.hpp"
 #include "contact/patch.hpp"
+#include "contact/patch_table.hpp"
 
 namespace pliant {
 
@@ -44,11 +45,6 @@ class ContactSystem {
   /// Contact forces on outline nodes, N/m, from one history into another.
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
 
-  /// [outline nodes] upper bound of the contact stiffness that each node may feel until the candidates are found anew,
-  /// N/m2, seen from where they were found; weighted so that the bound of a pair is that of its two bodies taken alone
-  /// (docs/method.md 6). `compliance` [bodies]: largest w^2 a body shows per unit contact stiffness.
-  std::vector<double> stiffness_bound(const std::vector<double>& compliance) const;
-
   /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of
   /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
@@ -57,7 +53,11 @@ class ContactSystem {
   std::vector<double> least_remembered(const ContactHistory& history, std::string_view name, double none) const;
 
   const ContactLaws& laws() const { return laws_; }
-  const std::vector<Patch>& patches() const { return patches_; }
+  /// Of all pairs that are watched: some are empty.
+  const std::vector<Patch>& patches() const { return table_.patches(); }
+  const PatchTable& table() const { return table_; }
+  /// A patch where candidates were found last.
+  PatchView view(const Patch& patch) const;
   long refreshes() const { return refreshes_; }
   long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
   double skin() const { return skin_; }
@@ -66,7 +66,7 @@ class ContactSystem {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("watch", watch_);
-    visitor("patches", patches_);
+    visitor("table", table_);
     visitor("found_at", found_at_);
     visitor("fresh", fresh_);
     visitor("warned", warned_);
@@ -75,45 +75,28 @@ class ContactSystem {
     visitor("pairs_searched", pairs_searched_);
   }
   void loaded() {
-    for (Patch& patch : patches_) patch.law = laws_.between(patch.first, patch.second, refreshed_.time);
-    lay_out_patches();
+    table_.set_laws([&](const Patch& p) { return laws_.between(p.first, p.second, refreshed_.time); });
+    make_buffers();
   }
 
  private:
-  struct ArcForce {
-    int begin, count, force;  ///< outline node of the first entry (not reduced), entries, place in the buffers
-  };
-
   void take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  std::vector<char> find_patches(const std::vector<Box>& boxes, const std::vector<Patch>& old);
-  void add_self_patches();
+  std::vector<Patch> search_pairs(const std::vector<Box>& boxes);
+  void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
+  void make_buffers();
+  void locate(ContactHistory& history) const;
+  void add_self_patches(std::vector<Patch>& all);
   void refuse_self_overlap() const;
-  void lay_out_patches();
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void prefetch(const Patch& patch, const OutlineField& position) const;
-  void carry_history(const std::vector<Patch>& old, ContactHistory& history) const;
-  /// Calls add(node, entry, count) for runs of consecutive nodes with their entries in the force buffers: all of a
-  /// body's arcs, in a fixed order.
-  template <class Add>
-  void for_each_run(int body, int nodes, Add&& add) const {
-    for (const ArcForce& arc : body_arcs_[body])
-      for (int done = 0; done < arc.count;) {
-        const int at = arc.begin + done, node = at - turn_of(at, nodes) * nodes;
-        const int count = std::min(arc.count - done, nodes - node);
-        add(node, arc.force + done, count);
-        done += count;
-      }
-  }
 
   const Model& model_;
   ContactLaws laws_;
   double skin_;
   PairWatch watch_;
-  std::vector<Patch> patches_;                    ///< in the order of their pairs
-  std::vector<std::vector<ArcForce>> body_arcs_;  ///< [bodies], in the order of the patches
-  int records_ = 0;
+  PatchTable table_;  ///< in the order of the pairs, unless bodies touch themselves
   PatchForces forces_;
   std::vector<PatchTotals> totals_;  ///< [patches]
   Outlines found_at_;                ///< where some candidates were found last

@@ -9,32 +9,14 @@
 
 namespace pliant {
 
-std::vector<double> ContactSystem::stiffness_bound(const std::vector<double>& compliance) const {
-  std::vector<double> entries(forces_.x.size(), 0.0);
-  parallel_for(static_cast<int>(patches_.size()), [&](int p) {
-    const Patch& patch = patches_[p];
-    const double a = compliance[patch.first], b = compliance[patch.second];
-    // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
-    const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
-    add_patch_stiffness({model_, found_at_, patch, skin_, thread_scratch()}, factor, entries);
-  });
-  std::vector<double> result(static_cast<std::size_t>(model_.outline_offset.back()), 0.0);
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    double* stiffness = &result[model_.outline_offset[b]];
-    for_each_run(b, model_.outline_of(b).count, [&](int node, int entry, int count) {
-      for (int i = 0; i < count; ++i) stiffness[node + i] += entries[entry + i];
-    });
-  });
-  return result;
-}
-
 /// Several contacts at once act together: N of the same ratio z on one body are a ratio z sqrt(N) of their common
 /// frequency, and a lever can raise the square of a contact's share by 1 + m R^2 / I.
 std::vector<double> ContactSystem::damping_ratios() const {
   std::vector<double> ratio(model_.bodies.size(), 0.0);
   if (!laws_.damps()) return ratio;
   std::vector<int> contacts(model_.bodies.size(), 0);
-  for (const Patch& patch : patches_) ++contacts[patch.first], ++contacts[patch.second];
+  for (const Patch& patch : patches())
+    if (!patch.is_empty()) ++contacts[patch.first], ++contacts[patch.second];
   for (std::size_t b = 0; b < ratio.size(); ++b) {
     if (model_.bodies[b].rigid < 0) continue;
     const RigidBody& body = model_.rigid_bodies[model_.bodies[b].rigid];
@@ -47,7 +29,7 @@ std::vector<double> ContactSystem::damping_ratios() const {
 std::vector<double> ContactSystem::least_remembered(const ContactHistory& history, std::string_view name,
                                                     double none) const {
   std::vector<double> least(static_cast<std::size_t>(model_.outline_offset.back()), none);
-  for (const Patch& patch : patches_) {
+  for (const Patch& patch : patches()) {
     const std::span<const Remembered> all = remembered_of(patch.law);
     const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
     if (found == all.end()) continue;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/lanes.hpp"
@@ -17,6 +18,8 @@ struct ContactHistory {
   /// What the pair's law remembers besides (laws/response.hpp): first of all records, then second of all ...; empty
   /// when no law of the scene does.
   std::vector<double> of_law;
+  /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
+  std::int64_t layout = 0;
 
   std::size_t records() const { return place.size(); }
   std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }
@@ -25,7 +28,7 @@ struct ContactHistory {
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law);
+    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("layout", layout);
   }
 };
 

@@ -25,7 +25,8 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
     const int index = segments.begin - 1 + w, turn = turn_of(index, shape.count), node = index - turn * shape.count;
     const Lanes px = load(outline_x + node), py = load(outline_y + node);
     const Lanes dx = load(outline_x + node + 1) - px, dy = load(outline_y + node + 1) - py;
-    const Lanes size = sqrt(dx * dx + dy * dy), inverse = 1.0 / size, tx = dx * inverse, ty = dy * inverse;
+    const Lanes square = dx * dx + dy * dy, inverse = inverse_sqrt(square), size = square * inverse;
+    const Lanes tx = dx * inverse, ty = dy * inverse;
     const Lanes along_x = after(last_tx, tx) + tx, along_y = after(last_ty, ty) + ty,
                 shifted_x = px + (shift + turn * shape.turn_shift);
     Lanes* at = &entries_[static_cast<std::size_t>(w / lane_count)];

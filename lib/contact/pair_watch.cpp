@@ -94,8 +94,8 @@ void PairWatch::add_up(const OutlineField& from, const OutlineField& to) {
 }
 
 /// Pairs that were watched before keep the way that they have gone.
-void PairWatch::update(const std::vector<Box>& boxes) {
-  if (std::ranges::none_of(body_moved_, [&](double moved) { return moved >= kept * own_skin_; })) return;
+bool PairWatch::update(const std::vector<Box>& boxes) {
+  if (std::ranges::none_of(body_moved_, [&](double moved) { return moved >= kept * own_skin_; })) return false;
   const std::vector<BodyPair> before = std::move(pairs_);
   const std::vector<double> moved = std::move(pair_moved_);
   pairs_ = broad_phase(model_, boxes, margin_);
@@ -106,6 +106,7 @@ void PairWatch::update(const std::vector<Box>& boxes) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
     if (old < before.size() && before[old] == pairs_[p]) pair_moved_[p] = moved[old];
   }
+  return true;
 }
 
 bool PairWatch::may_keep(int pair) const { return pair_moved_[pair] < kept * skin_; }

@@ -23,8 +23,8 @@ class PairWatch {
   void add_up(const OutlineField& from, const OutlineField& to);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
-  /// The broad phase, if it is due.
-  void update(const std::vector<Box>& boxes);
+  /// The broad phase, if it is due, and whether it was: pairs have other numbers then.
+  bool update(const std::vector<Box>& boxes);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
+#include "contact/broad_phase.hpp"
 #include "contact/contact_law.hpp"
 
 namespace pliant {
@@ -19,8 +21,8 @@ struct Arc {
   Arc with_neighbours() const { return count == 0 ? *this : Arc{begin - 1, count + 2}; }
 };
 
-/// Two bodies, or a body and its own periodic image, that may touch before the next refresh, and the parts of their
-/// outlines that can take part. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
+/// Two bodies, or a body and its own periodic image, that come close, and the parts of their outlines that may touch
+/// before they are searched again. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
 /// and segments far from them along the outline, as those of the second.
 struct Patch {
   int first = 0, second = 0;  ///< bodies, first <= second
@@ -31,8 +33,12 @@ struct Patch {
   Arc nodes[2];            ///< that may touch the other body; no node twice, but images of a wall's
   Arc segments[2];         ///< that the other's nodes may touch
   int record[2] = {0, 0};  ///< first history record of each side's nodes (padded to whole lanes)
-  int force[2] = {0, 0};   ///< first entry of each side's force buffer, which begins at node forces(side).begin
+  int entry[2] = {0, 0};   ///< first entry of each side in buffers of forces; that of node forces(side).begin
+  std::int64_t found = 0;  ///< at which refresh
 
+  BodyPair pair() const { return {first, second, images}; }
+  /// Nothing of it can touch for now.
+  bool is_empty() const { return nodes[0].count + nodes[1].count == 0; }
   /// Parts of one outline, not of two or of two images.
   bool of_itself() const { return first == second && images == 0; }
 
@@ -41,7 +47,8 @@ struct Patch {
   void visit(Visitor&& visitor) {
     visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part),
         visitor("corners", corners);
-    visitor("nodes", nodes), visitor("segments", segments), visitor("record", record), visitor("force", force);
+    visitor("nodes", nodes), visitor("segments", segments), visitor("record", record), visitor("entry", entry),
+        visitor("found", found);
   }
 
   /// Outline nodes that this patch puts forces on.

@@ -23,45 +23,65 @@ void clear(std::vector<double>& numbers, std::size_t count) {
   for (std::size_t i = 0; i < count; i += lane_count) store(&numbers[i], Lanes{});
 }
 
-/// Reactions on the master's segments, those on their first and on their second nodes apart: so no sum waits for that
-/// of the segment before.
+/// Reactions on the master's segments: x and y on their first nodes and on their second, side by side.
 class Reactions {
  public:
   void clear(int rows) {
-    stride_ = static_cast<std::size_t>(padded(rows + 1)) + lane_count;
-    pliant::clear(entries_, 4 * stride_);
+    rows_ = rows;
+    pliant::clear(entries_, static_cast<std::size_t>(padded(4 * (rows + 2))));
   }
 
-  /// The couple balances the moment of a shear that acts at the gap's distance, and makes the force the exact conjugate
-  /// of the slip.
-  void add(const Projection& p, LaneBits touching, Lanes fx, Lanes fy, Lanes couple) {
+  /// Of forces that are 0 where nothing touches. The couple balances the moment of a shear that acts at the gap's
+  /// distance, and makes the force the exact conjugate of the slip.
+  void add(const Projection& p, Lanes fx, Lanes fy, Lanes couple) {
     const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
-    double reaction[4][lane_count];
+    double reaction[lane_count][4];
+    put_side_by_side(-fx - bx, -fy - by, bx, by, reaction);
     std::int64_t row[lane_count];
-    store(reaction[0], -fx - bx), store(reaction[1], -fy - by), store(reaction[2], bx), store(reaction[3], by);
-    const LaneBits rows = __builtin_convertvector(p.row, LaneBits);
+    const LaneBits rows = __builtin_convertvector(max(p.row, Lanes{}), LaneBits);
     std::memcpy(row, &rows, sizeof row);
-    for (unsigned left = bits(touching); left != 0; left &= left - 1) {
-      const int lane = std::countr_zero(left);
-      double* at = &entries_[lane_count + static_cast<std::size_t>(row[lane])];
-      for (int k = 0; k < 4; ++k) at[k * stride_] += reaction[k][lane];
+    for (int lane = 0; lane < lane_count; ++lane) {
+      double* at = &entries_[4 * (static_cast<std::size_t>(row[lane]) + 1)];
+      Four sum, more;
+      std::memcpy(&sum, at, sizeof sum);
+      std::memcpy(&more, reaction[lane], sizeof more);
+      sum += more;
+      std::memcpy(at, &sum, sizeof sum);
     }
   }
 
   /// To nodes, from the window's first on.
   void add_to(double* x, double* y) const {
-    for (int c = 0; c < 2; ++c) {
-      const double *first = &entries_[c * stride_], *second = first + 2 * stride_;
-      double* node = c == 0 ? x : y;
-      for (std::size_t row = lane_count; row < stride_; row += lane_count, node += lane_count)
-        store(node, load(node) + (load(first + row) + load(second + row - 1)));
+    const double* first = entries_.data() + 4;
+    for (int row = 0; row <= rows_; ++row, first += 4) {
+      x[row] += first[0] + first[-2];
+      y[row] += first[1] + first[-1];
     }
   }
 
  private:
-  std::size_t stride_ = 0;
-  /// [x and y of first, then of second nodes][lanes before the first row, and rows]
-  std::vector<double> entries_;
+  using Four = double __attribute__((vector_size(32)));
+
+  /// to[lane] = {a, b, c, d} of the lane.
+  static void put_side_by_side(Lanes a, Lanes b, Lanes c, Lanes d, double (&to)[lane_count][4]) {
+    const Lanes even[2] = {__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+                           __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14)},
+                odd[2] = {__builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+                          __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15)};
+    const auto put = [&](const Lanes(&of)[2], int lane) {
+      const Lanes near = __builtin_shufflevector(of[0], of[1], 0, 1, 8, 9, 2, 3, 10, 11),
+                  far = __builtin_shufflevector(of[0], of[1], 4, 5, 12, 13, 6, 7, 14, 15);
+      const auto quarter = [](Lanes from, int half, double* out) {
+        std::memcpy(out, reinterpret_cast<const char*>(&from) + 32 * half, 32);
+      };
+      quarter(near, 0, to[lane]), quarter(near, 1, to[lane + 2]);
+      quarter(far, 0, to[lane + 4]), quarter(far, 1, to[lane + 6]);
+    };
+    put(even, 0), put(odd, 1);
+  }
+
+  int rows_ = 0;
+  std::vector<double> entries_;  ///< [rows and one before][4]
 };
 
 /// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
@@ -173,7 +193,7 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     const Lanes fx = weight * (c.pressure * p.normal_x - c.shear * p.normal_y);
     const Lanes fy = weight * (c.pressure * p.normal_y + c.shear * p.normal_x);
     const Lanes couple = weight * c.shear * p.gap * p.inverse_length;
-    reactions.add(p, touching, fx, fy, couple);
+    reactions.add(p, fx, fy, couple);
     add(&forces.x[pass.slave_force + i], fx);
     add(&forces.y[pass.slave_force + i], fy);
     if (facing.varying != 0) [[unlikely]]
@@ -225,8 +245,8 @@ PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, Con
       std::visit([&](const auto& law) { return compute_passes(law, view, from, to, begin, near); }, patch.law);
   for (int side = 0; side < 2; ++side)
     for (int i = 0; i < count[side]; i += lane_count) {
-      store(&forces.x[patch.force[side] + i], load(&near.x[begin[side] + i]));
-      store(&forces.y[patch.force[side] + i], load(&near.y[begin[side] + i]));
+      store(&forces.x[patch.entry[side] + i], load(&near.x[begin[side] + i]));
+      store(&forces.y[patch.entry[side] + i], load(&near.y[begin[side] + i]));
     }
   return totals;
 }

@@ -38,15 +38,15 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
                *bisector_y = window.column(MasterWindow::bisector_y),
                *bisector_at = window.column(MasterWindow::bisector_at);
   const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
-  Lanes passed = broadcast(-1), last = passed, row{};
+  Lanes passed = broadcast(-1), rows{};
   // Neighbours share the bisector's value, so that every node beside the arc falls to exactly one of them.
   for (int k = 0; k <= window.count(); ++k) {
     const LaneBits beyond = rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0;
-    passed = select(beyond, passed + 1.0, passed);
-    last = select(beyond, row, last);
-    row += 1.0;
+    passed = add_where(beyond, passed, broadcast(1));
+    rows = add_where(beyond, rows, broadcast(k));
   }
-  return {select(passed < window.count(), passed, broadcast(-1)), passed == last};
+  // As many rows add up to that only if they are the first ones.
+  return {select(passed < window.count(), passed, broadcast(-1)), rows == 0.5 * passed * (passed + 1.0)};
 }
 
 /// Where nodes stand beside the segments of the rows given, at most `outward` off.

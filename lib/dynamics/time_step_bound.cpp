@@ -101,7 +101,7 @@ double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, cons
 
 }  // namespace
 
-TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model) {
+TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model), stiffness_(model) {
   direction_ = start_directions(model);
   internal_.assign(model.batches.size(), Lanes{});
   contact_.assign(model.bodies.size(), 0.0);
@@ -222,11 +222,12 @@ void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, 
 }
 
 void TimeStepBound::update_contact(const ContactSystem& contact) {
-  const std::vector<double> stiffness = contact.stiffness_bound(compliance_);
+  const std::vector<int> changed = stiffness_.update(contact, compliance_);
   const std::vector<double> damping = contact.damping_ratios();
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+  parallel_for(static_cast<int>(changed.size()), [&](int i) {
+    const int b = changed[i];
     contact_[b] =
-        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], &stiffness[model_.outline_offset[b]]));
+        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], stiffness_.of_body(contact, b).data()));
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
     if (const double z = 2 * damping[b]; z > 0) contact_[b] *= std::pow(std::sqrt(1 + z * z) + z, 2);
   });

@@ -5,6 +5,7 @@
 
 #include "bodies/dofs.hpp"
 #include "contact/contact.hpp"
+#include "contact/stiffness_bound.hpp"
 #include "dynamics/state.hpp"
 
 namespace pliant {
@@ -18,7 +19,7 @@ class TimeStepBound {
 
   /// Two more power iterations on the internal forces of every compliant body.
   void update_internal(const Dofs& position, const Memory& memory, int iterations = 2);
-  /// The a-priori contact bound, for new contact candidates.
+  /// The a-priori contact bound, of contact candidates found since the last time.
   void update_contact(const ContactSystem& contact);
 
   /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much
@@ -33,6 +34,7 @@ class TimeStepBound {
     visitor("direction", direction_);
     visitor("internal", internal_);
     visitor("contact", contact_);
+    visitor("stiffness", stiffness_);
     visitor("viscous_direction", viscous_direction_);
     visitor("viscous", viscous_);
   }
@@ -54,6 +56,7 @@ class TimeStepBound {
   double largest_dt_of(std::size_t body, double contact_factor) const;
 
   const Model& model_;
+  StiffnessBound stiffness_;
   std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant, each in its body's frame
   std::vector<Lanes> internal_;   ///< [batches] w_b^2, 1/s2
   std::vector<double> contact_;   ///< [bodies] w_c^2, 1/s2

@@ -1,6 +1,10 @@
 // Candidates stay good until the next refresh, however bodies move together and against each other.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <tuple>
+
+#include "contact/stiffness_bound.hpp"
 #include "support/contact_rig.hpp"
 
 namespace pliant {
@@ -112,6 +116,97 @@ TEST(Refresh, searches_pairs_that_moved) {
     EXPECT_TRUE(same->nodes[0] == patch.nodes[0] && same->segments[1] == patch.segments[1]);
   }
   EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "no more than it has others";
+}
+
+/// What is remembered of a node, by its body, side, number and the other body.
+using Memories = std::map<std::tuple<int, int, int, int>, std::pair<double, double>>;
+
+Memories memories(const ContactRig& rig) {
+  Memories all;
+  for (const Patch& patch : rig.contact.patches())
+    for (int side = 0; side < 2; ++side)
+      for (int i = 0; i < patch.nodes[side].count; ++i) {
+        const int body = side == 0 ? patch.first : patch.second, n = rig.count(body), at = patch.nodes[side].begin + i;
+        all[{patch.first, patch.second, side, at - turn_of(at, n) * n}] = {rig.committed.place[patch.record[side] + i],
+                                                                           rig.committed.slip[patch.record[side] + i]};
+      }
+  return all;
+}
+
+struct Carried {
+  int nodes = 0, moved = 0, layouts = 0;
+};
+
+/// Nodes of a row that slides on another, with friction.
+void follow_history(int sample, Carried& carried) {
+  Random random(sample + 400);
+  const Course course{{0, 0}, 0.002};
+  Scene scene = two_rows(random, course, false);
+  scene.contacts = {mohr_coulomb(100, 0.5, 1)};
+  ContactRig rig(scene);
+  rig.step();
+  for (int step = 1; step <= 300; ++step) {
+    for (int body = 0; body < 12; ++body) rig.move(body, course.at(body, step) - course.at(body, step - 1));
+    rig.show();
+    if (!rig.contact.candidates_hold(rig.outlines.position)) {
+      const Memories before = memories(rig);
+      const std::vector<Patch> old = rig.contact.patches();
+      const auto layout = rig.contact.table().laid_out();
+      rig.contact.renew_candidates(rig.outlines, rig.committed);
+      for (const auto& [node, now] : memories(rig)) {
+        const auto was = before.find(node);
+        if (was != before.end() && !std::isnan(was->second.first)) {
+          EXPECT_EQ(now, was->second);
+          carried.nodes += now.second != 0;
+        } else
+          EXPECT_EQ(now.second, 0) << "a newcomer";
+      }
+      if (layout == rig.contact.table().laid_out())
+        for (std::size_t p = 0; p < old.size(); ++p)
+          carried.moved += old[p].record[0] != rig.contact.patches()[p].record[0];
+      else
+        ++carried.layouts;
+    }
+    rig.step();
+  }
+}
+
+/// EXACT: nodes keep what is remembered of them, whether their patch was searched, grew out of its place or all were
+/// laid out anew; nodes that were apart remember nothing.
+TEST(Refresh, carries_the_history_along) {
+  Carried carried;
+  for (int sample = 0; sample < 5; ++sample) follow_history(sample, carried);
+  EXPECT_GT(carried.nodes, 30);
+  EXPECT_GT(carried.moved, 0);
+  EXPECT_GT(carried.layouts, 5);
+}
+
+/// EXACT: the bound of stiffness follows the one body that moves; those that it does not meet keep theirs.
+TEST(Refresh, bound_of_stiffness_follows) {
+  Random random(400);
+  ContactRig rig(two_rows(random, {}, false));
+  rig.evaluate();
+  const std::vector<double> compliance(rig.model.bodies.size(), 1.0);
+  StiffnessBound bound(rig.model);
+  EXPECT_EQ(bound.update(rig.contact, compliance).size(), 12u);
+  const std::vector<double> far = bound.of_body(rig.contact, 0), before = bound.of_body(rig.contact, 11);
+  auto before_layout = rig.contact.table().laid_out();
+  int updates = 0;
+  for (int step = 0; step < 200; ++step) {
+    rig.move(11, {-0.001, 0.0002});
+    if (!rig.evaluate()) continue;
+    const auto layout = rig.contact.table().laid_out();
+    const std::size_t changed = bound.update(rig.contact, compliance).size();
+    updates += changed < 12;
+    EXPECT_EQ(changed == 12, layout != before_layout) << "all are looked at where they were laid out anew";
+    before_layout = layout;
+    StiffnessBound fresh(rig.model);
+    fresh.update(rig.contact, compliance);
+    EXPECT_EQ(bound.of_body(rig.contact, 11), fresh.of_body(rig.contact, 11));
+    EXPECT_EQ(bound.of_body(rig.contact, 0), far);
+  }
+  EXPECT_GT(updates, 2);
+  EXPECT_NE(bound.of_body(rig.contact, 11), before);
 }
 
 }  // namespace

@@ -1,0 +1,155 @@
+#include "contact/patch_table.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "contact/contact_laws.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+namespace {
+
+/// Room beyond what a new layout needs, for patches that outgrow their places until the next.
+int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
+
+constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+
+bool comes_before(const Patch& a, const Patch& b) { return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part); }
+
+/// As of nodes that met nothing yet.
+void forget_all(const Patch& patch, int side, ContactHistory& history) {
+  const int begin = patch.record[side], count = padded(patch.nodes[side].count);
+  std::fill_n(history.place.data() + begin, count, nowhere);
+  std::fill_n(history.slip.data() + begin, count, 0.0);
+  const std::span<const Remembered> remembered = remembered_of(patch.law);
+  for (std::size_t k = 0; k < remembered.size(); ++k)
+    std::fill_n(history.field(k) + begin, count, remembered[k].at_first);
+}
+
+/// The records of one side's nodes, from where another patch of the same bodies has them.
+void carry(const Model& model, const Patch& from, const ContactHistory& old, const Patch& to, int side,
+           ContactHistory& history) {
+  forget_all(to, side, history);
+  const auto copy = [&](int old_record, int record, int count) {
+    std::copy_n(old.place.data() + old_record, count, history.place.data() + record);
+    std::copy_n(old.slip.data() + old_record, count, history.slip.data() + record);
+    for (std::size_t k = 0; k < remembered_of(to.law).size(); ++k)
+      std::copy_n(old.field(k) + old_record, count, history.field(k) + record);
+  };
+  if (to.nodes[side] == from.nodes[side]) return copy(from.record[side], to.record[side], to.nodes[side].count);
+  const bool two_walls = model.bodies[to.first].wall && model.bodies[to.second].wall;
+  const OutlineShape& shape = model.outline_of(side == 0 ? to.first : to.second);
+  const bool images_apart = shape.turn_shift != 0 && !two_walls;  // nodes of a wall under a body: see find_arcs
+  for (int i = 0; i < to.nodes[side].count; ++i) {
+    int at = to.nodes[side].begin + i - from.nodes[side].begin;
+    if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
+    if (at >= 0 && at < from.nodes[side].count) copy(from.record[side] + at, to.record[side] + i, 1);
+  }
+}
+
+/// The records of a patch alone, on which another may come to stand; none is left where they were.
+ContactHistory take_aside(ContactHistory& history, Patch& patch) {
+  const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
+  const std::size_t total = static_cast<std::size_t>(size[0] + size[1]);
+  ContactHistory kept{std::vector(total, 0.0), std::vector(total, 0.0), std::vector(total * history.fields(), 0.0)};
+  for (int side = 0; side < 2; ++side) {
+    const int from = patch.record[side], to = side * size[0];
+    const auto move = [&](double* old, double* now, double none) {
+      std::copy_n(old + from, size[side], now + to);
+      std::fill_n(old + from, size[side], none);
+    };
+    move(history.place.data(), kept.place.data(), nowhere);
+    move(history.slip.data(), kept.slip.data(), 0.0);
+    for (std::size_t k = 0; k < history.fields(); ++k) move(history.field(k), kept.field(k), 0.0);
+    patch.record[side] = to;
+  }
+  return kept;
+}
+
+/// Space for one side's numbers: where they were if they fit, else behind all others. False without room there.
+bool take_room(int wanted, int had, int room, int& used, int& at) {
+  if (wanted <= had) return true;
+  if (used + wanted > room) return false;
+  at = used;
+  used += wanted;
+  return true;
+}
+
+}  // namespace
+
+const Patch* PatchTable::find(const BodyPair& pair, int part) const {
+  const auto at = std::partition_point(patches_.begin(), patches_.end(), [&](const Patch& p) {
+    return std::pair(p.pair(), p.part) < std::pair(pair, part);
+  });
+  return at == patches_.end() || at->pair() != pair || at->part != part ? nullptr : &*at;
+}
+
+void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, ContactHistory& history) {
+  std::sort(patches.begin(), patches.end(), comes_before);
+  records_ = entries_ = 0;
+  for (Patch& patch : patches)
+    for (int side = 0; side < 2; ++side) {
+      patch.record[side] = std::exchange(records_, records_ + padded(patch.nodes[side].count));
+      patch.entry[side] = std::exchange(entries_, entries_ + padded(patch.forces(side).count));
+    }
+  record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
+  const std::size_t records = static_cast<std::size_t>(record_room_);
+  ContactHistory next{std::vector(records, nowhere), std::vector(records, 0.0), std::vector(records * fields, 0.0)};
+  parallel_for(static_cast<int>(patches.size()), [&](int p) {
+    const Patch& patch = patches[p];
+    const Patch* from = find(patch.pair(), patch.part);
+    for (int side = 0; side < 2; ++side)
+      if (from)
+        carry(model_, *from, history, patch, side, next);
+      else
+        forget_all(patch, side, next);
+  });
+  history = std::move(next);
+  history.layout = laid_out_ = ++layout_;
+  patches_ = std::move(patches);
+  index();
+}
+
+bool PatchTable::replace(int at, Patch patch, ContactHistory& history) {
+  const Patch old = patches_[at];
+  int records = records_, entries = entries_;
+  for (int side = 0; side < 2; ++side) {
+    patch.record[side] = old.record[side], patch.entry[side] = old.entry[side];
+    if (!take_room(padded(patch.nodes[side].count), padded(old.nodes[side].count), record_room_, records,
+                   patch.record[side]) ||
+        !take_room(padded(patch.forces(side).count), padded(old.forces(side).count), entry_room_, entries,
+                   patch.entry[side]))
+      return false;
+  }
+  Patch aside = old;
+  const ContactHistory kept = take_aside(history, aside);
+  for (int side = 0; side < 2; ++side) carry(model_, aside, kept, patch, side, history);
+  records_ = records, entries_ = entries;
+  history.layout = ++layout_;
+  patches_[at] = patch;
+  for (int side = 0; side < 2; ++side) arcs_[slot_[at][side]] = arc_of(patch, side);
+  return true;
+}
+
+ArcEntries PatchTable::arc_of(const Patch& patch, int side) const {
+  const Arc arc = patch.forces(side);
+  return {arc.begin, arc.count, patch.entry[side]};
+}
+
+void PatchTable::index() {
+  arc_begin_.assign(model_.bodies.size() + 1, 0);
+  for (const Patch& patch : patches_) ++arc_begin_[patch.first + 1], ++arc_begin_[patch.second + 1];
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) arc_begin_[b + 1] += arc_begin_[b];
+  std::vector<int> next(arc_begin_.begin(), arc_begin_.end() - 1);
+  arcs_.resize(2 * patches_.size());
+  slot_.resize(patches_.size());
+  for (std::size_t p = 0; p < patches_.size(); ++p)
+    for (int side = 0; side < 2; ++side) {
+      slot_[p][side] = next[side == 0 ? patches_[p].first : patches_[p].second]++;
+      arcs_[slot_[p][side]] = arc_of(patches_[p], side);
+    }
+}
+
+}  // namespace pliant

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bodies/model.hpp"
+#include "contact/history.hpp"
+#include "contact/patch.hpp"
+
+namespace pliant {
+
+/// A run of outline nodes and the entries of a patch that go with them.
+struct ArcEntries {
+  int begin = 0, count = 0;  ///< outline node of the first entry (not reduced), entries
+  int at = 0;                ///< of the first entry in the buffers
+};
+
+/// The patches, and where the records of their nodes and the forces on them stand. One that is found anew takes the old
+/// one's place, or goes behind all others as long as there is room, so that the rest stays where it is.
+class PatchTable {
+ public:
+  explicit PatchTable(const Model& model) : model_(model) { index(); }
+
+  const std::vector<Patch>& patches() const { return patches_; }
+  int count() const { return static_cast<int>(patches_.size()); }
+  /// Null if there is none.
+  const Patch* find(const BodyPair& pair, int part = 0) const;
+
+  /// Takes these, in the order of their keys, for those before. The history follows, with so many fields of laws.
+  void lay_out(std::vector<Patch> patches, std::size_t fields, ContactHistory& history);
+  /// Takes a patch for one of the same bodies; the history follows. False, and nothing done, where there is no room.
+  bool replace(int at, Patch patch, ContactHistory& history);
+
+  int entries() const { return entry_room_; }  ///< that buffers of forces must have
+  /// Since this layout patches have kept their places, but for those that were replaced.
+  std::int64_t laid_out() const { return laid_out_; }
+  /// Calls add(node, entry, count) for runs of consecutive nodes of a body with their entries in the buffers: all of
+  /// its arcs, in the order of the patches.
+  template <class Add>
+  void for_each_run(int body, Add&& add) const {
+    const int nodes = model_.outline_of(body).count;
+    for (int i = arc_begin_[body]; i < arc_begin_[body + 1]; ++i) {
+      const ArcEntries& arc = arcs_[i];
+      for (int done = 0; done < arc.count;) {
+        const int from = arc.begin + done, node = from - turn_of(from, nodes) * nodes;
+        const int run = std::min(arc.count - done, nodes - node);
+        add(node, arc.at + done, run);
+        done += run;
+      }
+    }
+  }
+
+  /// Where things stand is kept as well: it depends on what was found when.
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("patches", patches_);
+    visitor("records", records_), visitor("record_room", record_room_);
+    visitor("entries", entries_), visitor("entry_room", entry_room_);
+    visitor("layout", layout_), visitor("laid_out", laid_out_);
+  }
+  void loaded() { index(); }
+  /// What a checkpoint leaves out: it follows from the bodies.
+  template <class LawOf>
+  void set_laws(LawOf&& law_of) {
+    for (Patch& patch : patches_) patch.law = law_of(patch);
+  }
+
+ private:
+  void index();
+  ArcEntries arc_of(const Patch& patch, int side) const;
+
+  const Model& model_;
+  std::vector<Patch> patches_;
+  int records_ = 0, record_room_ = 0;       ///< in use or left behind; in all
+  int entries_ = 0, entry_room_ = 0;        ///< of the buffers of forces, likewise
+  std::int64_t layout_ = 0, laid_out_ = 0;  ///< ContactHistory::layout: now, and of the last layout of all
+  std::vector<int> arc_begin_;              ///< [bodies + 1]
+  std::vector<ArcEntries> arcs_;            ///< of each body's patches, in their order
+  std::vector<std::array<int, 2>> slot_;    ///< [patches][sides] of arcs_
+};
+
+}  // namespace pliant

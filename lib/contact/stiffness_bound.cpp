@@ -1,0 +1,46 @@
+#include "contact/stiffness_bound.hpp"
+
+#include <algorithm>
+
+#include "contact/patch_queries.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+
+std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std::vector<double>& compliance) {
+  const PatchTable& table = contact.table();
+  const bool all = layout_ != table.laid_out();
+  if (all) entries_.assign(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
+  std::vector<int> found;
+  std::vector<char> changed(model_.bodies.size(), all);
+  for (int p = 0; p < table.count(); ++p) {
+    const Patch& patch = table.patches()[p];
+    if (!all && patch.found <= seen_) continue;
+    found.push_back(p);
+    changed[patch.first] = changed[patch.second] = 1;
+  }
+  parallel_for(static_cast<int>(found.size()), [&](int i) {
+    const Patch& patch = table.patches()[found[i]];
+    for (int side = 0; side < 2; ++side)
+      std::fill_n(entries_.data() + patch.entry[side], padded(patch.forces(side).count), 0.0);
+    const double a = compliance[patch.first], b = compliance[patch.second];
+    // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
+    const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
+    if (!patch.is_empty()) add_patch_stiffness(contact.view(patch), factor, entries_);
+  });
+  layout_ = table.laid_out(), seen_ = contact.refreshes();
+  std::vector<int> bodies;
+  for (std::size_t b = 0; b < changed.size(); ++b)
+    if (changed[b]) bodies.push_back(static_cast<int>(b));
+  return bodies;
+}
+
+std::vector<double> StiffnessBound::of_body(const ContactSystem& contact, int body) const {
+  std::vector<double> stiffness(static_cast<std::size_t>(model_.outline_of(body).count), 0.0);
+  contact.table().for_each_run(body, [&](int node, int entry, int count) {
+    for (int i = 0; i < count; ++i) stiffness[node + i] += entries_[entry + i];
+  });
+  return stiffness;
+}
+
+}  // namespace pliant
