@@ -16,6 +16,7 @@ import json
 import re
 import statistics
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
@@ -28,6 +29,7 @@ TEMPLATE = Path(__file__).with_name("page")
 CHARTS = Path("/usr/share/javascript/chart.js/chart.min.js")  # of the package libjs-chart.js
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 MACHINE = "machine/"
+NO_KERNELS = (MACHINE, "baseline/")  # what the machine does, and plain loops for comparison
 
 
 class BadInput(Exception):
@@ -67,39 +69,61 @@ def seconds_over_commits(lines: list[dict]) -> list[dict]:
              "of": f"{line['scene']}, {line['machine']['cores']} cores, {line['machine']['cpu']}"} for line in lines]
 
 
-def measured(file: Path) -> dict[str, dict[str, float]]:
-    """Seconds, bytes and flops of an iteration by benchmark: the median where one ran several times."""
-    runs: dict[str, list[dict]] = {}
-    for entry in read_json(file).get("benchmarks", []):
-        if entry.get("aggregate_name", "median") == "median" and not entry.get("error_occurred"):
-            runs.setdefault(entry.get("run_name", entry["name"]), []).append(entry)
-    result = {}
-    for name, entries in runs.items():
-        medians = [entry for entry in entries if "aggregate_name" in entry] or entries
-        seconds = statistics.median(entry["real_time"] * UNITS[entry["time_unit"]] for entry in medians)
-        result[name] = {"seconds": seconds, "bytes": medians[0].get("bytes", 0), "flops": medians[0].get("flops", 0)}
-    return result
+@dataclass
+class Measured:
+    """Of an iteration of a benchmark."""
+
+    name: str
+    threads: int
+    seconds: float
+    bytes: float
+    flops: float
 
 
-def roofline(file: Path) -> dict | None:
-    """Peaks of the machine and places of kernels; None without the file."""
+def measured(file: Path) -> list[Measured]:
+    """The fastest of each benchmark's repetitions; the median where only what they make together is told."""
+    found: dict[str, Measured] = {}
+    single = [entry for entry in read_json(file).get("benchmarks", []) if not entry.get("error_occurred")]
+    repeated = {entry["run_name"] for entry in single if entry.get("run_type") == "iteration"}
+    for entry in single:
+        if "aggregate_name" in entry and (entry["aggregate_name"] != "median" or entry["run_name"] in repeated):
+            continue
+        # Google's benchmark writes name/threads:2/real_time.
+        name = re.sub(r"/(\w+:\d+|real_time)(?=/|$)", "", entry["run_name"])
+        threads = re.search(r"/threads:(\d+)", entry["run_name"])
+        run = Measured(name, int(threads[1]) if threads else 1, entry["real_time"] * UNITS[entry["time_unit"]],
+                       entry.get("bytes", 0), entry.get("flops", 0))
+        if entry["run_name"] not in found or run.seconds < found[entry["run_name"]].seconds:
+            found[entry["run_name"]] = run
+    return list(found.values())
+
+
+def rooflines(file: Path) -> list[dict]:
+    """By number of threads, peaks of the machine and places of kernels; none without the file."""
     if not file.exists():
-        return None
+        return []
     try:
-        entries = measured(file)
-        machine = {name.removeprefix(MACHINE): entry for name, entry in entries.items() if name.startswith(MACHINE)}
-        # Google's benchmark adds its options to names, as in machine/fma_peak/real_time.
-        peaks = [e["flops"] / e["seconds"] for name, e in machine.items() if name.startswith("fma_peak")]
-        bandwidths = {name.removeprefix("read_bandwidth_").split("/")[0]: e["bytes"] / e["seconds"]
-                      for name, e in machine.items() if name.startswith("read_bandwidth_")}
-        kernels = [{"name": name, "intensity": e["flops"] / e["bytes"], "rate": e["flops"] / e["seconds"]}
-                   for name, e in entries.items()
-                   if not name.startswith(MACHINE) and e["bytes"] > 0 and e["flops"] > 0]
+        runs = measured(file)
+        found = [roofline(threads, [run for run in runs if run.threads == threads])
+                 for threads in sorted({run.threads for run in runs})]
     except (KeyError, TypeError, AttributeError, ZeroDivisionError) as error:
         raise BadInput(f"{file}: is no output of ./pliant bench kernels --json: {error!r}") from error
-    if not peaks or not bandwidths:
+    found = [roof for roof in found if roof]
+    if not found:
         raise BadInput(f"{file}: has no {MACHINE}fma_peak or no {MACHINE}read_bandwidth_*: a roofline needs both")
-    return {"peak": max(peaks), "bandwidths": bandwidths, "kernels": kernels}
+    return found
+
+
+def roofline(threads: int, runs: list[Measured]) -> dict | None:
+    peaks = [run.flops / run.seconds for run in runs if run.name.startswith(f"{MACHINE}fma_peak")]
+    bandwidth = f"{MACHINE}read_bandwidth_"
+    bandwidths = {run.name.removeprefix(bandwidth): run.bytes / run.seconds
+                  for run in runs if run.name.startswith(bandwidth)}
+    kernels = [{"name": run.name, "intensity": run.flops / run.bytes, "rate": run.flops / run.seconds}
+               for run in runs if not run.name.startswith(NO_KERNELS) and run.bytes > 0 and run.flops > 0]
+    if not peaks or not bandwidths:
+        return None
+    return {"threads": threads, "peak": max(peaks), "bandwidths": bandwidths, "kernels": kernels}
 
 
 def page(data: dict, charts: str) -> str:
@@ -128,7 +152,7 @@ def main(arguments: list[str]) -> int:
     try:
         lines = history.read(options.history)
         data = {"counts": counts_over_commits(options.repository, options.repository / history.COUNTS, lines),
-                "seconds": seconds_over_commits(lines), "roofline": roofline(options.kernels)}
+                "seconds": seconds_over_commits(lines), "rooflines": rooflines(options.kernels)}
         text = page(data, CHARTS.read_text())
     except (BadInput, ValueError, OSError) as error:
         print(f"page: {error}", file=sys.stderr)

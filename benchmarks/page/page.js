@@ -130,8 +130,13 @@ const names = {
   },
 };
 
+function drawRooflines(roofs) {
+  if (roofs.length === 0) missing("roofline", "No roofline yet: ./pliant bench kernels --json measures it.");
+  roofs.forEach(drawRoofline);
+}
+
 function drawRoofline(roof) {
-  if (!roof) return missing("roofline", "No roofline yet: ./pliant bench kernels --json measures it.");
+  add(document.getElementById("roofline"), "h3", roof.threads === 1 ? "One thread" : `${roof.threads} threads`);
   const bandwidths = Object.entries(roof.bandwidths).sort((a, b) => b[1] - a[1]);
   const at = (intensity, bandwidth) => Math.min(roof.peak, intensity * bandwidth);
   const ridges = bandwidths.map(([, bandwidth]) => roof.peak / bandwidth);
@@ -169,13 +174,13 @@ function drawRoofline(roof) {
     return `${set.label} at ${chart.scales.x.getValueForPixel(point.x).toPrecision(3)}, ` +
       `${chart.scales.y.getValueForPixel(point.y).toPrecision(3)} GFLOP/s`;
   }).join("; "));
-  const slowest = Math.min(...Object.values(roof.bandwidths));
+  const [nameOfSlowest, slowest] = bandwidths[bandwidths.length - 1];
   const share = (rate, most) => `${(100 * rate / most).toFixed(1)} %`;
-  table("roofline", ["kernel", "operations a byte", "GFLOP/s", "of the peak", "of the lowest roof"],
+  table("roofline", ["kernel", "operations a byte", "GFLOP/s", "of the peak", `of the roof of ${nameOfSlowest}`],
     roof.kernels.map(({ name, intensity, rate }) => [name, intensity.toFixed(2), (rate / giga).toFixed(2),
       share(rate, roof.peak), share(rate, at(intensity, slowest))]));
 }
 
 drawCounts(data.counts);
 drawSeconds(data.seconds);
-drawRoofline(data.roofline);
+drawRooflines(data.rooflines);

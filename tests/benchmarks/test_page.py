@@ -17,6 +17,7 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import history
 import page
+from page import Measured
 
 BROWSER = next(filter(None, map(shutil.which, ["chromium-headless-shell", "chromium"])), None)
 needs_charts = pytest.mark.skipif(not page.CHARTS.exists(), reason="libjs-chart.js is not installed")
@@ -29,16 +30,20 @@ def line(commit: str, day: int, seconds: list[float], instructions: dict[str, in
                        "scene": "ab", "instructions": instructions, "seconds": seconds})
 
 
-def benchmark(name: str, milliseconds: float, **counters: float) -> dict:
-    return {"name": name, "run_name": name, "run_type": "iteration", "real_time": milliseconds, "time_unit": "ms",
+def benchmark(name: str, milliseconds: float, threads: int = 1, **counters: float) -> dict:
+    full = f"{name}/threads:{threads}/real_time"
+    return {"name": full, "run_name": full, "run_type": "iteration", "real_time": milliseconds, "time_unit": "ms",
             **counters}
 
 
 KERNELS = [benchmark("machine/fma_peak", 1, flops=1e8),  # 100 GFLOP/s
-           benchmark("machine/read_bandwidth_L1", 1, bytes=2e8),
+           benchmark("machine/fma_peak", 1, 2, flops=2e8), benchmark("machine/read_bandwidth_memory", 1, 2, bytes=1e7),
+           benchmark("machine/read_bandwidth_l1", 1, bytes=2e8),
            benchmark("machine/read_bandwidth_memory", 1, bytes=1e7),
-           *(benchmark("internal_forces", milliseconds, bytes=2e6, flops=1e7) for milliseconds in (2, 3, 2.5)),
-           benchmark("place_outlines", 1, bytes=4e6, flops=1e6), benchmark("no_counters", 1)]
+           *(benchmark("forces/mls", milliseconds, bytes=2e6, flops=1e7) for milliseconds in (3, 2.5, 4)),
+           benchmark("forces/mls", 2, 2, bytes=1e6, flops=1e7),
+           benchmark("baseline/forces/mls", 9, bytes=2e6, flops=1e7), benchmark("outlines", 1, bytes=4e6, flops=1e6),
+           benchmark("no_counters", 1)]
 
 
 @pytest.fixture
@@ -60,7 +65,7 @@ class Shown(HTMLParser):
     def __init__(self, text: str) -> None:
         super().__init__()
         self.rows: dict[str, list[list[str]]] = {}
-        self.labels: dict[str, str] = {}
+        self.labels: dict[str, list[str]] = {}
         self.text, self.section, self.in_cell = "", "", False
         self.feed(text)
 
@@ -70,7 +75,7 @@ class Shown(HTMLParser):
             self.section = of["id"] or ""
             self.rows[self.section] = []
         elif tag == "canvas":
-            self.labels[self.section] = of["aria-label"] or ""
+            self.labels.setdefault(self.section, []).append(of["aria-label"] or "")
         elif tag == "tr":
             self.rows[self.section].append([])
         elif tag in ("td", "th"):
@@ -101,15 +106,19 @@ def test_the_page_shows_what_was_measured(tmp_path: Path, inputs: list[str]) -> 
     assert shown.rows["counts"] == [["counted", "at now", "since the one before", "since the first"],
                                     ["step", "1\u202f890", "\u221210.00 %", "\u22125.50 %"],
                                     ["contact_forces", "33", "+10.00 %", "+10.00 %"]]
-    assert "step: 3 points, last -5.5" in shown.labels["counts"]
+    assert "step: 3 points, last -5.5" in shown.labels["counts"][0]
     machine = "ab, 2 cores, Processor </script>"
     assert shown.rows["seconds"][1:] == [["a" * 8, machine, "2026-01-01", "2.400", "2.200", "3"],
                                          ["b" * 8, machine, "2026-01-02", "2.000", "1.900", "3"]]
-    assert shown.labels["seconds"] == f"{machine}: 2 points, last 2"
-    # 1e7 operations in 2.5 ms; the lowest roof at 5 operations a byte is 50 GFLOP/s, that at 0.25 is 2.5.
-    assert shown.rows["roofline"][1:] == [["internal_forces", "5.00", "4.00", "4.0 %", "8.0 %"],
-                                          ["place_outlines", "0.25", "1.00", "1.0 %", "40.0 %"]]
-    assert shown.labels["roofline"] == "internal_forces at 5.00, 4.00 GFLOP/s; place_outlines at 0.250, 1.00 GFLOP/s"
+    assert shown.labels["seconds"] == [f"{machine}: 2 points, last 2"]
+    # 1e7 operations in 2.5 ms; memory's roof at 5 operations a byte is 50 GFLOP/s, at 0.25 it is 2.5.
+    head = ["kernel", "operations a byte", "GFLOP/s", "of the peak", "of the roof of memory"]
+    assert shown.rows["roofline"] == [head, ["forces/mls", "5.00", "4.00", "4.0 %", "8.0 %"],
+                                      ["outlines", "0.25", "1.00", "1.0 %", "40.0 %"],
+                                      head, ["forces/mls", "10.00", "5.00", "2.5 %", "5.0 %"]]
+    one, two = shown.labels["roofline"]
+    assert one == "forces/mls at 5.00, 4.00 GFLOP/s; outlines at 0.250, 1.00 GFLOP/s"
+    assert two == "forces/mls at 10.0, 5.00 GFLOP/s"
 
 
 @needs_browser
@@ -129,11 +138,13 @@ def test_the_page_needs_no_other_file(tmp_path: Path, inputs: list[str]) -> None
     assert text.count("</script>") == 3, "data cannot end their element"
 
 
-def test_aggregates_count_as_their_median(tmp_path: Path) -> None:
-    entries = [benchmark("a", 3, bytes=1, flops=2) | {"name": f"a_{kind}", "aggregate_name": kind, "real_time": time}
+def test_aggregates_alone_count_as_their_median(tmp_path: Path) -> None:
+    entries = [benchmark("a", time, bytes=1, flops=2) | {"run_type": "aggregate", "aggregate_name": kind}
                for kind, time in [("mean", 3), ("median", 2), ("stddev", 1)]]
-    (tmp_path / "k.json").write_text(json.dumps({"benchmarks": entries + [benchmark("a", 9, bytes=1, flops=2)]}))
-    assert page.measured(tmp_path / "k.json") == {"a": {"seconds": 2e-3, "bytes": 1, "flops": 2}}
+    (tmp_path / "k.json").write_text(json.dumps({"benchmarks": entries}))
+    assert page.measured(tmp_path / "k.json") == [Measured("a", 1, 2e-3, 1, 2)]
+    (tmp_path / "k.json").write_text(json.dumps({"benchmarks": [*entries, benchmark("a", 4, bytes=1, flops=2)]}))
+    assert page.measured(tmp_path / "k.json") == [Measured("a", 1, 4e-3, 1, 2)]
 
 
 @pytest.mark.parametrize("name, content, said", [
