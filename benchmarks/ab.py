@@ -115,8 +115,9 @@ def build(repository: Path, folder: Path) -> None:
     log.parent.mkdir(exist_ok=True)
     print(f"pliant: building {folder.name} (log: {log})", file=sys.stderr)
     openmp = f"-DPLIANT_OPENMP={repository / 'build/openmp'}"  # if it is unpacked there, see cmake/compiler.cmake
+    ninja = ["ninja", "-C", "build/release", "-j", str(os.cpu_count()), "pliant_engine"]
     with log.open("w") as file:
-        for command in (["cmake", "--preset", "release", openmp], ["ninja", "-C", "build/release", "pliant_engine"]):
+        for command in (["cmake", "--preset", "release", openmp], ninja):
             result = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
             if result.returncode != 0:
                 raise RuntimeError(f"{folder.name} does not build: {log}")

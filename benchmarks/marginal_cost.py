@@ -13,14 +13,16 @@ their number.
 import argparse
 import json
 import os
-import re
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import callgrind
 
 ROOT = Path(__file__).resolve().parents[1]
 MISSING = 2
@@ -147,6 +149,7 @@ FEATURES = [
 @dataclass
 class Count:
     instructions: int
+    libraries: int  # of them
     evaluations: int
     contacts: float
 
@@ -155,20 +158,16 @@ class Count:
 
 
 def count(engine: Path, scene: str, folder: Path) -> Count:
-    """Runs a scene under callgrind. Raises RuntimeError with the engine's own message."""
+    """Runs a scene under callgrind and counts its steps. Raises RuntimeError with the engine's own message."""
     folder.mkdir(parents=True)
     file = folder / "scene.toml"
     file.write_text(scene)
-    command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder / 'callgrind.out'}", "--toggle-collect=pliant::Simulation::step(double)",
-               str(engine), "run", str(file), "--out", str(folder / "out"), "--threads", "1", "--quiet"]
-    result = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"OMP_NUM_THREADS": "1"})
-    collected = re.search(r"Collected : (\d+)", result.stderr)
-    if result.returncode != 0 or not collected:
-        raise RuntimeError(result.stderr[-2000:])
+    command = [str(engine), "run", str(file), "--out", str(folder / "out"), "--threads", "1", "--quiet"]
+    counted = callgrind.count(command, "pliant::Simulation::step(double)", folder)
     summary = json.loads((folder / "out/summary.json").read_text())
     steps = (folder / "out/steps.csv").read_text().splitlines()
     contacts = [float(row.rsplit(",", 1)[1]) for row in steps[1:]]
-    return Count(int(collected[1]), summary["evaluations"] - 1, sum(contacts) / len(contacts))
+    return Count(counted.instructions, counted.libraries, summary["evaluations"] - 1, sum(contacts) / len(contacts))
 
 
 def table(counts: dict[str, Count]) -> str:

@@ -54,7 +54,7 @@ run_tests() {
     target=pliant_tests rest+=(-L '^unit$')
     ready test
   else
-    ready test verify
+    ready test verify page browser
   fi
   prepare "$preset" "$target" pliant_tests
   # Tests run side by side: their threads must neither be bound to the same cores nor wait actively.
@@ -117,6 +117,27 @@ prepare_verification() {
 }
 
 bench() {
+  case ${1-} in
+    gate)
+      ready counting
+      prepare counting pliant_engine
+      prepare counting pliant_counted_kernels pliant_counted_kernels
+      exec "$python" -B "$root/benchmarks/gate.py" "${@:2}"
+      ;;
+    ab)
+      ready ab
+      set_thread_defaults
+      exec "$python" -B "$root/benchmarks/ab.py" "${@:2}"
+      ;;
+    page)
+      ready page
+      exec "$python" -B "$root/benchmarks/page.py" "${@:2}"
+      ;;
+    [!-]*)
+      echo "pliant: bench: nothing is called '$1'; there are: gate, ab, page; see ./pliant bench --help" >&2
+      exit 2
+      ;;
+  esac
   if [ "${1-}" = --instructions ]; then
     ready counting
     prepare counting pliant_engine

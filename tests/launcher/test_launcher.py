@@ -266,6 +266,21 @@ def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, comma
     assert not launcher.calls("ninja")
 
 
+@pytest.mark.parametrize("word, built", [("gate", 2), ("ab", 0), ("page", 0)])
+def test_benchmarks_get_their_arguments(launcher: Launcher, word: str, built: int) -> None:
+    (launcher.root / "benchmarks").mkdir()
+    (launcher.root / f"benchmarks/{word}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
+    result = launcher("bench", word, "one two", "--three")
+    assert result.returncode == 1 and result.stdout == "one two --three\n"
+    assert len(launcher.calls("ninja start")) == built
+
+
+def test_unknown_benchmark(launcher: Launcher) -> None:
+    result = launcher("bench", "gat")
+    assert result.returncode == 2 and "nothing is called 'gat'; there are: gate, ab, page" in result.stderr
+    assert not launcher.log.exists()
+
+
 def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) -> None:
     result = launcher("test", "-R", "contact")
     assert result.returncode == 8
@@ -289,11 +304,11 @@ def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
                  'verify) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
     result = subprocess.run([launcher.root / ".ci/run"], env=launcher.environment, capture_output=True, text=True)
     assert result.returncode == 1
-    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "verify"]
+    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "bench gate", "verify"]
     lines = result.stdout.splitlines()
     assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
-    assert [line.split()[1] for line in lines[-6:-1]] == ["lint", "test", "gcc", "verify", "all"]
-    assert [line.rsplit(" ", 1)[1] for line in lines[-6:-2]] == ["green", "red", "green", "green"]
+    assert [line.split()[1] for line in lines[-7:-1]] == ["lint", "test", "gcc", "gate", "verify", "all"]
+    assert [line.rsplit(" ", 1)[1] for line in lines[-7:-2]] == ["green", "red", "green", "green", "green"]
 
 
 @pytest.mark.parametrize("command", [file.stem for file in (ROOT / "launcher/help").iterdir() if file.stem != "pliant"])
