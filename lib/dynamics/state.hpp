@@ -38,9 +38,10 @@ BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& me
 /// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
 /// checkpoint cannot forget a part.
 struct State {
-  double time = 0;           ///< s
-  double next_dt = 0;        ///< what the controller proposes, s
-  double jerk = 0;           ///< verlet: error over dt^3, the largest of late, 1/s3
+  double time = 0;     ///< s
+  double next_dt = 0;  ///< what the controller proposes, s
+  /// verlet: error over dt^3, the largest of this span of steps and of the one before, 1/s3
+  double jerk = 0, jerk_before = 0;
   double external_work = 0;  ///< of loads and imposed motions, J/m
   double gravity_work = 0;   ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;     ///< by contact laws and by damping, J/m
@@ -66,7 +67,7 @@ struct State {
   void visit_motion(Visitor&& visitor) {
     visitor("time", time);
     visitor("next_dt", next_dt);
-    visitor("jerk", jerk);
+    visitor("jerk", jerk), visitor("jerk_before", jerk_before);
     visitor("external_work", external_work);
     visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);

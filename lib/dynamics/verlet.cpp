@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "bodies/damping_forces.hpp"
 #include "bodies/for_each_dof.hpp"
@@ -20,9 +21,9 @@ constexpr int bound_period = 50;     ///< steps between power iterations
 constexpr double first_step = 1e-3;  ///< of the bound
 constexpr double least_factor = 0.5, largest_factor = 1.15;
 constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in dt
-/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So a
-/// large error fades from memory over many of their periods only.
-constexpr double fading = 0.99;
+/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So
+/// the largest error counts, of this span of steps and the one before: of many of their periods.
+constexpr int span = 64;
 /// Steps shorter than this part of what was wished for are not remembered. Of equal steps to an output none is.
 constexpr double least_share = 0.5;
 
@@ -40,7 +41,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
       trial_(model_),
-      mean_velocity_(zero_dofs(model_)),
+      mean_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       change_(model_.regions.size()) {
   bound_.update_internal(state.position, state.memory);
@@ -80,10 +81,12 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
 Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
   const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, wish = proposal.wish;
   if (!(report.error <= 2 * tolerance)) return {false, dt * controller_factor(report.error, tolerance)};
+  if (state.steps % span == 0) state.jerk_before = std::exchange(state.jerk, 0);
   // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
-  if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), fading * state.jerk);
-  const double next_dt = wish * controller_factor(state.jerk * wish * wish * wish, tolerance);
+  if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
+  const double jerk = std::max(state.jerk, state.jerk_before);
+  const double next_dt = wish * controller_factor(jerk * wish * wish * wish, tolerance);
   return {true, std::min(next_dt, proposal.largest_dt)};
 }
 
@@ -152,8 +155,8 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];
   const Lanes* old_force = &state.force.compliant[batch.offset];
-  const Lanes *old_velocity = &state.reduced_momentum.compliant[batch.offset],
-              *mean = &mean_velocity_.compliant[batch.offset];
+  const Lanes* old_velocity = &state.reduced_momentum.compliant[batch.offset];
+  const Lanes* mean = batch.mass_damped ? &mean_velocity_.compliant[batch.offset] : nullptr;
   Lanes *velocity = &trial_.reduced_momentum.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
   const Lanes z = dt * batch.mass_damping, drag = batch.mass_damping * batch.density;
   const Lanes upper_inverse_density =
