@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
-#include "files/text_files.hpp"
+#include "files/atomic_file.hpp"
 #include "reference/materials/internal.hpp"
 
 namespace pliant::reference {

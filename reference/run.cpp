@@ -11,6 +11,7 @@
 #include "core/errors.hpp"
 #include "core/memory.hpp"
 #include "core/stop_signals.hpp"
+#include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
 #include "files/text_files.hpp"

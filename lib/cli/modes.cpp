@@ -9,7 +9,7 @@
 
 #include "bodies/natural_modes.hpp"
 #include "core/errors.hpp"
-#include "files/text_files.hpp"
+#include "files/atomic_file.hpp"
 #include "scene/names.hpp"
 
 namespace pliant {

@@ -96,12 +96,13 @@ std::uint64_t hash_of(const T& object) {
   return leaf.hash.value();
 }
 
-/// Leaf that appends to a text of bytes, member by member: path, 0, bytes an element, elements, and the elements as
-/// they lie in memory.
+/// Leaf that appends to a text of bytes or a file, member by member: path, 0, bytes an element, elements, and the
+/// elements as they lie in memory. `Sink` has append(const char*, std::size_t).
+template <class Sink>
 class SaveLeaf {
  public:
   static constexpr bool loads = false;
-  explicit SaveLeaf(std::string& bytes) : bytes_(bytes) {}
+  explicit SaveLeaf(Sink& sink) : sink_(sink) {}
 
   template <class T>
   void value(const std::string& path, const T& value) {
@@ -114,12 +115,12 @@ class SaveLeaf {
 
  private:
   void add(const std::string& path, const void* data, std::uint64_t element, std::uint64_t count) {
-    bytes_.append(path).push_back('\0');
-    bytes_.append(reinterpret_cast<const char*>(&element), sizeof element);
-    bytes_.append(reinterpret_cast<const char*>(&count), sizeof count);
-    bytes_.append(static_cast<const char*>(data), element * count);
+    sink_.append(path.c_str(), path.size() + 1);
+    sink_.append(reinterpret_cast<const char*>(&element), sizeof element);
+    sink_.append(reinterpret_cast<const char*>(&count), sizeof count);
+    sink_.append(static_cast<const char*>(data), element * count);
   }
-  std::string& bytes_;
+  Sink& sink_;
 };
 
 /// The bytes are not those of this object: of another version of the program.

@@ -45,7 +45,7 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
   return total;
 }
 
-Auditor::Auditor(Forces& forces, const State& start) : forces_(forces), force_(zero_dofs(forces.model())) {
+Auditor::Auditor(Forces& forces, const State& start) : forces_(forces) {
   gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
 }
@@ -71,10 +71,14 @@ Audit Auditor::audit(const State& state) {
   const Model& model = forces_.model();
   warn_of_strain(state);
   Audit result;
-  // The same forces once more: the memory stands still at an accepted state, so nothing slips.
+  // The same forces once more: the memory stands still at an accepted state, so nothing slips. They are let go of:
+  // audits are rare, and each of these is as large as a state.
+  Dofs force = zero_dofs(model);
+  OutlineField contact_force;
+  Memory memory;
   const Evaluation evaluation =
       forces_.evaluate({state.position, material_velocity(model, state.reduced_momentum), state.time}, state.outlines,
-                       {state.memory}, {force_, contact_force_, memory_});
+                       {state.memory}, {force, contact_force, memory});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.reduced_momentum);

@@ -54,10 +54,6 @@ class Auditor {
   Forces& forces_;
   double gravity_start_ = 0;
   double energy_start_ = 0;
-  // Scratch, so that an audit finds its memory:
-  Dofs force_;
-  OutlineField contact_force_;
-  Memory memory_;
   bool warned_of_strain_ = false;
 };
 

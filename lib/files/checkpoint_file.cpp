@@ -5,11 +5,8 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 
-#include "core/archive.hpp"
 #include "core/errors.hpp"
-#include "files/text_files.hpp"
 
 namespace pliant {
 namespace {
@@ -17,19 +14,41 @@ namespace {
 constexpr std::string_view magic = "pliant checkpoint 1\n";
 constexpr std::size_t digits = 16;  ///< of the hash at the end
 
-std::string hash_text(std::string_view bytes) {
+std::string text_of(const Fnv1a& hash) { return fmt::format("{:016x}", hash.value()); }
+
+std::string hash_of(std::string_view bytes) {
   Fnv1a hash;
   hash.add(bytes.data(), bytes.size());
-  return fmt::format("{:016x}", hash.value());
+  return text_of(hash);
+}
+
+/// All of a file, or what can be read of it.
+std::string read_all(std::ifstream& stream) {
+  std::string bytes;
+  stream.seekg(0, std::ios::end);
+  if (const std::streamoff size = stream.tellg(); size > 0) bytes.resize(static_cast<std::size_t>(size));
+  stream.seekg(0);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 }  // namespace
 
-CheckpointFile::CheckpointFile(const std::string& header_line) : bytes(magic) { bytes += header_line + "\n"; }
+CheckpointFile::CheckpointFile(const std::filesystem::path& file, const std::string& header_line) : file_(file) {
+  const std::string head = std::string(magic) + header_line + "\n";
+  append(head.data(), head.size());
+}
 
-void CheckpointFile::write(const std::filesystem::path& file) {
-  bytes += hash_text(bytes);
-  write_file_atomically(file, bytes);
+void CheckpointFile::append(const char* bytes, std::size_t count) {
+  hash_.add(bytes, count);
+  file_.append(bytes, count);
+}
+
+void CheckpointFile::commit() {
+  const std::string end = text_of(hash_);
+  file_.append(end.data(), end.size());
+  file_.commit();
 }
 
 std::string_view CheckpointText::header() const {
@@ -47,7 +66,7 @@ CheckpointText read_checkpoint_file(const std::filesystem::path& file) {
   CheckpointText text;
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  text.bytes.assign(std::istreambuf_iterator<char>(stream), {});
+  text.bytes = read_all(stream);
   if (!stream.is_open() || stream.bad())
     refuse(fmt::format("cannot be read: {}; without a checkpoint a run can only start anew (--force)",
                        std::strerror(errno)));
@@ -56,7 +75,7 @@ CheckpointText read_checkpoint_file(const std::filesystem::path& file) {
   if (!all.starts_with(magic)) refuse("is a checkpoint of another version of the program; use that one");
   const std::size_t line_end = all.find('\n', magic.size());
   if (line_end == all.npos || all.size() < line_end + 1 + digits ||
-      hash_text(all.substr(0, all.size() - digits)) != all.substr(all.size() - digits))
+      hash_of(all.substr(0, all.size() - digits)) != all.substr(all.size() - digits))
     refuse("is damaged: it was cut short or changed; the run can only start anew (--force)");
   text.header_begin = magic.size();
   text.content_begin = line_end + 1;

@@ -4,17 +4,23 @@
 #include <string>
 #include <string_view>
 
+#include "core/archive.hpp"
+#include "files/atomic_file.hpp"
+
 namespace pliant {
 
-/// One binary file, whole or not at all: the line "pliant checkpoint 1", a line of JSON (for people and scripts), the
-/// content, and 16 hexadecimal digits of the FNV-1a hash of all before.
+/// One binary file, whole or not at all, written as it comes: the line "pliant checkpoint 1", a line of JSON (for
+/// people and scripts), the content, and 16 hexadecimal digits of the FNV-1a hash of all before.
 class CheckpointFile {
  public:
-  /// Starts a file: append the content to `bytes`, then write. The last good file stays until the new one is whole on
-  /// the disk. Throws OutputError.
-  explicit CheckpointFile(const std::string& header_line);
-  std::string bytes;
-  void write(const std::filesystem::path& file);
+  /// The last good file stays until the new one is committed. Throws OutputError.
+  CheckpointFile(const std::filesystem::path& file, const std::string& header_line);
+  void append(const char* bytes, std::size_t count);
+  void commit();
+
+ private:
+  AtomicFile file_;
+  Fnv1a hash_;
 };
 
 /// A checkpoint that was read.

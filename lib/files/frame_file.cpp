@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "files/atomic_file.hpp"
 #include "files/hdf5_file.hpp"
 #include "files/text_files.hpp"
 #include "files/xdmf.hpp"
@@ -25,13 +26,9 @@ void require_size(const std::filesystem::path& file, const std::string& what, st
                   file.string(), what, found, expected));
 }
 
-std::size_t cell_count(const GridTopology& grid) {
-  return grid.cells.size() / static_cast<std::size_t>(grid.cell_size);
-}
-
-void check_field(const std::filesystem::path& file, const GridTopology& grid, const Field& field) {
+void check_field(const std::filesystem::path& file, const Grid& grid, const Field& field) {
   const std::size_t entries =
-      field.centre == Field::Centre::point ? static_cast<std::size_t>(grid.points) : cell_count(grid);
+      static_cast<std::size_t>(field.centre == Field::Centre::point ? grid.points : grid.cell_count);
   if (field.components < 1 || field.components > 3) {
     throw OutputError(fmt::format("{}: '{}/{}' has {} components; allowed are 1 to 3", file.string(), grid.name,
                                   field.name, field.components));
@@ -40,12 +37,14 @@ void check_field(const std::filesystem::path& file, const GridTopology& grid, co
                entries * static_cast<std::size_t>(field.components));
 }
 
-void check_grid(const std::filesystem::path& file, const GridTopology& grid) {
+void check_grid(const std::filesystem::path& file, GridTopology& grid) {
   if (grid.cell_size != 2 && grid.cell_size != 3) {
     throw OutputError(fmt::format("{}: grid '{}' has cells of {} points; allowed are 2 (segments) and 3 (triangles)",
                                   file.string(), grid.name, grid.cell_size));
   }
-  require_size(file, grid.name + "/cells", grid.cells.size(), cell_count(grid) * grid.cell_size);
+  grid.cell_count = static_cast<int>(grid.cells.size()) / grid.cell_size;
+  require_size(file, grid.name + "/cells", grid.cells.size(),
+               static_cast<std::size_t>(grid.cell_count) * static_cast<std::size_t>(grid.cell_size));
   for (const int point : grid.cells) {
     if (point >= 0 && point < grid.points) continue;
     throw OutputError(fmt::format("{}: grid '{}' has a cell with point {}; allowed are 0 to {}", file.string(),
@@ -56,11 +55,11 @@ void check_grid(const std::filesystem::path& file, const GridTopology& grid) {
 
 /// Throws unless every grid can be written.
 std::vector<GridTopology> checked(const std::filesystem::path& file, std::vector<GridTopology> grids) {
-  for (const GridTopology& grid : grids) check_grid(file, grid);
+  for (GridTopology& grid : grids) check_grid(file, grid);
   return grids;
 }
 
-void check_frame(const std::filesystem::path& file, const GridTopology& grid, const GridFrame& frame) {
+void check_frame(const std::filesystem::path& file, const Grid& grid, const GridFrame& frame) {
   require_size(file, grid.name + "/position", frame.positions.size(), 2 * static_cast<std::size_t>(grid.points));
   for (const Field& field : frame.fields) check_field(file, grid, field);
 }
@@ -109,18 +108,19 @@ std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames) {
 
 struct FrameFile::Implementation {
   std::filesystem::path heavy, light;
-  std::vector<GridTopology> grids;
+  std::vector<Grid> grids;
   XdmfDocument document;
   int count = 0;
 
-  Implementation(const std::filesystem::path& folder, std::vector<GridTopology> topologies, Opening opening)
+  /// Topologies are let go of: they may be as large as all the rest of a run.
+  Implementation(const std::filesystem::path& folder, const std::vector<GridTopology>& topologies, Opening opening)
       : heavy(folder / "frames.h5"),
         light(folder / "frames.xdmf"),
-        grids(checked(heavy, std::move(topologies))),
-        document(heavy, grids) {
+        grids(topologies.begin(), topologies.end()),
+        document(heavy, topologies) {
     if (opening == Opening::resume) return;
     Hdf5File file(heavy, Hdf5File::Mode::create);
-    for (const GridTopology& grid : grids) write_topology(file, grid);
+    for (const GridTopology& grid : topologies) write_topology(file, grid);
     file.write_empty_list("/times");
     file.close();
     write_file_atomically(light, document.text());
@@ -160,7 +160,7 @@ struct FrameFile::Implementation {
       throw OutputError(fmt::format("{}: has {} frames, {} at the checkpoint; it was changed: start anew (--force)",
                                     heavy.string(), there, wanted));
     if (there > wanted) file.shorten_list("/times", wanted);
-    for (const GridTopology& grid : grids) {
+    for (const Grid& grid : grids) {
       int end = count;
       while (file.has(frame_group(grid.name, end))) ++end;
       // The last first: a kill in between leaves no gap, behind which the next call would not look.
@@ -180,7 +180,8 @@ struct FrameFile::Implementation {
 };
 
 FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening)
-    : implementation_(std::make_unique<Implementation>(folder, std::move(grids), opening)) {}
+    : implementation_(
+          std::make_unique<Implementation>(folder, checked(folder / "frames.h5", std::move(grids)), opening)) {}
 
 FrameFile::~FrameFile() = default;
 

@@ -19,11 +19,16 @@ struct Field {
   std::vector<float> values;  ///< [points or cells x components]
 };
 
-/// Topology of a grid, written once. `cell_size` 3: triangles, 2: line segments.
-struct GridTopology {
+/// What a grid is. `cell_size` 3: triangles, 2: line segments.
+struct Grid {
   std::string name;  ///< "bodies", "outlines"
   int points = 0;
   int cell_size = 3;
+  int cell_count = 0;  ///< of a topology's cells: set by whoever takes it
+};
+
+/// A grid with what is written once.
+struct GridTopology : Grid {
   std::vector<int> cells;              ///< [cells x cell_size]
   std::vector<Field> constant_fields;  ///< written once: kind, body
 };

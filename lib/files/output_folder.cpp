@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "files/text_files.hpp"
+#include "files/atomic_file.hpp"
 
 namespace pliant {
 namespace {

@@ -7,9 +7,6 @@
 
 namespace pliant {
 
-/// Writes a whole file under a temporary name, fsyncs and renames it: the file is whole or absent. Throws OutputError.
-void write_file_atomically(const std::filesystem::path& file, const std::string& content);
-
 /// How an output file is opened: anew, or to go on with what a checkpoint knows of it.
 enum class Opening { create, resume };
 

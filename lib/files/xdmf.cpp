@@ -5,9 +5,7 @@
 namespace pliant {
 namespace {
 
-int cell_count(const GridTopology& grid) { return static_cast<int>(grid.cells.size()) / grid.cell_size; }
-
-std::string topology_type(const GridTopology& grid) {
+std::string topology_type(const Grid& grid) {
   return grid.cell_size == 3 ? R"(TopologyType="Triangle")"
                              : fmt::format(R"(TopologyType="Polyline" NodesPerElement="{}")", grid.cell_size);
 }
@@ -24,7 +22,7 @@ XdmfDocument::XdmfDocument(const std::filesystem::path& heavy, const std::vector
     const std::string folder = "/" + grid.name;
     std::string constant =
         fmt::format("        <Topology {} NumberOfElements=\"{}\">\n{}        </Topology>\n", topology_type(grid),
-                    cell_count(grid), item(folder + "/cells", "Int", cell_count(grid), grid.cell_size));
+                    grid.cell_count, item(folder + "/cells", "Int", grid.cell_count, grid.cell_size));
     for (const Field& field : grid.constant_fields) constant += attribute(field, folder, grid);
     names_.push_back(grid.name);
     constants_.push_back(std::move(constant));
@@ -32,8 +30,7 @@ XdmfDocument::XdmfDocument(const std::filesystem::path& heavy, const std::vector
   }
 }
 
-void XdmfDocument::add(int index, double time, const std::vector<GridTopology>& grids,
-                       const std::vector<GridFrame>& frames) {
+void XdmfDocument::add(int index, double time, const std::vector<Grid>& grids, const std::vector<GridFrame>& frames) {
   for (std::size_t g = 0; g < grids.size(); ++g) {
     const std::string folder = frame_group(grids[g].name, index);
     std::string& text = frames_[g];
@@ -55,12 +52,12 @@ std::string XdmfDocument::text() const {
   return result + "  </Domain>\n</Xdmf>\n";
 }
 
-std::string XdmfDocument::attribute(const Field& field, const std::string& folder, const GridTopology& grid) const {
+std::string XdmfDocument::attribute(const Field& field, const std::string& folder, const Grid& grid) const {
   const bool at_points = field.centre == Field::Centre::point;
   const int components = stored_components(field);
   return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n{}        </Attribute>\n",
                      field.name, components == 1 ? "Scalar" : "Vector", at_points ? "Node" : "Cell",
-                     item(folder + "/" + field.name, "Float", at_points ? grid.points : cell_count(grid), components));
+                     item(folder + "/" + field.name, "Float", at_points ? grid.points : grid.cell_count, components));
 }
 
 std::string XdmfDocument::item(const std::string& path, const char* type, int rows, int columns) const {

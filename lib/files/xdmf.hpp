@@ -15,13 +15,13 @@ class XdmfDocument {
   /// `heavy` is the name of the HDF5 file, relative to the XDMF file.
   XdmfDocument(const std::filesystem::path& heavy, const std::vector<GridTopology>& grids);
   /// Adds frame `index` of all grids; `frames` are told apart by names and shapes alone.
-  void add(int index, double time, const std::vector<GridTopology>& grids, const std::vector<GridFrame>& frames);
+  void add(int index, double time, const std::vector<Grid>& grids, const std::vector<GridFrame>& frames);
   std::string text() const;
   /// [grids] what it says of the frames so far.
   std::vector<std::string>& frames() { return frames_; }
 
  private:
-  std::string attribute(const Field& field, const std::string& folder, const GridTopology& grid) const;
+  std::string attribute(const Field& field, const std::string& folder, const Grid& grid) const;
   std::string item(const std::string& path, const char* type, int rows, int columns) const;
 
   std::string heavy_;

@@ -68,10 +68,10 @@ void write_checkpoint(const std::filesystem::path& folder, const std::string& sc
                                          {"build", build_identity()},
                                          {"mesh", mesh_hash(simulation.model())},
                                          {"scene_text", scene_text}};
-  CheckpointFile file(header.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
-  SaveLeaf save(file.bytes);
+  CheckpointFile file(folder / file_name, header.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
+  SaveLeaf save(file);
   visit_run(Walk(save), simulation, recorder);
-  file.write(folder / file_name);
+  file.commit();
 }
 
 Checkpoint::Checkpoint(const std::filesystem::path& folder)

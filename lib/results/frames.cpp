@@ -19,7 +19,7 @@ Field empty_field(const FrameField& field) {
 }
 
 GridTopology empty_grid(const char* name, int cell_size) {
-  return {name, 0, cell_size, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
+  return {{name, 0, cell_size}, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
 }
 
 template <std::size_t size>

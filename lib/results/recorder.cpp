@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "files/atomic_file.hpp"
 #include "files/text_files.hpp"
 
 namespace pliant {

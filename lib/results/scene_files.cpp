@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
-#include "files/text_files.hpp"
+#include "files/atomic_file.hpp"
 #include "scene/portable_scene.hpp"
 #include "scene/text_file.hpp"
 

@@ -89,7 +89,7 @@ std::vector<double> contact_pressures(const View& view) {
 float kind_of(const Body& body) { return body.placed.wall ? 2 : body.compliant() ? 0 : 1; }
 
 GridTopology empty_grid(const char* name, int cell_size) {
-  return {name, 0, cell_size, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
+  return {{name, 0, cell_size}, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
 }
 
 template <class Nodes>

@@ -26,8 +26,8 @@ Field field(const std::string& name, Field::Centre centre, int components, std::
 
 /// Two triangles over four points, and two segments over three points.
 std::vector<GridTopology> small_grids() {
-  return {{"bodies", 4, 3, {0, 1, 2, 0, 2, 3}, {field("kind", Field::Centre::cell, 1, {0, 1})}},
-          {"outlines", 3, 2, {0, 1, 1, 2}, {field("body", Field::Centre::cell, 1, {7, 8})}}};
+  return {{{"bodies", 4, 3}, {0, 1, 2, 0, 2, 3}, {field("kind", Field::Centre::cell, 1, {0, 1})}},
+          {{"outlines", 3, 2}, {0, 1, 1, 2}, {field("body", Field::Centre::cell, 1, {7, 8})}}};
 }
 
 std::vector<GridFrame> small_frame(float shift) {
@@ -38,7 +38,7 @@ std::vector<GridFrame> small_frame(float shift) {
 }
 
 /// A grid that a megabyte of incompressible numbers makes large.
-std::vector<GridTopology> large_grids(int points) { return {{"bodies", points, 3, {0, 1, 2}, {}}}; }
+std::vector<GridTopology> large_grids(int points) { return {{{"bodies", points, 3}, {0, 1, 2}, {}}}; }
 
 std::vector<GridFrame> noise(int points) {
   std::mt19937 generator(1);
@@ -100,7 +100,7 @@ TEST_F(FrameFiles, IndependentReaderSeesAWrongShape) {
 }
 
 TEST_F(FrameFiles, EmptyGridsAreFine) {
-  FrameFile file(folder_, {{"bodies", 0, 3, {}, {field("kind", Field::Centre::cell, 1, {})}}});
+  FrameFile file(folder_, {{{"bodies", 0, 3}, {}, {field("kind", Field::Centre::cell, 1, {})}}});
   file.append(0, {GridFrame{}});
   EXPECT_TRUE(read_array("/bodies/000000/position").empty());
 }

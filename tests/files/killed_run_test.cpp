@@ -56,7 +56,7 @@ class KilledRun : public testing::TemporaryFolder {
   bool run_until(int last) const {
     const pid_t writer = testing::forked();
     if (writer == 0) {
-      FrameFile file(folder_, {{"bodies", points, 3, {0, 1, 2}, {}}, {"outlines", points, 2, {0, 1}, {}}});
+      FrameFile file(folder_, {{{"bodies", points, 3}, {0, 1, 2}, {}}, {{"outlines", points, 2}, {0, 1}, {}}});
       file.append(0, {frame(0), frame(0)});
       writes_left = last;
       for (int i = 1; i < frames; ++i) file.append(i, {frame(i), frame(i)});

@@ -1,4 +1,5 @@
 #include "files/text_files.hpp"
+#include "files/atomic_file.hpp"
 
 #include <cmath>
 #include <cstdlib>
