@@ -148,6 +148,11 @@ bench() {
     prepare release pliant_reference_solver
     exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
   fi
+  if [ "${1-}" = scenes ]; then
+    prepare release pliant_engine
+    exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
+  fi
+  [ "${1-}" != kernels ] || shift
   ready bench
   prepare release pliant_bench pliant_bench
   set_thread_defaults

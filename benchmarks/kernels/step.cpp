@@ -1,0 +1,62 @@
+// Whole evaluations and steps of the third body, and what bounds its steps.
+#include "benchmarks/kernels/meter.hpp"
+#include "benchmarks/kernels/scenes.hpp"
+#include "benchmarks/kernels/work.hpp"
+
+namespace pliant::kernels {
+namespace {
+
+Work evaluation_of(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  return contact_forces(model, simulation.forces().contact()) + place_outlines(model) + gather_outline_forces(model) +
+         internal_forces(model);
+}
+
+/// Two power iterations: internal forces at rest, and twice beside it; of each component of a node some 12 flops an
+/// iteration, vectors of the directions, probes and responses once read and written.
+void bound_of_internal_forces(benchmark::State& state) {
+  const Simulation& simulation = third_body();
+  const Model& model = simulation.model();
+  const Threads threads(state);
+  TimeStepBound bound(model, simulation.forces().contact().laws());
+  bound.update_internal(simulation.state().position, simulation.state().memory);
+  for (auto _ : state) bound.update_internal(simulation.state().position, simulation.state().memory);
+  const double nodes = field_nodes(model), vector = 2 * sizeof(double);
+  report(state, "node", nodes, 3 * internal_forces(model) + Work{2 * 2 * 12 * nodes, 6 * vector * nodes});
+}
+BENCHMARK(bound_of_internal_forces)->Name("bound/internal")->Apply(one_and_two_threads);
+
+/// From the candidates: as contact forces, without their history.
+void bound_of_contact(benchmark::State& state) {
+  const Simulation& simulation = third_body();
+  const ContactSystem& contact = simulation.forces().contact();
+  const Threads threads(state);
+  TimeStepBound bound(simulation.model(), contact.laws());
+  for (auto _ : state) bound.update_contact(contact);
+  const Work forces = contact_forces(simulation.model(), contact);
+  report(state, "record", records(contact), {forces.flops, forces.bytes - 4 * sizeof(double) * records(contact)});
+}
+BENCHMARK(bound_of_contact)->Name("bound/contact")->Apply(one_and_two_threads);
+
+void evaluation(benchmark::State& state) {
+  const Simulation& simulation = third_body();
+  const Threads threads(state);
+  State now = simulation.state();
+  now.memory = {};
+  Forces forces(simulation.model());
+  Trial trial(simulation.model());
+  for (auto _ : state) evaluate_at(forces, now, trial);
+  report(state, "evaluation", 1, evaluation_of(simulation));
+}
+BENCHMARK(evaluation)->Apply(one_and_two_threads);
+
+void step(benchmark::State& state) {
+  Simulation& simulation = third_body();
+  const Threads threads(state);
+  for (auto _ : state) simulation.step(1e300);
+  report(state, "step", 1, evaluation_of(simulation) + update(simulation.model()));
+}
+BENCHMARK(step)->Apply(one_and_two_threads);
+
+}  // namespace
+}  // namespace pliant::kernels

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "benchmarks/kernels/meter.hpp"
+#include "bodies/model.hpp"
+#include "contact/contact.hpp"
+
+namespace pliant::kernels {
+
+/// What kernels have to do in a model, from their loops (meter.hpp). Bodies alone count: padding lanes do not.
+
+double integration_points(const Model& model);
+double field_nodes(const Model& model);        ///< of compliant bodies
+double outline_nodes(const Model& model);      ///< of all bodies
+double records(const ContactSystem& contact);  ///< slave nodes of all patches, without padding
+
+Work internal_forces(const Model& model);
+Work place_outlines(const Model& model);
+Work gather_outline_forces(const Model& model);
+Work update(const Model& model);
+Work contact_forces(const Model& model, const ContactSystem& contact);
+
+}  // namespace pliant::kernels
