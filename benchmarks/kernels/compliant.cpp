@@ -38,7 +38,7 @@ void internal_forces(benchmark::State& state, Cloud& (*cloud)()) {
   const Threads threads(state);
   Dofs force = zero_dofs(grains.model);
   for (auto _ : state) add_all(grains.model, grains.state.position, force);
-  report(state, "point", integration_points(grains.model), internal_forces(grains.model));
+  report(state, "point", integration_points(grains.model), work::internal_forces(grains.model));
 }
 #define INTERNAL_FORCES(scene, name) \
   BENCHMARK_CAPTURE(internal_forces, scene, scene)->Name("internal_forces/" name)->Apply(one_and_two_threads)
@@ -75,7 +75,7 @@ void update(benchmark::State& state) {
     parallel_for(static_cast<int>(grains.model.regions.size()),
                  [&](int r) { finish_region(*grains.verlet, grains.state, dt, r); });
   }
-  report(state, "node", field_nodes(grains.model), update(grains.model));
+  report(state, "node", field_nodes(grains.model), work::update(grains.model));
 }
 BENCHMARK(update)->Apply(one_and_two_threads);
 
@@ -93,7 +93,7 @@ void place(benchmark::State& state) {
   const Threads threads(state);
   OutlineField outlines(grains.model.outline_offset.back());
   for (auto _ : state) place_outlines(grains.model, grains.state.position, outlines);
-  report(state, "node", outline_nodes(grains.model), place_outlines(grains.model));
+  report(state, "node", outline_nodes(grains.model), work::place_outlines(grains.model));
 }
 BENCHMARK(place)->Name("outlines/place")->Apply(one_and_two_threads);
 
@@ -116,7 +116,7 @@ void gather(benchmark::State& state) {
     parallel_for(model.lane_batches, [&](int b) {
       add_outline_forces(model, model.regions[b], on_outlines, &force.compliant[model.batches[b].offset]);
     });
-  report(state, "node", outline_nodes(model), gather_outline_forces(model));
+  report(state, "node", outline_nodes(model), work::gather_outline_forces(model));
 }
 BENCHMARK(gather)->Name("outlines/gather")->Apply(one_and_two_threads);
 
@@ -152,7 +152,8 @@ void compliant_step(benchmark::State& state) {
     });
   }
   report(state, "point", integration_points(model),
-         internal_forces(model) + update(model) + place_outlines(model) + gather_outline_forces(model));
+         work::internal_forces(model) + work::update(model) + work::place_outlines(model) +
+             work::gather_outline_forces(model));
 }
 BENCHMARK(compliant_step)->Apply(one_and_two_threads);
 

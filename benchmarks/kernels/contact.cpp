@@ -1,5 +1,6 @@
 // Kernels of contact in the third body: forces of three laws, everything from degrees of freedom to degrees of freedom,
 // and candidates.
+#include <algorithm>
 #include <vector>
 
 #include "benchmarks/baseline/from_model.hpp"
@@ -27,7 +28,7 @@ void contact_forces(benchmark::State& state, ContactLawKind law) {
   for (auto _ : state)
     contacts = scene.contact.forces(scene.outlines, scene.history, scene.trial, scene.force).contacts;
   count_contacts(state, scene.contact, contacts);
-  report(state, "record", records(scene.contact), contact_forces(scene.model, scene.contact));
+  report(state, "record", records(scene.contact), work::contact_forces(scene.model, scene.contact));
 }
 BENCHMARK_CAPTURE(contact_forces, frictionless, frictionless)->Name("contact/frictionless")->Apply(one_and_two_threads);
 BENCHMARK_CAPTURE(contact_forces, mohr_coulomb, mohr_coulomb)->Name("contact/mohr-coulomb")->Apply(one_and_two_threads);
@@ -43,14 +44,31 @@ struct PlainScene {
     contact.forces(bodies);
     baseline::move_to(scene.model, scene.now, bodies);
     baseline::place_outlines(bodies);
+    contact.forces(bodies);
+    difference = difference_to(scene);
+  }
+  /// Of sums of forces on bodies, over the largest.
+  double difference_to(const ContactScene& scene) const {
+    double largest = 0, difference = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      Vec2 plain(0, 0), engine(0, 0);
+      for (std::size_t k = 0; k < bodies[b].outline.size(); ++k) {
+        plain += Vec2(bodies[b].outline[k].fx, bodies[b].outline[k].fy);
+        engine += scene.force.at(scene.model.outline_offset[b] + static_cast<int>(k));
+      }
+      largest = std::max(largest, engine.norm()), difference = std::max(difference, (plain - engine).norm());
+    }
+    return difference / largest;
   }
   std::vector<baseline::Body> bodies;
   baseline::Contact contact;
+  double difference = 0;
 };
 
 void count_lists(benchmark::State& state, const PlainScene& plain, const ContactScene& scene) {
   state.counters["contacts"] = plain.contact.contacts();
   state.counters["candidates"] = plain.contact.candidates();
+  state.counters["difference"] = plain.difference;  // to the engine's forces
   report(state, "record", records(scene.contact), {});
 }
 
@@ -91,7 +109,7 @@ void contact_from_dofs(benchmark::State& state, ContactLawKind law) {
     });
   }
   report(state, "record", records(scene.contact),
-         contact_forces(model, scene.contact) + place_outlines(model) + gather_outline_forces(model));
+         work::contact_forces(model, scene.contact) + work::place_outlines(model) + work::gather_outline_forces(model));
 }
 BENCHMARK_CAPTURE(contact_from_dofs, mohr_coulomb, mohr_coulomb)
     ->Name("contact/mohr-coulomb_and_outlines")

@@ -24,8 +24,8 @@ int main(int count, char** given) {
   std::vector<std::string> arguments(given, given + count);
   const std::filesystem::path folder = PLIANT_SOURCE_DIR "/results/bench";
   std::filesystem::create_directories(folder);
-  add_default(arguments, "benchmark_repetitions", "5");
-  add_default(arguments, "benchmark_min_time", "0.05");
+  add_default(arguments, "benchmark_repetitions", "10");
+  add_default(arguments, "benchmark_min_time", "0.02");
   add_default(arguments, "benchmark_out", (folder / "kernels.json").string());
   add_default(arguments, "benchmark_out_format", "json");
   std::vector<char*> pointers;

@@ -1,4 +1,6 @@
 // Whole evaluations and steps of the third body, and what bounds its steps.
+#include <algorithm>
+
 #include "benchmarks/kernels/meter.hpp"
 #include "benchmarks/kernels/scenes.hpp"
 #include "benchmarks/kernels/work.hpp"
@@ -6,10 +8,15 @@
 namespace pliant::kernels {
 namespace {
 
+double grains(const Simulation& simulation) {
+  const auto& bodies = simulation.model().bodies;
+  return static_cast<double>(std::ranges::count(bodies, false, &Body::wall));
+}
+
 Work evaluation_of(const Simulation& simulation) {
   const Model& model = simulation.model();
-  return contact_forces(model, simulation.forces().contact()) + place_outlines(model) + gather_outline_forces(model) +
-         internal_forces(model);
+  return work::contact_forces(model, simulation.forces().contact()) + work::place_outlines(model) +
+         work::gather_outline_forces(model) + work::internal_forces(model);
 }
 
 /// Two power iterations: internal forces at rest, and twice beside it; of each component of a node some 12 flops an
@@ -22,7 +29,7 @@ void bound_of_internal_forces(benchmark::State& state) {
   bound.update_internal(simulation.state().position, simulation.state().memory);
   for (auto _ : state) bound.update_internal(simulation.state().position, simulation.state().memory);
   const double nodes = field_nodes(model), vector = 2 * sizeof(double);
-  report(state, "node", nodes, 3 * internal_forces(model) + Work{2 * 2 * 12 * nodes, 6 * vector * nodes});
+  report(state, "node", nodes, 3 * work::internal_forces(model) + Work{2 * 2 * 12 * nodes, 6 * vector * nodes});
 }
 BENCHMARK(bound_of_internal_forces)->Name("bound/internal")->Apply(one_and_two_threads);
 
@@ -33,7 +40,7 @@ void bound_of_contact(benchmark::State& state) {
   const Threads threads(state);
   TimeStepBound bound(simulation.model(), contact.laws());
   for (auto _ : state) bound.update_contact(contact);
-  const Work forces = contact_forces(simulation.model(), contact);
+  const Work forces = work::contact_forces(simulation.model(), contact);
   report(state, "record", records(contact), {forces.flops, forces.bytes - 4 * sizeof(double) * records(contact)});
 }
 BENCHMARK(bound_of_contact)->Name("bound/contact")->Apply(one_and_two_threads);
@@ -45,8 +52,9 @@ void evaluation(benchmark::State& state) {
   now.memory = {};
   Forces forces(simulation.model());
   Trial trial(simulation.model());
+  evaluate_at(forces, now, trial);  // finds the candidates
   for (auto _ : state) evaluate_at(forces, now, trial);
-  report(state, "evaluation", 1, evaluation_of(simulation));
+  report(state, "grain", grains(simulation), evaluation_of(simulation));
 }
 BENCHMARK(evaluation)->Apply(one_and_two_threads);
 
@@ -54,7 +62,7 @@ void step(benchmark::State& state) {
   Simulation& simulation = third_body();
   const Threads threads(state);
   for (auto _ : state) simulation.step(1e300);
-  report(state, "step", 1, evaluation_of(simulation) + update(simulation.model()));
+  report(state, "grain", grains(simulation), evaluation_of(simulation) + work::update(simulation.model()));
 }
 BENCHMARK(step)->Apply(one_and_two_threads);
 

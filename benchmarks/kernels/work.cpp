@@ -65,6 +65,8 @@ double records(const ContactSystem& contact) {
   return count;
 }
 
+namespace work {
+
 /// A neighbour of a point: 4 fused operations for F and 4 for the forces. A point: the weighted neo-Hookean stress: 2
 /// products of constants, 3 for J, 22 for ln J, 3 for (lambda ln J - mu)/J, 12 for P. A node: its place is read, its
 /// force read and written. A table: gradients and nodes of the entries, weights and rows of the points. A spread body's
@@ -114,7 +116,7 @@ Work update(const Model& model) {
 }
 
 /// A segment of a window: 14 flops for length, tangent and bisector. A record: 4 flops at each bisector, and some 70
-/// for the projection, the slip, the law, its force and the reaction; its place and slip are read and written (32 bytes).
+/// for the projection, the slip, the law, its force and the reaction; its place and slip are read and written.
 /// Outlines and tributary lengths are read, forces on them written; buffers of the patches are written and read.
 Work contact_forces(const Model& model, const ContactSystem& contact) {
   Work work{0, outline_nodes(model) * (2 * vector + number)};
@@ -128,4 +130,5 @@ Work contact_forces(const Model& model, const ContactSystem& contact) {
   return work;
 }
 
+}  // namespace work
 }  // namespace pliant::kernels

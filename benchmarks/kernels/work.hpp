@@ -13,10 +13,12 @@ double field_nodes(const Model& model);        ///< of compliant bodies
 double outline_nodes(const Model& model);      ///< of all bodies
 double records(const ContactSystem& contact);  ///< slave nodes of all patches, without padding
 
+namespace work {
 Work internal_forces(const Model& model);
 Work place_outlines(const Model& model);
 Work gather_outline_forces(const Model& model);
 Work update(const Model& model);
 Work contact_forces(const Model& model, const ContactSystem& contact);
+}  // namespace work
 
 }  // namespace pliant::kernels

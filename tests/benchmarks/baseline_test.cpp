@@ -15,14 +15,14 @@ namespace {
 
 using namespace testing;
 
-/// Hexagonal packing of 6 x 4 discs, compliant and rigid ones, squeezed: rows nearer than a diameter. Smooth outlines,
-/// so that no corner has a say.
+/// Hexagonal packing of 6 x 4 discs, compliant and rigid ones, squeezed: neighbours nearer than a diameter. Smooth
+/// outlines, so that no corner has a say.
 Scene squeezed(const ContactRule& rule) {
   Scene scene = bare_scene();
-  scene.period = 6 * 0.87;
-  scene.shapes = {polygonal_disc("disc", 1, 50, 80)};
+  scene.period = 6 * 0.86;
+  scene.shapes = {disc_shape("disc", 1, 168)};
   Grains layer = grains("layer", "disc", BodyKind::compliant, {});
-  layer.packing = {PackingKind::hexagonal, 6, 4, 0.87, 0.99, {0.435, 0}, {}};
+  layer.packing = {PackingKind::hexagonal, 6, 4, 0.86, 0.99, {0.43, 0}, {}};
   layer.mix = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
   layer.seed = 3;
   layer.angle.reset();
