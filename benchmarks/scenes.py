@@ -16,11 +16,12 @@ import argparse
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -63,6 +64,7 @@ class Figures:
     preparation: float  # s
     memory: float  # peak, bytes
     output: float  # share of the seconds
+    cpu: float = 0.0  # of all threads and of the preparation too, s: on a busy machine it tells more than the clock
 
     @property
     def time_a_grain(self) -> float:
@@ -122,9 +124,9 @@ def available_memory(meminfo: str) -> float:
 
 def table(rows: list[Figures]) -> str:
     lines = [f"{'scene':<22} {'grains':>7} {'threads':>7} {'steps':>7} {'evaluations':>11} {'a grain and step':>16} "
-             f"{'a grain':>10} {'all memory':>10} {'prepared in':>11} {'output':>7}"]
+             f"{'a grain':>10} {'all memory':>10} {'prepared in':>11} {'output':>7} {'CPU':>8}"]
     lines += [f"{f.scene:<22} {f.grains:>7} {f.threads:>7} {f.steps:>7} {f.evaluations:>11} {f.time_a_grain * 1e9:>13.0f} ns "
-              f"{f.memory_a_grain / 1e3:>7.1f} kB {f.memory / 1e6:>7.0f} MB {f.preparation:>9.2f} s {f.output:>6.1%}" for f in rows]
+              f"{f.memory_a_grain / 1e3:>7.1f} kB {f.memory / 1e6:>7.0f} MB {f.preparation:>9.2f} s {f.output:>7.1%} {f.cpu:>6.1f} s" for f in rows]
     return "\n".join(lines)
 
 
@@ -141,22 +143,30 @@ def verdict(rows: list[Figures]) -> list[str]:
     return lines
 
 
+def processor_time() -> float:
+    """Of the programs that have ended, s."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 class Runner:
     def __init__(self, engine: Path, scratch: Path) -> None:
         self.engine, self.scratch = engine, scratch
 
-    def run(self, *arguments: object) -> None:
-        environment = {"OMP_WAIT_POLICY": "active", **os.environ}
+    def run(self, *arguments: object) -> float:
+        """Returns the processor's time, s."""
+        before, environment = processor_time(), {"OMP_WAIT_POLICY": "active", **os.environ}
         result = subprocess.run([self.engine, "run", *map(str, arguments), "--quiet"], capture_output=True, text=True,
                                 env=environment)
         if result.returncode != 0:
             raise RuntimeError(result.stderr.strip())
+        return processor_time() - before
 
     def fresh(self, name: str, grains: int, text: str, threads: int) -> Figures:
         scene, out = self.scratch / f"{name}.toml", self.scratch / "out"
         scene.write_text(text)
-        self.run(scene, "--out", out, "--threads", threads, "--force")
-        return figures_of(name, grains, json.loads((out / "summary.json").read_text()))
+        cpu = self.run(scene, "--out", out, "--threads", threads, "--force")
+        return replace(figures_of(name, grains, json.loads((out / "summary.json").read_text())), cpu=cpu)
 
     def resumed(self, name: str, grains: int, folder: Path, steps: int, threads: int) -> Figures:
         out = self.scratch / "resumed"
@@ -164,8 +174,8 @@ class Runner:
         shutil.copytree(folder, out)
         before = json.loads((out / "summary.json").read_text())
         until = before["time"] + steps * last_step(out)
-        self.run(out / "scene.toml", "--resume", "--out", out, "--threads", threads, "--until", f"{until:.9g} s")
-        return figures_of(name, grains, json.loads((out / "summary.json").read_text()), before)
+        cpu = self.run(out / "scene.toml", "--resume", "--out", out, "--threads", threads, "--until", f"{until:.9g} s")
+        return replace(figures_of(name, grains, json.loads((out / "summary.json").read_text()), before), cpu=cpu)
 
 
 def usual_step(runner: Runner, case: str) -> float:

@@ -1,8 +1,9 @@
 #include "benchmarks/baseline/from_model.hpp"
 
-#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <stdexcept>
+#include <utility>
 #include <variant>
 
 #include "bodies/body_view.hpp"
@@ -91,16 +92,21 @@ void move_to(const Model& model, const Dofs& position, std::vector<Body>& bodies
   }
 }
 
-Contact contact_of(const Model& model, const ContactSystem& contact) {
+Contact contact_of(const Model& model, const ContactSystem& contact, std::vector<Body>& bodies) {
   const ContactLaws& laws = contact.laws();
-  int parties = 0;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    parties = std::max(parties, 1 + laws.party(static_cast<int>(b)));
-  std::vector<std::vector<ContactLaw>> table(static_cast<std::size_t>(parties));
-  std::vector<int> one(static_cast<std::size_t>(parties), -1);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) one[laws.party(static_cast<int>(b))] = static_cast<int>(b);
-  for (int p = 0; p < parties; ++p)
-    for (int q = 0; q < parties; ++q) table[p].push_back(plain(laws.between(one[p], one[q])));
+  std::map<std::pair<int, double>, int> numbers;  // by what laws depend on
+  std::vector<int> one;                           // body of each party
+  for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
+    const auto [party, fresh] = numbers.try_emplace({laws.party(b), laws.spacing(b)}, static_cast<int>(one.size()));
+    if (fresh) one.push_back(b);
+    bodies[b].party = party->second;
+  }
+  std::vector<std::vector<ContactLaw>> table(one.size());
+  for (std::size_t p = 0; p < one.size(); ++p)
+    for (const int other : one) {
+      const bool may_meet = !model.bodies[one[p]].wall || !model.bodies[other].wall;
+      table[p].push_back(may_meet ? plain(laws.between(one[p], other)) : ContactLaw());
+    }
   return Contact(table, contact.skin(), model.scene.period.value_or(0));
 }
 

@@ -74,7 +74,7 @@ void expect_same_contact(const ContactRule& rule) {
   ContactRig rig(squeezed(rule));
   std::vector<baseline::Body> bodies = baseline::bodies_of(rig.model, rig.q);
   baseline::place_outlines(bodies);
-  baseline::Contact contact = baseline::contact_of(rig.model, rig.contact);
+  baseline::Contact contact = baseline::contact_of(rig.model, rig.contact, bodies);
   contact.find_candidates(bodies);
   for (int step = 0; step < 4; ++step) {
     if (step > 0) {
@@ -111,6 +111,11 @@ void expect_same_contact(const ContactRule& rule) {
 TEST(Baseline, FrictionlessContactIsTheEngines) { expect_same_contact(frictionless(100)); }
 TEST(Baseline, MohrCoulombContactIsTheEngines) { expect_same_contact(mohr_coulomb(100, 0.3, 0.01, 0.02)); }
 TEST(Baseline, CohesiveContactIsTheEngines) { expect_same_contact(cohesive(100, 0.3, 0.01, 0.2)); }
+TEST(Baseline, RigidPairsAreStifferAsTheEngines) {
+  ContactRule rule = mohr_coulomb(0, 0.3);
+  rule.stiffness.reset();
+  expect_same_contact(rule);
+}
 
 /// EXACT: internal forces, outlines and a step of the update to 1e-12 of the largest.
 TEST(Baseline, InternalForcesAndOutlinesAreTheEngines) {
