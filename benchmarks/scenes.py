@@ -155,7 +155,8 @@ class Runner:
 
     def run(self, *arguments: object) -> float:
         """Returns the processor's time, s."""
-        before, environment = processor_time(), {"OMP_WAIT_POLICY": "active", **os.environ}
+        before = processor_time()
+        environment = {"OMP_WAIT_POLICY": "active", **os.environ}
         result = subprocess.run([self.engine, "run", *map(str, arguments), "--quiet"], capture_output=True, text=True,
                                 env=environment)
         if result.returncode != 0:
