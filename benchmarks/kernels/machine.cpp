@@ -8,6 +8,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,9 @@ double cache_bytes(int name, double otherwise) {
 }
 const double cache_sizes[] = {cache_bytes(_SC_LEVEL1_DCACHE_SIZE, 32e3), cache_bytes(_SC_LEVEL2_CACHE_SIZE, 1e6),
                               cache_bytes(_SC_LEVEL3_CACHE_SIZE, 32e6)};
+
+std::map<int, double> peaks;                         ///< by threads
+std::map<std::pair<Level, int>, double> bandwidths;  ///< likewise
 
 constexpr int chains = 16;       ///< two units of four cycles' latency need 8 at least
 constexpr long rounds = 20'000;  ///< of all chains
@@ -136,27 +140,34 @@ Level level_of(double bytes_a_thread) {
 }
 
 double fma_peak(int threads) {
-  static std::map<int, double> found;
-  if (!found.contains(threads))
-    found[threads] = threads * flops_of_rounds / least_seconds([&] {
+  if (!peaks.contains(threads))
+    peaks[threads] = threads * flops_of_rounds / least_seconds([&] {
 #pragma omp parallel num_threads(threads)
                        multiply_and_add();
                      });
-  return found[threads];
+  return peaks[threads];
 }
 
 double read_bandwidth(Level level, int threads) {
-  static std::map<std::pair<Level, int>, double> found;
   const std::pair key(level, threads);
-  if (!found.contains(key)) {
+  if (!bandwidths.contains(key)) {
     const Numbers numbers(level, threads);
     const long times = times_of(numbers);
-    found[key] = numbers.bytes() * static_cast<double>(times) * threads / least_seconds([&] {
+    bandwidths[key] = numbers.bytes() * static_cast<double>(times) * threads / least_seconds([&] {
 #pragma omp parallel num_threads(threads)
-                   numbers.add_up(times);
-                 });
+                        numbers.add_up(times);
+                      });
   }
-  return found[key];
+  return bandwidths[key];
+}
+
+void take_note(const std::string& benchmark, int threads, double flop_rate, double read_rate) {
+  if (benchmark.starts_with("machine/fma_peak")) peaks[threads] = std::max(fma_peak(threads), flop_rate);
+  for (std::size_t level = 0; level < level_names.size(); ++level)
+    if (benchmark.starts_with(std::string("machine/read_bandwidth_") + level_names[level])) {
+      double& best = bandwidths[{static_cast<Level>(level), threads}];
+      best = std::max(best, read_rate);
+    }
 }
 
 }  // namespace pliant::kernels

@@ -68,6 +68,7 @@ void Table::ReportRuns(const std::vector<Run>& runs) {
   const int threads = std::max(1, static_cast<int>(counter(*fastest, "threads")));
   seconds_[name] = seconds;
   order_.push_back(name);
+  take_note(name, threads, counter(*fastest, "flops") / seconds, counter(*fastest, "bytes") / seconds);
   const std::string flops = flop_rate(counter(*fastest, "flops"), seconds, threads);
   const bool is_machine = name.starts_with("machine/");
   fmt::print("{:<46} {:>9.1f} us  {:<22} {:<22} {}\n", name, 1e6 * seconds, time_a_unit(*fastest), flops,
