@@ -154,7 +154,8 @@ void find_candidates(benchmark::State& state) {
 }
 BENCHMARK(find_candidates)->Name("candidates/find")->Apply(one_and_two_threads);
 
-/// Of pairs that all keep what was found.
+/// To and fro between two places five steps apart: pairs keep what was found until their ways add up to half of the
+/// skin. Counter `searched`: pairs that did not.
 void renew_candidates(benchmark::State& state) {
   const ContactScene& scene = third_body_with(cohesive);
   const Threads threads(state);
