@@ -64,7 +64,7 @@ struct RelatedShapes {
   std::vector<Lanes> unit_mass, inverse_unit_mass, nodal_distance;  ///< [nodes]
   LaneTable table;
   LaneRows outline_rows, node_rows, mass_correction;
-  Lanes correction_bound{};
+  Lanes correction_bound{}, weight_share{};
 };
 
 /// A shape whose bodies are spread: tables in an order in which neighbours in space are neighbours in memory, so that

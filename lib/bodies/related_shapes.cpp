@@ -63,7 +63,10 @@ RelatedShapes unite(Shapes shapes) {
       result.inverse_unit_mass[i][lane] = 1 / shapes[lane]->unit_mass[i];
       result.nodal_distance[i][lane] = shapes[lane]->nodal_distance[i];
     }
-  for (int lane = 0; lane < lane_count; ++lane) result.correction_bound[lane] = shapes[lane]->correction_bound;
+  for (int lane = 0; lane < lane_count; ++lane) {
+    result.correction_bound[lane] = shapes[lane]->correction_bound;
+    result.weight_share[lane] = shapes[lane]->weight_share;
+  }
   result.table = unite_tables(shapes);
   result.outline_rows = unite_rows(shapes, &Discretisation::outline_rows);
   result.node_rows = unite_rows(shapes, &Discretisation::node_rows);

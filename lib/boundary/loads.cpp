@@ -28,11 +28,21 @@ double applied_load(const RigidDof& dof, const Instant& at) {
   return loaded && contains(dof.window, at) ? dof.force_scale * dof.history.at(at.time) : 0.0;
 }
 
+namespace {
+
+/// What weighs, of a batch's unit masses: rim_mass adds inertia, no weight.
+Lanes weighing_density(const Model& model, const Batch& batch) {
+  return with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; }) *
+         batch.inverse_scale;
+}
+
+}  // namespace
+
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces) {
   if (g.x() == 0 && g.y() == 0) return;
   const Batch& batch = model.batches[region.batch];
   // Padding lanes would fall for ever: nothing holds them.
-  const Lanes density = select(batch.weight > 0.0, batch.density * batch.inverse_scale, Lanes{});
+  const Lanes density = select(batch.weight > 0.0, weighing_density(model, batch), Lanes{});
   with_nodes(model, batch, [&](const auto& nodes) {
     for (int i = region.first; i < region.last; ++i) {
       forces[2 * i] += density * (nodes.unit_mass[i] * g.x());
@@ -91,7 +101,7 @@ double gravity_moment(const Model& model, const Vec2& g, const Dofs& position) {
       Lanes moment{};
       for (int i = region.first; i < region.last; ++i)
         moment += nodes.unit_mass[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
-      return sum(moment * (batch.density * batch.inverse_scale) * batch.weight);
+      return sum(moment * weighing_density(model, batch) * batch.weight);
     });
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)

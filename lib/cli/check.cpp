@@ -9,13 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "bodies/initial_state.hpp"
-#include "bodies/place_outlines.hpp"
 #include "cli/cautions.hpp"
 #include "cli/estimates.hpp"
 #include "cli/rehearsal.hpp"
+#include "cli/stability.hpp"
 #include "core/memory.hpp"
-#include "dynamics/time_step_bound.hpp"
 
 namespace pliant {
 namespace {
@@ -113,6 +111,11 @@ void print_masses(const Model& model) {
     heading = "";
   }
   print_share("", "all grains", grains);
+  if (const double added = added_mass(model); added > 0)
+    print_row("",
+              fmt::format("rim_mass adds {:.2g} % to the inertia of compliant grains, not to their weight; inertial "
+                          "numbers grow by up to {:.2g} %",
+                          100 * added, 100 * (std::sqrt(1 + added) - 1)));
   if (all.bodies > grains.bodies) print_share("", "all bodies", all);
 }
 
@@ -168,26 +171,6 @@ void print_cautions(const Model& model) {
   }
 }
 
-/// The bound at the start, whatever the integrator: step doubling does not use it, but cannot go far beyond.
-struct Stability {
-  double dt = 0, stiffer_dt = 0;  ///< s; infinite when nothing is stiff
-  std::string governing;
-};
-constexpr double stiffer = 10;
-
-Stability stability(const Model& model) {
-  const Dofs position = initial_positions(model);
-  Outlines outlines;
-  show_outlines(model, {position, initial_velocities(model, position), 0}, outlines);
-  ContactSystem contact(model);
-  ContactHistory history;
-  contact.find_candidates(outlines, history);
-  TimeStepBound bound(model, contact.laws());
-  bound.update_internal(position, initial_memory(model));
-  bound.update_contact(contact);
-  return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
-}
-
 /// Fastest motion of bodies against each other that the scene prescribes, m/s: what all do together uses up no skin.
 /// Walls that nothing drives rest at the start.
 double prescribed_speed(const Scene& scene) {
@@ -208,7 +191,8 @@ double prescribed_speed(const Scene& scene) {
   return (largest - least).norm();
 }
 
-void print_time_step(const Scene& scene, const Stability& stable, double skin) {
+void print_time_step(const Model& model, const Stability& stable, double skin) {
+  const Scene& scene = model.scene;
   const bool verlet = scene.time.integrator == Integrator::verlet;
   if (!std::isfinite(stable.dt)) return print_row("time step", "set by the error control alone: nothing is stiff");
   print_row("time step", fmt::format("{} {}, governed by {}", si(stable.dt, "s"),
@@ -216,6 +200,7 @@ void print_time_step(const Scene& scene, const Stability& stable, double skin) {
   print_row("", fmt::format("{} with all contacts {:.0f} times as stiff: {:.2g} times as many steps",
                             si(stable.stiffer_dt, "s"), stiffer, stable.dt / stable.stiffer_dt));
   if (!verlet) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
+  if (const auto advice = advice_on_rim_mass(model, stable)) print_row("", *advice);
   const double speed = prescribed_speed(scene);
   if (speed * stable.dt > skin)
     print_row(
@@ -282,7 +267,7 @@ void print_check(const Scene& scene, int threads) {
   print_contacts(model, simulation.forces().contact());
   print_overlap(simulation);
   print_cautions(model);
-  print_time_step(scene, stable, simulation.forces().contact().skin());
+  print_time_step(model, stable, simulation.forces().contact().skin());
   const Rehearsal first = rehearse(simulation);
   const Forecast run = forecast(scene, first, stable.dt);
   const OutputSize size = output_size(model, run.evaluations);

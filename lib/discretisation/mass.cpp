@@ -6,6 +6,7 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
 #include <map>
+#include <numeric>
 
 #include "core/errors.hpp"
 #include "discretisation/quadrature.hpp"
@@ -26,6 +27,12 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
                       "positive: change `support` or the number of nodes",
                       mass[i], i));
   return mass;
+}
+
+double add_rim_mass(int outline_count, double times, std::vector<double>& mass) {
+  const double before = std::accumulate(mass.begin(), mass.end(), 0.0);
+  for (int i = 0; i < outline_count; ++i) mass[i] *= times;
+  return before / std::accumulate(mass.begin(), mass.end(), 0.0);
 }
 
 ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {

@@ -8,6 +8,9 @@ namespace pliant {
 /// the recipe's own points (docs/method.md 2). Throws InputError when one is not positive.
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
+/// Makes the first `outline_count` nodes so many times as heavy. Returns what share of the mass was there before.
+double add_rim_mass(int outline_count, double times, std::vector<double>& mass);
+
 /// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points a triangle: exact for
 /// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in M -
 /// D.

@@ -93,6 +93,7 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.node_rows = rows_at_nodes(scaled, basis);
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
   result.unit_mass = lumped_mass(scaled, basis);
+  result.weight_share = add_rim_mass(mesh.outline_count, settings.rim_mass, result.unit_mass);
   if (settings.mass == Mass::corrected) {
     result.mass_correction = mass_correction(scaled, basis, result.unit_mass);
     result.correction_bound = correction_bound(result.mass_correction, result.unit_mass);

@@ -40,6 +40,7 @@ struct Discretisation {
   /// lumped.
   ShapeRows mass_correction;
   double correction_bound = 1;       ///< on its largest eigenvalue
+  double weight_share = 1;           ///< of the mass: what is left without that which rim_mass adds
   double min_shape_value = 0;        ///< least phi met at integration points and nodes (docs/method.md 2)
   double condition = 1;              ///< largest condition number of the systems that the shape functions solve
   double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)

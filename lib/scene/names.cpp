@@ -102,6 +102,7 @@ constexpr std::string_view keys[] = {
     "residual_strength",
     "restitution",
     "right",
+    "rim_mass",
     "rotation",
     "rounding",
     "row_pitch",

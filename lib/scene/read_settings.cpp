@@ -52,6 +52,7 @@ DiscretisationSettings read_discretisation(TableReader table) {
                                  {"es-t3", Recipe::es_t3},
                                  {"rpim", Recipe::rpim}}});
   table.optional("mass", settings.mass, Choice<Mass>{{{"lumped", Mass::lumped}, {"corrected", Mass::corrected}}});
+  if (settings.mass == Mass::lumped) table.optional("rim_mass", settings.rim_mass, Quantity{"1", Range{.low = 1}});
   const bool triangles = settings.recipe == Recipe::t3 || settings.recipe == Recipe::es_t3;
   if (!triangles) table.optional("support", settings.support, Integer{7, settings.recipe == Recipe::mls ? 14 : 25});
   if (!triangles && settings.recipe != Recipe::mls &&

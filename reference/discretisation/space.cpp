@@ -140,6 +140,7 @@ void fill_with_moving_least_squares(Space& space, const DiscretisationSettings& 
 }  // namespace
 
 Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings) {
+  if (settings.rim_mass != 1) throw InputError("[discretisation] rim_mass: not in the reference solver");
   if (settings.recipe == Recipe::rpim)
     throw InputError(
         "the reference solver has no recipe \"rpim\": it has \"mls\", \"mls-gauss\", \"t3\" and \"es-t3\"");

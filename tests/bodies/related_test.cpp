@@ -14,7 +14,7 @@ namespace {
 
 constexpr int grains_in_all = 11;
 
-enum class Extras { none, damping_and_corrected_mass };
+enum class Extras { none, damping_and_corrected_mass, rim_mass };
 
 /// Fourier grains of eleven shapes and several sizes on a floor, pushed together, and a rigid disc.
 Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
@@ -27,6 +27,7 @@ Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
     scene.discretisation.mass = Mass::corrected;
     for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
   }
+  if (extras == Extras::rim_mass) scene.discretisation.rim_mass = 1.6;
   scene.contacts = {mohr_coulomb(60, 0.3)};
   for (int i = 0; i < grains_in_all; ++i) {
     ShapeSpec shape;
@@ -110,7 +111,8 @@ TEST_P(Related, bodies_move_as_those_spread) {
 INSTANTIATE_TEST_SUITE_P(Recipes, Related,
                          ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling),
-                                            ::testing::Values(Extras::none, Extras::damping_and_corrected_mass)));
+                                            ::testing::Values(Extras::none, Extras::damping_and_corrected_mass,
+                                                              Extras::rim_mass)));
 
 /// EXACT: the same bits with one, two and three threads.
 TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {

@@ -84,6 +84,8 @@ const std::vector<Bad> bad_values{
     {"TwoSides", "kind = \"disc\"", "kind = \"regular\"\nsides = 2", "2\ndiameter", {"'sides'", "from 3"}},
     {"SupportTooLarge", "support = 9", "support = 15", "15", {"from 7 to 14"}},
     {"GaussPointsOfMls", "support = 9", "gauss_points = 3", "gauss_points", {"unknown key 'gauss_points'"}},
+    {"LightRim", "support = 9", "rim_mass = 0.5", "0.5", {"'rim_mass' in [discretisation]", ">= 1"}},
+    {"RimOfCorrectedMass", "support = 9", "mass = \"corrected\"\nrim_mass = 2", "rim_mass", {"unknown key 'rim_mass'"}},
     {"UnknownMass", "recipe = \"mls\"", "recipe = \"mls\"\nmass = \"correct\"", "\"correct\"", {"lumped, corrected"}},
     {"GaussPointsBetween", "recipe = \"mls\"", "recipe = \"mls-gauss\"\ngauss_points = 4", "4\nsupport", {"1, 3 or 6"}},
     {"UnknownEnum",

@@ -1,0 +1,60 @@
+#include "cli/stability.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bodies/initial_state.hpp"
+#include "bodies/place_outlines.hpp"
+#include "dynamics/time_step_bound.hpp"
+
+namespace pliant {
+namespace {
+
+constexpr double tried = 2;          ///< rim_mass
+constexpr double worth_while = 1.1;  ///< times as long
+constexpr std::size_t most_bodies = 3000;
+
+}  // namespace
+
+Stability stability(const Model& model) {
+  const Dofs position = initial_positions(model);
+  Outlines outlines;
+  show_outlines(model, {position, initial_velocities(model, position), 0}, outlines);
+  ContactSystem contact(model);
+  ContactHistory history;
+  contact.find_candidates(outlines, history);
+  TimeStepBound bound(model, contact.laws());
+  bound.update_internal(position, initial_memory(model));
+  bound.update_contact(contact);
+  return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
+}
+
+double added_mass(const Model& model) {
+  double without = 0, added = 0;
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    without += body.mass;
+    added += body.mass * (1 / model.shape_of(body).space.weight_share - 1);
+  }
+  return without > 0 ? added / without : 0;
+}
+
+std::optional<std::string> advice_on_rim_mass(const Model& model, const Stability& as_it_is) {
+  const DiscretisationSettings& settings = model.scene.discretisation;
+  if (settings.mass != Mass::lumped || settings.rim_mass > 1 || model.groups.empty() ||
+      model.bodies.size() > most_bodies || !std::isfinite(as_it_is.dt) ||
+      model.scene.time.integrator != Integrator::verlet)
+    return {};
+  Scene scene = model.scene;
+  scene.discretisation.rim_mass = tried;
+  const Model heavier = build_model(scene);
+  const double longer = stability(heavier).dt / as_it_is.dt;
+  if (longer < worth_while) return {};
+  return fmt::format(
+      "rim_mass = {:.0f} would make it {:.2g} times as long, for {:.2g} % more inertia of compliant grains; see "
+      "docs/defaults.md",
+      tried, longer, 100 * added_mass(heavier));
+}
+
+}  // namespace pliant

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bodies/model.hpp"
+
+namespace pliant {
+
+/// How many times as stiff contacts are taken for comparison.
+inline constexpr double stiffer = 10;
+
+/// The bound at the start, whatever the integrator: step doubling does not use it, but cannot go far beyond.
+struct Stability {
+  double dt = 0, stiffer_dt = 0;  ///< s; infinite when nothing is stiff
+  std::string governing;
+};
+Stability stability(const Model& model);
+
+/// What [discretisation] rim_mass adds to the mass of the model's compliant grains, over theirs; 0 without it.
+double added_mass(const Model& model);
+
+/// What it could do for a scene without it: try it. Nothing where steps do not depend on it, or for scenes of more
+/// bodies than are tried within a second or so.
+std::optional<std::string> advice_on_rim_mass(const Model& model, const Stability& as_it_is);
+
+}  // namespace pliant
