@@ -118,6 +118,17 @@ prepare_verification() {
 
 bench() {
   case ${1-} in
+    '' | kernels | --benchmark*)
+      [ "${1-}" != kernels ] || shift
+      ready bench
+      prepare release pliant_bench pliant_bench
+      set_thread_defaults
+      exec "$root/build/release/pliant_bench" "$@"
+      ;;
+    scenes)
+      prepare release pliant_engine
+      exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
+      ;;
     gate)
       ready counting
       prepare counting pliant_engine
@@ -133,30 +144,21 @@ bench() {
       ready page
       exec "$python" -B "$root/benchmarks/page.py" "${@:2}"
       ;;
-    [!-]*)
-      echo "pliant: bench: nothing is called '$1'; there are: gate, ab, page; see ./pliant bench --help" >&2
+    --instructions)
+      ready counting
+      prepare counting pliant_engine
+      exec "$python" "$root/benchmarks/marginal_cost.py" "${@:2}"
+      ;;
+    --reference)
+      prepare release pliant_reference_solver
+      exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
+      ;;
+    *)
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, gate, ab, page; see" \
+        "./pliant bench --help" >&2
       exit 2
       ;;
   esac
-  if [ "${1-}" = --instructions ]; then
-    ready counting
-    prepare counting pliant_engine
-    "$python" "$root/benchmarks/marginal_cost.py" "${@:2}"
-    return
-  fi
-  if [ "${1-}" = --reference ]; then
-    prepare release pliant_reference_solver
-    exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
-  fi
-  if [ "${1-}" = scenes ]; then
-    prepare release pliant_engine
-    exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
-  fi
-  [ "${1-}" != kernels ] || shift
-  ready bench
-  prepare release pliant_bench pliant_bench
-  set_thread_defaults
-  exec "$root/build/release/pliant_bench" "$@"
 }
 
 lint() {

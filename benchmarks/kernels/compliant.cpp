@@ -5,7 +5,6 @@
 #include "benchmarks/baseline/from_model.hpp"
 #include "benchmarks/kernels/meter.hpp"
 #include "benchmarks/kernels/scenes.hpp"
-#include "benchmarks/kernels/verlet_parts.hpp"
 #include "benchmarks/kernels/work.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
@@ -71,9 +70,9 @@ void update(benchmark::State& state) {
   Cloud& grains = mls();
   const Threads threads(state);
   for (auto _ : state) {
-    predict(*grains.verlet, grains.state, dt);
+    grains.verlet->predict(grains.state, dt);
     parallel_for(static_cast<int>(grains.model.regions.size()),
-                 [&](int r) { finish_region(*grains.verlet, grains.state, dt, r); });
+                 [&](int r) { grains.verlet->finish_region(grains.state, dt, r); });
   }
   report(state, "node", field_nodes(grains.model), work::update(grains.model));
 }
@@ -139,7 +138,7 @@ void compliant_step(benchmark::State& state) {
   Trial& trial = grains.verlet->trial();
   trial.outlines.position = OutlineField(model.outline_offset.back());
   for (auto _ : state) {
-    predict(*grains.verlet, grains.state, dt);
+    grains.verlet->predict(grains.state, dt);
     place_outlines(model, trial.position, trial.outlines.position);
     parallel_for(model.lane_batches, [&](int b) {
       const Batch& batch = model.batches[b];
@@ -148,7 +147,7 @@ void compliant_step(benchmark::State& state) {
       add_outline_forces(model, model.regions[b], trial.contact_force, f);
       benchmark::DoNotOptimize(
           add_internal_forces(model, batch, {.position = &trial.position.compliant[batch.offset]}, f));
-      finish_region(*grains.verlet, grains.state, dt, b);
+      grains.verlet->finish_region(grains.state, dt, b);
     });
   }
   report(state, "point", integration_points(model),

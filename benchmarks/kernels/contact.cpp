@@ -18,7 +18,7 @@ using enum ContactLawKind;
 
 void count_contacts(benchmark::State& state, const ContactSystem& contact, int contacts) {
   state.counters["contacts"] = contacts;
-  state.counters["patches"] = static_cast<double>(contact.patches().size());
+  state.counters["pairs"] = static_cast<double>(contact.patches().size());
 }
 
 void contact_forces(benchmark::State& state, ContactLawKind law) {
@@ -150,7 +150,7 @@ void find_candidates(benchmark::State& state) {
   ContactSystem contact(scene.model);
   ContactHistory history;
   for (auto _ : state) contact.find_candidates(scene.outlines, history);
-  report(state, "patch", static_cast<double>(contact.patches().size()), searching(scene));
+  report(state, "pair", static_cast<double>(contact.patches().size()), searching(scene));
 }
 BENCHMARK(find_candidates)->Name("candidates/find")->Apply(one_and_two_threads);
 
@@ -168,7 +168,7 @@ void renew_candidates(benchmark::State& state) {
   for (auto _ : state) contact.renew_candidates(*place[next = 1 - next], history);
   state.counters["searched"] =
       benchmark::Counter(static_cast<double>(contact.pairs_searched() - searched), benchmark::Counter::kAvgIterations);
-  report(state, "patch", static_cast<double>(contact.patches().size()), searching(scene));
+  report(state, "pair", static_cast<double>(contact.patches().size()), searching(scene));
 }
 BENCHMARK(renew_candidates)->Name("candidates/renew")->Apply(one_and_two_threads);
 
