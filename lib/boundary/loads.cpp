@@ -32,8 +32,9 @@ namespace {
 
 /// What weighs, of a batch's unit masses: rim_mass adds inertia, no weight.
 Lanes weighing_density(const Model& model, const Batch& batch) {
-  return with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; }) *
-         batch.inverse_scale;
+  const Lanes density =
+      with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; });
+  return density * batch.inverse_scale;
 }
 
 }  // namespace

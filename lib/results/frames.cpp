@@ -42,7 +42,10 @@ FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& fo
     if (!body.wall && body.kind == BodyKind::rigid && rigid_meshes_[body.outline].nodes.empty())
       rigid_meshes_[body.outline] = make_rigid_mesh(model.scene.shapes[body.shape]);
   choose_fields();
-  file_ = std::make_unique<FrameFile>(folder, std::vector<GridTopology>{bodies_grid(), outlines_grid()}, opening);
+  std::vector<GridTopology> grids;  // moved, not copied: they are as large as all the rest
+  grids.push_back(bodies_grid());
+  grids.push_back(outlines_grid());
+  file_ = std::make_unique<FrameFile>(folder, std::move(grids), opening);
 }
 
 void FrameRecorder::choose_fields() {
@@ -63,6 +66,11 @@ const FieldMesh& FrameRecorder::mesh_of(const Body& body) const {
 
 GridTopology FrameRecorder::bodies_grid() const {
   GridTopology grid = empty_grid("bodies", 3);
+  std::size_t cells = 0;
+  for (const Body& body : model_.bodies)
+    if (!body.wall) cells += mesh_of(body).triangles.size();
+  grid.cells.reserve(3 * cells);
+  for (Field& field : grid.constant_fields) field.values.reserve(cells);
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
     const Body& body = model_.bodies[b];
     if (body.wall) continue;
