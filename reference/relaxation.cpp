@@ -13,7 +13,7 @@ constexpr double least = 1e-12, most = 1e4;           ///< of the share
 constexpr double faster = 0.1, slower = 2, back = 4;  ///< factors on it
 constexpr double linear = 0.1, barely_linear = 0.5;   ///< error of the linear model over the residual at the start
 constexpr double creep = 0.1;                         ///< steps shorter than this share of the longest may cross kinks
-constexpr double rounding = 1e-14;                    ///< of potentials
+constexpr double flat = 1e-6;  ///< share of a potential within which rounding of small strains may decide its change
 
 SparseMatrix held(const SparseMatrix& matrix, const Vector& holding) {
   return matrix + SparseMatrix(holding.asDiagonal());
@@ -26,9 +26,13 @@ double model_error(const Measure& measure, const Linearisation& at, const Linear
   return measure(next.residual - at.residual - at.matrix * step) / measure(at.residual);
 }
 
-/// Whether a step takes energy instead of giving it; by the trapezoidal rule where forces have no potential.
+/// Whether a step takes energy instead of giving it; where that is too little to tell, or forces have no potential, by
+/// the trapezoidal rule (as Hager and Zhang, SIAM J. Optim. 16, 170, 2005, end their line searches).
 bool climbs(const Measure& measure, const Linearisation& at, const Linearisation& next, const Vector& step) {
-  if (at.symmetric && next.symmetric) return next.potential > at.potential + rounding * std::abs(at.potential);
+  if (at.symmetric && next.symmetric) {
+    const double taken = next.potential - at.potential;
+    if (taken <= 0 || taken > flat * std::abs(at.potential)) return taken > 0;
+  }
   return (at.residual + next.residual).dot(step) > 0 && measure(next.residual) > measure(at.residual);
 }
 

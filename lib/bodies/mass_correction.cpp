@@ -45,14 +45,19 @@ void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, La
   });
 }
 
-Dofs material_velocity(const Model& model, const Dofs& y) {
-  Dofs v = y;
-  if (!model.corrected_mass) return v;
+const Dofs& material_velocity(const Model& model, const Dofs& y, Dofs& scratch) {
+  if (!model.corrected_mass) return y;
+  scratch = y;
   for_each_batch(model, [&](int b) {
     const Batch& batch = model.batches[b];
-    correct_velocity(model, batch, &y.compliant[batch.offset], &v.compliant[batch.offset]);
+    correct_velocity(model, batch, &y.compliant[batch.offset], &scratch.compliant[batch.offset]);
   });
-  return v;
+  return scratch;
+}
+
+Dofs material_velocity(const Model& model, const Dofs& y) {
+  Dofs scratch;
+  return material_velocity(model, y, scratch);
 }
 
 Dofs reduced_momentum(const Model& model, const Dofs& velocity) {

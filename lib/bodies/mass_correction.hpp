@@ -14,6 +14,9 @@ void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, La
 /// Velocities of all degrees of freedom from what a state holds.
 Dofs material_velocity(const Model& model, const Dofs& y);
 
+/// The same without new memory: y itself with lumped mass, else in `scratch`, another array.
+const Dofs& material_velocity(const Model& model, const Dofs& y, Dofs& scratch);
+
 /// The y that gives these velocities.
 Dofs reduced_momentum(const Model& model, const Dofs& velocity);
 

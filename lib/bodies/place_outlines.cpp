@@ -17,12 +17,20 @@ void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
   }
 }
 
+/// A field of compliant bodies: places, relative to their bodies' centres, or what has no origin.
+struct Field {
+  const Dofs& values;
+  bool has_origin;
+};
+
 template <bool scaled, class Rows>
-void place_batch(const Model& model, const Batch& batch, const Rows& rows, const Lanes* q, OutlineField& outlines) {
+void show_batch(const Model& model, const Batch& batch, const Rows& rows, const Field& field, OutlineField& outlines) {
   const CompliantShape& shape = model.shape_of(batch);
+  const Lanes* q = &field.values.compliant[batch.offset];
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
   const int count = model.outlines[shape.outline].count;
-  const Lanes centre_x = batch.centre_x * batch.inverse_scale, centre_y = batch.centre_y * batch.inverse_scale;
+  const Lanes inverse_scale = field.has_origin ? batch.inverse_scale : Lanes{};
+  const Lanes centre_x = batch.centre_x * inverse_scale, centre_y = batch.centre_y * inverse_scale;
   for (int first = 0; first < count; first += lane_count) {
     Lanes x[lane_count]{}, y[lane_count]{}, x_of_body[lane_count], y_of_body[lane_count];
     for (int k = first; k < std::min(first + lane_count, count); ++k) {
@@ -50,30 +58,42 @@ void place_batch(const Model& model, const Batch& batch, const Rows& rows, const
 }
 
 /// One chunk of a spread body's outline nodes.
-void place_chunk(const Model& model, const Chunk& chunk, const Dofs& positions, OutlineField& outlines) {
+void show_chunk(const Model& model, const Chunk& chunk, const Field& field, OutlineField& outlines) {
   const Batch& batch = model.batches[chunk.batch];
   const int number = model.groups[batch.group].bodies[batch.first];
   const Body& body = model.bodies[number];
   const ShapeRows& rows = model.shape_of(body).space.outline_rows;
-  const BodyView q(model, body, positions);
+  const BodyView q(model, body, field.values);
+  const Vec2 origin = field.has_origin ? body.centre : Vec2(0, 0);
   for (int k = chunk.first; k < chunk.last; ++k) {
     Vec2 x(0, 0);
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
       x += rows.value[e] * q[static_cast<std::size_t>(rows.node[e])];
-    x = body.centre + body.scale * x;
+    x = origin + body.scale * x;
     outlines.x[model.outline_offset[number] + k] = x.x();
     outlines.y[model.outline_offset[number] + k] = x.y();
   }
 }
 
-void place_spread(const Model& model, const Dofs& positions, OutlineField& outlines) {
+void show_spread(const Model& model, const Field& field, OutlineField& outlines) {
   parallel_for(static_cast<int>(model.outline_chunks.size()),
-               [&](int c) { place_chunk(model, model.outline_chunks[c], positions, outlines); });
+               [&](int c) { show_chunk(model, model.outline_chunks[c], field, outlines); });
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b) {
     const int body = model.groups[model.batches[b].group].bodies[model.batches[b].first];
     const int offset = model.outline_offset[body];
     extend_cyclically(model.outline_of(body), &outlines.x[offset], &outlines.y[offset]);
   }
+}
+
+void show(const Model& model, const Field& field, OutlineField& outlines) {
+  parallel_for(model.lane_batches, [&](int b) {
+    const Batch& batch = model.batches[b];
+    with_tables(model, batch, [&](const auto& tables) {
+      batch.scaled ? show_batch<true>(model, batch, tables.outline_rows, field, outlines)
+                   : show_batch<false>(model, batch, tables.outline_rows, field, outlines);
+    });
+  });
+  if (!model.outline_chunks.empty()) show_spread(model, field, outlines);
 }
 
 void place_rigid(const Model& model, const RigidBody& rigid, const double* position, OutlineField& outlines) {
@@ -129,18 +149,12 @@ void add_to_region(const Model& model, const Region& region, const OutlineField&
 }  // namespace
 
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position) {
-  parallel_for(model.lane_batches, [&](int b) {
-    const Batch& batch = model.batches[b];
-    const Lanes* q = &positions.compliant[batch.offset];
-    with_tables(model, batch, [&](const auto& tables) {
-      batch.scaled ? place_batch<true>(model, batch, tables.outline_rows, q, position)
-                   : place_batch<false>(model, batch, tables.outline_rows, q, position);
-    });
-  });
-  if (!model.outline_chunks.empty()) place_spread(model, positions, position);
+  show(model, {positions, true}, position);
   parallel_for(static_cast<int>(model.rigid_bodies.size()),
                [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
 }
+
+void show_field(const Model& model, const Dofs& values, OutlineField& field) { show(model, {values, false}, field); }
 
 OutlineField placed_outlines(const Model& model, const Dofs& positions) {
   OutlineField position(model.outline_offset.back());

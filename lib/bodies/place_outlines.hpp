@@ -9,7 +9,10 @@ namespace pliant {
 /// Where all outlines are: phi rows for compliant bodies, rotation for rigid ones.
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position);
 
-/// The same, newly made.
+/// Values of a field at all outline nodes, of rigid bodies left as they are: velocities of compliant ones.
+void show_field(const Model& model, const Dofs& values, OutlineField& field);
+
+/// Where all outlines are, newly made.
 OutlineField placed_outlines(const Model& model, const Dofs& positions);
 
 /// All that a motion shows: positions, and velocities and present lengths in models that need them.

@@ -1,22 +1,18 @@
 #include <cmath>
 
-#include "bodies/nodal.hpp"
 #include "bodies/place_outlines.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
 
-void compliant_velocities(const Model& model, const Body& body, const Dofs& velocity, double* x, double* y) {
-  const Points nodal = outline_values(model, body, velocity);
-  for (std::size_t k = 0; k < nodal.size(); ++k) x[k] = nodal[k].x(), y[k] = nodal[k].y();
-}
-
-void rigid_velocities(const OutlineField& position, int offset, int count, const double* q, const double* v, double* x,
-                      double* y) {
-  for (int k = 0; k < count; ++k) {
-    x[k] = v[0] - v[2] * (position.y[offset + k] - q[1]);
-    y[k] = v[1] + v[2] * (position.x[offset + k] - q[0]);
+/// `offset`: of the outline's first node; q, v: [x, y, angle] of the body.
+void rigid_velocities(const OutlineField& position, int offset, int count, const double* q, const double* v,
+                      OutlineField& velocity) {
+  for (int k = offset; k < offset + count + lane_count; ++k) {
+    const int node = k < offset + count ? k : k - count;
+    velocity.x[k] = v[0] - v[2] * (position.y[node] - q[1]);
+    velocity.y[k] = v[1] + v[2] * (position.x[node] - q[0]);
   }
 }
 
@@ -24,17 +20,11 @@ void find_velocities(const Model& model, const Motion& motion, Outlines& outline
   OutlineField& velocity = outlines.velocity;
   velocity.x.resize(outlines.position.x.size());
   velocity.y.resize(outlines.position.x.size());
-  parallel_for(static_cast<int>(model.bodies.size()), [&](int b) {
-    const Body& body = model.bodies[b];
-    const int offset = model.outline_offset[b], count = model.outlines[body.outline].count;
-    double *x = &velocity.x[offset], *y = &velocity.y[offset];
-    if (body.kind == BodyKind::compliant)
-      compliant_velocities(model, body, motion.velocity, x, y);
-    else
-      rigid_velocities(outlines.position, offset, count,
-                       &motion.position.rigid[3 * static_cast<std::size_t>(body.rigid)],
-                       &motion.velocity.rigid[3 * static_cast<std::size_t>(body.rigid)], x, y);
-    for (int k = 0; k < lane_count; ++k) x[count + k] = x[k % count], y[count + k] = y[k % count];
+  show_field(model, motion.velocity, velocity);
+  parallel_for(static_cast<int>(model.rigid_bodies.size()), [&](int r) {
+    const RigidBody& rigid = model.rigid_bodies[r];
+    rigid_velocities(outlines.position, model.outline_offset[rigid.body], model.outlines[rigid.outline].count,
+                     &motion.position.rigid[3 * r], &motion.velocity.rigid[3 * r], velocity);
   });
 }
 

@@ -59,7 +59,7 @@ void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, d
   for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], at);
 }
 
-double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force) {
+double add_load_change(const Model& model, const Motion& at, const Outlines& outlines, const Instant& to, Dofs& force) {
   const Vec2 g = model.scene.gravity_at(to.time) - model.scene.gravity_at(at.time);
   if (!g.isZero(0))
     parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
@@ -68,7 +68,7 @@ double add_load_change(const Model& model, const Motion& at, const Instant& to, 
     });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
     add_rigid_load_change(model.rigid_bodies[r], g, at.instant(), to, &at.velocity.rigid[3 * r], &force.rigid[3 * r]);
-  return add_outline_load_change(model, at, to, force);
+  return add_outline_load_change(model, at, outlines, to, force);
 }
 
 double external_work(const Model& model, const Motion& before, const Dofs& force, const Motion& after,

@@ -2,6 +2,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
+#include "bodies/outline.hpp"
 
 namespace pliant {
 
@@ -16,8 +17,8 @@ void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, d
 
 /// Adds to the forces of a motion what loads change from its instant to another, on bodies that stand and move as they
 /// do: of histories, and of what sets in or ends. Returns how much more supports' dashpots dissipate, W/m. So forces
-/// need no new evaluation where only time goes on.
-double add_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
+/// need no new evaluation where only time goes on. `outlines`: that forces saw in this motion.
+double add_load_change(const Model& model, const Motion& at, const Outlines& outlines, const Instant& to, Dofs& force);
 
 /// Work done on driven bodies over one accepted step, J/m: applied loads by the trapezoidal rule; an imposed motion
 /// does the change of kinetic energy less the work of the other forces. `force`: as the step began with, `next_force`:

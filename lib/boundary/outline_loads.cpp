@@ -1,11 +1,9 @@
 #include "boundary/outline_loads.hpp"
 
 #include <algorithm>
-
-#include <Eigen/Geometry>
+#include <utility>
 
 #include "bodies/body_view.hpp"
-#include "bodies/nodal.hpp"
 
 namespace pliant {
 namespace {
@@ -75,69 +73,65 @@ Pull pull_on(const OutlineSupport& support, std::size_t i, const TargetMotion& t
           support.damping * slip.squaredNorm()};
 }
 
-/// Forces of a support on its body, together.
-Vec2 support_resultant(const Model& model, const OutlineSupport& support, const Motion& motion) {
-  const Body& body = model.bodies[support.body];
-  const Points position = outline_values(model, body, motion.position),
-               velocity = outline_values(model, body, motion.velocity);
-  const TargetMotion target(support, motion.instant());
-  Vec2 total(0, 0);
+/// Calls action(i, place, velocity) for each node of a support's part.
+template <class Action>
+void for_each_node(const Model& model, const OutlineSupport& support, const Outlines& outlines, Action&& action) {
+  const int first = model.outline_offset[support.body];
   for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-    const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
-    total += support.length[i] * pull_on(support, i, target, body.centre + position[k], velocity[k]).force;
+    const int k = first + support.nodes[i];
+    action(i, outlines.position.at(k), support.damping > 0 ? outlines.velocity.at(k) : Vec2(0, 0));
   }
+}
+
+/// Forces of a support on its body, together.
+Vec2 support_resultant(const Model& model, const OutlineSupport& support, const Outlines& outlines, const Instant& at) {
+  const TargetMotion target(support, at);
+  Vec2 total(0, 0);
+  for_each_node(model, support, outlines, [&](std::size_t i, const Vec2& place, const Vec2& velocity) {
+    total += support.length[i] * pull_on(support, i, target, place, velocity).force;
+  });
   return total;
 }
 
-double spring_energy(const Model& model, const OutlineSupport& support, const Dofs& position, double time) {
-  const Body& body = model.bodies[support.body];
-  const Points at = outline_values(model, body, position);
+double spring_energy(const Model& model, const OutlineSupport& support, const OutlineField& position, double time) {
+  const int first = model.outline_offset[support.body];
   const TargetMotion target(support, Instant{time});
   double energy = 0;
-  for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-    const Vec2 place = body.centre + at[static_cast<std::size_t>(support.nodes[i])];
-    energy += 0.5 * support.stiffness * support.length[i] * stretch(support, i, target, place).squaredNorm();
-  }
+  for (std::size_t i = 0; i < support.nodes.size(); ++i)
+    energy += 0.5 * support.stiffness * support.length[i] *
+              stretch(support, i, target, position.at(first + support.nodes[i])).squaredNorm();
   return energy;
 }
 
-/// Outline of a body in motion, [outline nodes], m.
-Points outline_positions(const Model& model, const Body& body, const Dofs& position) {
-  if (body.kind == BodyKind::compliant) {
-    Points points = outline_values(model, body, position);
-    for (Vec2& p : points) p += body.centre;
-    return points;
-  }
-  const double* at = &position.rigid[3 * static_cast<std::size_t>(body.rigid)];
-  Points points = model.outlines[body.outline].points;
-  for (Vec2& p : points) p = Eigen::Rotation2Dd(at[2]) * p + Vec2(at[0], at[1]);
-  return points;
+/// Calls action(node, force) for each outline node of the body under a pressure, where outlines are.
+template <class Action>
+void for_each_load(const Model& model, const OutlinePressure& load, const OutlineField& position, double pressure,
+                   Action&& action) {
+  const int first = model.outline_offset[load.body];
+  for_each_load(
+      load, model.outline_of(load.body).count, pressure, [&](int k) { return position.at(first + k); },
+      std::forward<Action>(action));
 }
 
-double pressure_work(const Model& model, const OutlinePressure& load, const Motion& before, const Motion& after) {
-  const Body& body = model.bodies[load.body];
-  const Points start = outline_positions(model, body, before.position);
-  const Points end = outline_positions(model, body, after.position);
-  const int count = static_cast<int>(start.size());
+double pressure_work(const Model& model, const OutlinePressure& load, const OutlineField& before, const Instant& from,
+                     const OutlineField& after, const Instant& to) {
+  const int first = model.outline_offset[load.body];
   double work = 0;
-  const auto add = [&](const Points& at, const Instant& instant) {
-    for_each_load(
-        load, count, pressure_of(load, instant), [&](int k) { return at[static_cast<std::size_t>(k)]; },
-        [&](int k, const Vec2& force) {
-          work += 0.5 * force.dot(end[static_cast<std::size_t>(k)] - start[static_cast<std::size_t>(k)]);
-        });
+  const auto add = [&](int k, const Vec2& force) {
+    work += 0.5 * force.dot(after.at(first + k) - before.at(first + k));
   };
-  add(start, before.instant());
-  add(end, after.instant());
+  for_each_load(model, load, before, pressure_of(load, from), add);
+  for_each_load(model, load, after, pressure_of(load, to), add);
   return work;
 }
 
 /// Steps end where windows do, so that a support acts during all of a step or not at all.
-double support_work(const Model& model, const OutlineSupport& support, const Motion& before, const Motion& after) {
-  if (!contains(support.window, before.instant())) return 0;
-  const Vec2 moved = TargetMotion(support, after.instant()).moved - TargetMotion(support, before.instant()).moved;
+double support_work(const Model& model, const OutlineSupport& support, const Outlines& before, const Instant& from,
+                    const Outlines& after, const Instant& to) {
+  if (!contains(support.window, from)) return 0;
+  const Vec2 moved = TargetMotion(support, to).moved - TargetMotion(support, from).moved;
   if (moved.isZero(0)) return 0;
-  const Vec2 pull = support_resultant(model, support, before) + support_resultant(model, support, after);
+  const Vec2 pull = support_resultant(model, support, before, from) + support_resultant(model, support, after, to);
   return 0.5 * pull.dot(moved);
 }
 
@@ -174,34 +168,26 @@ class OutlineForces {
   Dofs& force_;
 };
 
-void add_pressure_change(const Model& model, const OutlinePressure& load, const Motion& at, const Instant& to,
-                         Dofs& force) {
-  const double growth = pressure_of(load, to) - pressure_of(load, at.instant());
-  if (growth == 0) return;
-  const Body& body = model.bodies[load.body];
-  const Points places = outline_positions(model, body, at.position);
-  const auto place = [&](int k) { return places[static_cast<std::size_t>(k)]; };
-  OutlineForces outline(model, body, at, force);
-  for_each_load(load, static_cast<int>(places.size()), growth, place,
-                [&](int k, const Vec2& f) { outline.add(k, place(k), f); });
+void add_pressure_change(const Model& model, const OutlinePressure& load, const Motion& at,
+                         const OutlineField& position, const Instant& to, Dofs& force) {
+  const int first = model.outline_offset[load.body];
+  OutlineForces outline(model, model.bodies[load.body], at, force);
+  for_each_load(model, load, position, pressure_of(load, to) - pressure_of(load, at.instant()),
+                [&](int k, const Vec2& f) { outline.add(k, position.at(first + k), f); });
 }
 
-double add_support_change(const Model& model, const OutlineSupport& support, const Motion& at, const Instant& to,
-                          Dofs& force) {
-  const Body& body = model.bodies[support.body];
-  const Points places = outline_positions(model, body, at.position);
-  const Points velocities = outline_values(model, body, at.velocity);
-  OutlineForces outline(model, body, at, force);
+double add_support_change(const Model& model, const OutlineSupport& support, const Motion& at, const Outlines& outlines,
+                          const Instant& to, Dofs& force) {
+  OutlineForces outline(model, model.bodies[support.body], at, force);
   double growth = 0;
   const auto add = [&](const Instant& instant, double sign) {
     if (!contains(support.window, instant)) return;
     const TargetMotion target(support, instant);
-    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-      const std::size_t k = static_cast<std::size_t>(support.nodes[i]);
-      const Pull pull = pull_on(support, i, target, places[k], velocities[k]);
-      outline.add(support.nodes[i], places[k], sign * support.length[i] * pull.force);
+    for_each_node(model, support, outlines, [&](std::size_t i, const Vec2& place, const Vec2& velocity) {
+      const Pull pull = pull_on(support, i, target, place, velocity);
+      outline.add(support.nodes[i], place, sign * support.length[i] * pull.force);
       growth += sign * support.length[i] * pull.power;
-    }
+    });
   };
   add(at.instant(), -1);
   add(to, 1);
@@ -213,62 +199,60 @@ double add_support_change(const Model& model, const OutlineSupport& support, con
 bool has_outline_loads(const Model& model) { return !model.pressures.empty() || !model.supports.empty(); }
 
 double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force) {
-  const OutlineField& position = outlines.position;
   const auto add = [&](int index, const Vec2& f) { force.x[index] += f.x(), force.y[index] += f.y(); };
   for (const OutlinePressure& load : model.pressures) {
-    const int first = model.outline_offset[load.body], count = model.outline_of(load.body).count;
-    for_each_load(
-        load, count, pressure_of(load, at), [&](int k) { return position.at(first + k); },
-        [&](int k, const Vec2& f) { add(first + k, f); });
+    const int first = model.outline_offset[load.body];
+    for_each_load(model, load, outlines.position, pressure_of(load, at),
+                  [&](int k, const Vec2& f) { add(first + k, f); });
   }
   double damping_power = 0;
   for (const OutlineSupport& support : model.supports) {
     if (!contains(support.window, at)) continue;
+    const int first = model.outline_offset[support.body];
     const TargetMotion target(support, at);
-    for (std::size_t i = 0; i < support.nodes.size(); ++i) {
-      const int k = model.outline_offset[support.body] + support.nodes[i];
-      const Vec2 velocity = support.damping > 0 ? outlines.velocity.at(k) : Vec2(0, 0);
-      const Pull pull = pull_on(support, i, target, position.at(k), velocity);
+    for_each_node(model, support, outlines, [&](std::size_t i, const Vec2& place, const Vec2& velocity) {
+      const Pull pull = pull_on(support, i, target, place, velocity);
       damping_power += support.length[i] * pull.power;
-      add(k, support.length[i] * pull.force);
-    }
+      add(first + support.nodes[i], support.length[i] * pull.force);
+    });
   }
   return damping_power;
 }
 
-Vec2 outline_load(const Model& model, int body, const Motion& motion) {
+Vec2 outline_load(const Model& model, int body, const Outlines& outlines, const Instant& at) {
   Vec2 total(0, 0);
-  for (const OutlinePressure& load : model.pressures) {
-    if (load.body != body) continue;
-    const Points at = outline_positions(model, model.bodies[body], motion.position);
-    for_each_load(
-        load, static_cast<int>(at.size()), pressure_of(load, motion.instant()),
-        [&](int k) { return at[static_cast<std::size_t>(k)]; }, [&](int, const Vec2& force) { total += force; });
-  }
+  for (const OutlinePressure& load : model.pressures)
+    if (load.body == body)
+      for_each_load(model, load, outlines.position, pressure_of(load, at),
+                    [&](int, const Vec2& force) { total += force; });
   for (const OutlineSupport& support : model.supports)
-    if (support.body == body && contains(support.window, motion.instant()))
-      total += support_resultant(model, support, motion);
+    if (support.body == body && contains(support.window, at)) total += support_resultant(model, support, outlines, at);
   return total;
 }
 
-double support_energy(const Model& model, const Dofs& position, const Instant& at) {
+double support_energy(const Model& model, const OutlineField& position, const Instant& at) {
   double energy = 0;
   for (const OutlineSupport& support : model.supports)
     if (contains(support.window, at)) energy += spring_energy(model, support, position, at.time);
   return energy;
 }
 
-double add_outline_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force) {
-  for (const OutlinePressure& load : model.pressures) add_pressure_change(model, load, at, to, force);
+double add_outline_load_change(const Model& model, const Motion& at, const Outlines& outlines, const Instant& to,
+                               Dofs& force) {
+  for (const OutlinePressure& load : model.pressures)
+    add_pressure_change(model, load, at, outlines.position, to, force);
   double power = 0;
-  for (const OutlineSupport& support : model.supports) power += add_support_change(model, support, at, to, force);
+  for (const OutlineSupport& support : model.supports)
+    power += add_support_change(model, support, at, outlines, to, force);
   return power;
 }
 
-double outline_work(const Model& model, const Motion& before, const Motion& after) {
+double outline_work(const Model& model, const Outlines& before, const Instant& from, const Outlines& after,
+                    const Instant& to) {
   double work = 0;
-  for (const OutlinePressure& load : model.pressures) work += pressure_work(model, load, before, after);
-  for (const OutlineSupport& support : model.supports) work += support_work(model, support, before, after);
+  for (const OutlinePressure& load : model.pressures)
+    work += pressure_work(model, load, before.position, from, after.position, to);
+  for (const OutlineSupport& support : model.supports) work += support_work(model, support, before, from, after, to);
   return work;
 }
 

@@ -17,17 +17,19 @@ bool has_outline_loads(const Model& model);
 double add_outline_loads(const Model& model, const Instant& at, const Outlines& outlines, OutlineField& force);
 
 /// What pressures and supports together exert on one body, N/m.
-Vec2 outline_load(const Model& model, int body, const Motion& motion);
+Vec2 outline_load(const Model& model, int body, const Outlines& outlines, const Instant& at);
 
 /// Energy in the springs of soft supports, J/m.
-double support_energy(const Model& model, const Dofs& position, const Instant& at);
+double support_energy(const Model& model, const OutlineField& position, const Instant& at);
 
 /// The part of add_load_change (boundary/loads.hpp) that acts on outlines: pressures and supports. Returns the growth
 /// of their dashpots' power, W/m.
-double add_outline_load_change(const Model& model, const Motion& at, const Instant& to, Dofs& force);
+double add_outline_load_change(const Model& model, const Motion& at, const Outlines& outlines, const Instant& to,
+                               Dofs& force);
 
 /// Work that pressures do and that supports' histories do on their springs and dashpots over one step, J/m: trapezoidal
 /// rule.
-double outline_work(const Model& model, const Motion& before, const Motion& after);
+double outline_work(const Model& model, const Outlines& before, const Instant& from, const Outlines& after,
+                    const Instant& to);
 
 }  // namespace pliant

@@ -44,7 +44,9 @@ double parallel_max(int count, double start, Value&& value) {
 template <int block = 256, class Value>
 double ordered_sum(int count, Value&& value) {
   const int blocks = (count + block - 1) / block;
-  std::vector<double> partial(static_cast<std::size_t>(blocks), 0.0);
+  thread_local std::vector<double> scratch;  // its memory is found once
+  std::vector<double>& partial = scratch;    // of the calling thread
+  partial.assign(static_cast<std::size_t>(blocks), 0.0);
   parallel_for(blocks, [&](int b) {
     for (int i = b * block; i < std::min(count, (b + 1) * block); ++i) partial[static_cast<std::size_t>(b)] += value(i);
   });

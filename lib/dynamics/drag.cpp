@@ -31,30 +31,6 @@ double spread(double z) {
   return (4 * rest_of_exponential(2 * z, 3) - 2 * rest_of_exponential(z, 3)) / (mean * mean) - 1;
 }
 
-/// sum of weight(c) m y . v over all degrees of freedom, v the material velocity of y.
-template <class Weight>
-double weighted_square(const Model& model, const Instant& at, const Dofs& y, Weight&& weight) {
-  const Dofs v = material_velocity(model, y);
-  double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
-    const Region& region = model.regions[r];
-    const Batch& batch = model.batches[region.batch];
-    if (!batch.mass_damped) return 0.0;
-    Lanes factor{}, square{};
-    for (int lane = 0; lane < lane_count; ++lane) factor[lane] = weight(batch.mass_damping[lane]);
-    const Lanes *here = &y.compliant[batch.offset], *moving = &v.compliant[batch.offset];
-    with_nodes(model, batch, [&](const auto& nodes) {
-      for (int i = 2 * region.first; i < 2 * region.last; ++i) square += nodes.unit_mass[i / 2] * (here[i] * moving[i]);
-    });
-    return sum(factor * square * batch.density * batch.weight);
-  });
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const RigidDof& dof = model.rigid_bodies[r].dof[c];
-      total += weight(drag_rate(dof, at)) * dof.mass * y.rigid[3 * r + c] * y.rigid[3 * r + c];
-    }
-  return total;
-}
-
 }  // namespace
 
 Drag<double> drag_over(double z) { return {z, rest_of_exponential(z, 2), rest_of_exponential(z, 1)}; }
@@ -73,16 +49,39 @@ double drag_rate(const RigidDof& dof, const Instant& at) {
   return dof.mass > 0 ? drag_coefficient(dof, at) / dof.mass : 0.0;
 }
 
-double drag_power(const Model& model, const Instant& at, const Dofs& velocity) {
-  return weighted_square(model, at, velocity, [](double c) { return c; });
+template <class Weight>
+double DragLoss::weighted_square(const Instant& at, const Dofs& y, Weight&& weight) {
+  const Dofs& v = material_velocity(model_, y, moving_);
+  double total = ordered_sum(static_cast<int>(model_.regions.size()), [&](int r) {
+    const Region& region = model_.regions[r];
+    const Batch& batch = model_.batches[region.batch];
+    if (!batch.mass_damped) return 0.0;
+    Lanes factor{}, square{};
+    for (int lane = 0; lane < lane_count; ++lane) factor[lane] = weight(batch.mass_damping[lane]);
+    const Lanes *here = &y.compliant[batch.offset], *moving = &v.compliant[batch.offset];
+    with_nodes(model_, batch, [&](const auto& nodes) {
+      for (int i = 2 * region.first; i < 2 * region.last; ++i) square += nodes.unit_mass[i / 2] * (here[i] * moving[i]);
+    });
+    return sum(factor * square * batch.density * batch.weight);
+  });
+  for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const RigidDof& dof = model_.rigid_bodies[r].dof[c];
+      total += weight(drag_rate(dof, at)) * dof.mass * y.rigid[3 * r + c] * y.rigid[3 * r + c];
+    }
+  return total;
 }
 
-double drag_work(const Model& model, const Instant& at, double dt, const Dofs& velocity, const Dofs& mean) {
-  Dofs deviation = velocity;
-  for (std::size_t i = 0; i < deviation.compliant.size(); ++i) deviation.compliant[i] -= mean.compliant[i];
-  for (std::size_t i = 0; i < deviation.rigid.size(); ++i) deviation.rigid[i] -= mean.rigid[i];
-  return dt * (weighted_square(model, at, mean, [](double c) { return c; }) +
-               weighted_square(model, at, deviation, [&](double c) { return c * spread(c * dt); }));
+double DragLoss::power(const Instant& at, const Dofs& velocity) {
+  return weighted_square(at, velocity, [](double c) { return c; });
+}
+
+double DragLoss::work(const Instant& at, double dt, const Dofs& velocity, const Dofs& mean) {
+  deviation_ = velocity;
+  for (std::size_t i = 0; i < deviation_.compliant.size(); ++i) deviation_.compliant[i] -= mean.compliant[i];
+  for (std::size_t i = 0; i < deviation_.rigid.size(); ++i) deviation_.rigid[i] -= mean.rigid[i];
+  return dt * (weighted_square(at, mean, [](double c) { return c; }) +
+               weighted_square(at, deviation_, [&](double c) { return c * spread(c * dt); }));
 }
 
 }  // namespace pliant

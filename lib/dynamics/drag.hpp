@@ -22,10 +22,22 @@ Drag<Lanes> drag_over(Lanes z);
 /// c of a rigid degree of freedom, 1/s.
 double drag_rate(const RigidDof& dof, const Instant& at);
 
-/// What drag takes at given velocities, W/m. Velocities are as a state holds them.
-double drag_power(const Model& model, const Instant& at, const Dofs& velocity);
+/// What drag takes. Velocities are as a state holds them.
+class DragLoss {
+ public:
+  explicit DragLoss(const Model& model) : model_(model) {}
+  /// At given velocities, W/m.
+  double power(const Instant& at, const Dofs& velocity);
+  /// In a step dt from `at` on, from the velocity at its start and the mean one, J/m.
+  double work(const Instant& at, double dt, const Dofs& velocity, const Dofs& mean);
 
-/// What drag takes in a step dt from `at` on, from the velocity at its start and the mean one, J/m.
-double drag_work(const Model& model, const Instant& at, double dt, const Dofs& velocity, const Dofs& mean);
+ private:
+  /// sum of weight(c) m y . v over all degrees of freedom, v the material velocity of y.
+  template <class Weight>
+  double weighted_square(const Instant& at, const Dofs& y, Weight&& weight);
+
+  const Model& model_;
+  Dofs deviation_, moving_;  ///< scratch
+};
 
 }  // namespace pliant

@@ -87,7 +87,7 @@ Audit Auditor::audit(const State& state) {
     strain[b] = sum(strain_energy(model, model.batches[b], motion_of(model.batches[b], state.position, state.memory)));
   });
   result.energy.strain = ordered_sum(static_cast<int>(strain.size()), [&](int b) { return strain[b]; });
-  result.energy.boundary = support_energy(model, state.position, {state.time});
+  result.energy.boundary = support_energy(model, state.outlines.position, {state.time});
   result.energy.dissipated = state.dissipated;
   result.energy.external_work =
       state.external_work + state.gravity_work + constant_gravity_moment(state.position) - gravity_start_;

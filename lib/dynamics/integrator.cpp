@@ -14,21 +14,15 @@ namespace pliant {
 
 namespace {
 
-/// Of pressures and soft supports.
-double work_on_outlines(const Model& model, const State& state, const Trial& trial, double end_time) {
-  if (!has_outline_loads(model)) return 0;
-  const Dofs before = material_velocity(model, state.reduced_momentum),
-             after = material_velocity(model, trial.reduced_momentum);
-  return outline_work(model, {state.position, before, state.time}, {trial.position, after, end_time, true});
-}
-
 /// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of
 /// the springs that come or go.
 void pass_switch(const Model& model, State& state) {
   const Instant before{state.time, true}, after{state.time};
-  state.external_work += support_energy(model, state.position, after) - support_energy(model, state.position, before);
+  state.external_work +=
+      support_energy(model, state.outlines.position, after) - support_energy(model, state.outlines.position, before);
   const Dofs velocity = material_velocity(model, state.reduced_momentum);
-  state.damping_power += add_load_change(model, {state.position, velocity, state.time, true}, after, state.force);
+  state.damping_power +=
+      add_load_change(model, {state.position, velocity, state.time, true}, state.outlines, after, state.force);
 }
 
 }  // namespace
@@ -63,8 +57,8 @@ void take_over(const Model& model, State& state, Trial& trial, double next_dt, c
   // Of velocities only those of rigid bodies count here: reduced momenta are no others.
   const Motion before{state.position, state.reduced_momentum, state.time},
       after{trial.position, trial.reduced_momentum, end_time, true};
-  state.external_work +=
-      external_work(model, before, state.force, after, trial.force) + work_on_outlines(model, state, trial, end_time);
+  state.external_work += external_work(model, before, state.force, after, trial.force) +
+                         outline_work(model, state.outlines, before.instant(), trial.outlines, after.instant());
   state.gravity_work += gravity_work(model, before, after);
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;

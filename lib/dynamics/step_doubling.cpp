@@ -69,6 +69,7 @@ StepDoubling::StepDoubling(Forces& forces, const State&)
     : forces_(forces),
       model_(forces.model()),
       drag_(has_drag(forces.model())),
+      drag_loss_(forces.model()),
       wave_time_(wave_time(model_)),
       start_force_(zero_dofs(model_)),
       trial_(model_),
@@ -119,8 +120,9 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
 void StepDoubling::find_start_force(const State& state, double half) {
   start_force_ = state.force;
   if (model_.switch_times.empty() || state.time >= model_.switch_times.back()) return;
-  const Dofs velocity = material_velocity(model_, state.reduced_momentum);
-  add_load_change(model_, {state.position, velocity, state.time}, {state.time + 0.5 * half}, start_force_);
+  const Dofs& velocity = material_velocity(model_, state.reduced_momentum, moving_velocity_);
+  add_load_change(model_, {state.position, velocity, state.time}, state.outlines, {state.time + 0.5 * half},
+                  start_force_);
 }
 
 Motion StepDoubling::motion(const Instant& at) const {
@@ -141,7 +143,7 @@ bool StepDoubling::evaluate(const Instant& at, const Recall& from, Memory& to, S
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
   add_drag(model_, at, trial_.reduced_momentum, trial_.force);
-  report.evaluation.damping_power += drag_power(model_, at, trial_.reduced_momentum);
+  report.evaluation.damping_power += drag_loss_.power(at, trial_.reduced_momentum);
   return report.evaluation.sound;
 }
 
@@ -161,7 +163,7 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
         trial_.position.rigid[i] = dof.position_after(time, half, x, x + half * v);
       });
   if (!corrected) return;
-  moving_velocity_ = material_velocity(model_, trial_.reduced_momentum);
+  material_velocity(model_, trial_.reduced_momentum, moving_velocity_);
   for (std::size_t i = 0; i < position.compliant.size(); ++i)
     trial_.position.compliant[i] = position.compliant[i] + half * moving_velocity_.compliant[i];
 }
@@ -178,10 +180,10 @@ void StepDoubling::find_difference(const Region& region, double dt) {
 }
 
 void StepDoubling::correct_difference() {
-  const std::vector<Lanes> uncorrected = difference_;
+  uncorrected_ = difference_;
   for_each_batch(model_, [&](int b) {
     const Batch& batch = model_.batches[b];
-    correct_velocity(model_, batch, &uncorrected[batch.offset], &difference_[batch.offset]);
+    correct_velocity(model_, batch, &uncorrected_[batch.offset], &difference_[batch.offset]);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
 
 namespace pliant {
@@ -45,13 +46,15 @@ class StepDoubling {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;                ///< something meets it
-  double wave_time_;               ///< from node to node, s
-  Dofs moving_velocity_;           ///< with corrected mass only: C y
-  Dofs start_force_;               ///< of the first half step
-  Trial trial_;                    ///< at the half step, then at the end
-  Memory half_memory_;             ///< at the half step
-  std::vector<Lanes> difference_;  ///< u2 - u1 of the compliant degrees of freedom
+  const bool drag_;  ///< something meets it
+  DragLoss drag_loss_;
+  double wave_time_;                ///< from node to node, s
+  Dofs moving_velocity_;            ///< with corrected mass only: C y
+  Dofs start_force_;                ///< of the first half step
+  Trial trial_;                     ///< at the half step, then at the end
+  Memory half_memory_;              ///< at the half step
+  std::vector<Lanes> difference_;   ///< u2 - u1 of the compliant degrees of freedom
+  std::vector<Lanes> uncorrected_;  ///< scratch: the same before C
 };
 
 }  // namespace pliant

@@ -38,6 +38,7 @@ Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces),
       model_(forces.model()),
       drag_(has_drag(forces.model())),
+      drag_loss_(forces.model()),
       needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
       trial_(model_),
@@ -133,12 +134,13 @@ void Verlet::predict_velocities(const State& state, double dt) {
         dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + drag.mean * change;
     end_velocity_.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + drag.end * change);
   });
-  if (model_.corrected_mass) end_velocity_ = material_velocity(model_, end_velocity_);
+  if (!model_.corrected_mass) return;
+  material_velocity(model_, end_velocity_, moving_velocity_);
+  std::swap(end_velocity_, moving_velocity_);
 }
 
 void Verlet::move_by_mean_velocity(const State& state, double dt) {
-  const Dofs corrected = model_.corrected_mass ? material_velocity(model_, mean_velocity_) : Dofs();
-  const std::vector<Lanes>& velocity = model_.corrected_mass ? corrected.compliant : mean_velocity_.compliant;
+  const std::vector<Lanes>& velocity = material_velocity(model_, mean_velocity_, moving_velocity_).compliant;
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes) { trial_.position.compliant[i] = state.position.compliant[i] + dt * velocity[i]; },
@@ -220,7 +222,7 @@ void Verlet::finish_rigid(const State& state, double dt) {
 void Verlet::finish(const State& state, StepReport& report) {
   finish_rigid(state, report.dt);
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
-  if (drag_) report.damping_work += drag_work(model_, {state.time}, report.dt, state.reduced_momentum, mean_velocity_);
+  if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
 void Verlet::accepted(const State& state) {

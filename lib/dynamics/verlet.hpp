@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
 #include "dynamics/time_step_bound.hpp"
 
@@ -43,12 +44,14 @@ class Verlet {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;              ///< something meets it
+  const bool drag_;  ///< something meets it
+  DragLoss drag_loss_;
   const bool needs_velocities_;  ///< with drag, rates or corrected mass
   TimeStepBound bound_;
   Trial trial_;
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
   Dofs end_velocity_;           ///< that forces see at the end of the step, where needed
+  Dofs moving_velocity_;        ///< scratch: of reduced momenta, with corrected mass
   std::vector<double> change_;  ///< [regions], of the acceleration over the nodal distance, 1/s2
 };
 

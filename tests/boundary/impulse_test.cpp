@@ -98,7 +98,7 @@ TEST(Impulse, of_a_following_pressure_on_a_deforming_outline) {
   Simulation simulation(model);
   const auto load = [&](bool ends_step) {
     const State& state = simulation.state();
-    return outline_load(model, 1, {state.position, state.reduced_momentum, state.time, ends_step});
+    return outline_load(model, 1, state.outlines, {state.time, ends_step});
   };
   Vec2 impulse(0, 0);
   while (simulation.state().time < 3) {

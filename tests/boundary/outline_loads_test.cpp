@@ -185,7 +185,7 @@ TEST(Support, pulls_back_by_stiffness_times_length_along_the_axes_that_it_holds)
   bottom.x = {Drive::Mode::displacement, constant(0.3)};
   Bench bench(square(bottom));
   EXPECT_LT((total_force(bench) - Vec2(5 * 2 * 0.3, 0)).norm(), 1e-13) << "EXACT";
-  EXPECT_NEAR(support_energy(bench.model, bench.state.position, {0}), 0.5 * 5 * 2 * 0.09, 1e-13) << "EXACT";
+  EXPECT_NEAR(support_energy(bench.model, bench.state.outlines.position, {0}), 0.5 * 5 * 2 * 0.09, 1e-13) << "EXACT";
   bottom.x.mode = Drive::Mode::free;
   bottom.y = {Drive::Mode::velocity, constant(0.2)};
   Bench later(square(bottom));

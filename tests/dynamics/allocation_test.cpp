@@ -58,6 +58,38 @@ long allocations_of_steps(const Scene& scene) {
 
 TEST(Allocation, there_is_none_in_a_step) { EXPECT_EQ(allocations_of_steps(small_third_body(2)), 0) << "EXACT"; }
 
+class AllocationOfAll : public ::testing::TestWithParam<Integrator> {};
+
+/// Whatever a scene asks for beside contact.
+TEST_P(AllocationOfAll, there_is_none_in_a_step) {
+  using Condition = BoundaryCondition;
+  for (const Mass mass : {Mass::lumped, Mass::corrected}) {
+    Scene scene = small_third_body(2);
+    scene.time.integrator = GetParam();
+    scene.discretisation.mass = mass;
+    scene.contact.length = ContactLength::current;
+    for (Material& material : scene.materials) material.viscosity = 0.01, material.mass_damping = 0.1;
+    scene.contacts = {mohr_coulomb(1, 0.5)};
+    scene.contacts[0].stiffness.reset();
+    scene.contacts[0].restitution = 0.5;
+    scene.walls[1].y.damping = 0.2;
+    Condition pressure;
+    pressure.kind = Condition::Kind::pressure;
+    pressure.grains = "layer";
+    pressure.pressure = {{0, 5}, {0.02, 0.05}};
+    Condition support;
+    support.kind = Condition::Kind::support;
+    support.grains = "layer";
+    support.stiffness = support.damping = 0.01;
+    support.x = {Drive::Mode::velocity, constant(0.01)};
+    scene.boundary = {pressure, support};
+    EXPECT_EQ(allocations_of_steps(scene), 0) << "EXACT";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, AllocationOfAll,
+                         ::testing::Values(Integrator::verlet, Integrator::step_doubling));
+
 TEST(Allocation, is_seen) {
   const long before = allocations;
   const std::vector<double> one(1);

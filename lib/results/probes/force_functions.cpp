@@ -33,7 +33,7 @@ Vec2 body_force(const Snapshot& snapshot, int b) {
 
 Vec2 applied_force(const Snapshot& snapshot, int b) {
   const Body& body = snapshot.model().bodies[b];
-  const Vec2 on_outline = outline_load(snapshot.model(), b, snapshot.motion());
+  const Vec2 on_outline = outline_load(snapshot.model(), b, snapshot.state().outlines, {snapshot.state().time});
   if (body.kind == BodyKind::compliant) return on_outline;
   const RigidBody& rigid = snapshot.model().rigid_bodies[body.rigid];
   const Instant now = snapshot.motion().instant();
