@@ -281,6 +281,25 @@ TEST_F(RunScene, frames_resolve_every_field) {
   EXPECT_EQ(shell(script + " 5"), 0) << read(folder_ / "log.txt");
 }
 
+TEST_F(RunScene, a_frame_takes_few_bytes) {
+  const auto bytes_with = [&](const std::string& period, const std::string& fields, int nodes) {
+    std::string text =
+        replaced(pressed_discs, "period = 0.5\nfields = ", "period = " + period + "\nfields = [" + fields + "]\n#");
+    text = replaced(text.substr(0, text.find("]\n#")) + "]\n", "nodes = 60", "nodes = " + std::to_string(nodes));
+    run_scene(scene(text), {out(), true, true, 1});
+    return static_cast<double>(fs::file_size(out() / "frames.h5"));
+  };
+  const auto frame = [&](const std::string& fields, int nodes) {
+    return (bytes_with("0.125", fields, nodes) - bytes_with("0.25", fields, nodes)) / 8;
+  };
+  for (const bool with_field : {false, true}) {
+    const std::string fields = with_field ? "\"von_mises\"" : "";
+    const double small = frame(fields, 60), large = frame(fields, 240);
+    EXPECT_LT(small, 12000) << "FROZEN: 8.2 and 10.6 kB when written, mostly HDF5's own";
+    EXPECT_LT((large - small) / 180, with_field ? 22 : 10) << "FROZEN: 7.1 and 18.5 bytes a node when written";
+  }
+}
+
 TEST_F(RunScene, a_node_that_no_body_has_is_refused_before_anything_is_written) {
   const std::string text =
       replaced(pressed_discs, "of = \"first\"\nperiod = 0.5", "of = \"first\"\nnode = 60\nperiod = 0.5");
