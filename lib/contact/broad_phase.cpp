@@ -49,10 +49,17 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
 }  // namespace
 
 Box bounding_box(const Model& model, const OutlineField& position, int body) {
-  const int offset = model.outline_offset[body], count = model.outline_of(body).count;
-  const auto [x_min, x_max] = std::minmax_element(&position.x[offset], &position.x[offset] + count);
-  const auto [y_min, y_max] = std::minmax_element(&position.y[offset], &position.y[offset] + count);
-  return {*x_min, *x_max, *y_min, *y_max};
+  const OutlineShape& shape = model.outline_of(body);
+  const int begin = model.outline_offset[body], end = begin + shape.count;
+  Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
+  for (int i = begin; i < end; i += lane_count) {
+    // The last lanes may reach into the cyclic copies, which on a wall are those of the next period.
+    const LaneBits own = first_lanes(end - i);
+    const Lanes x = load(&position.x[i]), y = load(&position.y[i]);
+    x_min = select(own, min(x_min, x), x_min), x_max = select(own, max(x_max, x), x_max);
+    y_min = select(own, min(y_min, y), y_min), y_max = select(own, max(y_max, y), y_max);
+  }
+  return {-largest(-x_min), largest(x_max), -largest(-y_min), largest(y_max)};
 }
 
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin) {

@@ -197,16 +197,17 @@ Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
 
 }  // namespace
 
-void find_arcs(const Model& model, const OutlineField& outlines, const std::vector<Box>& boxes, Patch& patch,
-               double margin, double skin, MasterWindow& scratch) {
+void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
+               MasterWindow& scratch) {
   const double shift = patch.images * model.scene.period.value_or(0);
   Side sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
-  Box box_b = boxes[patch.second];
+  const Box box_a = bounding_box(model, outlines, patch.first);
+  Box box_b = bounding_box(model, outlines, patch.second);
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
   const Margins margins(margin, skin, patch.corners, longest);
-  find_rough_arcs(model, sides[0], sides[1], boxes[patch.first], box_b, patch,
+  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch,
                   std::max(margin, longest + 2 * skin) + 2 * skin + margins.sight, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return;
   const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <vector>
-
-#include "contact/broad_phase.hpp"
 #include "contact/master_window.hpp"
 #include "contact/patch.hpp"
 
@@ -12,7 +9,7 @@ namespace pliant {
 /// the skin (docs/method.md 4, stage 2), and sets them in the patch. Conservative: a node within `margin` (reach +
 /// skin) of a segment of the other outline, or within sight below it
 /// (compute_patch), is in, and so is the segment. All counts are 0 when the bodies stay apart.
-void find_arcs(const Model& model, const OutlineField& outlines, const std::vector<Box>& boxes, Patch& patch,
-               double margin, double skin, MasterWindow& scratch);
+void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
+               MasterWindow& scratch);
 
 }  // namespace pliant

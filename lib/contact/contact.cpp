@@ -45,8 +45,7 @@ PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
-  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock)
-                                                 : !watch_.is_used_up(found_at_.position, position);
+  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !watch_.is_used_up(position);
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {
@@ -56,9 +55,7 @@ bool ContactSystem::period_is_over(const RunClock& clock) const {
 }
 
 void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
-  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) ||
-      !watch_.is_used_up(found_at_.position, position))
-    return;
+  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !watch_.is_used_up(position)) return;
   warned_ = true;
   spdlog::warn(
       "bodies move further than the contact skin, {:.3g} m, from one contact refresh to the next: contacts can be "
@@ -80,19 +77,29 @@ void ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
   const bool pair_by_pair = fresh_ && !has_fixed_refresh(model_.scene.contact) && !model_.scene.contact.self_contact &&
                             laws_.era(clock.time) == laws_.era(refreshed_.time);
   if (!pair_by_pair) return find_candidates(outlines, history, clock);
-  watch_.add_up(found_at_.position, outlines.position);
   take_over_patches(outlines, history, clock);
+}
+
+/// Where candidates are found: as all threads can copy it.
+void ContactSystem::remember(const Outlines& outlines) {
+  found_at_.velocity = outlines.velocity;
+  found_at_.tributary_length = outlines.tributary_length;
+  found_at_.position.x.resize(outlines.position.x.size());
+  found_at_.position.y.resize(outlines.position.x.size());
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    const int first = model_.outline_offset[b], count = model_.outline_offset[b + 1] - first;
+    std::copy_n(&outlines.position.x[first], count, &found_at_.position.x[first]);
+    std::copy_n(&outlines.position.y[first], count, &found_at_.position.y[first]);
+  });
 }
 
 /// Candidates at these outlines, of whatever is used up, and the history with them.
 void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
-  found_at_ = outlines;
+  remember(outlines);
   refreshed_ = clock;
   ++refreshes_;
-  std::vector<Box> boxes(model_.bodies.size());
-  parallel_for(static_cast<int>(boxes.size()), [&](int b) { boxes[b] = bounding_box(model_, outlines.position, b); });
-  const bool same_pairs = !watch_.update(boxes);
-  std::vector<Patch> found = search_pairs(boxes);
+  const bool same_pairs = !watch_.update(outlines.position);
+  std::vector<Patch> found = search_pairs();
   if (same_pairs) {
     // Patches stand in the order of the pairs.
     for (const Patch& patch : found)
@@ -113,7 +120,7 @@ void ContactSystem::locate(ContactHistory& history) const {
 }
 
 /// Patches of all pairs that may not keep theirs.
-std::vector<Patch> ContactSystem::search_pairs(const std::vector<Box>& boxes) {
+std::vector<Patch> ContactSystem::search_pairs() {
   std::vector<int> used_up;
   for (int p = 0; p < watch_.count(); ++p)
     if (!watch_.may_keep(p)) used_up.push_back(p);
@@ -125,7 +132,7 @@ std::vector<Patch> ContactSystem::search_pairs(const std::vector<Box>& boxes) {
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.corners = has_corners(pair.first) || has_corners(pair.second);
     patch.found = refreshes_;
-    find_arcs(model_, found_at_.position, boxes, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
+    find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
     watch_.searched(used_up[i]);
   });
   pairs_searched_ += static_cast<long>(found.size());

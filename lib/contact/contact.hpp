@@ -81,9 +81,10 @@ class ContactSystem {
 
  private:
   void take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock);
+  void remember(const Outlines& outlines);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  std::vector<Patch> search_pairs(const std::vector<Box>& boxes);
+  std::vector<Patch> search_pairs();
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_buffers();
   void locate(ContactHistory& history) const;

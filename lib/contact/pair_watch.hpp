@@ -1,6 +1,6 @@
 #pragma once
 
-#include <limits>
+#include <array>
 #include <vector>
 
 #include "bodies/model.hpp"
@@ -10,51 +10,50 @@ namespace pliant {
 
 /// The pairs of bodies that may come to touch, and bounds of how far they have moved against each other since it was
 /// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
-/// pair by pair, but each its own way.
+/// pair by pair, but each its own way. Ways are from place to place: what only vibrates goes nowhere.
 class PairWatch {
  public:
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
   PairWatch(const Model& model, double skin, double reach);
 
-  /// Whether some pair, or what the broad phase left out, may have used up its skin on the way from one place of all
-  /// outlines, where ways were added up, to another.
-  bool is_used_up(const OutlineField& from, const OutlineField& to);
-  /// Adds up the ways from one place of all outlines to another.
-  void add_up(const OutlineField& from, const OutlineField& to);
+  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now.
+  bool is_used_up(const OutlineField& now);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
-  /// The broad phase, if it is due, and whether it was: pairs have other numbers then.
-  bool update(const std::vector<Box>& boxes);
+  /// Which pairs are to be searched with all outlines here, and the broad phase, if it is due: pairs have other numbers
+  /// then, and true is returned.
+  bool update(const OutlineField& now);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
   /// Whether what was found of a pair may stay.
   bool may_keep(int pair) const;
-  /// What a pair's bodies can touch was searched at the place up to which ways are added up.
-  void searched(int pair) { pair_moved_[pair] = 0; }
+  /// What a pair's bodies can touch was searched at the place of the last update.
+  void searched(int pair);
   /// A pair that the broad phase does not find, searched just now.
-  void add(const BodyPair& pair) { pairs_.push_back(pair), pair_moved_.push_back(0); }
+  void add(const BodyPair& pair);
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("pairs", pairs_);
-    visitor("pair_moved", pair_moved_);
-    visitor("body_moved", body_moved_);
+    visitor("reference", reference_);
+    visitor("pairs", pairs_), visitor("pair_start", pair_start_);
+    visitor("body_start", body_start_);
   }
 
  private:
-  void measure(const OutlineField& from, const OutlineField& to);
-  Vec2 common_motion() const;
-  double pair_motion(int pair) const;
-  double own_motion(int body, const Vec2& common) const;
+  void measure(const OutlineField& now);
+  Box common_way() const;
+  double pair_way(int pair) const;
+  double own_way(int body, const Box& common) const;
+  void take_new_references(const OutlineField& now);
 
-  static constexpr double unknown = std::numeric_limits<double>::infinity();
   const Model& model_;
   double skin_, own_skin_, margin_;
+  OutlineField reference_;   ///< where each body was at some time; empty: all is to be searched
+  std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from there, of measure
   std::vector<BodyPair> pairs_;
-  std::vector<double> pair_moved_;  ///< [pairs] since they were searched, m
-  std::vector<double> body_moved_;  ///< [bodies] against all others since the broad phase, m
-  std::vector<Box> motion_;         ///< [bodies], box of the outline nodes' ways, of measure
+  std::vector<std::array<Box, 2>> pair_start_;  ///< [pairs], motions of the two when it was searched
+  std::vector<Box> body_start_;                 ///< [bodies], motions when the broad phase looked last
 };
 
 }  // namespace pliant

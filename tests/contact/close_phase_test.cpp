@@ -31,12 +31,9 @@ struct Pair {
   Patch patch;
 
   Pair(const ContactRig& r, const BodyPair& b, double m) : rig(r), bodies(b), margin(m) {
-    std::vector<Box> boxes;
-    for (int i = 0; i < static_cast<int>(rig.model.bodies.size()); ++i)
-      boxes.push_back(bounding_box(rig.model, rig.outlines.position, i));
     patch.first = b.first, patch.second = b.second, patch.images = b.images;
     MasterWindow scratch;
-    find_arcs(rig.model, rig.outlines.position, boxes, patch, margin, 0.5 * margin, scratch);
+    find_arcs(rig.model, rig.outlines.position, patch, margin, 0.5 * margin, scratch);
   }
   int body(int side) const { return side == 0 ? bodies.first : bodies.second; }
   const OutlineShape& shape(int side) const { return rig.model.outlines[rig.model.bodies[body(side)].outline]; }
