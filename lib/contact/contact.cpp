@@ -176,7 +176,8 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position) c
 
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                   OutlineField& force) {
-  if (to.layout != from.layout) to = from;  // also what no patch writes: states are compared by their bits
+  // Also what no patch writes: states are compared by their bits.
+  if (to.layout != from.layout || to.records() != from.records()) to = from;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {

@@ -9,6 +9,9 @@
 
 namespace pliant {
 
+/// Of each record, see kinks.hpp: gap, debt and the pressure that repays it, before anything is known of them.
+constexpr double no_kinks[] = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+
 /// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
 struct ContactHistory {
   /// On the master's outline at the last accepted step, see slip.hpp; NaN when not beside it.
@@ -18,17 +21,23 @@ struct ContactHistory {
   /// What the pair's law remembers besides (laws/response.hpp): first of all records, then second of all ...; empty
   /// when no law of the scene does.
   std::vector<double> of_law;
+  /// The same of kinks.hpp: all gaps, all debts, all pressures that repay them; empty without `energy_consistent`.
+  std::vector<double> of_kinks;
   /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
   std::int64_t layout = 0;
 
   std::size_t records() const { return place.size(); }
   std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }
+  bool minds_kinks() const { return !of_kinks.empty(); }
+  double* kinks(std::size_t k) { return of_kinks.data() + k * records(); }
+  const double* kinks(std::size_t k) const { return of_kinks.data() + k * records(); }
   double* field(std::size_t k) { return of_law.data() + k * records(); }
   const double* field(std::size_t k) const { return of_law.data() + k * records(); }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("layout", layout);
+    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("of_kinks", of_kinks);
+    visitor("layout", layout);
   }
 };
 

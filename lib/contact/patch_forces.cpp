@@ -9,6 +9,7 @@
 
 #include "contact/encounter.hpp"
 #include "contact/facing.hpp"
+#include "contact/kinks.hpp"
 #include "contact/patch_queries.hpp"
 
 namespace pliant {
@@ -119,6 +120,8 @@ constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 /// Of nodes that are not beside the master.
 template <class Law>
 void forget(ContactHistory& history, int record) {
+  if (history.minds_kinks())
+    for (std::size_t k = 0; k < std::size(no_kinks); ++k) store(history.kinks(k) + record, broadcast(no_kinks[k]));
   store(&history.place[record], broadcast(nowhere));
   store(&history.slip[record], Lanes{});
   if constexpr (remembers<Law>)
@@ -153,14 +156,15 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
-template <class Law>
+template <bool minds_kinks, class Law>
 void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const ContactHistory& from,
                   ContactHistory& to, PatchForces& forces, LaneTotals& totals) {
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
   reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
-  const double outward = law.reach + (Law::has_shear ? view.skin : 0);  // see locate_newcomers
+  // Gaps before the touch: see locate_newcomers, and kinks.hpp.
+  const double outward = law.reach + (Law::has_shear || minds_kinks ? view.skin : 0);
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
     const LaneBits active = first_lanes(pass.nodes.count - i);
@@ -185,14 +189,21 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     store(&to.slip[record], select(touching, c.slip, Lanes{}));
     store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
-    if (!any(touching)) continue;
-    const Lanes weight = select(touching, half_length, Lanes{});
+    LaneBits acting = touching;
+    Lanes pressure = c.pressure, shear = c.shear;
+    if constexpr (minds_kinks) {  // debts are repaid beyond the law's reach too
+      acting = active & p.hit;
+      pressure = select(touching, pressure, Lanes{}) + repay(law, from, to, record, p.gap, acting);
+      shear = select(touching, shear, Lanes{});
+    }
+    if (!any(acting)) continue;
+    const Lanes weight = select(acting, half_length, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
     // The tangent goes with the normal, also where that is radial.
-    const Lanes fx = weight * (c.pressure * p.normal_x - c.shear * p.normal_y);
-    const Lanes fy = weight * (c.pressure * p.normal_y + c.shear * p.normal_x);
-    const Lanes couple = weight * c.shear * p.gap * p.inverse_length;
+    const Lanes fx = weight * (pressure * p.normal_x - shear * p.normal_y);
+    const Lanes fy = weight * (pressure * p.normal_y + shear * p.normal_x);
+    const Lanes couple = weight * shear * p.gap * p.inverse_length;
     reactions.add(p, fx, fy, couple);
     add(&forces.x[pass.slave_force + i], fx);
     add(&forces.y[pass.slave_force + i], fy);
@@ -224,7 +235,12 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
     Pass pass = make_pass(view, slave_side, begin);
     if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
     fill_window(view, 1 - slave_side);
-    compute_pass(law, pass, view, from, to, forces, totals);
+    if constexpr (HasKinks<Law> && !has_dashpot<Law>) {
+      pass.minds_kinks ? compute_pass<true>(law, pass, view, from, to, forces, totals)
+                       : compute_pass<false>(law, pass, view, from, to, forces, totals);
+    } else {
+      compute_pass<false>(law, pass, view, from, to, forces, totals);
+    }
   }
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);

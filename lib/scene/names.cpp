@@ -41,6 +41,7 @@ constexpr std::string_view keys[] = {
     "distribution",
     "domain",
     "end",
+    "energy_consistent",
     "factors",
     "fatigue_rate",
     "fatigue_threshold",

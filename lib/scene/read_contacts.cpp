@@ -79,6 +79,8 @@ void read_settings(TableReader settings, Scene& scene) {
       Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});
   read_refresh(settings, scene.contact);
   settings.optional("self_contact", scene.contact.self_contact, Flag{});
+  if (scene.time.integrator == Integrator::verlet)
+    settings.optional("energy_consistent", scene.contact.energy_consistent, Flag{});
   settings.finish();
 }
 

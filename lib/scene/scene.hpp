@@ -223,6 +223,7 @@ struct ContactSettings {
   int refresh_steps = 0;                            ///< rebuild candidates every so many steps; 0: when needed
   double refresh_period = 0;                        ///< the same in time, s
   bool self_contact = false;                        ///< compliant bodies may touch themselves
+  bool energy_consistent = false;                   ///< verlet: contact/kinks.hpp
 };
 
 /// A rectangle.
