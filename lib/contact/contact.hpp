@@ -39,7 +39,7 @@ class ContactSystem {
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
-  /// The same, but patches of pairs that have used up less than half of their skin stay as they are.
+  /// The same, but patches of pairs that have used up less than three fourths of their skin stay as they are.
   void renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
 
   /// Contact forces on outline nodes, N/m, from one history into another.
