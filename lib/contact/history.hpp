@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/lanes.hpp"
@@ -10,7 +11,7 @@
 namespace pliant {
 
 /// Of each record, see kinks.hpp: gap, debt and the pressure that repays it, before anything is known of them.
-constexpr double no_kinks[] = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+constexpr double kinks_at_first[] = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
 
 /// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
 struct ContactHistory {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <limits>
+#include <iterator>
 
 #include "contact/history.hpp"
 #include "contact/laws/response.hpp"
@@ -35,6 +35,12 @@ Lanes work_missed(const Law& law, Lanes before, Lanes now) {
   return missed;
 }
 
+/// Of nodes that are not beside the master: what is owed then is lost.
+inline void forget_kinks(ContactHistory& history, int record) {
+  for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
+    store(history.kinks(k) + record, broadcast(kinks_at_first[k]));
+}
+
 /// What records keep from step to step of eight nodes, and the additional pressure, 0 where gaps are not known.
 template <class Law>
 Lanes repay(const Law& law, const ContactHistory& from, ContactHistory& to, int record, Lanes gap, LaneBits beside) {
@@ -46,7 +52,7 @@ Lanes repay(const Law& law, const ContactHistory& from, ContactHistory& to, int 
   const Lanes most = (repayment * law.normal_stiffness) * abs(way);
   const Lanes wanted = -debt / select(moved, way, broadcast(1));
   const Lanes pressure = select(moved, min(max(wanted, -most), most), Lanes{});
-  store(to.kinks(0) + record, select(beside, gap, broadcast(no_kinks[0])));
+  store(to.kinks(0) + record, select(beside, gap, broadcast(kinks_at_first[0])));
   store(to.kinks(1) + record, select(beside, debt + select(moved, 0.5 * pressure * way, Lanes{}), Lanes{}));
   store(to.kinks(2) + record, pressure);
   return pressure;

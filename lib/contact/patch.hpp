@@ -61,6 +61,11 @@ struct Patch {
   }
 };
 
+/// The order in which patches stand.
+inline bool comes_before(const Patch& a, const Patch& b) {
+  return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part);
+}
+
 /// A patch with all that work on it looks at.
 struct PatchView {
   const Model& model;

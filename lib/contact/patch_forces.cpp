@@ -120,8 +120,6 @@ constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 /// Of nodes that are not beside the master.
 template <class Law>
 void forget(ContactHistory& history, int record) {
-  if (history.minds_kinks())
-    for (std::size_t k = 0; k < std::size(no_kinks); ++k) store(history.kinks(k) + record, broadcast(no_kinks[k]));
   store(&history.place[record], broadcast(nowhere));
   store(&history.slip[record], Lanes{});
   if constexpr (remembers<Law>)
@@ -176,6 +174,7 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip, old);
       forget<Law>(to, record);
+      if constexpr (minds_kinks) forget_kinks(to, record);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);

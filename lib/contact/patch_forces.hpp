@@ -6,8 +6,9 @@
 namespace pliant {
 
 /// Forces of one patch: each body's nodes against the other's segments, each pass with weight 1/2 (docs/method.md 4),
-/// from one history into another. Penetrations are seen down to the longest segment near and the skin more: as no step
-/// moves two bodies further than the skin against each other, none can pass from a permitted depth to beyond sight.
+/// from one history into another. Penetrations are seen down to the longest segment near and the skin more. Candidates
+/// were found at an accepted state, at most a segment deep, from which nothing goes further than the skin before they
+/// are found anew: none can pass from a permitted depth to beyond sight.
 PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces);
 
 }  // namespace pliant

@@ -16,8 +16,6 @@ int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_coun
 
 constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
-bool comes_before(const Patch& a, const Patch& b) { return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part); }
-
 /// As of nodes that met nothing yet.
 void forget_all(const Patch& patch, int side, ContactHistory& history) {
   const int begin = patch.record[side], count = padded(patch.nodes[side].count);
@@ -27,7 +25,8 @@ void forget_all(const Patch& patch, int side, ContactHistory& history) {
   for (std::size_t k = 0; k < remembered.size(); ++k)
     std::fill_n(history.field(k) + begin, count, remembered[k].at_first);
   if (history.minds_kinks())
-    for (std::size_t k = 0; k < std::size(no_kinks); ++k) std::fill_n(history.kinks(k) + begin, count, no_kinks[k]);
+    for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
+      std::fill_n(history.kinks(k) + begin, count, kinks_at_first[k]);
 }
 
 /// The records of one side's nodes, from where another patch of the same bodies has them.
@@ -40,7 +39,7 @@ void carry(const Model& model, const Patch& from, const ContactHistory& old, con
     for (std::size_t k = 0; k < remembered_of(to.law).size(); ++k)
       std::copy_n(old.field(k) + old_record, count, history.field(k) + record);
     if (history.minds_kinks())
-      for (std::size_t k = 0; k < std::size(no_kinks); ++k)
+      for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
         std::copy_n(old.kinks(k) + old_record, count, history.kinks(k) + record);
   };
   if (to.nodes[side] == from.nodes[side]) return copy(from.record[side], to.record[side], to.nodes[side].count);
@@ -59,7 +58,7 @@ ContactHistory take_aside(ContactHistory& history, Patch& patch) {
   const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
   const std::size_t total = static_cast<std::size_t>(size[0] + size[1]);
   ContactHistory kept{std::vector(total, 0.0), std::vector(total, 0.0), std::vector(total * history.fields(), 0.0),
-                      std::vector(history.minds_kinks() ? std::size(no_kinks) * total : 0, 0.0)};
+                      std::vector(history.minds_kinks() ? std::size(kinks_at_first) * total : 0, 0.0)};
   for (int side = 0; side < 2; ++side) {
     const int from = patch.record[side], to = side * size[0];
     const auto move = [&](double* old, double* now, double none) {
@@ -70,7 +69,8 @@ ContactHistory take_aside(ContactHistory& history, Patch& patch) {
     move(history.slip.data(), kept.slip.data(), 0.0);
     for (std::size_t k = 0; k < history.fields(); ++k) move(history.field(k), kept.field(k), 0.0);
     if (history.minds_kinks())
-      for (std::size_t k = 0; k < std::size(no_kinks); ++k) move(history.kinks(k), kept.kinks(k), no_kinks[k]);
+      for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
+        move(history.kinks(k), kept.kinks(k), kinks_at_first[k]);
     patch.record[side] = to;
   }
   return kept;
@@ -106,7 +106,7 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
   const std::size_t records = static_cast<std::size_t>(record_room_);
   ContactHistory next{std::vector(records, nowhere), std::vector(records, 0.0), std::vector(records * fields, 0.0),
-                      std::vector(minds_kinks ? std::size(no_kinks) * records : 0, 0.0)};
+                      std::vector(minds_kinks ? std::size(kinks_at_first) * records : 0, 0.0)};
   parallel_for(static_cast<int>(patches.size()), [&](int p) {
     const Patch& patch = patches[p];
     const Patch* from = find(patch.pair(), patch.part);

@@ -7,16 +7,32 @@
 
 namespace pliant {
 
+/// Patches that were weighed keep what they had: weighed where they are now, they would miss what they can still reach
+/// before they are searched again.
+void StiffnessBound::follow_layout(const PatchTable& table) {
+  std::vector<double> entries(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
+  auto old = weighed_.begin();
+  for (const Patch& patch : table.patches()) {
+    if (patch.found > seen_) continue;
+    while (comes_before(*old, patch)) ++old;
+    for (int side = 0; side < 2; ++side)
+      std::copy_n(entries_.data() + old->entry[side], patch.forces(side).count, entries.data() + patch.entry[side]);
+  }
+  entries_ = std::move(entries);
+  weighed_ = table.patches();
+}
+
 std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std::vector<double>& compliance) {
   const PatchTable& table = contact.table();
   const bool all = layout_ != table.laid_out();
-  if (all) entries_.assign(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
+  if (all) follow_layout(table);
   std::vector<int> found;
   std::vector<char> changed(model_.bodies.size(), all);
   for (int p = 0; p < table.count(); ++p) {
     const Patch& patch = table.patches()[p];
-    if (!all && patch.found <= seen_) continue;
+    if (patch.found <= seen_) continue;
     found.push_back(p);
+    weighed_[p] = patch;
     changed[patch.first] = changed[patch.second] = 1;
   }
   parallel_for(static_cast<int>(found.size()), [&](int i) {

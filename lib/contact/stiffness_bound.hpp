@@ -9,7 +9,7 @@ namespace pliant {
 
 /// A-priori bound of the contact stiffness that outline nodes may feel until their patches are searched again, weighted
 /// so that the bound of a pair is that of its two bodies taken alone (docs/method.md 6). Patches that stay as they are
-/// keep their part.
+/// keep their part, wherever it lies.
 class StiffnessBound {
  public:
   explicit StiffnessBound(const Model& model) : model_(model) {}
@@ -22,14 +22,17 @@ class StiffnessBound {
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("entries", entries_);
+    visitor("entries", entries_), visitor("weighed", weighed_);
     visitor("layout", layout_);
     visitor("seen", seen_);
   }
 
  private:
+  void follow_layout(const PatchTable& table);
+
   const Model& model_;
   std::vector<double> entries_;  ///< as the buffers of forces, N/m2
+  std::vector<Patch> weighed_;   ///< as they stand in the entries
   std::int64_t layout_ = -1;     ///< of the entries: PatchTable::laid_out
   std::int64_t seen_ = -1;       ///< refresh up to which patches were looked at
 };

@@ -27,7 +27,8 @@ class StepDoubling {
   double largest_dt() const { return std::numeric_limits<double>::infinity(); }  ///< s
   std::string governing() const { return "error control"; }
   template <class Visitor>
-  void visit(Visitor&&) {}  ///< nothing outlives a step
+  void visit(Visitor&&) {}                                                            ///< nothing outlives a step
+  void loaded() { trial_.memory.contact.layout = half_memory_.contact.layout = -1; }  // of another state
 
  private:
   /// Void: contact candidates were found anew in the second half, whose memory is not of them.

@@ -34,6 +34,7 @@ class Verlet {
   void visit(Visitor&& visitor) {
     visitor("bound", bound_);
   }
+  void loaded() { trial_.memory.contact.layout = -1; }  // of another state
 
  private:
   void predict_velocities(const State& state, double dt);

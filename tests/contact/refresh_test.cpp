@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
+#include "contact/patch_queries.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "support/contact_rig.hpp"
 
@@ -200,13 +203,50 @@ TEST(Refresh, bound_of_stiffness_follows) {
     updates += changed < 12;
     EXPECT_EQ(changed == 12, layout != before_layout) << "all are looked at where they were laid out anew";
     before_layout = layout;
-    StiffnessBound fresh(rig.model);
-    fresh.update(rig.contact, compliance);
-    EXPECT_EQ(bound.of_body(rig.contact, 11), fresh.of_body(rig.contact, 11));
     EXPECT_EQ(bound.of_body(rig.contact, 0), far);
   }
   EXPECT_GT(updates, 2);
   EXPECT_NE(bound.of_body(rig.contact, 11), before);
+}
+
+/// INDEPENDENT: whatever patches were searched, replaced or laid out anew, no body touches over a length of more
+/// stiffness than its bound, in which each record counts for both bodies with twice its own.
+TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
+  int touching = 0, layouts = 0;
+  for (int sample = 0; sample < 40; ++sample) {
+    Random random(sample + 400);
+    ContactRig rig(two_rows(random, {}, false));
+    StiffnessBound bound(rig.model);
+    const std::vector<double> compliance(rig.model.bodies.size(), 1.0);
+    // Up and down by about a skin, so that patches are kept that go far from where others were laid out.
+    double speed[12], swing[12], height[12] = {};
+    for (double& v : speed) v = random.uniform(0.05, 0.5);
+    for (double& v : swing) v = random.uniform(0.3, 1.5) * rig.contact.skin();
+    auto layout = rig.contact.table().laid_out();
+    for (int step = 0; step < 300; ++step) {
+      for (int body = 1; body < 12; body += 2) {
+        const double next = swing[body] * std::sin(speed[body] * step);
+        rig.move(body, {0, next - std::exchange(height[body], next)});
+      }
+      if (rig.evaluate()) bound.update(rig.contact, compliance);
+      layouts += layout != rig.contact.table().laid_out();
+      layout = rig.contact.table().laid_out();
+      std::vector<double> felt(rig.model.bodies.size());
+      for (const Patch& patch : rig.contact.patches()) {
+        if (patch.is_empty()) continue;
+        const double all = stiffness_of(patch.law) * touching_length(rig.contact.view(patch));
+        felt[patch.first] += all, felt[patch.second] += all;
+      }
+      for (int body = 0; body < 12; ++body) {
+        const std::vector<double> most = bound.of_body(rig.contact, body);
+        EXPECT_LE(2 * felt[body], std::accumulate(most.begin(), most.end(), 0.0) * (1 + 1e-12))
+            << "sample " << sample << ", step " << step << ", body " << body;
+        touching += felt[body] > 0;
+      }
+    }
+  }
+  EXPECT_GT(touching, 1000);
+  EXPECT_GT(layouts, 50);
 }
 
 }  // namespace
