@@ -64,6 +64,7 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
 }
 
 void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+  if (laws_.era(clock.time) != laws_.era(refreshed_.time)) history.evaluation = 0;  // of other laws
   warn_of_missed_contacts(outlines.position);
   watch_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
@@ -95,6 +96,7 @@ void ContactSystem::remember(const Outlines& outlines) {
 
 /// Candidates at these outlines, of whatever is used up, and the history with them.
 void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+  accept(history);
   remember(outlines);
   refreshed_ = clock;
   ++refreshes_;
@@ -102,11 +104,15 @@ void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& 
   std::vector<Patch> found = search_pairs();
   if (same_pairs) {
     // Patches stand in the order of the pairs.
-    for (const Patch& patch : found)
-      if (!table_.replace(static_cast<int>(table_.find(patch.pair()) - patches().data()), patch, history)) {
+    for (const Patch& patch : found) {
+      const int at = static_cast<int>(table_.find(patch.pair()) - patches().data());
+      const Patch old = patches()[at];
+      if (!table_.replace(at, patch, history)) {
         lay_out_anew(found, history);
         break;
       }
+      if (keeps_debts()) carry_forces(model_, old, last_.forces, patches()[at], last_.forces);
+    }
   } else
     lay_out_anew(found, history);
   locate(history);
@@ -149,15 +155,33 @@ void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory
     all.push_back(just_found ? *next++ : *table_.find(watch_[p]));
   }
   if (model_.scene.contact.self_contact) add_self_patches(all);
+  const std::vector<Patch> old = patches();
   table_.lay_out(std::move(all), laws_.remembered(), history);
-  make_buffers();
+  const Evaluated before = std::exchange(last_, {});
+  make_room(last_);
+  if (!keeps_debts()) return;
+  make_room(trial_);
+  last_.number = before.number, last_.refreshes = before.refreshes;
+  auto from = old.begin();
+  for (int p = 0; p < table_.count(); ++p) {
+    while (from != old.end() && comes_before(*from, patches()[p])) ++from;
+    if (from == old.end() || comes_before(patches()[p], *from)) continue;  // it did not touch
+    last_.totals[p] = before.totals[from - old.begin()];
+    carry_forces(model_, *from, before.forces, patches()[p], last_.forces);
+  }
 }
 
-void ContactSystem::make_buffers() {
+void ContactSystem::make_room(Evaluated& evaluated) const {
   const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // by whole lanes
-  forces_.x.assign(looked_at, 0.0);
-  forces_.y.assign(looked_at, 0.0);
-  totals_.assign(patches().size(), {});
+  evaluated.forces.x.assign(looked_at, 0.0);
+  evaluated.forces.y.assign(looked_at, 0.0);
+  evaluated.totals.assign(patches().size(), {});
+  evaluated.number = 0;
+}
+
+/// A trial whose history is that of the state now was accepted.
+void ContactSystem::accept(const ContactHistory& history) {
+  if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
 /// Asks for what the patch's windows and nodes look at first: there are many patches, each on places of its own.
@@ -174,17 +198,47 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position) c
   }
 }
 
+/// Forces of a patch after a step in which it repays some of what it owes, and what it owes then.
+PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
+                                  ContactHistory& to) {
+  const PatchTotals& before = last_.totals[patch];
+  // Parts of a body that touches itself are others after a search.
+  const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
+                     (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
+  const PatchStep way{known ? &step->position : nullptr, &last_.forces, from.owed[patch] - before.pending,
+                      known ? before.ways : 0, step != nullptr};
+  const PatchTotals now = compute_patch(view, &way, from, to, trial_.forces);
+  to.owed[patch] = from.owed[patch];
+  if (!known) return now;
+  const double lost =
+      before.stored - now.stored - now.dissipated - 0.5 * step->elapsed * (before.damping_power + now.damping_power);
+  to.owed[patch] += now.work - lost;
+  return now;
+}
+
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
-                                  OutlineField& force) {
+                                  OutlineField& force, const StepStart* step) {
   // Also what no patch writes: states are compared by their bits.
   if (to.layout != from.layout || to.records() != from.records()) to = from;
+  if (keeps_debts()) {
+    accept(from);
+    trial_.number = step ? ++evaluations_ : 0;
+    trial_.refreshes = refreshes_;
+    to.evaluation = step ? trial_.number : from.evaluation;
+  }
+  Evaluated& now = keeps_debts() ? trial_ : last_;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position);
-    totals_[p] = patches()[p].is_empty()
-                     ? PatchTotals()
-                     : compute_patch({model_, outlines, patches()[p], skin_, thread_scratch()}, from, to, forces_);
+    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch()};
+    PatchTotals& totals = now.totals[p];
+    if (view.patch.is_empty())
+      totals = {};
+    else if (keeps_debts())
+      totals = settle(view, p, step, from, to);
+    else
+      totals = compute_patch(view, nullptr, from, to, now.forces);
   });
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     const int n = model_.outline_of(b).count;
@@ -193,12 +247,12 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     std::fill_n(x, n, 0.0);
     std::fill_n(y, n, 0.0);
     table_.for_each_run(b, [&](int node, int entry, int count) {
-      add_run(&forces_.x[entry], count, x + node);
-      add_run(&forces_.y[entry], count, y + node);
+      add_run(&now.forces.x[entry], count, x + node);
+      add_run(&now.forces.y[entry], count, y + node);
     });
   });
   PatchTotals total;
-  for (const PatchTotals& t : totals_) {
+  for (const PatchTotals& t : now.totals) {
     total.stored += t.stored;
     total.dissipated += t.dissipated;
     total.damping_power += t.damping_power;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bodies/model.hpp"
@@ -19,6 +20,26 @@ namespace pliant {
 struct RunClock {
   double time = 0;         ///< of the positions, s
   std::int64_t steps = 0;  ///< accepted so far
+};
+
+/// Where a step began.
+struct StepStart {
+  const OutlineField& position;  ///< of outlines
+  double elapsed;                ///< since then, s
+};
+
+/// What an evaluation leaves behind.
+struct Evaluated {
+  PatchForces forces;
+  std::vector<PatchTotals> totals;  ///< [patches]
+  std::int64_t number = 0;          ///< ContactHistory::evaluation; 0: of no step
+  long refreshes = 0;               ///< before it
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("forces", forces), visitor("totals", totals);
+    visitor("number", number), visitor("refreshes", refreshes);
+  }
 };
 
 /// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its
@@ -42,8 +63,10 @@ class ContactSystem {
   /// The same, but patches of pairs that have used up less than three fourths of their skin stay as they are.
   void renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
 
-  /// Contact forces on outline nodes, N/m, from one history into another.
-  PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force);
+  /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
+  /// was, so that contacts may repay what they owe. Without it, as for an audit, all stands still.
+  PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
+                     const StepStart* step = nullptr);
 
   /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of
   /// stiffness; 0: no dashpot.
@@ -73,10 +96,13 @@ class ContactSystem {
     visitor("refreshed", refreshed_);
     visitor("refreshes", refreshes_);
     visitor("pairs_searched", pairs_searched_);
+    if (!keeps_debts()) return;
+    if (trial_.number > 0) std::swap(last_, trial_), trial_.number = 0;  // between steps it has been accepted
+    visitor("last", last_), visitor("evaluations", evaluations_);
   }
   void loaded() {
     table_.set_laws([&](const Patch& p) { return laws_.between(p.first, p.second, refreshed_.time); });
-    make_buffers();
+    make_room(keeps_debts() ? trial_ : last_);
   }
 
  private:
@@ -86,8 +112,12 @@ class ContactSystem {
   void warn_of_missed_contacts(const OutlineField& position);
   std::vector<Patch> search_pairs();
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
-  void make_buffers();
+  void make_room(Evaluated& evaluated) const;
+  void accept(const ContactHistory& history);
   void locate(ContactHistory& history) const;
+  bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
+  PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
+                     ContactHistory& to);
   void add_self_patches(std::vector<Patch>& all);
   void refuse_self_overlap() const;
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
@@ -97,10 +127,10 @@ class ContactSystem {
   ContactLaws laws_;
   double skin_;
   PairWatch watch_;
-  PatchTable table_;  ///< in the order of the pairs, unless bodies touch themselves
-  PatchForces forces_;
-  std::vector<PatchTotals> totals_;  ///< [patches]
-  Outlines found_at_;                ///< where some candidates were found last
+  PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
+  Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what has not been accepted
+  std::int64_t evaluations_ = 0;
+  Outlines found_at_;  ///< where some candidates were found last
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0, pairs_searched_ = 0;

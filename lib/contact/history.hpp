@@ -3,15 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/lanes.hpp"
 
 namespace pliant {
-
-/// Of each record, see kinks.hpp: gap, debt and the pressure that repays it, before anything is known of them.
-constexpr double kinks_at_first[] = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
 
 /// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
 struct ContactHistory {
@@ -22,23 +18,24 @@ struct ContactHistory {
   /// What the pair's law remembers besides (laws/response.hpp): first of all records, then second of all ...; empty
   /// when no law of the scene does.
   std::vector<double> of_law;
-  /// The same of kinks.hpp: all gaps, all debts, all pressures that repay them; empty without `energy_consistent`.
-  std::vector<double> of_kinks;
+  /// For energy_debt.hpp, empty without. Of each record that touched: gap then, m, else NaN; and the pressure that
+  /// repaid, Pa. [patches]: what they owe, J/m.
+  std::vector<double> gap = {}, repaid = {}, owed = {};
+  /// Which evaluation of the forces left it behind, where debts are kept; 0: none.
+  std::int64_t evaluation = 0;
   /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
   std::int64_t layout = 0;
 
   std::size_t records() const { return place.size(); }
   std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }
-  bool minds_kinks() const { return !of_kinks.empty(); }
-  double* kinks(std::size_t k) { return of_kinks.data() + k * records(); }
-  const double* kinks(std::size_t k) const { return of_kinks.data() + k * records(); }
   double* field(std::size_t k) { return of_law.data() + k * records(); }
   const double* field(std::size_t k) const { return of_law.data() + k * records(); }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("of_kinks", of_kinks);
-    visitor("layout", layout);
+    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("gap", gap),
+        visitor("repaid", repaid), visitor("owed", owed);
+    visitor("evaluation", evaluation), visitor("layout", layout);
   }
 };
 

@@ -18,7 +18,6 @@ struct Pass {
   const double* tributary_length;  ///< [nodes] of the slave, m
   bool present_lengths;            ///< as the slave's outline is now
   bool corners;                    ///< of either outline
-  bool minds_kinks;                ///< see kinks.hpp
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
@@ -55,8 +54,7 @@ inline Pass make_pass(const PatchView& view, int slave_side, const int (&force)[
           force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
-          patch.corners,
-          model.scene.contact.energy_consistent};
+          patch.corners};
 }
 
 inline void fill_window(const PatchView& view, int master_side) {

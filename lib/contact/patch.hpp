@@ -85,11 +85,27 @@ struct PatchTotals {
   double damping_power = 0;  ///< of dashpots, W/m
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< nodes in touch
+  // See energy_debt.hpp; 0 without:
+  double work = 0;     ///< of the mean of these forces and those before over the way between them, J/m
+  double ways = 0;     ///< squares of the ways of gaps, times the lengths of contacts, m3
+  double pending = 0;  ///< what the pressures that repay will have done in the next step, J/m
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
+    visitor("deepest", deepest), visitor("contacts", contacts), visitor("work", work), visitor("ways", ways);
+    visitor("pending", pending);
+  }
 };
 
 /// Where the forces of all patches go: each arc has its own stretch, gathered later by its body in a fixed order.
 struct PatchForces {
   std::vector<double> x, y;  ///< N/m
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("x", x), visitor("y", y);
+  }
 };
 
 }  // namespace pliant

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "contact/encounter.hpp"
+#include "contact/energy_debt.hpp"
 #include "contact/facing.hpp"
-#include "contact/kinks.hpp"
 #include "contact/patch_queries.hpp"
 
 namespace pliant {
@@ -149,20 +150,21 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
                   Traction& traction) {
   const Lanes rate = gap_rate(pass, i, p, touching);
   const Lanes damping = law.damping_pressure(traction.pressure, rate, pass.damping);
-  traction.shear_limit += law.more_shear_limit(traction.pressure, traction.pressure + damping);
-  traction.pressure += damping;
+  add_pressure(law, damping, traction);
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
-template <bool minds_kinks, class Law>
+struct NoRepayment {};
+
+template <class Law, class Repaid>
 void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const ContactHistory& from,
-                  ContactHistory& to, PatchForces& forces, LaneTotals& totals) {
+                  ContactHistory& to, Repaid& repaid, PatchForces& forces, LaneTotals& totals) {
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
   reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
-  // Gaps before the touch: see locate_newcomers, and kinks.hpp.
-  const double outward = law.reach + (Law::has_shear || minds_kinks ? view.skin : 0);
+  constexpr bool repays = !std::is_same_v<Repaid, NoRepayment>;
+  const double outward = law.reach + view.skin;  // places before the touch, and what is repaid after it
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
     const LaneBits active = first_lanes(pass.nodes.count - i);
@@ -174,7 +176,7 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip, old);
       forget<Law>(to, record);
-      if constexpr (minds_kinks) forget_kinks(to, record);
+      if constexpr (repays) repaid.forget(to, record);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
@@ -182,20 +184,25 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     Traction traction = law(p.gap);
     if constexpr (has_dashpot<Law>)
       totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
+    LaneBits acting = touching;
+    Lanes more{};
+    if constexpr (repays) {
+      acting = repaid.acting(from, record, active & p.hit, touching);
+      more = repaid.pressure(from, to, record, p.gap, acting, half_length);
+      if constexpr (!remembers<Law>) add_pressure(law, more, traction);
+    }
     Record<Law> now;
     const Contact c = respond(law, encounter(law, window, p, touching, old_place, place), traction, old_slip, old, now);
     store(&to.place[record], select(p.hit, place, broadcast(nowhere)));
     store(&to.slip[record], select(touching, c.slip, Lanes{}));
     store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
-    LaneBits acting = touching;
+    if (!any(acting)) continue;
     Lanes pressure = c.pressure, shear = c.shear;
-    if constexpr (minds_kinks) {  // debts are repaid beyond the law's reach too
-      acting = active & p.hit;
-      pressure = select(touching, pressure, Lanes{}) + repay(law, from, to, record, p.gap, acting);
+    if constexpr (repays) {
+      pressure = select(touching, remembers<Law> ? c.pressure + more : c.pressure, more);
       shear = select(touching, shear, Lanes{});
     }
-    if (!any(acting)) continue;
     const Lanes weight = select(acting, half_length, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
@@ -222,9 +229,9 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
 }
 
 /// Both passes of a patch, whose sides' forces begin at `begin`. What a law does not need is neither kept nor added up.
-template <class Law>
+template <class Law, class Repaid>
 PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactHistory& from, ContactHistory& to,
-                           const int (&begin)[2], PatchForces& forces) {
+                           Repaid& repaid, const int (&begin)[2], PatchForces& forces) {
   LaneTotals totals;
   double damping = 0;
   if constexpr (has_dashpot<Law>)
@@ -234,12 +241,7 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
     Pass pass = make_pass(view, slave_side, begin);
     if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
     fill_window(view, 1 - slave_side);
-    if constexpr (HasKinks<Law> && !has_dashpot<Law>) {
-      pass.minds_kinks ? compute_pass<true>(law, pass, view, from, to, forces, totals)
-                       : compute_pass<false>(law, pass, view, from, to, forces, totals);
-    } else {
-      compute_pass<false>(law, pass, view, from, to, forces, totals);
-    }
+    compute_pass(law, pass, view, from, to, repaid, forces, totals);
   }
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
@@ -248,7 +250,8 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
 
 }  // namespace
 
-PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces) {
+PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const ContactHistory& from, ContactHistory& to,
+                          PatchForces& forces) {
   // Both passes add to both sides: near at hand, and what comes of it goes out once.
   thread_local PatchForces near;
   const Patch& patch = view.patch;
@@ -256,13 +259,26 @@ PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, Con
   const std::size_t size = static_cast<std::size_t>(begin[1] + padded(count[1]) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
-  const PatchTotals totals =
-      std::visit([&](const auto& law) { return compute_passes(law, view, from, to, begin, near); }, patch.law);
-  for (int side = 0; side < 2; ++side)
-    for (int i = 0; i < count[side]; i += lane_count) {
-      store(&forces.x[patch.entry[side] + i], load(&near.x[begin[side] + i]));
-      store(&forces.y[patch.entry[side] + i], load(&near.y[begin[side] + i]));
+  const auto passes = [&](const auto& law) {
+    if (!step) {
+      NoRepayment none;
+      return compute_passes(law, view, from, to, none, begin, near);
     }
+    Repayment repaid(*step, law.normal_stiffness);
+    PatchTotals totals = compute_passes(law, view, from, to, repaid, begin, near);
+    totals.ways = repaid.ways(), totals.pending = repaid.pending();
+    return totals;
+  };
+  PatchTotals totals = std::visit(passes, patch.law);
+  for (int side = 0; side < 2; ++side) {
+    double *now_x = &near.x[begin[side]], *now_y = &near.y[begin[side]];
+    if (step && step->before) totals.work += work_of_side(view, *step, side, now_x, now_y);
+    double *x = &forces.x[patch.entry[side]], *y = &forces.y[patch.entry[side]];
+    for (int i = 0; i < count[side]; i += lane_count) {
+      store(x + i, load(now_x + i));
+      store(y + i, load(now_y + i));
+    }
+  }
   return totals;
 }
 

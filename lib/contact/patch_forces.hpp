@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contact/energy_debt.hpp"
 #include "contact/history.hpp"
 #include "contact/patch.hpp"
 
@@ -9,6 +10,8 @@ namespace pliant {
 /// from one history into another. Penetrations are seen down to the longest segment near and the skin more. Candidates
 /// were found at an accepted state, at most a segment deep, from which nothing goes further than the skin before they
 /// are found anew: none can pass from a permitted depth to beyond sight.
-PatchTotals compute_patch(const PatchView& view, const ContactHistory& from, ContactHistory& to, PatchForces& forces);
+/// `step`: null without energy_debt.hpp.
+PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const ContactHistory& from, ContactHistory& to,
+                          PatchForces& forces);
 
 }  // namespace pliant

@@ -18,14 +18,11 @@ double touching_length(const PatchView& view) {
 
 void locate_newcomers(const PatchView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.patch.law);
-  if (!shears && !history.minds_kinks()) return;
-  const auto fill_in = [](double* unknown, LaneBits beside, Lanes value) {
-    const Lanes old = load(unknown);
-    store(unknown, select(beside & (old != old), value, old));
-  };
+  if (!shears) return;
   for_each_facing(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Facing& at) {
-    if (shears) fill_in(&history.place[pass.record + i], at.p.hit, place_of(at.p));
-    if (history.minds_kinks()) fill_in(history.kinks(0) + pass.record + i, at.p.hit, at.p.gap);
+    double* place = &history.place[pass.record + i];
+    const Lanes old = load(place);
+    store(place, select(at.p.hit & (old != old), place_of(at.p), old));
   });
 }
 

@@ -10,9 +10,9 @@ namespace pliant {
 /// Length of both sides in touch, each pass with weight 1/2, m.
 double touching_length(const PatchView& view);
 
-/// Places and, with `energy_consistent`, gaps of the nodes within reach and a skin of the present outlines, where a
-/// history has none yet: so that slip, and a kink, count from the first step in touch. One that comes from further off
-/// in a single step, which may go up to two skins, has none.
+/// Places of the nodes within reach and a skin of the present outlines, where a history has none yet: so that slip
+/// counts from the first step in touch. One that comes from further off in a single step, which may go up to two skins,
+/// has none.
 void locate_newcomers(const PatchView& view, ContactHistory& history);
 
 /// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most

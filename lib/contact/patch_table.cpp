@@ -24,33 +24,28 @@ void forget_all(const Patch& patch, int side, ContactHistory& history) {
   const std::span<const Remembered> remembered = remembered_of(patch.law);
   for (std::size_t k = 0; k < remembered.size(); ++k)
     std::fill_n(history.field(k) + begin, count, remembered[k].at_first);
-  if (history.minds_kinks())
-    for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
-      std::fill_n(history.kinks(k) + begin, count, kinks_at_first[k]);
+  if (!history.gap.empty()) {
+    std::fill_n(history.gap.data() + begin, count, nowhere);
+    std::fill_n(history.repaid.data() + begin, count, 0.0);
+  }
 }
 
 /// The records of one side's nodes, from where another patch of the same bodies has them.
 void carry(const Model& model, const Patch& from, const ContactHistory& old, const Patch& to, int side,
            ContactHistory& history) {
   forget_all(to, side, history);
-  const auto copy = [&](int old_record, int record, int count) {
+  const auto copy = [&](int old_at, int at, int count) {
+    const int old_record = from.record[side] + old_at, record = to.record[side] + at;
     std::copy_n(old.place.data() + old_record, count, history.place.data() + record);
     std::copy_n(old.slip.data() + old_record, count, history.slip.data() + record);
     for (std::size_t k = 0; k < remembered_of(to.law).size(); ++k)
       std::copy_n(old.field(k) + old_record, count, history.field(k) + record);
-    if (history.minds_kinks())
-      for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
-        std::copy_n(old.kinks(k) + old_record, count, history.kinks(k) + record);
+    if (!history.gap.empty()) {
+      std::copy_n(old.gap.data() + old_record, count, history.gap.data() + record);
+      std::copy_n(old.repaid.data() + old_record, count, history.repaid.data() + record);
+    }
   };
-  if (to.nodes[side] == from.nodes[side]) return copy(from.record[side], to.record[side], to.nodes[side].count);
-  const bool two_walls = model.bodies[to.first].wall && model.bodies[to.second].wall;
-  const OutlineShape& shape = model.outline_of(side == 0 ? to.first : to.second);
-  const bool images_apart = shape.turn_shift != 0 && !two_walls;  // nodes of a wall under a body: see find_arcs
-  for (int i = 0; i < to.nodes[side].count; ++i) {
-    int at = to.nodes[side].begin + i - from.nodes[side].begin;
-    if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
-    if (at >= 0 && at < from.nodes[side].count) copy(from.record[side] + at, to.record[side] + i, 1);
-  }
+  for_each_shared(model, to, side, from.nodes[side], to.nodes[side], copy);
 }
 
 /// The records of a patch alone, on which another may come to stand; none is left where they were.
@@ -58,7 +53,8 @@ ContactHistory take_aside(ContactHistory& history, Patch& patch) {
   const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
   const std::size_t total = static_cast<std::size_t>(size[0] + size[1]);
   ContactHistory kept{std::vector(total, 0.0), std::vector(total, 0.0), std::vector(total * history.fields(), 0.0),
-                      std::vector(history.minds_kinks() ? std::size(kinks_at_first) * total : 0, 0.0)};
+                      std::vector(history.gap.empty() ? 0 : total, 0.0),
+                      std::vector(history.gap.empty() ? 0 : total, 0.0)};
   for (int side = 0; side < 2; ++side) {
     const int from = patch.record[side], to = side * size[0];
     const auto move = [&](double* old, double* now, double none) {
@@ -68,9 +64,10 @@ ContactHistory take_aside(ContactHistory& history, Patch& patch) {
     move(history.place.data(), kept.place.data(), nowhere);
     move(history.slip.data(), kept.slip.data(), 0.0);
     for (std::size_t k = 0; k < history.fields(); ++k) move(history.field(k), kept.field(k), 0.0);
-    if (history.minds_kinks())
-      for (std::size_t k = 0; k < std::size(kinks_at_first); ++k)
-        move(history.kinks(k), kept.kinks(k), kinks_at_first[k]);
+    if (!history.gap.empty()) {
+      move(history.gap.data(), kept.gap.data(), nowhere);
+      move(history.repaid.data(), kept.repaid.data(), 0.0);
+    }
     patch.record[side] = to;
   }
   return kept;
@@ -95,7 +92,6 @@ const Patch* PatchTable::find(const BodyPair& pair, int part) const {
 }
 
 void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, ContactHistory& history) {
-  const bool minds_kinks = model_.scene.contact.energy_consistent;
   std::sort(patches.begin(), patches.end(), comes_before);
   records_ = entries_ = 0;
   for (Patch& patch : patches)
@@ -105,8 +101,12 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
     }
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
   const std::size_t records = static_cast<std::size_t>(record_room_);
-  ContactHistory next{std::vector(records, nowhere), std::vector(records, 0.0), std::vector(records * fields, 0.0),
-                      std::vector(minds_kinks ? std::size(kinks_at_first) * records : 0, 0.0)};
+  ContactHistory next{std::vector(records, nowhere), std::vector(records, 0.0), std::vector(records * fields, 0.0)};
+  if (model_.scene.keeps_energy_debts()) {
+    next.gap.assign(records, nowhere), next.repaid.assign(records, 0.0);
+    next.owed.assign(patches.size(), 0.0);
+    next.evaluation = history.evaluation;
+  }
   parallel_for(static_cast<int>(patches.size()), [&](int p) {
     const Patch& patch = patches[p];
     const Patch* from = find(patch.pair(), patch.part);
@@ -115,6 +115,7 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
         carry(model_, *from, history, patch, side, next);
       else
         forget_all(patch, side, next);
+    if (from && !next.owed.empty()) next.owed[p] = history.owed[from - patches_.data()];
   });
   history = std::move(next);
   history.layout = laid_out_ = ++layout_;

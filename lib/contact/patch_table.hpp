@@ -17,6 +17,20 @@ struct ArcEntries {
   int at = 0;                ///< of the first entry in the buffers
 };
 
+/// Calls copy(from, to, count) for nodes of one side of a pair that two arcs share: positions in them, and how many.
+template <class Copy>
+void for_each_shared(const Model& model, const Patch& patch, int side, const Arc& old, const Arc& now, Copy&& copy) {
+  if (now == old) return copy(0, 0, now.count);
+  const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
+  const OutlineShape& shape = model.outline_of(side == 0 ? patch.first : patch.second);
+  const bool images_apart = shape.turn_shift != 0 && !two_walls;  // nodes of a wall under a body: see find_arcs
+  for (int i = 0; i < now.count; ++i) {
+    int at = now.begin + i - old.begin;
+    if (!images_apart) at -= turn_of(at, shape.count) * shape.count;
+    if (at >= 0 && at < old.count) copy(at, i, 1);
+  }
+}
+
 /// The patches, and where the records of their nodes and the forces on them stand. One that is found anew takes the old
 /// one's place, or goes behind all others as long as there is room, so that the rest stays where it is.
 class PatchTable {

@@ -50,7 +50,12 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
                             const RegionWork& afterwards) {
   Evaluation result;
   phases_.enter(Phase::contact);
-  result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
+  if (from.outlines) {
+    const StepStart step{*from.outlines, from.elapsed};
+    result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force, &step);
+  } else {
+    result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
+  }
   result.damping_power = result.contact.damping_power;
   phases_.enter(Phase::internal);
   const OutlineField* on_outlines = &to.contact_force;

@@ -23,10 +23,11 @@ struct Memory {
   }
 };
 
-/// A memory, and how long ago it was, s.
+/// A memory, how long ago it was, and where the outlines were then, if contact may know.
 struct Recall {
   const Memory& memory;
-  double elapsed = 0;
+  double elapsed = 0;  ///< s
+  const OutlineField* outlines = nullptr;
 };
 
 /// Before anything has happened.

@@ -72,7 +72,7 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   const auto finish = [&](int r) { finish_region(state, proposal.dt, r); };
-  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt},
+  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position},
                                        {trial_.force, trial_.contact_force, trial_.memory}, std::cref(finish));
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;

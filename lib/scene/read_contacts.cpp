@@ -81,6 +81,10 @@ void read_settings(TableReader settings, Scene& scene) {
   settings.optional("self_contact", scene.contact.self_contact, Flag{});
   if (scene.time.integrator == Integrator::verlet)
     settings.optional("energy_consistent", scene.contact.energy_consistent, Flag{});
+  if (settings.has("energy_consistent") && scene.contact.energy_consistent &&
+      scene.contact.length == ContactLength::current)
+    settings.value("energy_consistent")
+        .reject("false with length = \"current\", whose pressure is no gradient of an energy");
   settings.finish();
 }
 

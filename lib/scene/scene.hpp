@@ -223,7 +223,7 @@ struct ContactSettings {
   int refresh_steps = 0;                            ///< rebuild candidates every so many steps; 0: when needed
   double refresh_period = 0;                        ///< the same in time, s
   bool self_contact = false;                        ///< compliant bodies may touch themselves
-  bool energy_consistent = false;                   ///< verlet: contact/kinks.hpp
+  bool energy_consistent = true;                    ///< see Scene::keeps_energy_debts
 };
 
 /// A rectangle.
@@ -290,6 +290,12 @@ struct Scene {
   std::optional<double> checkpoint_period = 600.0;  ///< wall time between checkpoints, s; nullopt: "never"
 
   Vec2 gravity_at(double time) const;
+  /// Contacts repay the energy that steps gain or lose (contact/energy_debt.hpp): those that have an energy, of steps
+  /// whose work is known.
+  bool keeps_energy_debts() const {
+    return contact.energy_consistent && contact.length == ContactLength::reference &&
+           time.integrator == Integrator::verlet;
+  }
   const Material& material(const std::string& name) const;  ///< throws InputError for an unknown name
   const ShapeSpec& shape(const std::string& name) const;
   /// Shapes that a set of grains is made of, as indices in `shapes` with their shares; families as their variants.

@@ -97,7 +97,7 @@ struct Contacts::Implementation {
   /// All nodes of one body against another and its periodic images.
   void meet(int slave, int master, const Law& law) {
     const Box &a = bodies[slave].box, &b = bodies[master].box;
-    const double outward = law.reach + (law.shears() ? skin : 0);
+    const double outward = law.reach + skin;
     // Heights grow slower than distances beyond an end: of tips sharper than 29 degrees something may be missed beyond
     // this, far from any contact.
     const double margin = 4 * outward;

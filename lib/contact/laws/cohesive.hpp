@@ -26,10 +26,6 @@ struct Cohesive {
     const Lanes elastic_energy = 0.5 * (normal_stiffness * gap * gap - strength * reach);
     return {pressure, shear_strength * taper, select(elastic, elastic_energy, -0.5 * strength * remaining * taper)};
   }
-  std::array<Kink, 2> kinks() const {
-    const double critical_gap = strength / normal_stiffness, softening = strength / (reach - critical_gap);
-    return {{{critical_gap, normal_stiffness + softening, 0}, {reach, -softening, 0}}};
-  }
 };
 
 }  // namespace pliant

@@ -20,13 +20,6 @@ struct Damped : Law {
     const Lanes pressure = -damping * rate;
     return pull ? pressure : max(pressure, -elastic_pressure);
   }
-  /// What friction makes of another pressure, Pa.
-  Lanes more_shear_limit(Lanes elastic_pressure, Lanes pressure) const {
-    if constexpr (requires { this->friction; })
-      return this->friction * (max(pressure, Lanes{}) - elastic_pressure);
-    else
-      return Lanes{};
-  }
 };
 
 }  // namespace pliant

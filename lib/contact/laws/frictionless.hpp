@@ -16,7 +16,6 @@ struct Frictionless {
     const Lanes pressure = max(-normal_stiffness * gap, Lanes{});
     return {pressure, Lanes{}, 0.5 * pressure * pressure / normal_stiffness};
   }
-  std::array<Kink, 1> kinks() const { return {{{0, normal_stiffness, 0}}}; }
 };
 
 }  // namespace pliant

@@ -22,7 +22,6 @@ struct MohrCoulomb {
     const Lanes limit = select(touching, cohesion + friction * max(pressure, Lanes{}), Lanes{});
     return {pressure, limit, select(touching, 0.5 * normal_stiffness * (gap * gap - reach * reach), Lanes{})};
   }
-  std::array<Kink, 1> kinks() const { return {{{reach, normal_stiffness, -normal_stiffness * reach}}}; }
 };
 
 }  // namespace pliant

@@ -69,6 +69,15 @@ void slide(const Law& law, const Traction& traction, LaneBits touching, Lanes ol
   c.energy += 0.5 * law.shear_stiffness * c.slip * c.slip;
 }
 
+/// Of laws without memory: more pressure than of the gap, as of a dashpot, and what friction makes of it, Pa.
+template <class Law>
+void add_pressure(const Law& law, Lanes more, Traction& traction) {
+  const Lanes before = max(traction.pressure, Lanes{});
+  traction.pressure += more;
+  if constexpr (requires { law.friction; })
+    traction.shear_limit += law.friction * (max(traction.pressure, Lanes{}) - before);
+}
+
 /// `traction`: the law's answer to the gap, and its dashpot's.
 template <class Law>
 Contact respond(const Law& law, const Encounter& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,

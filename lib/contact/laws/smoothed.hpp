@@ -10,7 +10,6 @@ namespace pliant {
 template <class Law>
 struct Smoothed : Law {
   double width = 0;  ///< m
-  std::array<Kink, 0> kinks() const { return {}; }
 
   Traction operator()(Lanes gap) const {
     const Lanes depth = max(-gap, Lanes{}), start = min(depth, broadcast(width));

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include "core/lanes.hpp"
 
 namespace pliant {
@@ -11,13 +9,6 @@ struct Traction {
   Lanes pressure;     ///< Pa, positive in compression
   Lanes shear_limit;  ///< Pa, the largest |tau| of contacts that slide; laws with bonds may bear more
   Lanes energy;       ///< J/m2, normal part, dpsi/dg = -pressure, zero out of reach
-};
-
-/// A kink of a law, or a jump.
-struct Kink {
-  double gap;     ///< m
-  double change;  ///< of -dp/dg from the outer side to the deeper one, Pa/m
-  double jump;    ///< of p likewise, Pa
 };
 
 }  // namespace pliant

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "contact/history.hpp"
+#include "contact/patch.hpp"
+
+namespace pliant {
+
+/// In a step of velocity Verlet the kinetic energy grows by the mean of the forces at its ends times the way, but for a
+/// term that comes back. Where contact forces change smoothly, that is what contacts lose. Where a node goes from a
+/// segment to the next, whose normal is another, or over a kink of its law, as where contact sets in or ends, it is
+/// not, and contacts heat or cool. The difference is a debt of the two bodies, J/m, positive where they gained, which
+/// their contacts repay in the steps that follow by pressures against the ways of their gaps (docs/method.md 6).
+
+/// The pressure over what the stiffness makes of the way, at most: little beside what a step does to contacts anyway,
+/// nothing at rest, and nothing where steps are short.
+constexpr double most_repaid = 0.25;
+
+/// Of a patch, the step that led to an evaluation, if any did: an audit's finds again what was repaid.
+struct PatchStep {
+  const OutlineField* before;        ///< outlines at its start; null: not known
+  const PatchForces* forces_before;  ///< then
+  double debt;  ///< J/m, then, less PatchTotals::pending: a pressure acts in two steps, half in each
+  double ways;  ///< PatchTotals::ways of the step before; 0: not known
+  bool moves;   ///< there is a step
+
+  /// Pressure over way, Pa/m.
+  double resistance(double stiffness) const {
+    const double most = most_repaid * stiffness;
+    return ways > 0 ? std::clamp(debt / ways, -most, most) : 0.0;
+  }
+};
+
+/// What the mean of the forces on a side, these and those before, does in a step, J/m.
+double work_of_side(const PatchView& view, const PatchStep& step, int side, const double* force_x,
+                    const double* force_y);
+
+/// The forces of a patch that was searched or laid out anew go with its nodes to where they stand now.
+void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to);
+
+/// What contacts of a patch repay, from one history into another: from their first touch on until they are out of
+/// sight, as the step that parts them leaves a debt as well.
+class Repayment {
+ public:
+  Repayment(const PatchStep& step, double stiffness) : moves_(step.moves), resistance_(step.resistance(stiffness)) {}
+
+  /// Which of eight nodes beside the master, from a record on, act.
+  LaneBits acting(const ContactHistory& from, int record, LaneBits beside, LaneBits touching) const {
+    const Lanes before = load(&from.gap[record]);
+    return beside & (touching | (before == before));
+  }
+  /// Their pressure, Pa.
+  Lanes pressure(const ContactHistory& from, ContactHistory& to, int record, Lanes gap, LaneBits acting,
+                 Lanes half_length) {
+    const Lanes before = load(&from.gap[record]);
+    Lanes repaid = load(&from.repaid[record]);
+    if (moves_) {
+      const Lanes way = select(acting & (before == before), before - gap, Lanes{});
+      ways_ += half_length * way * way;
+      repaid = resistance_ * way;
+    }
+    store(&to.gap[record], select(acting, gap, broadcast(std::numeric_limits<double>::quiet_NaN())));
+    store(&to.repaid[record], repaid);
+    return repaid;
+  }
+  void forget(ContactHistory& to, int record) const {
+    store(&to.gap[record], broadcast(std::numeric_limits<double>::quiet_NaN()));
+    store(&to.repaid[record], Lanes{});
+  }
+  double ways() const { return sum(ways_); }
+  double pending() const { return 0.5 * resistance_ * sum(ways_); }
+
+ private:
+  bool moves_;
+  double resistance_;
+  Lanes ways_{};
+};
+
+}  // namespace pliant

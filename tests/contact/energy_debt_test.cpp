@@ -1,0 +1,170 @@
+// What contacts gain or lose in a step, and that they give it back.
+#include "contact/energy_debt.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "support/random.hpp"
+#include "support/simulations.hpp"
+
+namespace pliant::dynamics_tests {
+namespace {
+
+/// Two rigid discs that meet off their line of centres and must not turn.
+Scene glancing_blow(const ContactRule& rule) {
+  Scene scene = empty_scene(1000);
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("left", "disc", BodyKind::rigid, {{0, 0}}, moving({0.02, 0})),
+                  grains("right", "disc", BodyKind::rigid, {{1.8, 0.95}}, moving({-0.02, 0}))};
+  for (const Grains& all : scene.grains) {
+    BoundaryCondition upright;
+    upright.grains = all.name;
+    upright.angle = {Drive::Mode::velocity, constant(0)};
+    scene.boundary.push_back(upright);
+  }
+  scene.contacts = {rule};
+  without_error_control(scene, 0.8);
+  return scene;
+}
+
+/// Sum of F^2/m over the degrees of freedom of rigid bodies, N2/kg.
+double squares(const Model& model, const Dofs& force) {
+  double sum = 0;
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (int c = 0; c < 3; ++c) {
+      const double f = force.rigid[3 * r + static_cast<std::size_t>(c)];
+      sum += f * f * model.rigid_bodies[r].dof[c].inverse_mass;
+    }
+  return sum;
+}
+
+double gained(Simulation& simulation) { return simulation.energy_gained(simulation.audit().energy); }
+
+double owed(const Simulation& simulation) {
+  const std::vector<double>& all = simulation.state().memory.contact.owed;
+  return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+/// INDEPENDENT: debts grow by what the energies of bodies and contacts gain in a step, but for the term that velocity
+/// Verlet gives and takes, dt^2 sum F^2/m / 8. To rounding.
+void expect_debts_to_be_gains(const ContactRule& rule) {
+  const Model model = build_model(glancing_blow(rule));
+  Simulation simulation(model);
+  double debts = 0, left = 0;
+  for (int step = 0;; ++step) {
+    const State before = simulation.state();
+    const double energy = gained(simulation), debt = owed(simulation);
+    simulation.step(1000);
+    if (simulation.state().time > 1 && simulation.forces().contact().patches().empty()) break;  // out of sight
+    const State& after = simulation.state();
+    const double dt = after.time - before.time, grown = owed(simulation) - debt;
+    const double gain =
+        gained(simulation) - energy - dt * dt / 8 * (squares(model, after.force) - squares(model, before.force));
+    EXPECT_NEAR(grown, gain, 1e-13) << "step " << step;
+    debts += std::abs(grown), left = std::abs(owed(simulation));
+  }
+  EXPECT_GT(debts, 1e-5) << "or there is nothing to see";
+  EXPECT_LT(left, 1e-9 * debts) << "repaid";
+}
+
+TEST(EnergyDebt, is_what_bodies_and_contacts_gain) {
+  expect_debts_to_be_gains(frictionless(100));
+  expect_debts_to_be_gains(mohr_coulomb(100, 0.5));
+  expect_debts_to_be_gains(mohr_coulomb(100, 0.3, 0.2, 1));
+  expect_debts_to_be_gains(cohesive(100, 1, 0.03, 1));
+}
+
+/// Share of its energy that a compliant disc gains by a bounce on a stiff floor.
+double bounce_gain(double height, double stiffness, bool consistent) {
+  Scene scene = flight_and_impact(1e-2);
+  scene.contacts = {frictionless(stiffness)};
+  scene.contact.energy_consistent = consistent;
+  scene.grains[0].velocity.uniform = {0, -0.1};
+  scene.grains[0].packing.positions = {{4, height}};
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  const double start = simulation.audit().energy.mechanical();
+  advance(simulation, 8);
+  return std::abs(simulation.audit().energy.mechanical() / start - 1);
+}
+
+/// What is left is not of contacts: Verlet keeps K + U - dt^2 sum m a^2 / 8, which of a disc that rings differs by some
+/// 1e-4 from what it was in flight.
+TEST(EnergyDebt, bounces_keep_their_energy) {
+  double plain = 0, consistent = 0;
+  for (const double height : {1.05, 1.1, 1.21, 1.37, 1.5}) {
+    plain = std::max(plain, bounce_gain(height, 3000, false));
+    consistent = std::max(consistent, bounce_gain(height, 3000, true));
+  }
+  EXPECT_GT(plain, 0.01) << "or there is nothing to see";
+  EXPECT_LT(consistent, 4e-4) << "FROZEN: 1.7e-4 when written";
+}
+
+/// Largest relative change of the energy of a rigid block that bounces flat, over phases of the step.
+double flat_bounces(double speed, bool consistent) {
+  double worst = 0;
+  for (int phase = 0; phase < 16; ++phase) {
+    Scene scene = on_a_floor(1e9, 8, 0.25, {0, 0});
+    scene.shapes = {box_shape("block", 2, 1, 0.25)};
+    const double height = 0.5 + speed * (1 + 0.0113 * phase);
+    scene.grains = {grains("block", "block", BodyKind::rigid, {{4, height}}, moving({0, -speed}))};
+    scene.contacts = {frictionless(100)};
+    scene.contact.energy_consistent = consistent;
+    without_error_control(scene, 0.8);
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    const auto& y = simulation.state().position.rigid[1];
+    while (simulation.state().time < 1 || y < 1.5) simulation.step(1e9);
+    const double ratio = simulation.state().reduced_momentum.rigid[1] / speed;
+    worst = std::max(worst, std::abs(ratio * ratio - 1));
+  }
+  return worst;
+}
+
+/// EXACT: what one node owes is repaid to rounding while it is in sight, a skin of 0.125 here: ways of 0.0016 a step
+/// are short beside it, those of an impact that goes through a sixth of a segment are not.
+TEST(EnergyDebt, bounces_of_rigid_bodies_are_exact) {
+  EXPECT_GT(flat_bounces(0.01, false), 0.05) << "or there is nothing to see";
+  EXPECT_LT(flat_bounces(0.01, true), 1e-12);
+  EXPECT_LT(flat_bounces(0.03, true), 1e-12);
+  EXPECT_LT(flat_bounces(0.2, true), flat_bounces(0.2, false));
+}
+
+/// Largest relative change of the energy of rigid discs that fly to and fro between two walls, when nothing touches.
+double agitated(double speed, bool consistent, int seed) {
+  Scene scene = empty_scene(1e9);
+  scene.period = 6.6;
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  Random random(seed);
+  for (int i = 0; i < 9; ++i) {
+    const Vec2 centre(1.1 + 2.2 * (i % 3), 1.1 + 2.2 * (i / 3));
+    const auto any = [&] { return random.uniform(-speed, speed); };
+    const double vx = any(), vy = any(), spin = any();
+    scene.grains.push_back(
+        grains("disc " + std::to_string(i), "disc", BodyKind::rigid, {centre}, moving({vx, vy}, spin)));
+  }
+  scene.walls = {flat_wall("lower", Wall::Solid::below, 0, 0.1), flat_wall("upper", Wall::Solid::above, 6.6, 0.1)};
+  scene.contacts = {frictionless(100)};
+  scene.contact.energy_consistent = consistent;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  const double start = simulation.audit().energy.mechanical();
+  double worst = 0;
+  for (int step = 0, quiet = 0; step < 10000; ++step) {
+    simulation.step(1e9);
+    quiet = squares(model, simulation.state().force) == 0 ? quiet + 1 : 0;
+    if (quiet == 1) worst = std::max(worst, std::abs(simulation.audit().energy.mechanical() / start - 1));
+  }
+  return worst;
+}
+
+/// FROZEN: in 20,000 steps plain contacts gained 1.1e-2 to 3.6e-2 for four seeds, these 2.0e-5 to 2.7e-5, of which some
+/// 1e-5 is how far nodes of discs that turn are from the work of their resultants.
+TEST(EnergyDebt, discs_between_walls_keep_their_energy) {
+  EXPECT_GT(agitated(0.01, false, 2), 5e-3) << "or there is nothing to see";
+  EXPECT_LT(agitated(0.01, true, 2), 2e-4);
+}
+
+}  // namespace
+}  // namespace pliant::dynamics_tests
