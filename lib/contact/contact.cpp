@@ -206,10 +206,12 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
   const PatchStep way{known ? &step->position : nullptr, &last_.forces, from.owed[patch] - before.pending,
-                      known ? before.ways : 0, step != nullptr};
-  const PatchTotals now = compute_patch(view, &way, from, to, trial_.forces);
+                      known ? before.recent_ways : 0, step != nullptr};
+  PatchTotals now = compute_patch(view, &way, from, to, trial_.forces);
   to.owed[patch] = from.owed[patch];
+  now.recent_ways = now.ways;
   if (!known) return now;
+  now.recent_ways = std::max(now.ways, before.ways);
   const double lost =
       before.stored - now.stored - now.dissipated - 0.5 * step->elapsed * (before.damping_power + now.damping_power);
   to.owed[patch] += now.work - lost;

@@ -17,19 +17,25 @@ namespace pliant {
 /// The pressure over what the stiffness makes of the way, at most: little beside what a step does to contacts anyway,
 /// nothing at rest, and nothing where steps are short.
 constexpr double most_repaid = 0.25;
+/// What bodies have lost is given back while it is less than so many times kn times PatchTotals::ways: more would shake
+/// what all but stands still. A touch that begins or ends leaves an eighth at most, a pull that breaks off at a gap of
+/// twenty ways ten.
+constexpr double most_given_back = 10;
 
 /// Of a patch, the step that led to an evaluation, if any did: an audit's finds again what was repaid.
 struct PatchStep {
   const OutlineField* before;        ///< outlines at its start; null: not known
   const PatchForces* forces_before;  ///< then
   double debt;  ///< J/m, then, less PatchTotals::pending: a pressure acts in two steps, half in each
-  double ways;  ///< PatchTotals::ways of the step before; 0: not known
-  bool moves;   ///< there is a step
+  double
+      ways;  ///< PatchTotals::recent_ways: where gaps turn back, the next way may be many times the last; 0: not known
+  bool moves;  ///< there is a step
 
   /// Pressure over way, Pa/m.
   double resistance(double stiffness) const {
+    if (ways <= 0 || -debt > most_given_back * stiffness * ways) return 0;
     const double most = most_repaid * stiffness;
-    return ways > 0 ? std::clamp(debt / ways, -most, most) : 0.0;
+    return std::clamp(debt / ways, -most, most);
   }
 };
 

@@ -86,15 +86,16 @@ struct PatchTotals {
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< nodes in touch
   // See energy_debt.hpp; 0 without:
-  double work = 0;     ///< of the mean of these forces and those before over the way between them, J/m
-  double ways = 0;     ///< squares of the ways of gaps, times the lengths of contacts, m3
-  double pending = 0;  ///< what the pressures that repay will have done in the next step, J/m
+  double work = 0;         ///< of the mean of these forces and those before over the way between them, J/m
+  double ways = 0;         ///< squares of the ways of gaps, times the lengths of contacts, m3
+  double recent_ways = 0;  ///< the larger of these and those of the step before
+  double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts), visitor("work", work), visitor("ways", ways);
-    visitor("pending", pending);
+    visitor("recent_ways", recent_ways), visitor("pending", pending);
   }
 };
 
