@@ -58,6 +58,10 @@ law = "mohr-coulomb"
 friction = 0.3
 stiffness = 900
 shear_stiffness = 900
+
+# Else they repay what steps make, and there is nothing to be warned of.
+[contact]
+energy_consistent = false
 """
 
 
@@ -216,6 +220,10 @@ velocity = {{ uniform = [-{speed}, 0] }}
 between = "all"
 law = "frictionless"
 stiffness = {stiffness}
+
+# As above.
+[contact]
+energy_consistent = false
 """
 
 
