@@ -26,9 +26,10 @@ constexpr double most_given_back = 10;
 struct PatchStep {
   const OutlineField* before;        ///< outlines at its start; null: not known
   const PatchForces* forces_before;  ///< then
-  double debt;  ///< J/m, then, less PatchTotals::pending: a pressure acts in two steps, half in each
-  double
-      ways;  ///< PatchTotals::recent_ways: where gaps turn back, the next way may be many times the last; 0: not known
+  /// J/m, then, less PatchTotals::pending: a pressure acts in two steps, half in each.
+  double debt;
+  /// PatchTotals::recent_ways: where gaps turn back, the next way may be many times the last. 0: not known.
+  double ways;
   bool moves;  ///< there is a step
 
   /// Pressure over way, Pa/m.

@@ -154,6 +154,7 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
+/// Where pairs repay nothing.
 struct NoRepayment {};
 
 template <class Law, class Repaid>
