@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "contact/history.hpp"
@@ -21,6 +22,9 @@ constexpr double most_repaid = 0.25;
 /// what all but stands still. A touch that begins or ends leaves an eighth at most, a pull that breaks off at a gap of
 /// twenty ways ten.
 constexpr double most_given_back = 10;
+/// The least pressure over what the stiffness makes of the way: below, bodies that have parted are even, and what they
+/// still owe waits for their next touch.
+constexpr double least_repaid = 1e-12;
 
 /// Of a patch, the step that led to an evaluation, if any did: an audit's finds again what was repaid.
 struct PatchStep {
@@ -35,8 +39,8 @@ struct PatchStep {
   /// Pressure over way, Pa/m.
   double resistance(double stiffness) const {
     if (ways <= 0 || -debt > most_given_back * stiffness * ways) return 0;
-    const double most = most_repaid * stiffness;
-    return std::clamp(debt / ways, -most, most);
+    const double most = most_repaid * stiffness, wanted = debt / ways;
+    return std::abs(wanted) < least_repaid * stiffness ? 0 : std::clamp(wanted, -most, most);
   }
 };
 
@@ -47,16 +51,19 @@ double work_of_side(const PatchView& view, const PatchStep& step, int side, cons
 /// The forces of a patch that was searched or laid out anew go with its nodes to where they stand now.
 void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to);
 
-/// What contacts of a patch repay, from one history into another: from their first touch on until they are out of
-/// sight, as the step that parts them leaves a debt as well.
+/// What contacts of a patch repay, from one history into another: from their first touch on until they are even or out
+/// of sight, as the step that parts them leaves a debt as well.
 class Repayment {
  public:
-  Repayment(const PatchStep& step, double stiffness) : moves_(step.moves), resistance_(step.resistance(stiffness)) {}
+  Repayment(const PatchStep& step, double stiffness)
+      : moves_(step.moves),
+        resistance_(step.resistance(stiffness)),
+        lingers_(!moves_ || resistance_ != 0 ? ~LaneBits{} : LaneBits{}) {}
 
   /// Which of eight nodes beside the master, from a record on, act.
   LaneBits acting(const ContactHistory& from, int record, LaneBits beside, LaneBits touching) const {
     const Lanes before = load(&from.gap[record]);
-    return beside & (touching | (before == before));
+    return beside & (touching | (lingers_ & (before == before)));
   }
   /// Their pressure, Pa.
   Lanes pressure(const ContactHistory& from, ContactHistory& to, int record, Lanes gap, LaneBits acting,
@@ -82,6 +89,7 @@ class Repayment {
  private:
   bool moves_;
   double resistance_;
+  LaneBits lingers_;  ///< all or none: those act that touched once
   Lanes ways_{};
 };
 
