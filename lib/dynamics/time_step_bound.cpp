@@ -29,6 +29,26 @@ constexpr double probe_size = 1e-6;
 /// 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
 
+/// Rounds in which the bound of contact is improved, and what stays of the vector before in each: it must stay
+/// positive.
+constexpr int bound_rounds = 5;
+constexpr double blend = 0.1;
+
+/// product = D^-1 |C| x at the field nodes, C = Phi^T S Phi the stiffness that springs S, [outline nodes], N/m2, give
+/// them, D of density 1.
+void multiply_absolute(const CompliantShape& shape, const double* stiffness, const std::vector<double>& x,
+                       std::vector<double>& product) {
+  const ShapeRows& rows = shape.space.outline_rows;
+  std::ranges::fill(product, 0.0);
+  for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
+    double absolute = 0;
+    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) absolute += std::abs(rows.value[e]) * x[rows.node[e]];
+    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
+      product[rows.node[e]] += stiffness[k] * std::abs(rows.value[e]) * absolute;
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_unit_mass[i];
+}
+
 /// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
 /// in the list.
 std::vector<Lanes> start_directions(const Model& model) {
@@ -137,21 +157,23 @@ void TimeStepBound::bound_conditions() {
   }
 }
 
+/// Bound of w^2 that springs of this stiffness, [outline nodes], N/m2, give a body, 1/s2. For any x > 0 the largest
+/// ratio of D^-1 |C| x to x bounds the eigenvalues of D^-1 C (Collatz 1942, Wielandt 1950); the best of all rounds.
 double TimeStepBound::contact_frequency(const Body& body, const double* stiffness) const {
   const OutlineShape& outline = model_.outlines[body.outline];
   if (body.kind == BodyKind::rigid) return rigid_frequency(model_.rigid_bodies[body.rigid], outline, stiffness);
   const CompliantShape& shape = model_.shape_of(body);
-  const ShapeRows& rows = shape.space.outline_rows;
-  std::vector<double> row_sum(static_cast<std::size_t>(shape.nodes()), 0.0);
-  for (int k = 0; k < outline.count; ++k) {
-    double absolute = 0;
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) absolute += std::abs(rows.value[e]);
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
-      row_sum[rows.node[e]] += stiffness[k] * std::abs(rows.value[e]) * absolute;
+  std::vector<double> x(static_cast<std::size_t>(shape.nodes()), 1.0), product(x.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < bound_rounds; ++round) {
+    multiply_absolute(shape, stiffness, x, product);
+    double largest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, product[i] / x[i]);
+    least = std::min(least, largest);
+    if (largest == 0) break;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = blend * x[i] + product[i] / largest;
   }
-  double largest = 0;
-  for (int i = 0; i < shape.nodes(); ++i) largest = std::max(largest, row_sum[i] * shape.inverse_unit_mass[i]);
-  return shape.space.correction_bound * largest / model_.batches[body.batch].density[body.lane];
+  return shape.space.correction_bound * least / model_.batches[body.batch].density[body.lane];
 }
 
 void TimeStepBound::iterate_batch(int b, BatchMotion motion, int iterations) {
