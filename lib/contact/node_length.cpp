@@ -214,23 +214,25 @@ Varying factor_of_lesser(const Beside& at, int side, NodeLength& whole) {
   return scaled(-1, smooth_step(behind), 1);
 }
 
-/// Near a corner of the master, a node that is none itself touches the faces that it opposes.
+/// Near a corner of the master, a node that is none itself touches the faces that it opposes. One beyond the corner it
+/// must oppose wherever it stands: a tip is so thin that a node beside its one face is not deep below the other.
 Varying opposed_part(const Beside& at, const Faces& faces, int row, RowKind kind, NodeLength& whole) {
   const double sight = faces.sight();
+  const bool nearest = kind == RowKind::nearest;
   Varying part{1};
   for (const int way : {-1, 1}) {
-    const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, 2 * sight);
+    const std::optional<FaceEnd> end = faces.end_of_face(at.node, row, way, (nearest ? 2 : 4) * sight);
     if (!end) continue;
     const Vec2 corner = faces.corner_place(*end);
     const Varying distance = at.distance(corner, way);
-    if (distance.value >= sight) continue;
+    if (nearest && distance.value >= sight) continue;
     const Varying across = scaled(-1, opposed(at.opposition_towards(corner, way)), 1);
     if (across.value == 0) continue;
     whole.varies = true;
     whole.corner_row[way < 0 ? 0 : 1] = end->corner;
-    part = product(part, scaled(-1, product(across, nearness(distance, sight)), 1));
+    part = product(part, scaled(-1, nearest ? product(across, nearness(distance, sight)) : across, 1));
   }
-  if (kind == RowKind::nearest) return part;
+  if (nearest) return part;
   whole.varies = true;
   return product(part, nearness(at.depth(), 0.5 * sight));
 }

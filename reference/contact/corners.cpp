@@ -110,7 +110,7 @@ class Stand {
 
   NodeLength length(Place place) {
     Length sum = side(0) + side(2);
-    if (!node_.corner) sum *= opposed_part();
+    if (!node_.corner) sum *= opposed_part(place == Place::nearest);
     if (place == Place::beyond)
       sum *= vicinity(safe_norm(own_[1] - foot_), master_.sight * (node_.corner ? shallow : 0.5));
     if (node_.corner && place != Place::nearest) sum *= flatness();
@@ -183,20 +183,21 @@ class Stand {
     return ramp(first > second ? first : second, oblique, square);
   }
 
-  /// Near a corner a node that is none itself touches the faces that it opposes.
-  Length opposed_part() {
+  /// Near a corner a node that is none itself touches the faces that it opposes; those beyond the corner in no other
+  /// way, however far off the corner is.
+  Length opposed_part(bool its_own) {
     Length part = 1;
     for (const int way : {-1, 1}) {
-      const auto end = face_end(master_, segment_, node_, way, 2 * master_.sight);
+      const auto end = face_end(master_, segment_, node_, way, (its_own ? 2 : 4) * master_.sight);
       if (!end) continue;
       const NodeLength before = result_;
       const Arrow corner = to_corner(*end, way);
       const Length distance = safe_norm(corner);
       const Length opposed = opposition(corner, way);
-      if (distance.value >= master_.sight || opposed.value == 1)
+      if ((its_own && distance.value >= master_.sight) || opposed.value == 1)
         result_ = before;
       else
-        part *= 1 - (1 - opposed) * vicinity(distance, master_.sight);
+        part *= 1 - (1 - opposed) * (its_own ? vicinity(distance, master_.sight) : Length(1));
     }
     return part;
   }

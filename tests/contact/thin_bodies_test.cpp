@@ -43,6 +43,24 @@ TEST(ThinBodies, NearerFacePushes) {
   }
 }
 
+// EXACT: a disc left of a wedge of 20 degrees whose tip comes down beside it is pushed to the left, by what lies below
+// the wedge's left face: the tip is so thin that the same nodes are a third of a segment below its right one.
+TEST(ThinBodies, FarFaceOfATipDoesNotPush) {
+  const Points wedge = refined({{0, 0}, {0.35, 2}, {-0.35, 2}}, 0.1);
+  for (double tip = 0.1; tip > 0.01; tip -= 0.004) {
+    Scene scene = bare_scene();
+    scene.contacts = {frictionless(100)};
+    add_body(scene, outline_shape("wedge", wedge), BodyKind::rigid, {0, tip + 4.0 / 3});
+    add_body(scene, outline_shape("disc", regular(36, 1)), BodyKind::rigid, {-1, 0});
+    ContactRig rig(scene);
+    rig.evaluate();
+    EXPECT_LE(rig.force(1).x(), 0) << "tip at " << tip;
+    // (0.35/2 (0.1736 - 0.012) - 0.0152) cos 10, in segments of 0.0967: the disc's node at 10 degrees. Below the right
+    // face: 0.3 to 0.45.
+    EXPECT_LT(rig.totals.deepest, 0.134) << "tip at " << tip;
+  }
+}
+
 // EXACT: beside a pointed body of 20 degrees, 0.001 off its flank, nothing touches.
 TEST(ThinBodies, FlanksOfAWedgeAreApart) {
   const double half = 10 * M_PI / 180;
