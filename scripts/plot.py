@@ -5,7 +5,7 @@
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
 
 grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, steps.png, forces.png, energy.png, probes.png (what else
-the scene's probes measure): what the run has data for; the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
+the scene's probes measure), failure.png (of a run that could not go on: the place): what the run has data for; the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
 """
 
 import argparse
@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from plots import curves, maps
+from plots.failure import failure
 from run_data import BadFolder, Run, read_run
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
@@ -63,6 +64,8 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),
         "probes.png": (lambda: curves.probes(run), "other probes in probes.csv"),
+        **({"failure.png": (lambda: failure(run), "failure.json with outlines")} if (run.folder / "failure.json").exists()
+           else {}),
     }
 
 

@@ -99,7 +99,14 @@ GridTopology FrameRecorder::outlines_grid() const {
 double FrameRecorder::next_time() const { return file_ ? count_ * period_ : std::numeric_limits<double>::infinity(); }
 
 void FrameRecorder::record_due(Simulation& simulation) {
-  if (!file_ || simulation.state().time < next_time() * (1 - 1e-12)) return;
+  if (simulation.state().time >= next_time() * (1 - 1e-12)) record(simulation);
+}
+
+void FrameRecorder::record_last(Simulation& simulation) {
+  if (file_ && simulation.state().time > (count_ - 1) * period_ * (1 + 1e-12)) record(simulation);
+}
+
+void FrameRecorder::record(Simulation& simulation) {
   const Snapshot snapshot(simulation);
   file_->append(simulation.state().time, {bodies_frame(snapshot), outlines_frame(snapshot)});
   ++count_;

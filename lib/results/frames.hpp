@@ -15,6 +15,8 @@ class FrameRecorder {
   FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);
   double next_time() const;  ///< infinite without frames
   void record_due(Simulation& simulation);
+  /// One of now, unless the last one is.
+  void record_last(Simulation& simulation);
   int count() const { return count_; }
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -23,6 +25,8 @@ class FrameRecorder {
   }
 
  private:
+  void record(Simulation& simulation);
+
   template <class Function>
   struct Wanted {
     FrameField field;

@@ -20,6 +20,8 @@ class Recorder {
   void begin(const Simulation& simulation) { progress_.begin(simulation); }
   double next_output(double end) const;
   void record_outputs(Simulation& simulation);
+  /// A frame of now, if there are frames, whether due or not: a run that goes on from a checkpoint cuts it off.
+  void record_last_frame(Simulation& simulation) { frames_.record_last(simulation); }
   void record_step(Simulation& simulation, const StepReport& report);
   /// All rows are on the disk, and the figures are those of now.
   void sync();

@@ -12,10 +12,12 @@
 
 #include "core/errors.hpp"
 #include "core/stop_signals.hpp"
+#include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
 #include "results/balance_warning.hpp"
 #include "results/checkpoint.hpp"
+#include "results/failure_report.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
 #include "scene/text_file.hpp"
@@ -25,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+
+fs::path failure_file(const fs::path& folder) { return folder / "failure.json"; }
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -84,11 +88,17 @@ void advance(Run& run) {
   warn_of_balance(simulation, simulation.audit().energy);
 }
 
-/// A failed run's last words: its summary, and what there is to go on from. Returns the message.
+/// A failed run's last words: its summary, what there is to go on from, and what there is to understand of a failed
+/// step. Returns the message.
 std::string last_words(Run& run, const Error& error) {
   run.recorder.finish_progress();
   try {
     run.recorder.write_summary(run.simulation, std::string("failed: ") + error.what());
+    if (const auto* failed = dynamic_cast<const StepFailure*>(&error)) {
+      write_file_atomically(failure_file(run.options.out),
+                            failure_json(failed->failure, run.simulation, failed->what()));
+      run.recorder.record_last_frame(run.simulation);
+    }
   } catch (const OutputError&) {
     // The disk is full, which `error` tells already.
   }
@@ -138,6 +148,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
   if (checkpoint) recorder.figures.checkpoint_time = simulation.state().time;
+  fs::remove(failure_file(options.out));
   if (!options.quiet)
     fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s{}\n", scene.name, model.bodies.size(),
                model.node_count(), model.dof_count(), recorder.figures.preparation_seconds,

@@ -305,6 +305,28 @@ def test_a_full_disk_keeps_the_last_good_checkpoint(desk) -> None:
     assert resumed(desk).returncode == 0
 
 
+def test_a_failed_run_leaves_what_tells_why(desk) -> None:
+    """The message's figures once more, the place and outlines there, and a frame of the last good state."""
+    soft = LAYER.replace('law = "mohr-coulomb"', 'law = "mohr-coulomb"\nstiffness = 0.1')
+    desk.write(soft.replace("end = 4", "end = 40"))
+    result = desk.run("--out", "out", "--quiet", "--threads", "1")
+    assert result.returncode == 3, result.stderr
+    report = json.loads((desk.folder / "out/failure.json").read_text())
+    good = report["last_good_state"]
+    assert report["message"] in result.stderr and report["cause"] in {"contact lost", "inverted"}
+    assert all(f"'{name}'" in report["message"] for name in report["bodies"])
+    assert set(good["outlines"]) == set(report["bodies"])
+    assert good["time"] == desk.summary("out")["time"] < report["time"]
+    assert good["least_jacobian"]["value"] > 0 and good["deepest_contact"]["depth_over_segment"] < 1
+    near = min(abs(complex(*point) - complex(*report["place"])) for points in good["outlines"].values() for point in points)
+    assert near < 0.5, "of a disc of diameter 2"
+    with h5py.File(desk.folder / "out/frames.h5") as file:
+        assert max(file["times"][()]) == pytest.approx(good["time"], rel=1e-12)
+    # A run that goes on has forgotten it.
+    assert desk.run("--out", "out", "--force", "--until", "0.5", "--quiet").returncode == 0
+    assert not (desk.folder / "out/failure.json").exists()
+
+
 def test_a_physics_failure_names_the_last_good_checkpoint(desk) -> None:
     soft = LAYER.replace('law = "mohr-coulomb"', 'law = "mohr-coulomb"\nstiffness = 0.1')
     desk.write(soft.replace("end = 4", "end = 40"))
