@@ -67,7 +67,6 @@ void stop_if_asked(Run& run) {
 void advance(Run& run) {
   Simulation& simulation = run.simulation;
   const double end = simulation.model().scene.time.end;
-  const StopSignals signals;
   run.recorder.begin(simulation);
   simulation.phases() = {};
   const auto record_outputs = [&] {
@@ -138,6 +137,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   Simulation simulation(model);
   // Read before the folder is emptied: the scene may lie in it.
   const SceneFiles files(scene.file);
+  const StopSignals signals;  // a run that was begun ends in order
   FolderLock::refuse_taken(options.out);
   if (!checkpoint) check_output_folder(options.out, options.force || options.resume);
   const FolderLock lock(options.out);

@@ -32,12 +32,14 @@ class Desk:
         self.scene.write_bytes(text if isinstance(text, bytes) else text.encode())
 
     def engine(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([ENGINE, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
+        return self.call(ENGINE, *arguments)
+
+    def call(self, program: Path, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([program, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=300,
                               stdin=subprocess.DEVNULL)
 
     def reference(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([REFERENCE, self.scene, *arguments], cwd=self.folder, capture_output=True, text=True,
-                              timeout=300, stdin=subprocess.DEVNULL)
+        return self.call(REFERENCE, self.scene, *arguments)
 
     def run(self, *arguments: str | Path) -> subprocess.CompletedProcess[str]:
         return self.engine("run", self.scene, *arguments)

@@ -1,0 +1,56 @@
+"""The hash of the final state over numbers of threads, for every build that is there: equal within each, EXACT. In
+`./pliant test` that is one build; continuous integration calls it again when there are three."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import ENGINE, ROOT, Desk
+
+THREADS = [1, 2, 3, 4, 8]
+HARD = ROOT / "verify/hard_cases"
+
+
+def hard(name: str, recipe: str, end: str) -> str:
+    """Of verify/hard_cases, up to an end."""
+    text = (HARD / f"{name}.toml").read_text().replace("@recipe@", recipe)
+    before = next(line for line in text.splitlines() if line.startswith("end = "))
+    return text.replace(before, f"end = {end}")
+
+
+def third_body() -> str:
+    text = (ROOT / "cases/third_body_mini.toml").read_text()
+    return text.replace('end = "4 us"', 'end = "0.001 us"')
+
+
+SCENES = {"gear": lambda: hard("gear", "mls", "1.5"), "torn_cluster": lambda: hard("torn_cluster", "es-t3", "1.5"),
+          "closing_ring": lambda: hard("closing_ring", "mls-gauss", "1"),
+          "to_and_fro": lambda: hard("to_and_fro", "t3", "1"), "third_body_mini": third_body}
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """More threads than cores must not wait by spinning."""
+    monkeypatch.setenv("OMP_WAIT_POLICY", "passive")
+    monkeypatch.setenv("KMP_BLOCKTIME", "0")
+
+
+def builds() -> list[Path]:
+    others = sorted((ROOT / "build").glob("*/pliant_engine"))
+    return [ENGINE, *(engine for engine in others if engine.resolve() != ENGINE.resolve())]
+
+
+@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("engine", builds(), ids=lambda engine: engine.parent.name)
+def test_same_bits_for_any_number_of_threads(desk: Desk, engine: Path, name: str) -> None:
+    desk.write(SCENES[name]())
+    hashes = set()
+    for threads in THREADS:
+        result = desk.call(engine, "run", desk.scene, "--out", f"out{threads}", "--threads", str(threads), "--quiet")
+        assert result.returncode == 0, result.stderr
+        summary = desk.summary(f"out{threads}")
+        assert summary["steps"] > 50 and summary["threads"] == threads
+        hashes.add(summary["state_hash"])
+    print(f"{engine.parent.name:12} {name:18} {' '.join(hashes)}")
+    assert len(hashes) == 1
