@@ -304,11 +304,13 @@ def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
                  'verify) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
     result = subprocess.run([launcher.root / ".ci/run"], env=launcher.environment, capture_output=True, text=True)
     assert result.returncode == 1
-    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "bench gate", "verify"]
+    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "bench gate",
+                                                        r"test -R ^cli\.determinism$ -V", "verify"]
     lines = result.stdout.splitlines()
     assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
-    assert [line.split()[1] for line in lines[-7:-1]] == ["lint", "test", "gcc", "gate", "verify", "all"]
-    assert [line.rsplit(" ", 1)[1] for line in lines[-7:-2]] == ["green", "red", "green", "green", "green"]
+    stages = ["lint", "test", "gcc", "gate", "determinism", "verify", "all"]
+    assert [line.split()[1] for line in lines[-8:-1]] == stages
+    assert [line.rsplit(" ", 1)[1] for line in lines[-8:-2]] == ["green", "red", *["green"] * 4]
 
 
 @pytest.mark.parametrize("command", [file.stem for file in (ROOT / "launcher/help").iterdir() if file.stem != "pliant"])
