@@ -129,6 +129,12 @@ bench() {
       prepare release pliant_engine
       exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
       ;;
+    error)
+      ready error
+      prepare release pliant_engine
+      prepare release pliant_reference_solver
+      exec "$python" -B "$root/benchmarks/error.py" "${@:2}"
+      ;;
     gate)
       ready counting
       prepare counting pliant_engine
@@ -154,7 +160,7 @@ bench() {
       exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
       ;;
     *)
-      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, gate, ab, page; see" \
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, error, gate, ab, page; see" \
         "./pliant bench --help" >&2
       exit 2
       ;;

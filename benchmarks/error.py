@@ -1,0 +1,92 @@
+"""Speed against error: what each choice of discretisation, scheme, step and stiffness costs for the error that it leaves.
+
+    ./pliant bench error                         all scenes: some ten minutes; results/bench/error.html, .json and .png
+    ./pliant bench error --only oscillation impact
+    ./pliant bench error --sizes 168 340         fewer nodes
+
+Exit codes: 0 written, 2 bad input, 4 the report cannot be written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts")]
+
+from error_study import report
+from error_study.choices import Choice, of_paper, of_reference, of_space, of_stiffness, of_time
+from error_study.measure import Measured, Programs, Runner
+from error_study.scenes import SCENES, Scene
+from history import machine
+
+WRITTEN, BAD_INPUT, NOT_WRITTEN = 0, 2, 4
+MIDDLE = 340  # nodes, of the study of steps
+
+
+def choices_of(scene: Scene, sizes: list[int]) -> Iterator[Choice]:
+    """All that are compared on a scene, each once."""
+    found = [*of_space(sizes), *of_paper(sizes), *of_time(min(sizes, key=lambda n: abs(n - MIDDLE)))]
+    if scene.free_stiffness:
+        found += of_stiffness(sizes)
+    found += of_reference([n for n in scene.reference_sizes if n in sizes])
+    return iter(dict.fromkeys(found))
+
+
+def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
+    names = [scene.name for scene in SCENES]
+    parser = argparse.ArgumentParser(prog="./pliant bench error", description=__doc__.splitlines()[0])
+    parser.add_argument("--only", nargs="+", choices=names, default=names, metavar="SCENE", help=", ".join(names))
+    parser.add_argument("--sizes", nargs="+", type=int, help="nodes of a body instead of each scene's own")
+    parser.add_argument("--repetitions", type=int, default=2, help="the fastest counts")
+    parser.add_argument("--engine", type=Path, default=ROOT / "build/release/pliant_engine")
+    parser.add_argument("--reference", type=Path, default=ROOT / "build/release/pliant_reference_solver")
+    parser.add_argument("--out", type=Path, default=ROOT / "results/bench")
+    options = parser.parse_args(arguments)
+    if options.repetitions < 1 or any(size < 12 for size in options.sizes or []):
+        parser.error("at least one repetition, and 12 nodes a body")
+    return options
+
+
+def measure_all(runner: Runner, scene: Scene, sizes: list[int]) -> list[Measured]:
+    rows = []
+    for choice in choices_of(scene, sizes):
+        row = runner.measure(scene, choice)
+        rows.append(row)
+        what = f"error {row.error:.2e}, {row.evaluations} evaluations, {row.seconds:.3f} s" if not row.message else row.message
+        print(f"{scene.name}: {choice.family}, {choice.nodes} nodes: {what}", flush=True)
+    return rows
+
+
+def main(arguments: list[str] | None = None) -> int:
+    options = parse_arguments(arguments)
+    os.environ.setdefault("OMP_WAIT_POLICY", "passive")
+    chosen = [scene for scene in SCENES if scene.name in options.only]
+    rows: list[Measured] = []
+    with tempfile.TemporaryDirectory() as scratch:
+        runner = Runner(Programs(options.engine, options.reference), Path(scratch), options.repetitions)
+        try:
+            version = subprocess.run([options.engine, "--version"], capture_output=True, text=True, check=True).stdout
+            for scene in chosen:
+                rows += measure_all(runner, scene, options.sizes or scene.sizes)
+        except (OSError, subprocess.CalledProcessError) as error:
+            print(f"error: {error}", file=sys.stderr)
+            return BAD_INPUT
+    about = {"commit": version.strip(), "processor": machine()["cpu"], "repetitions": options.repetitions}
+    try:
+        files = report.write(options.out, chosen, rows, about)
+    except OSError as error:
+        print(f"error: {options.out}: cannot be written: {error}", file=sys.stderr)
+        return NOT_WRITTEN
+    print("written:", *files)
+    return WRITTEN
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,121 @@
+"""What benchmarks/error_study makes of choices and measurements; no solver runs. EXACT."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts")]
+
+import error
+from error_study import choices, judge, report
+from error_study.choices import DEFAULT, PAPER, Choice
+from error_study.measure import Measured, seconds_of
+from error_study.pareto import cost_at, front
+from error_study.scenes import SCENES, filled, stiffness
+
+SMALL = Choice(nodes=40)
+
+
+def row(choice: Choice, seconds: float, error: float, message: str = "") -> Measured:
+    return Measured("impact", choice, error, 100, seconds, 1e6, message)
+
+
+def test_front_holds_what_nothing_else_beats() -> None:
+    points = [(1.0, 5.0), (2.0, 6.0), (2.0, 4.0), (3.0, 4.0), (4.0, 1.0), (0.5, 9.0)]
+    assert front(points, lambda p: p[0], lambda p: p[1]) == [(0.5, 9.0), (1.0, 5.0), (2.0, 4.0), (4.0, 1.0)]
+
+
+def test_cost_at_an_error_goes_by_powers() -> None:
+    """error = cost^-2 on three points: exact between them, too much below them, unknown beyond."""
+    curve = [(cost, cost**-2.0) for cost in (1.0, 10.0, 100.0)]
+    for cost in (1.0, 3.0, 10.0, 50.0, 100.0):
+        assert cost_at(cost**-2.0, curve) == pytest.approx(cost, rel=1e-12)
+    assert cost_at(4.0, curve) == 1.0
+    assert cost_at(1e-6, curve) is None
+    assert cost_at(1.0, []) is None
+
+
+def test_the_default_is_the_engines() -> None:
+    """What docs/scene.md says of each key, which is tested against the engine."""
+    text = (ROOT / "docs/scene.md").read_text()
+    for key, value in [("recipe", f'"{DEFAULT.recipe}"'), ("mass", f'"{DEFAULT.mass}"'), ("safety", f"{DEFAULT.safety:g}"),
+                       ("integrator", f'"{DEFAULT.integrator}"'), ("tolerance", f"{DEFAULT.bound:g}"), ("target", f"{PAPER.bound:g}")]:
+        row = next(line for line in text.splitlines() if line.startswith(f"| `{key}` |"))
+        assert row.split("|")[3].strip() == value, key
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_choices_reach_the_scene(scene: error.Scene) -> None:
+    made = tomllib.loads(scene.text(Choice("es-t3", "corrected", 84, safety=0.4, bound=1e-3)))
+    assert made["discretisation"] == {"recipe": "es-t3", "mass": "corrected"}
+    assert {key: made["time"][key] for key in ("integrator", "tolerance", "safety")} == \
+        {"integrator": "verlet", "tolerance": 1e-3, "safety": 0.4}
+    assert made["shapes"]["disc"]["nodes"] == 84
+    paper = tomllib.loads(scene.text(PAPER))
+    assert paper["time"]["integrator"] == "step-doubling" and paper["time"]["target"] == 1e-4
+    soft, stiff = (tomllib.loads(scene.text(Choice(stiffness=factor))) for factor in (1.0, 4.0))
+    changed = soft["contacts"][0]["stiffness"] != stiff["contacts"][0]["stiffness"]
+    assert changed or not scene.free_stiffness
+
+
+def test_stiffness_is_the_automatic_one() -> None:
+    """8 E over the side of a regular polygon of 48 corners, which 168 nodes get."""
+    assert stiffness(Choice()) == pytest.approx(8 * 2.8 / (2 * math.sin(math.pi / 48)), rel=1e-14)
+    assert stiffness(Choice(stiffness=4.0)) == 4 * stiffness(Choice())
+
+
+def test_a_template_uses_all_that_it_gets() -> None:
+    with pytest.raises(KeyError, match="@colour@"):
+        filled("oscillation", Choice(), colour=1)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
+def test_each_choice_is_measured_once(scene: error.Scene) -> None:
+    found = list(error.choices_of(scene, scene.sizes))
+    assert len(found) == len(set(found))
+    assert {DEFAULT, PAPER, judge.CORRECTED, judge.SMOOTHED} <= {replace(choice, nodes=168) for choice in found}
+
+
+def test_families_tell_all_but_the_nodes() -> None:
+    every = {choice for scene in SCENES for choice in error.choices_of(scene, scene.sizes)}
+    assert len({(choice.family, choice.nodes) for choice in every}) == len(every)
+
+
+def test_time_is_that_of_the_steps() -> None:
+    assert seconds_of({"phase_seconds": {"contact": 2.0, "internal": 1.0, "output": 5.0}, "wall_seconds": 9.0}) == 3.0
+    assert seconds_of({"wall_seconds": 9.0}) == 9.0
+
+
+def test_the_papers_way_over_others_at_equal_error() -> None:
+    rows = [row(replace(DEFAULT, nodes=nodes), cost, 1 / cost) for nodes, cost in ((40, 1.0), (84, 2.0), (168, 4.0))]
+    rows += [row(replace(PAPER, nodes=84), 30.0, 1 / 3), row(replace(PAPER, nodes=340), 90.0, 1e-3)]
+    near, far = judge.paper_against_others(rows, "impact")
+    assert near.ratios["default"] == pytest.approx(10.0, rel=1e-12)
+    assert far.ratios["default"] is None and near.ratios["es-t3, corrected mass"] is None
+
+
+def test_report_tells_failures_and_fronts(tmp_path: Path) -> None:
+    scene = next(scene for scene in SCENES if scene.name == "impact")
+    rows = [row(SMALL, 1.0, 0.1), row(replace(SMALL, nodes=84), 2.0, 0.05), row(PAPER, 9.0, 0.07),
+            row(replace(DEFAULT, nodes=99), float("nan"), float("nan"), "turned inside out")]
+    data, page, picture = report.write(tmp_path, [scene], rows, {"commit": "abc"})
+    stored = json.loads(data.read_text())
+    assert [point["nodes"] for point in stored["fronts"]["impact"]] == [40, 84]
+    assert stored["measured"][3]["error"] is None and stored["measured"][3]["message"] == "turned inside out"
+    assert "turned inside out" in page.read_text() and "<svg" in page.read_text() and "commit: abc" in page.read_text()
+    assert picture.stat().st_size > 1000
+
+
+def test_bad_options() -> None:
+    for options in (["--only", "impcat"], ["--sizes", "3"], ["--repetitions", "0"]):
+        with pytest.raises(SystemExit) as left:
+            error.main(options)
+        assert left.value.code == 2
