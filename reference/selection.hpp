@@ -15,9 +15,20 @@ inline SparseMatrix selection(const std::vector<int>& free, int dofs) {
   return matrix;
 }
 
-/// Of the free degrees of freedom alone.
+/// Of the free degrees of freedom alone, which `select` picks in ascending order.
 inline SparseMatrix restricted(const SparseMatrix& matrix, const SparseMatrix& select) {
-  return SparseMatrix(select.transpose()) * matrix * select;
+  std::vector<int> number(static_cast<std::size_t>(matrix.rows()), -1);
+  for (int i = 0; i < select.cols(); ++i) number[static_cast<std::size_t>(select.innerIndexPtr()[i])] = i;
+  SparseMatrix result(select.cols(), select.cols());
+  result.reserve(matrix.nonZeros());
+  for (int i = 0; i < select.cols(); ++i) {
+    result.startVec(i);
+    for (SparseMatrix::InnerIterator entry(matrix, select.innerIndexPtr()[i]); entry; ++entry)
+      if (const int row = number[static_cast<std::size_t>(entry.row())]; row >= 0)
+        result.insertBack(row, i) = entry.value();
+  }
+  result.finalize();
+  return result;
 }
 
 }  // namespace pliant::reference

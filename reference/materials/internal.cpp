@@ -1,5 +1,6 @@
 #include "reference/materials/internal.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "reference/jet.hpp"
@@ -20,6 +21,26 @@ Deformation<Jet<N>> as_variables(const Deformation<double>& F) {
   return result;
 }
 
+/// Zeros where bodies that deform at some points have a stiffness: [n x n] of gradients [4 points x n].
+Eigen::SparseMatrix<double> pattern_of(const Eigen::SparseMatrix<double>& gradient) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int row = 0; row < gradient.rows(); ++row)
+    for (int column = row - row % 4; column < row - row % 4 + 4; ++column) entries.emplace_back(row, column, 1);
+  Eigen::SparseMatrix<double> blocks(gradient.rows(), gradient.rows());
+  blocks.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SparseMatrix<double> columns = blocks * gradient;
+  Eigen::SparseMatrix<double> result = Eigen::SparseMatrix<double>(gradient.transpose()) * columns;
+  result.coeffs().setZero();
+  return result;
+}
+
+/// Among a matrix's values.
+int place_of(const Eigen::SparseMatrix<double>& matrix, int row, int column) {
+  const int *first = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column],
+            *last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
+  return static_cast<int>(std::lower_bound(first, last, row) - matrix.innerIndexPtr());
+}
+
 }  // namespace
 
 InternalForces::InternalForces(const Space& space, const Material& material, double size, double angle)
@@ -36,7 +57,20 @@ InternalForces::InternalForces(const Space& space, const Material& material, dou
   }
   gradient_.resize(4 * weight_.size(), 2 * Eigen::Index(space.mesh.nodes.size()));
   gradient_.setFromTriplets(entries.begin(), entries.end());
+  pattern_ = pattern_of(gradient_);
+  for (std::size_t g = 0; g < space.points.size(); ++g) at_point_.push_back(gradient_at(int(g), space.points[g].node));
   if (material.law == MaterialLaw::neo_hookean_maxwell) branch_.resize(space.points.size());
+}
+
+InternalForces::PointGradient InternalForces::gradient_at(int point, const std::vector<int>& nodes) const {
+  std::vector<int> dofs;
+  for (const int node : nodes) dofs.insert(dofs.end(), {2 * node, 2 * node + 1});
+  PointGradient result{Gradient(4, dofs.size()), {}};
+  for (std::size_t i = 0; i < dofs.size(); ++i)
+    for (int row = 0; row < 4; ++row) result.gradient(row, Eigen::Index(i)) = gradient_.coeff(4 * point + row, dofs[i]);
+  for (const int column : dofs)
+    for (const int row : dofs) result.place.push_back(place_of(pattern_, row, column));
+  return result;
 }
 
 template <class Scalar>
@@ -47,14 +81,14 @@ Deformation<Scalar> InternalForces::measured(const Deformation<Scalar>& F) const
 }
 
 Eigen::SparseMatrix<double> InternalForces::at_nodes(const std::vector<Eigen::Matrix4d>& of_points) const {
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t g = 0; g < of_points.size(); ++g)
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) entries.emplace_back(4 * int(g) + i, 4 * int(g) + j, of_points[g](i, j));
-  Eigen::SparseMatrix<double> matrix(gradient_.rows(), gradient_.rows());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseMatrix<double> columns = matrix * gradient_;
-  return Eigen::SparseMatrix<double>(gradient_.transpose()) * columns;
+  Eigen::SparseMatrix<double> matrix = pattern_;
+  double* values = matrix.valuePtr();
+  for (std::size_t g = 0; g < of_points.size(); ++g) {
+    const PointGradient& point = at_point_[g];
+    const Eigen::MatrixXd block = point.gradient.transpose() * of_points[g] * point.gradient;
+    for (std::size_t k = 0; k < point.place.size(); ++k) values[point.place[k]] += block.data()[k];
+  }
+  return matrix;
 }
 
 /// dG/dt by the trapezoidal rule: G = (1 - 2 s) G_old + s (goal_old + goal), s = z / (2 + z), z the time over the

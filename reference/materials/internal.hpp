@@ -60,6 +60,15 @@ class InternalForces {
   const Eigen::VectorXd& weights() const { return weight_; }
 
  private:
+  using Gradient = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
+  /// F at one point from the coordinates of the nodes around it.
+  struct PointGradient {
+    Gradient gradient;       ///< [4 x coordinates], 1/m
+    std::vector<int> place;  ///< [coordinates x coordinates] among the values of the tangent, column by column
+  };
+  PointGradient gradient_at(int point, const std::vector<int>& nodes) const;
+
   /// From the unrotated start for `linear_elastic`, else as it is: the others do not see the initial rotation.
   template <class Scalar>
   Deformation<Scalar> measured(const Deformation<Scalar>& F) const;
@@ -77,6 +86,8 @@ class InternalForces {
   std::vector<BranchPoint> branch_;       ///< [points] at the last accepted motion; empty without
   Eigen::VectorXd weight_;                ///< [points], m2
   Eigen::SparseMatrix<double> gradient_;  ///< [4 points x 2 nodes], F of each point from q: xx, xy, yx, yy; 1/m
+  std::vector<PointGradient> at_point_;   ///< [points], the same
+  Eigen::SparseMatrix<double> pattern_;   ///< [2 nodes x 2 nodes] zeros where the tangent may have entries
 };
 
 }  // namespace pliant::reference
