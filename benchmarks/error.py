@@ -4,7 +4,7 @@
     ./pliant bench error --only oscillation impact
     ./pliant bench error --sizes 168 340         fewer nodes
 
-Exit codes: 0 written, 2 bad input, 4 the report cannot be written.
+Exit codes: 0 written, 2 bad input or broken off (what was measured is written), 4 the report cannot be written.
 """
 
 from __future__ import annotations
@@ -54,14 +54,13 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def measure_all(runner: Runner, scene: Scene, sizes: list[int]) -> list[Measured]:
-    rows = []
+def measured(runner: Runner, scene: Scene, sizes: list[int]) -> Iterator[Measured]:
+    """Says each as it comes."""
     for choice in choices_of(scene, sizes):
         row = runner.measure(scene, choice)
-        rows.append(row)
-        what = f"error {row.error:.2e}, {row.evaluations} evaluations, {row.seconds:.3f} s" if not row.message else row.message
+        what = row.message or f"error {row.error:.2e}, {row.evaluations} evaluations, {row.seconds:.3f} s"
         print(f"{scene.name}: {choice.family}, {choice.nodes} nodes: {what}", flush=True)
-    return rows
+        yield row
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -69,15 +68,19 @@ def main(arguments: list[str] | None = None) -> int:
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
     chosen = [scene for scene in SCENES if scene.name in options.only]
     rows: list[Measured] = []
+    code, version = WRITTEN, ""
     with tempfile.TemporaryDirectory() as scratch:
         runner = Runner(Programs(options.engine, options.reference), Path(scratch), options.repetitions)
         try:
             version = subprocess.run([options.engine, "--version"], capture_output=True, text=True, check=True).stdout
             for scene in chosen:
-                rows += measure_all(runner, scene, options.sizes or scene.sizes)
-        except (OSError, subprocess.CalledProcessError) as error:
-            print(f"error: {error}", file=sys.stderr)
-            return BAD_INPUT
+                for row in measured(runner, scene, options.sizes or scene.sizes):
+                    rows.append(row)
+        except (OSError, subprocess.CalledProcessError, KeyboardInterrupt) as error:
+            print(f"error: {error or 'interrupted'}", file=sys.stderr)
+            code = BAD_INPUT
+    if not rows:
+        return code
     about = {"commit": version.strip(), "processor": machine()["cpu"], "repetitions": options.repetitions}
     try:
         files = report.write(options.out, chosen, rows, about)
@@ -85,7 +88,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"error: {options.out}: cannot be written: {error}", file=sys.stderr)
         return NOT_WRITTEN
     print("written:", *files)
-    return WRITTEN
+    return code
 
 
 if __name__ == "__main__":
