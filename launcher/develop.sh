@@ -167,6 +167,12 @@ bench() {
   esac
 }
 
+fuzz() {
+  ready test fuzz
+  prepare fuzz pliant_fuzzers
+  exec "$python" -B "$root/tests/fuzz/fuzz.py" "$@"
+}
+
 lint() {
   prepare release all
   ready lint

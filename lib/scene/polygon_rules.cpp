@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pliant {
 
 namespace {
+
+/// Over the square of the extent: below that rounding decides which way a polygon turns.
+constexpr double least_area = 1e-12;
 
 int side(const Vec2& a, const Vec2& b, const Vec2& p) {
   const double z = cross(b - a, p - a);
@@ -47,6 +51,9 @@ PolygonDefect polygon_defect(const Points& polygon) {
       }
     }
   }
+  const double extent = largest_extent(polygon);
+  if (!(std::abs(signed_area(polygon)) > least_area * extent * extent))
+    return {"the points lie on one line, but for rounding", 0};
   return {};
 }
 

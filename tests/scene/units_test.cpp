@@ -97,6 +97,9 @@ TEST(PolygonRules, FindDefects) {
   EXPECT_EQ(polygon_defect({{0, 0}, {1, 1}, {1, 0}, {0, 1}}).text, "edges 1 and 3 cross or touch");
   EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}).text, "edges 1 and 3 cross or touch");
   EXPECT_EQ(polygon_defect({{0, 0}, {0, 0}, {1, 0}, {1, 1}}).text, "points 1 and 2 coincide");
+  EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1e-6}, {0, 1e-6}}).text, "");
+  for (const double far : {1e14, 5e68, 1e200})
+    EXPECT_EQ(polygon_defect({{1, 0}, {0, 0}, {far, 2}}).text, "the points lie on one line, but for rounding");
   EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 0}}).text, "points 4 and 1 coincide");
   EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {1, 0}}).text, "edges 1 and 2 fold back");
   EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {1, 2}, {1, 1.5}, {0, 1.5}}).text, "edges 3 and 4 fold back");
