@@ -122,7 +122,7 @@ bench() {
       [ "${1-}" != kernels ] || shift
       ready bench
       prepare release pliant_bench pliant_bench
-      set_thread_defaults
+      set_run_defaults
       exec "$root/build/release/pliant_bench" "$@"
       ;;
     scenes)
@@ -143,7 +143,7 @@ bench() {
       ;;
     ab)
       ready ab
-      set_thread_defaults
+      set_run_defaults
       exec "$python" -B "$root/benchmarks/ab.py" "${@:2}"
       ;;
     page)

@@ -1,8 +1,11 @@
 # Commands that simulate, and that look at what came out.
 
 # Threads wait actively: waking a sleeping team costs 12 to 25 us a step. They are not bound: a second OpenMP runtime,
-# which a linear algebra library brings along, would bind the first thread and leave the engine one core.
-set_thread_defaults() { export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-active}; }
+# which a linear algebra library brings along, would bind the first thread and leave the engine one core. Memory comes in
+# large pages where the system has them: contact looks at places all over it.
+set_run_defaults() {
+  export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-active} GLIBC_TUNABLES=${GLIBC_TUNABLES-glibc.malloc.hugetlb=1}
+}
 
 draw() {  # folder, or the options of plot.py
   say "drawing $1"
@@ -49,7 +52,7 @@ run_and_draw() {  # program, its arguments, --no-plot (ours): it tells its folde
 }
 
 run() {
-  set_thread_defaults
+  set_run_defaults
   run_and_draw pliant_engine run "$@"
 }
 
@@ -57,7 +60,7 @@ reference() { run_and_draw pliant_reference_solver "$@"; }
 
 check() {
   prepare release pliant_engine
-  set_thread_defaults
+  set_run_defaults
   exec "$root/build/release/pliant_engine" check "$@"
 }
 

@@ -26,6 +26,16 @@ void add_run(const double* from, int count, double* to) {
     store(to + i, load(to + i) + select(first_lanes(count - i), load(from + i), Lanes{}));
 }
 
+/// Of x and y, from a number on.
+template <class Field>
+void prefetch_run(const Field& field, int first, int count) {
+  constexpr int per_line = 8;
+  for (int i = 0; i < count; i += per_line) {
+    __builtin_prefetch(field.x.data() + first + i);
+    __builtin_prefetch(field.y.data() + first + i);
+  }
+}
+
 bool has_fixed_refresh(const ContactSettings& settings) {
   return settings.refresh_steps > 0 || settings.refresh_period > 0;
 }
@@ -184,17 +194,16 @@ void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
-/// Asks for what the patch's windows and nodes look at first: there are many patches, each on places of its own.
-void ContactSystem::prefetch(const Patch& patch, const OutlineField& position) const {
-  constexpr int per_line = 8;
+/// Asks for what a patch looks at first: there are many, each on places of its own.
+void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, const StepStart* step) const {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
-    const Arc& arc = patch.segments[side];
+    const Arc arc = patch.forces(side);
     const int node = model_.outline_offset[body] + arc.begin - turn_of(arc.begin, n) * n;
-    for (int i = 0; i < arc.count; i += per_line) {
-      __builtin_prefetch(position.x.data() + node + i);
-      __builtin_prefetch(position.y.data() + node + i);
-    }
+    prefetch_run(position, node, arc.count);
+    if (!keeps_debts() || !step) continue;
+    prefetch_run(step->position, node, arc.count);
+    prefetch_run(last_.forces, patch.entry[side], arc.count);
   }
 }
 
@@ -232,7 +241,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
-    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position);
+    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step);
     const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch()};
     PatchTotals& totals = now.totals[p];
     if (view.patch.is_empty())
@@ -242,7 +251,10 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     else
       totals = compute_patch(view, nullptr, from, to, now.forces);
   });
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+  const int bodies = static_cast<int>(model_.bodies.size());
+  parallel_for(bodies, [&](int b) {
+    if (b + 1 < bodies)
+      table_.for_each_run(b + 1, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
     const int n = model_.outline_of(b).count;
     double* x = &force.x[model_.outline_offset[b]];
     double* y = &force.y[model_.outline_offset[b]];
