@@ -3,6 +3,7 @@
     ./pliant bench error                         all scenes: some ten minutes; results/bench/error.html, .json and .png
     ./pliant bench error --only oscillation impact
     ./pliant bench error --sizes 168 340         fewer nodes
+    ./pliant bench error --keep                  writes what ./pliant check foretells too, and prints what it changes
 
 Exit codes: 0 written, 2 bad input or broken off (what was measured is written), 4 the report cannot be written.
 """
@@ -20,7 +21,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts")]
 
-from error_study import report
+from error_study import keep, report
 from error_study.choices import Choice, of_paper, of_reference, of_space, of_stiffness, of_time
 from error_study.measure import Measured, Programs, Runner
 from error_study.scenes import SCENES, Scene
@@ -44,6 +45,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="./pliant bench error", description=__doc__.splitlines()[0])
     parser.add_argument("--only", nargs="+", choices=names, default=names, metavar="SCENE", help=", ".join(names))
     parser.add_argument("--sizes", nargs="+", type=int, help="nodes of a body instead of each scene's own")
+    parser.add_argument("--keep", action="store_true", help="write lib/cli/measured_errors.hpp")
     parser.add_argument("--repetitions", type=int, default=2, help="the fastest counts")
     parser.add_argument("--engine", type=Path, default=ROOT / "build/release/pliant_engine")
     parser.add_argument("--reference", type=Path, default=ROOT / "build/release/pliant_reference_solver")
@@ -84,9 +86,14 @@ def main(arguments: list[str] | None = None) -> int:
     about = {"commit": version.strip(), "processor": machine()["cpu"], "repetitions": options.repetitions}
     try:
         files = report.write(options.out, chosen, rows, about)
+        if options.keep and code == WRITTEN:
+            keep.keep(rows)
     except OSError as error:
         print(f"error: {options.out}: cannot be written: {error}", file=sys.stderr)
         return NOT_WRITTEN
+    except ValueError as error:
+        print(f"error: --keep: {error}", file=sys.stderr)
+        return BAD_INPUT
     print("written:", *files)
     return code
 

@@ -11,6 +11,7 @@
 
 #include "cli/cautions.hpp"
 #include "cli/estimates.hpp"
+#include "cli/expected_errors.hpp"
 #include "cli/rehearsal.hpp"
 #include "cli/stability.hpp"
 #include "core/memory.hpp"
@@ -163,6 +164,10 @@ void print_overlap(const Simulation& simulation) {
   if (!text.empty()) print_row("overlap", text);
 }
 
+void print_errors(const Model& model) {
+  if (const std::string text = describe_expected_errors(model); !text.empty()) print_row("errors", text);
+}
+
 void print_cautions(const Model& model) {
   const char* heading = "mind";
   for (const std::string& caution : cautions(model)) {
@@ -266,6 +271,7 @@ void print_check(const Scene& scene, int threads) {
   Simulation simulation(model);
   print_contacts(model, simulation.forces().contact());
   print_overlap(simulation);
+  print_errors(model);
   print_cautions(model);
   print_time_step(model, stable, simulation.forces().contact().skin());
   const Rehearsal first = rehearse(simulation);

@@ -1,9 +1,10 @@
-"""What benchmarks/error_study makes of choices and measurements; no solver runs. EXACT."""
+"""What benchmarks/error_study makes of choices and measurements. EXACT but where said."""
 
 from __future__ import annotations
 
 import json
 import math
+import os
 import sys
 import tomllib
 from dataclasses import replace
@@ -15,9 +16,9 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts")]
 
 import error
-from error_study import choices, judge, report
+from error_study import choices, judge, keep, report
 from error_study.choices import DEFAULT, PAPER, Choice
-from error_study.measure import Measured, seconds_of
+from error_study.measure import Measured, Programs, Runner, seconds_of
 from error_study.pareto import cost_at, front
 from error_study.scenes import SCENES, filled, stiffness
 
@@ -119,3 +120,40 @@ def test_bad_options() -> None:
         with pytest.raises(SystemExit) as left:
             error.main(options)
         assert left.value.code == 2
+
+
+def table_rows(factor: float = 1.0) -> list[Measured]:
+    """Of all recipes and masses in two sizes; each error names its row."""
+    return [Measured(scene, Choice(recipe, mass, nodes), factor * (0.1 + 0.01 * place) / nodes, 100, 1.0, 1e6)
+            for place, scene in enumerate(keep.KEPT) for recipe in choices.RECIPES for mass in choices.MASSES
+            for nodes in (40, 84)]
+
+
+def test_kept_errors_come_back_in_two_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    header = tmp_path / "measured_errors.hpp"
+    keep.keep(table_rows(), header)
+    assert keep.read_header(header.read_text())["es-t3", "corrected"] == [[0.0025, 0.0012], [0.0027, 0.0013], [0.003, 0.0014]]
+    capsys.readouterr()
+    keep.keep(table_rows(), header)
+    assert capsys.readouterr().out == "", "nothing changed"
+    keep.keep(table_rows(2), header)
+    assert "oscillation, mls, lumped: [0.0025, 0.0012] -> [0.005, 0.0024]" in capsys.readouterr().out
+
+
+def test_nothing_is_kept_of_half_a_study(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="same sizes"):
+        keep.keep(table_rows()[:-1], tmp_path / "measured_errors.hpp")
+    assert not list(tmp_path.iterdir())
+
+
+def test_kept_errors_are_the_engines(tmp_path: Path) -> None:
+    """FROZEN: what lib/cli/measured_errors.hpp says of the smallest discs, measured again; two digits, and the last one's
+    half that rounding may take to either side."""
+    programs = Programs(Path(os.environ["PLIANT_ENGINE"]), Path(os.environ["PLIANT_REFERENCE"]))
+    runner = Runner(programs, tmp_path, repetitions=1)
+    kept = keep.read_header(keep.HEADER.read_text())
+    for scene in (scene for scene in SCENES if scene.name in keep.KEPT):
+        for (recipe, mass), errors in kept.items():
+            before = errors[keep.KEPT.index(scene.name)][0]
+            measured = runner.measure(scene, Choice(recipe, mass, 40)).error
+            assert float(f"{measured:.1e}") == pytest.approx(before, abs=1.01 * 10 ** (math.floor(math.log10(before)) - 1))
