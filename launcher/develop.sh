@@ -1,12 +1,13 @@
 # Commands for who works on Pliant itself.
 
-read_preset() {  # sets preset, units and rest
-  preset=release units='' rest=()
+read_preset() {  # sets preset, units, scenes and rest
+  preset=release units='' scenes='' rest=()
   while [ $# -gt 0 ]; do
     case $1 in
       --preset) preset=${2:-release}; [ $# -lt 2 ] || shift ;;
       --preset=*) preset=${1#*=} ;;
       --units) units=yes ;;
+      --scenes) scenes=yes ;;
       *) rest+=("$1") ;;
     esac
     shift
@@ -26,9 +27,10 @@ set_sanitizer_defaults() {
 }
 
 build_only() {
-  local preset units rest
+  local preset units scenes rest
   read_preset "$@"
   [ -z "$units" ] || rest+=(--units)
+  [ -z "$scenes" ] || rest+=(--scenes)
   [ ${#rest[@]} = 0 ] || fail "build: unknown option ${rest[0]}; see ./pliant build --help"
   prepare "$preset" all
   say "build/$preset is up to date"
@@ -48,10 +50,13 @@ count_tests() {  # junit file -> the closing line
 }
 
 run_tests() {
-  local preset units rest target=all
+  local preset units scenes rest target=all
   read_preset "$@"
   if [ -n "$units" ]; then
     target=pliant_tests rest+=(-L '^unit$')
+    ready test
+  elif [ -n "$scenes" ]; then
+    target=pliant_engine rest+=(-R '^cli\.cases_run$')
     ready test
   else
     ready test verify page browser

@@ -1,8 +1,8 @@
 # Commands that simulate, and that look at what came out.
 
 # Threads wait actively: waking a sleeping team costs 12 to 25 us a step. They are not bound: a second OpenMP runtime,
-# which a linear algebra library brings along, would bind the first thread and leave the engine one core. Memory comes in
-# large pages where the system has them: contact looks at places all over it.
+# which a linear algebra library brings along, would bind the first thread and leave the engine one core. Memory comes
+# in large pages where the system has them: contact looks at places all over it.
 set_run_defaults() {
   export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-active} GLIBC_TUNABLES=${GLIBC_TUNABLES-glibc.malloc.hugetlb=1}
 }

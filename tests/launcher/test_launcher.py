@@ -292,8 +292,14 @@ def test_tests_are_counted_and_their_failure_passes_through(launcher: Launcher) 
 def test_unit_tests_alone(launcher: Launcher) -> None:
     launcher("test", "--units", "--preset", "gcc", "-R", "contact")
     assert launcher.calls("ctest")[0].endswith("-R contact -L ^unit$") and "build/gcc" in launcher.calls("ctest")[0]
-    result = launcher("build", "--units")
-    assert result.returncode == 1 and "unknown option --units" in result.stderr
+    for option in ("--units", "--scenes"):
+        result = launcher("build", option)
+        assert result.returncode == 1 and f"unknown option {option}" in result.stderr
+
+
+def test_scenes_alone(launcher: Launcher) -> None:
+    launcher("test", "--scenes", "--preset", "gcc")
+    assert launcher.calls("ctest")[0].endswith(r"-R ^cli\.cases_run$") and "build/gcc" in launcher.calls("ctest")[0]
 
 
 def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
