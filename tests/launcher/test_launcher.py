@@ -306,17 +306,18 @@ def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
     (launcher.root / ".ci").mkdir()
     shutil.copy(ROOT / ".ci/run", launcher.root / ".ci/run")
     write_script(launcher.root / "pliant", 'echo "$*" >>"$LOG"; case $* in lint) echo "3 passed";; test) echo "9 passed"; '
-                 'echo "5 passed, 1 failed, 2 skipped"; exit 8;; "test --preset gcc --units") echo "4 passed, 0 failed, 0 skipped";; '
+                 'echo "5 passed, 1 failed, 2 skipped"; exit 8;; "test --preset asan-ubsan --units") echo "4 passed, 0 failed, 0 skipped";; '
                  'verify) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
     result = subprocess.run([launcher.root / ".ci/run"], env=launcher.environment, capture_output=True, text=True)
     assert result.returncode == 1
-    assert launcher.log.read_text().splitlines() == ["lint", "test", "test --preset gcc --units", "bench gate",
-                                                        r"test -R ^cli\.determinism$ -V", "verify"]
+    assert launcher.log.read_text().splitlines() == [
+        "lint", "test", "test --preset asan-ubsan --units", "test --preset asan-ubsan --scenes", "bench gate",
+        r"test -R ^cli\.determinism$ -V", "test --preset tsan --scenes", "fuzz --seconds 30", "verify"]
     lines = result.stdout.splitlines()
     assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
-    stages = ["lint", "test", "gcc", "gate", "determinism", "verify", "all"]
-    assert [line.split()[1] for line in lines[-8:-1]] == stages
-    assert [line.rsplit(" ", 1)[1] for line in lines[-8:-2]] == ["green", "red", *["green"] * 4]
+    stages = ["lint", "test", "sanitizers", "sanitized_scenes", "gate", "determinism", "races", "fuzz", "verify", "all"]
+    assert [line.split()[1] for line in lines[-11:-1]] == stages
+    assert [line.rsplit(" ", 1)[1] for line in lines[-11:-2]] == ["green", "red", *["green"] * 7]
 
 
 @pytest.mark.parametrize("command", [file.stem for file in (ROOT / "launcher/help").iterdir() if file.stem != "pliant"])
