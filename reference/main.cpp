@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "core/errors.hpp"
+#include "core/floating_point_traps.hpp"
 #include "files/output_folder.hpp"
 #include "reference/natural_modes.hpp"
 #include "reference/run.hpp"
@@ -66,6 +67,7 @@ int main_program(int argc, char** argv) {
 }  // namespace pliant::reference
 
 int main(int argc, char** argv) {
+  pliant::trap_floating_point_errors();
   spdlog::set_default_logger(spdlog::stderr_logger_st("pliant reference"));
   spdlog::set_pattern("%l: %v");
   try {

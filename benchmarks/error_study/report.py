@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import textwrap
 from pathlib import Path
 
 import jinja2
@@ -61,7 +62,7 @@ def _draw_all(file: Path, scenes: list[Scene], rows: list[Measured]) -> None:
     figure, axes = plt.subplots(1, len(scenes), figsize=(4.2 * len(scenes), 4.4), layout="constrained", squeeze=False)
     for panel, scene in zip(axes[0], scenes):
         draw(panel, scene, rows, "seconds")
-        panel.set_title(scene.title, fontsize=9, loc="left")
+        panel.set_title(textwrap.fill(scene.title, 46), fontsize=9, loc="left")
     axes[0][0].set_ylabel("error")
     axes[0][0].legend(fontsize=8, frameon=False)
     figure.savefig(file, dpi=110)

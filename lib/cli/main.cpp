@@ -11,6 +11,7 @@
 #include "cli/modes.hpp"
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
+#include "core/floating_point_traps.hpp"
 #include "files/output_folder.hpp"
 #include "results/run.hpp"
 #include "scene/late_conditions.hpp"
@@ -128,6 +129,7 @@ int main_program(int argc, char** argv) {
 }  // namespace pliant
 
 int main(int argc, char** argv) {
+  pliant::trap_floating_point_errors();
   spdlog::set_default_logger(spdlog::stderr_logger_st("pliant"));
   spdlog::set_pattern("%l: %v");
   try {

@@ -10,8 +10,10 @@ template <class Law>
 Encounter encounter(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
                     Lanes place) {
   Encounter at{p.gap, p.hit, touching, {}};
-  if constexpr (Law::has_shear)
-    at.moved = moved_along(window, p, touching & (old_place == old_place), old_place, place);
+  if constexpr (Law::has_shear) {
+    const LaneBits known = old_place == old_place;
+    at.moved = moved_along(window, p, touching & known, select(known, old_place, place), place);
+  }
   return at;
 }
 

@@ -274,8 +274,8 @@ double TimeStepBound::damping(std::size_t b) const {
 /// w^2 and the largest c bound all modes.
 double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const {
   const double w2 = total(b, contact_factor), c = damping(b);
-  const double square = limit_square_[b];
-  return model_.scene.time.safety * square / (2 * c + std::sqrt(4 * c * c + square * w2));
+  const double square = limit_square_[b], rate = 2 * c + std::sqrt(4 * c * c + square * w2);
+  return rate > 0 ? model_.scene.time.safety * square / rate : std::numeric_limits<double>::infinity();
 }
 
 TimeStepBound::Limit TimeStepBound::limit(double contact_factor) const {

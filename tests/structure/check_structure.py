@@ -34,7 +34,7 @@ JUDGED = ["lib", "reference"]  # by what they include
 
 # All of lib/ that the reference solver may share: no mechanics (docs/design.md 6). Of core only these.
 SHARED_FOLDERS = ["files", "geometry", "scene"]
-SHARED_CORE = {"errors.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
+SHARED_CORE = {"errors.hpp", "floating_point_traps.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
 
 # What an #include names, in quotes or in brackets; or whatever else stands there, such as a macro.
 INCLUDE = re.compile(r'^\s*(?:#|%:)\s*include(?:_next)?\b\s*(?:"([^"]+)"|<([^>]+)>|(.*))', re.MULTILINE)
