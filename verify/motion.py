@@ -32,6 +32,20 @@ class Motion:
         """[nodes] a third of the triangles around each: row sums of their mass over the density, m2."""
         return np.bincount(self.triangles.ravel(), np.repeat(self.areas() / 3, 3), self.positions.shape[1])
 
+    def momenta(self, velocities: np.ndarray, mass: str) -> np.ndarray:
+        """[nodes x 2] of linear triangles over their density, m3/s, for [nodes x 2] velocities: D v of lumped mass, inv(W) v
+        with W = 2 inv(D) - inv(D) M inv(D) of corrected mass; M the consistent mass, D its row sums."""
+        lumped = self.node_areas()
+        if mass == "lumped":
+            return lumped[:, None] * velocities
+        consistent = np.zeros((len(lumped), len(lumped)))
+        for i in range(3):
+            for j in range(3):
+                share = self.areas() * (2 if i == j else 1) / 12
+                np.add.at(consistent, (self.triangles[:, i], self.triangles[:, j]), share)
+        inverse = 2 * np.diag(1 / lumped) - consistent / np.outer(lumped, lumped)
+        return np.linalg.solve(inverse, velocities)
+
     def modal(self, axis: int, shape: np.ndarray) -> np.ndarray:
         """[frames] displacements weighted by shape [nodes] and the areas of nodes, m3."""
         return self.displacements[:, :, axis] @ (shape * self.node_areas())
