@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
+from curved_block import ACROSS, NODES, RADIUS, STIFF, YOUNG, block, levels, spread, top_above_centroid
 from fields import along_outline
 from pictures import COLOURS, MARKERS, legend, panels, save
 from verification import FULL, Case, Label, Run, observed_order
 
 CASE = Case(__file__)
 
-RADIUS, FRICTION = 50.0, 0.3
-YOUNG, POISSON = 2.8, 0.4
-STIFF = YOUNG / (1 - POISSON**2)  # of plane strain
+FRICTION = 0.3
 APPROACH = 0.0024
 SHEARS = [0.0, 4e-4, 9e-4, 1.3e-3]  # displacements, one a rest
 PRESSED = 1
@@ -27,10 +26,7 @@ STUCK_BY_MOMENT = LEVELS[:2]  # by the last one what overshot counts as much as 
 SYMMETRY = 1e-6  # frames are in single precision, 6e-8, over friction: what remains of motion is symmetric too
 REST, RISE = 20.0, 8.0  # s from one to the next; s of them in motion
 SEGMENTS = [50, 70, 100, 140, *([200] if FULL else [])]  # of the curved face
-NODES = {50: 450, 70: 850, 100: 1500, 140: 2900, 200: 5200}
-# Of the finite block's face, over the load: block_curvature.py, own runs of dolfinx 0.5.2, biquadratic squares, error
-# 0.001.
-ACROSS, ALONG = -0.170, -0.248  # 1/(Pa m2)
+ALONG = -0.248  # 1/(Pa m2), of the finite block's face, over the load: as ACROSS
 
 
 @dataclass
@@ -61,44 +57,13 @@ class Theory:
         return FRICTION * self.pressure(x) - spread(FRICTION * self.pressed - self.sheared, self.stuck, x)
 
 
-def spread(load: float, half_width: float, x: np.ndarray) -> np.ndarray:
-    """Hertz's distribution of a load, Pa."""
-    return 2 * load / (np.pi * half_width**2) * np.sqrt(np.clip(half_width**2 - x**2, 0, None))
-
-
-def block(segments: int) -> list[list[float]]:
-    """Corners: the upper side is an arc (to the fourth order of 1/50)."""
-    x = np.linspace(1, -1, segments + 1)
-    return [[-1.0, -0.5], [1.0, -0.5], *np.stack([x, 0.5 - x**2 / (2 * RADIUS)], axis=1).tolist()]
-
-
-def top_above_centroid(points: list[list[float]]) -> float:
-    """Of a polygon whose top is at y = 0.5."""
-    (x, y), (u, v) = np.transpose(points), np.roll(points, -1, axis=0).T
-    cross = x * v - y * u
-    return float(0.5 - ((y + v) * cross).sum() / (3 * cross.sum()))
-
-
-def steps(levels: list[float]) -> list[list[float]]:
-    """Smooth rises from each level to the next, one a rest."""
-    rise = np.linspace(0, 1, 13)
-    table, before = [[0.0, 0.0]], 0.0
-    for i, level in enumerate(levels):
-        shape = rise**2 * (3 - 2 * rise)
-        table += [[float(i * REST + RISE * t), float(before + (level - before) * s)] for t, s in zip(rise[1:],
-                                                                                                     shape[1:])]
-        table += [[float((i + 1) * REST), level]] if level == before else []
-        before = level
-    return sorted(table)
-
-
 def scene(segments: int, stiffer: float = 1.0, damping: float = 2.2) -> str:
     points = block(segments)
     return CASE.scene(points=points, nodes=NODES[segments], outline=3 * segments, centre=top_above_centroid(points),
                       stiffness=float(stiffer * 8 * YOUNG * segments / 2), damping=damping, friction=FRICTION,
-                      rest=REST, end=REST * len(SHEARS), press=steps([-APPROACH / 2]),
-                      press_below=steps([APPROACH / 2]), shear=steps([s / 2 for s in SHEARS]),
-                      shear_below=steps([-s / 2 for s in SHEARS]))
+                      rest=REST, end=REST * len(SHEARS), press=levels([-APPROACH / 2], REST, RISE),
+                      press_below=levels([APPROACH / 2], REST, RISE), shear=levels([s / 2 for s in SHEARS], REST, RISE),
+                      shear_below=levels([-s / 2 for s in SHEARS], REST, RISE))
 
 
 @pytest.fixture(scope="module")
