@@ -105,7 +105,7 @@ verify() {
     return
   fi
   read_verify_options "$@"
-  prepare_verification
+  prepare_verification ${full:+foreign}
   trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
   PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
     -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1
@@ -114,8 +114,8 @@ verify() {
   exit "$code"
 }
 
-prepare_verification() {
-  ready test verify
+prepare_verification() {  # further groups of packages
+  ready test verify "$@"
   prepare release pliant_engine
   prepare release pliant_reference_solver
   prepare release pliant_agreement pliant_agreement

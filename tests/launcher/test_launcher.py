@@ -135,6 +135,14 @@ def test_what_others_need_does_not_stop_a_run(launcher: Launcher) -> None:
     assert not launcher.calls("ctest")
 
 
+def test_solvers_from_elsewhere_are_installed_with_full_alone(launcher: Launcher) -> None:
+    present = " ".join(name for name in all_packages() if name not in {"python3-getfem", "calculix-ccx"})
+    launcher("verify", INSTALLED=present)
+    assert not launcher.calls("apt-get")
+    launcher("verify", "--full", INSTALLED=present)
+    assert launcher.calls("apt-get")[-1].endswith(" python3-getfem calculix-ccx")
+
+
 def test_a_target_that_was_left_out_is_looked_for_again(launcher: Launcher) -> None:
     ninja = launcher.root / "build/release/build.ninja"
     launcher("run", "a.toml")

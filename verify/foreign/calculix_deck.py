@@ -1,0 +1,106 @@
+"""Bodies at large strain in contact, by CalculiX (ccx 2.20): quadratic triangles of plane strain, surfaces by penalty.
+
+*HYPERELASTIC, NEO HOOKE is psi = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, which is the law `melody` with C10 = mu/2,
+D1 = 2/K (docs/method.md, section 3).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from foreign.meshes import PLAIN, Mesh
+
+PLATE_CELLS, PLATE_FROM, PLATE_TO = 6, -0.5, 3.0  # along x
+STEEL = 1e3  # mu: of plates, all of whose nodes are placed
+SHORTEST, STEPS = 1e-5, 1000  # of an increment over its step
+
+
+class Failed(RuntimeError):
+    """ccx did not get to the end."""
+
+
+class Deck:
+    """An input file that grows: bodies and plates first, then contacts, then steps."""
+
+    def __init__(self, stiffness: float) -> None:
+        self._nodes, self._cells = 0, 0
+        self._axis: list[int] = []
+        self._plates: list[str] = []
+        self._model = ["*SURFACE INTERACTION,NAME=TOUCH", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
+                       f"{stiffness:.15g}"]
+        self._steps: list[str] = []
+
+    def add(self, name: str, mesh: Mesh, mu: float, lame: float) -> None:
+        """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle."""
+        first = self._place(mesh.points)
+        self._axis += list(first + np.flatnonzero(np.abs(mesh.points[:, 0]) < PLAIN))
+        before = self._connect(name, "CPE6", first + mesh.cells)
+        middle = (mesh.points[:, 1].max() + mesh.points[:, 1].min()) / 2
+        heights = mesh.side_middles()[:, 1] - middle
+        for surface, there in (("UP", heights > 0.2), ("DOWN", heights < -0.2)):
+            self._surface(name + surface, [(before + cell, side) for cell, side in mesh.outline[there]])
+        bulk = lame + 2 * mu / 3
+        self._material(name, ["*HYPERELASTIC,NEO HOOKE", f"{mu / 2:.15g},{2 / bulk:.15g}"])
+
+    def add_plate(self, name: str, low: float, high: float, faces: str) -> None:
+        """From y = low to y = high; its surface <name>FACE is up or down."""
+        x = np.linspace(PLATE_FROM, PLATE_TO, PLATE_CELLS + 1)
+        first = self._place(np.array([[at, y] for y in (low, high) for at in x]))
+        i = np.arange(PLATE_CELLS)
+        row = PLATE_CELLS + 1
+        before = self._connect(name, "CPE4", first + np.stack([i, i + 1, row + i + 1, row + i], axis=1))
+        self._surface(name + "FACE", [(before + cell, 2 if faces == "up" else 0) for cell in i])
+        self._material(name, ["*ELASTIC", f"{STEEL:g},0.3"])
+        self._model += [f"*NSET,NSET=ALL{name}", *(str(first + k) for k in range(2 * row))]
+        self._plates.append(name)
+
+    def touch(self, slave: str, master: str) -> None:
+        self._model += ["*CONTACT PAIR,INTERACTION=TOUCH,TYPE=SURFACE TO SURFACE", f"{slave},{master}"]
+
+    def step(self, heights: dict[str, float], increment: float) -> None:
+        """Plates moved up so far from the start, in increments of so much of the step."""
+        self._steps += [f"*STEP,NLGEOM,INC={STEPS}", "*STATIC", f"{increment:g},1.,{SHORTEST:g},{increment:g}",
+                        "*BOUNDARY", *(f"ALL{name},2,2,{height:.15g}" for name, height in heights.items())]
+        for name in self._plates:
+            self._steps += [f"*NODE PRINT,NSET=ALL{name},TOTALS=ONLY", "RF"]
+        self._steps += ["*END STEP"]
+
+    def forces(self, job: Path) -> dict[str, np.ndarray]:
+        """Runs ccx; by plate [steps] the force along y that holds it, at the end of each step."""
+        held = ["*NSET,NSET=AXIS", *map(str, self._axis), "*BOUNDARY", "AXIS,1,1",
+                *(f"ALL{name},1,1" for name in self._plates)]
+        job.with_suffix(".inp").write_text("\n".join([*self._model, *held, *self._steps]) + "\n")
+        result = subprocess.run(["ccx", job.name], cwd=job.parent, capture_output=True, text=True,
+                                stdin=subprocess.DEVNULL, env=os.environ | {"OMP_NUM_THREADS": "1"})
+        if result.returncode != 0:
+            raise Failed(f"{job}: exit code {result.returncode}\n{result.stdout[-2000:]}")
+        text = job.with_suffix(".dat").read_text()
+        found = {name: re.findall(rf"for set ALL{name} and time\s+(\S+)\s+\S+\s+(\S+)", text) for name in self._plates}
+        return {name: np.array([float(force) for time, force in rows if abs(float(time) - round(float(time))) < 1e-6])
+                for name, rows in found.items()}
+
+    def _place(self, points: np.ndarray) -> int:
+        """Number of the first of these nodes."""
+        first = self._nodes + 1
+        self._model += ["*NODE", *(f"{first + i},{x:.15g},{y:.15g},0." for i, (x, y) in enumerate(points))]
+        self._nodes += len(points)
+        return first
+
+    def _connect(self, name: str, kind: str, cells: np.ndarray) -> int:
+        """Number of the first of these elements."""
+        first = self._cells + 1
+        self._model += [f"*ELEMENT,TYPE={kind},ELSET=E{name}",
+                        *(",".join(map(str, [first + i, *cell])) for i, cell in enumerate(cells))]
+        self._cells += len(cells)
+        return first
+
+    def _surface(self, name: str, sides: list[tuple[int, int]]) -> None:
+        self._model += [f"*SURFACE,NAME={name},TYPE=ELEMENT", *(f"{cell},S{side + 1}" for cell, side in sides)]
+
+    def _material(self, name: str, lines: list[str]) -> None:
+        self._model += [f"*MATERIAL,NAME=M{name}", *lines, f"*SOLID SECTION,ELSET=E{name},MATERIAL=M{name}", "1."]

@@ -1,0 +1,142 @@
+"""Bodies at large strain in contact, by GetFEM (5.4): quadratic triangles, augmented Lagrangian, no penalty left.
+
+Bodies touch through GetFEM's brick of large sliding by ray tracing: the slave has multipliers of first order on its
+outline. Rigid plates without friction have pressures of second order.
+"""
+
+from __future__ import annotations
+
+import getfem
+import numpy as np
+
+from foreign.meshes import PLAIN, Mesh
+
+getfem.util_warning_level(0)
+getfem.util_trace_level(0)
+
+# First Piola stress of F in plane strain (docs/method.md, section 3).
+LAWS = {
+    "neo-hookean": "(mu_{n}*({F}-Inv({F})')+lame_{n}*log(Det({F}))*Inv({F})')",
+    "melody": "(mu_{n}*pow(Det({F}),-2/3)*{F}+((lame_{n}+2/3*mu_{n})*(Det({F})-1)*Det({F})"
+              "-mu_{n}/3*pow(Det({F}),-2/3)*(Norm_sqr({F})+1))*Inv({F})')",
+}
+OUTLINE, AXIS = 1, 2  # regions
+AUGMENTED = 20.0  # mu / R: the result does not depend on it
+REACH = 0.5  # R, of rays
+RESIDUAL = 1e-9
+ITERATIONS, HALVINGS = 40, 6
+
+
+class NotConverged(RuntimeError):
+    """Newton's method, with the shortest load steps."""
+
+
+class Bodies:
+    """Variables u_<name>, pressures p_<name>, multipliers t_<slave>; `load` places what is imposed."""
+
+    def __init__(self, law: str, imposed: dict[str, float]) -> None:
+        self.model, self.law = getfem.Model("real"), law
+        self.meshes: dict[str, Mesh] = {}
+        self._own: dict[str, getfem.Mesh] = {}
+        self._rules: dict[str, getfem.MeshIm] = {}
+        self._at = dict(imposed)
+        for name, value in imposed.items():
+            self.model.add_initialized_data(name, value)
+
+    def add(self, name: str, mesh: Mesh, mu: float, lame: float) -> None:
+        own = as_getfem(mesh)
+        field = fields(own, 2, 2)
+        self.meshes[name], self._own[name] = mesh, own
+        self._rules[name] = getfem.MeshIm(own, getfem.Integ("IM_TRIANGLE(6)"))
+        self.model.add_fem_variable(f"u_{name}", field)
+        self.model.add_initialized_data(f"mu_{name}", mu)
+        self.model.add_initialized_data(f"lame_{name}", lame)
+        stress = LAWS[self.law].format(n=name, F=f"(Id(2)+Grad_u_{name})")
+        self.model.add_nonlinear_term(self._rules[name], f"{stress}:Grad_Test_u_{name}")
+
+    def hold_axis(self, name: str) -> None:
+        """u_x = 0 on x = 0."""
+        self.model.add_normal_Dirichlet_condition_with_multipliers(self._rules[name], f"u_{name}", 2, AXIS)
+
+    def press(self, name: str, plate: str, side: int) -> None:
+        """By a plate at y = the imposed value of its name, above (side 1) or below (-1)."""
+        self.model.add_filtered_fem_variable(f"p_{name}", fields(self._own[name], 1, 2), OUTLINE)
+        pressure = self._pressure(name, plate, side)
+        self.model.add_nonlinear_term(self._rules[name], f"{side}*{pressure}*Test_u_{name}(2)"
+                                      f"+({pressure}-p_{name})/{AUGMENTED}*Test_p_{name}", OUTLINE)
+
+    def touch(self, slave: str, master: str) -> None:
+        self.model.add_filtered_fem_variable(f"t_{slave}", fields(self._own[slave], 2, 1), OUTLINE)
+        self.model.add_initialized_data("augmented", AUGMENTED)
+        brick = self.model.add_integral_large_sliding_contact_brick_raytracing("augmented", REACH)
+        self.model.add_slave_contact_boundary_to_large_sliding_contact_brick(
+            brick, self._rules[slave], OUTLINE, f"u_{slave}", f"t_{slave}")
+        self.model.add_master_contact_boundary_to_large_sliding_contact_brick(
+            brick, self._rules[master], OUTLINE, f"u_{master}")
+
+    def load(self, imposed: dict[str, float], steps: int) -> None:
+        """From the last load in so many steps, in halves where Newton's method fails."""
+        before = dict(self._at)
+        for share in np.linspace(0, 1, steps + 1)[1:]:
+            self._move({name: (1 - share) * before[name] + share * value for name, value in imposed.items()}, HALVINGS)
+
+    def _move(self, imposed: dict[str, float], halvings: int) -> None:
+        before, kept = dict(self._at), self.model.from_variables()
+        if self._solve(imposed):
+            return
+        if halvings == 0:
+            raise NotConverged(f"from {before} to {imposed}")
+        self.model.to_variables(kept)
+        self._move({name: (before[name] + value) / 2 for name, value in imposed.items()}, halvings - 1)
+        self._move(imposed, halvings - 1)
+
+    def _solve(self, imposed: dict[str, float]) -> bool:
+        for name, value in imposed.items():
+            self.model.set_variable(name, value)
+        _, converged = self.model.solve("max_res", RESIDUAL, "max_iter", ITERATIONS, "lsolver", "mumps",
+                                        "lsearch", "simplest")
+        if converged:
+            self._at = dict(imposed)
+        return bool(converged)
+
+    def plate_force(self, name: str, plate: str, side: int) -> float:
+        """Of the plate on the body's mesh, N/m."""
+        return float(getfem.asm_generic(self._rules[name], 0, self._pressure(name, plate, side), OUTLINE, self.model))
+
+    def _pressure(self, name: str, plate: str, side: int) -> str:
+        gap = f"{side}*({plate}-X(2)-u_{name}(2))"
+        return f"pos_part(p_{name}-{AUGMENTED}*({gap}))"
+
+    def outline(self, name: str) -> np.ndarray:
+        """[nodes x 2] where the outline's nodes are, along it."""
+        mesh = self.meshes[name]
+        places = mesh.points[mesh.order]
+        moved = getfem.compute_interpolate_on(self.model.mesh_fem_of_variable(f"u_{name}"),
+                                              self.model.variable(f"u_{name}"), places.T)
+        return places + moved.T
+
+
+def fields(own: getfem.Mesh, components: int, degree: int) -> getfem.MeshFem:
+    field = getfem.MeshFem(own, components)
+    field.set_fem(getfem.Fem(f"FEM_PK(2,{degree})"))
+    return field
+
+
+def as_getfem(mesh: Mesh) -> getfem.Mesh:
+    """With the regions of the curve and of the axis x = 0."""
+    own, kind = getfem.Mesh("empty", 2), getfem.GeoTrans("GT_PK(2,2)")
+    for cell in mesh.cells[:, [0, 3, 1, 5, 4, 2]]:
+        own.add_convex(kind, mesh.points[cell].T)
+    faces, middles = own.outer_faces(), {tuple(np.round(p, 9)) for p in mesh.side_middles()}
+    corners = own.pts()
+    on_curve, on_axis = [], []
+    for face in faces.T:
+        places = corners[:, own.pid_in_faces(face[:, None])].T
+        if any(tuple(np.round(p, 9)) in middles for p in places):
+            on_curve.append(face)
+        elif (np.abs(places[:, 0]) < PLAIN).all():
+            on_axis.append(face)
+    for region, chosen in ((OUTLINE, on_curve), (AXIS, on_axis)):
+        if chosen:
+            own.set_region(region, np.array(chosen).T)
+    return own

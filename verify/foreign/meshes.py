@@ -1,0 +1,67 @@
+"""Triangles of six nodes in plain numbers, for solvers from elsewhere: curved sides lie on the true outline."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+PLAIN = 1e-9  # a point is on a line if it is that near to it
+Curve = Callable[[np.ndarray], np.ndarray]  # [n] from 0 to 1 -> [n x 2]
+
+
+@dataclass
+class Mesh:
+    """A body's. Cells are counter-clockwise: three corners, then the middles of the sides 1-2, 2-3 and 3-1."""
+
+    points: np.ndarray  # [points x 2]
+    cells: np.ndarray  # [cells x 6]
+    outline: np.ndarray  # [sides x 2] cell and number of its side, of those on the curve
+    order: np.ndarray  # points along the curve
+
+    def side_nodes(self, cell: int, side: int) -> np.ndarray:
+        """[3] both ends and the middle."""
+        return self.cells[cell, [side, (side + 1) % 3, 3 + side]]
+
+    def side_middles(self) -> np.ndarray:
+        """[sides x 2] of the outline."""
+        return self.points[self.cells[self.outline[:, 0], 3 + self.outline[:, 1]]]
+
+
+def half_disc(rings: int, centre: float) -> Mesh:
+    """The half x >= 0 of a disc of radius 1 about (0, centre); ring k has 4 k sides."""
+    return fan(half_circle, (0.0, centre), rings, 4)
+
+
+def half_circle(t: np.ndarray) -> np.ndarray:
+    """From the lowest point to the highest; the ends are just on the axis."""
+    angle = np.pi * (t - 0.5)
+    return np.stack([np.where(np.abs(t - 0.5) < 0.5, np.cos(angle), 0.0), np.sin(angle)], axis=1)
+
+
+def fan(curve: Curve, centre: tuple[float, float], rings: int, sectors: int) -> Mesh:
+    """What lies between the origin and a curve about it, moved to a centre. Ring k has sectors x k sides."""
+    rows = [np.zeros((1, 2))] + [k / rings * curve(np.linspace(0, 1, sectors * k + 1)) for k in range(1, rings + 1)]
+    first = np.concatenate([[0], np.cumsum([len(row) for row in rows])])
+    corners = np.array([[first[k] + i for k, i in cell] for k in range(1, rings + 1) for s in range(sectors)
+                        for cell in ring_cells(k, s)])
+    points = np.concatenate(rows)
+    sides = np.sort(corners[:, [[0, 1], [1, 2], [2, 0]]], axis=2)
+    sides, of_cell = np.unique(sides.reshape(-1, 2), axis=0, return_inverse=True)
+    of_cell = of_cell.reshape(-1, 3)
+    middles = points[sides].mean(axis=1)
+    outer = (sides >= first[rings]).all(axis=1)
+    middles[outer] = curve((sides[outer] - first[rings]).sum(axis=1) / (2 * sectors * rings))
+    cells = np.column_stack([corners, len(points) + of_cell])
+    order = np.empty(2 * sectors * rings + 1, dtype=int)
+    order[::2] = np.arange(first[rings], first[rings + 1])
+    order[1::2] = len(points) + np.flatnonzero(outer)[np.argsort(sides[outer].sum(axis=1))]
+    return Mesh(np.concatenate([points, middles]) + centre, cells, np.argwhere(outer[of_cell]), order)
+
+
+def ring_cells(k: int, sector: int) -> list[list[tuple[int, int]]]:
+    """Triangles between rings k - 1 and k in one of the sectors: ring and number of each corner."""
+    outer, inner = [(k, sector * k + j) for j in range(k + 1)], [(k - 1, sector * (k - 1) + j) for j in range(k)]
+    pointing_in = [[outer[j], outer[j + 1], inner[j]] for j in range(k)]
+    return pointing_in + [[inner[j], outer[j + 1], inner[j + 1]] for j in range(k - 1)]

@@ -1,0 +1,55 @@
+"""The stored numbers of oracles/, and distances from stored outlines."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+FOLDER = Path(__file__).parent / "oracles"
+BODIES = ("soft", "stiff")
+
+
+@dataclass
+class Stored:
+    """By GetFEM at all approaches."""
+
+    rings: np.ndarray  # [meshes] of triangles in the soft disc
+    by_rings: np.ndarray  # [meshes x approaches] forces over mu R
+
+    @property
+    def force(self) -> np.ndarray:
+        """[approaches] of the finest mesh."""
+        return self.by_rings[-1]
+
+    @property
+    def error(self) -> np.ndarray:
+        """[approaches] relative: its largest change from a mesh half as fine, as at one approach it may be small by
+        accident."""
+        change = np.abs(self.by_rings[-2] / self.force - 1)
+        return np.full_like(change, change.max())
+
+
+def read_table(name: str) -> np.ndarray:
+    return np.loadtxt(FOLDER / f"{name}.csv", delimiter=",", skiprows=1, ndmin=2)
+
+
+def read_stored(law: str) -> Stored:
+    table = read_table(f"discs_getfem_{law}")
+    return Stored(table[:, 0], table[:, 1:])
+
+
+def read_outlines(law: str) -> dict[str, np.ndarray]:
+    """By body [approaches x nodes x 2] of the halves x >= 0, from the lowest point up."""
+    table = read_table(f"discs_outlines_{law}")
+    halves = [table[table[:, 0] == i, 1:] for i in range(len(BODIES))]
+    return {name: half.reshape(len(half), -1, 2).transpose(1, 0, 2) for name, half in zip(BODIES, halves)}
+
+
+def distances(places: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """[nodes] from an outline whose half x >= 0 is a polyline."""
+    ends, ways = half[:-1], np.diff(half, axis=0)
+    seen = np.stack([np.abs(places[:, 0]), places[:, 1]], axis=1)[:, None] - ends
+    along = np.clip((seen * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
+    return np.linalg.norm(seen - along[..., None] * ways, axis=2).min(axis=1)
