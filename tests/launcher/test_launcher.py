@@ -310,22 +310,30 @@ def test_scenes_alone(launcher: Launcher) -> None:
     assert launcher.calls("ctest")[0].endswith(r"-R ^cli\.cases_run$") and "build/gcc" in launcher.calls("ctest")[0]
 
 
-def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher) -> None:
+SANITIZERS = [{"fuzz": "fuzz --seconds 30", "sanitizers": "test --preset fuzz --scenes"},
+              {"races": "test --preset tsan --scenes"}]  # in turn
+
+
+@pytest.mark.parametrize("commits", [0, 1])
+def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher, commits: int) -> None:
     (launcher.root / ".ci").mkdir()
     shutil.copy(ROOT / ".ci/run", launcher.root / ".ci/run")
     write_script(launcher.root / "pliant", 'echo "$*" >>"$LOG"; case $* in lint) echo "3 passed";; test) echo "9 passed"; '
-                 'echo "5 passed, 1 failed, 2 skipped"; exit 8;; "test --preset asan-ubsan --units") echo "4 passed, 0 failed, 0 skipped";; '
+                 'echo "5 passed, 1 failed, 2 skipped"; exit 8;; "test --preset gcc --units") echo "4 passed, 0 failed, 0 skipped";; '
                  'verify) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
-    result = subprocess.run([launcher.root / ".ci/run"], env=launcher.environment, capture_output=True, text=True)
+    write_script(launcher.root / "bin/git", f"echo {commits}")
+    environment = launcher.environment | {"PATH": f"{launcher.root / 'bin'}:{launcher.environment['PATH']}"}
+    result = subprocess.run([launcher.root / ".ci/run"], env=environment, capture_output=True, text=True)
     assert result.returncode == 1
     assert launcher.log.read_text().splitlines() == [
-        "lint", "test", "test --preset asan-ubsan --units", "test --preset asan-ubsan --scenes", "bench gate",
-        r"test -R ^cli\.determinism$ -V", "test --preset tsan --scenes", "fuzz --seconds 30", "verify"]
+        "lint", "test", "test --preset gcc --units", "bench gate", r"test -R ^cli\.determinism$ -V",
+        *SANITIZERS[commits].values(), "verify"]
     lines = result.stdout.splitlines()
     assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
-    stages = ["lint", "test", "sanitizers", "sanitized_scenes", "gate", "determinism", "races", "fuzz", "verify", "all"]
-    assert [line.split()[1] for line in lines[-11:-1]] == stages
-    assert [line.rsplit(" ", 1)[1] for line in lines[-11:-2]] == ["green", "red", *["green"] * 7]
+    stages = ["lint", "test", "gcc", "gate", "determinism", *SANITIZERS[commits], "verify", "all"]
+    told = lines[-1 - len(stages):-1]
+    assert [line.split()[1] for line in told] == stages
+    assert [line.rsplit(" ", 1)[1] for line in told[:-1]] == ["green", "red", *["green"] * (len(stages) - 3)]
 
 
 @pytest.mark.parametrize("command", [file.stem for file in (ROOT / "launcher/help").iterdir() if file.stem != "pliant"])
