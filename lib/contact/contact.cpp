@@ -49,7 +49,12 @@ double skin_of(const Model& model) {
 }  // namespace
 
 ContactSystem::ContactSystem(const Model& model)
-    : model_(model), laws_(model), skin_(skin_of(model)), watch_(model, skin_, laws_.max_reach()), table_(model) {}
+    : model_(model),
+      laws_(model),
+      skin_(skin_of(model)),
+      watch_(model, skin_, laws_.max_reach()),
+      table_(model),
+      most_repaid_(most_repaid(model.scene.time.safety)) {}
 
 PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_at_, patch, skin_, thread_scratch()}; }
 
@@ -210,14 +215,16 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, c
 /// Forces of a patch after a step in which it repays some of what it owes, and what it owes then.
 PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
                                   ContactHistory& to) {
+  to.owed[patch] = from.owed[patch];
+  // What a dashpot takes is known at the ends of a step alone: what it seems to owe, it does not.
+  if (is_damped(view.patch.law)) return compute_patch(view, nullptr, from, to, trial_.forces);
   const PatchTotals& before = last_.totals[patch];
   // Parts of a body that touches itself are others after a search.
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
   const PatchStep way{known ? &step->position : nullptr, &last_.forces, from.owed[patch] - before.pending,
-                      known ? before.recent_ways : 0, step != nullptr};
+                      known ? before.recent_ways : 0,    most_repaid_,  step != nullptr};
   PatchTotals now = compute_patch(view, &way, from, to, trial_.forces);
-  to.owed[patch] = from.owed[patch];
   now.recent_ways = now.ways;
   if (!known) return now;
   now.recent_ways = std::max(now.ways, before.ways);

@@ -128,6 +128,7 @@ class ContactSystem {
   double skin_;
   PairWatch watch_;
   PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
+  double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what has not been accepted
   std::int64_t evaluations_ = 0;
   Outlines found_at_;  ///< where some candidates were found last

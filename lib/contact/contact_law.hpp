@@ -30,6 +30,10 @@ inline double stiffness_of(const ContactLaw& law) {
       [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },
       law);
 }
+/// Whether it has a dashpot.
+inline bool is_damped(const ContactLaw& law) {
+  return std::visit([]<class Law>(const Law&) { return requires { Law::has_damping; }; }, law);
+}
 /// What the law remembers of a node.
 inline std::span<const Remembered> remembered_of(const ContactLaw& law) {
   return std::visit(

@@ -12,7 +12,7 @@ struct ContactPoint {
   int node = 0;               ///< of the slave's outline
   double gap = 0;             ///< m, negative inside
   double slip = 0;            ///< elastic tangential displacement, m
-  double pressure = 0;        ///< Pa, of the law without its dashpot
+  double pressure = 0;        ///< Pa, of the law, without its dashpot and what is repaid
   double shear = 0;           ///< Pa, on the slave along (-ny, nx)
   double damage = 0;          ///< 0 whole to 1 torn; NaN for a law without
   double length = 0;          ///< tributary length, m; each of the two passes carries half of the force

@@ -16,8 +16,10 @@ namespace pliant {
 /// their contacts repay in the steps that follow by pressures against the ways of their gaps (docs/method.md 6).
 
 /// The pressure over what the stiffness makes of the way, at most: little beside what a step does to contacts anyway,
-/// nothing at rest, and nothing where steps are short.
-constexpr double most_repaid = 0.25;
+/// nothing at rest, and nothing where steps are short. It acts as a dashpot that sees the way of the step before: with
+/// w^2 dt^2 = a and a share b of the stiffness, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a
+/// is 4 safety^2 at most.
+inline double most_repaid(double safety) { return std::min(0.25, 0.5 * (1 / (safety * safety) - 1)); }
 /// What bodies have lost is given back while it is less than so many times kn times PatchTotals::ways: more would shake
 /// what all but stands still. A touch that begins or ends leaves an eighth at most, a pull that breaks off at a gap of
 /// twenty ways ten.
@@ -34,13 +36,14 @@ struct PatchStep {
   double debt;
   /// PatchTotals::recent_ways: where gaps turn back, the next way may be many times the last. 0: not known.
   double ways;
-  bool moves;  ///< there is a step
+  double most;  ///< most_repaid()
+  bool moves;   ///< there is a step
 
   /// Pressure over way, Pa/m.
   double resistance(double stiffness) const {
     if (ways <= 0 || -debt > most_given_back * stiffness * ways) return 0;
-    const double most = most_repaid * stiffness, wanted = debt / ways;
-    return std::abs(wanted) < least_repaid * stiffness ? 0 : std::clamp(wanted, -most, most);
+    const double wanted = debt / ways;
+    return std::abs(wanted) < least_repaid * stiffness ? 0 : std::clamp(wanted, -most * stiffness, most * stiffness);
   }
 };
 

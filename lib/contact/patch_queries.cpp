@@ -1,6 +1,7 @@
 #include "contact/patch_queries.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "contact/facing.hpp"
 #include "contact/slip.hpp"
@@ -46,9 +47,51 @@ bool overlaps(const PatchView& view) {
   return found;
 }
 
-void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
+namespace {
+
+/// What slaves put on the nodes of a master, N/m2 per metre, by rows of the window: all as they stand, and the most that
+/// a single one can where it may have slid to by the next search. Where the slave is the coarser one that is more.
+class Carried {
+ public:
+  void clear(int rows) {
+    all_.assign(static_cast<std::size_t>(rows), 0.0);
+    single_.assign(static_cast<std::size_t>(rows), 0.0);
+  }
+  /// `slid`: by how many segments it may slide.
+  void add(int row, double share, double slid, double stiffness) {
+    if (row < 0 || row >= static_cast<int>(all_.size())) return;
+    all_[row] += std::max(share, 0.0) * stiffness;
+    single_[row] = std::max(single_[row], std::clamp(share + slid, 0.0, 1.0) * stiffness);
+  }
+  /// A rigid body bears it all, wherever it stands.
+  void add_to(BodyKind kind, double* entries) const {
+    for (std::size_t row = 0; row < all_.size(); ++row)
+      entries[row] += kind == BodyKind::rigid ? all_[row] : std::max(all_[row], single_[row]);
+  }
+
+ private:
+  std::vector<double> all_, single_;
+};
+
+/// Of a slave beside a row: on its nodes, and on the next ones, which it may reach.
+void add_beside(const Projection& p, int lane, double skin, double stiffness, Carried& carried) {
+  const int row = static_cast<int>(p.row[lane]);
+  const double slid = skin / p.length[lane];
+  carried.add(row - 1, -p.xi[lane], slid, stiffness);
+  carried.add(row, 1 - p.xi[lane], slid, stiffness);
+  carried.add(row + 1, p.xi[lane], slid, stiffness);
+  carried.add(row + 2, p.xi[lane] - 1, slid, stiffness);
+}
+
+/// Of one pass: half the tributary lengths times the stiffness.
+void add_pass_stiffness(const PatchView& view, int slave_side, const double (&factor)[2],
+                        std::vector<double>& entries) {
   const double stiffness = stiffness_of(view.patch.law), outward = reach_of(view.patch.law) + view.skin;
-  for_each_eight(view, [&](const Pass& pass, int slave_side, int i) {
+  const Pass pass = make_pass(view, slave_side, view.patch.entry);
+  fill_window(view, 1 - slave_side);
+  thread_local Carried carried;
+  carried.clear(view.window.count() + 1);
+  for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(view.window, nodes.x, nodes.y, outward);
     const auto add = [&](int lane, double times) {
@@ -61,14 +104,19 @@ void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::
         const Footholds footholds = possible_footholds(pass, view.window, p, lane, i, outward);
         if (footholds.shares.empty()) continue;
         const double k = add(lane, footholds.factor);
-        for (const auto& [row, share] : footholds.shares) entries[pass.master_force + row] += share * k;
+        for (const auto& [row, share] : footholds.shares) carried.add(row, share, view.skin / p.length[lane], k);
       } else if (p.hit[lane]) {
-        const double k = add(lane, 1);
-        const int at = pass.master_force + static_cast<int>(p.row[lane]);
-        entries[at] += (1 - p.xi[lane]) * k;
-        entries[at + 1] += p.xi[lane] * k;
+        add_beside(p, lane, view.skin, add(lane, 1), carried);
       }
-  });
+  }
+  carried.add_to(view.model.bodies[view.body(1 - slave_side)].kind, &entries[pass.master_force]);
+}
+
+}  // namespace
+
+void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
+  for (int slave_side = 0; slave_side < 2; ++slave_side)
+    if (view.patch.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);
 }
 
 }  // namespace pliant

@@ -24,7 +24,8 @@ bool overlaps(const PatchView& view);
 
 /// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch before the next
 /// search for candidates, added to the entries of the patch's nodes as forces have them: half the tributary length
-/// times the stiffness, shared by the two segment nodes on the master, and times the factor of the node's side.
+/// times the stiffness, shared by the two segment nodes on the master, but all of the largest that may slide onto one,
+/// and times the factor of the node's side.
 void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries);
 
 }  // namespace pliant

@@ -238,7 +238,8 @@ TEST(StiffnessBound, CornerInASoftCorner) {
     EXPECT_LE(exact, bound) << sample;
     closest = std::max(closest, exact / bound);
   }
-  EXPECT_GT(closest, 1 / loosest);
+  // A corner up to a fifth of a segment off the end node bears on it by four fifths, and may slide onto it.
+  EXPECT_GT(closest, 0.8 / loosest);
 }
 
 }  // namespace

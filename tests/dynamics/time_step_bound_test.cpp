@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -168,6 +169,43 @@ TEST(TimeStepBound, covers_light_nodes_face_to_face) {
     EXPECT_LE(bound, (mass == Mass::lumped ? 1.1 : 1.3) * truth)
         << "FROZEN: 1.07 and, with friction, 1.03 when written; corrected mass: 1.24 and 1.20";
   }
+}
+
+/// The corner of a rigid polygon, far coarser than a disc's outline, presses on it, `x` beside its topmost node.
+Scene corner_on_fine_outline(double x, int outline_nodes) {
+  Scene scene = free_disc(150, 1);
+  scene.discretisation.recipe = Recipe::t3;
+  scene.shapes[0].outline_nodes = outline_nodes;
+  scene.shapes.push_back(polygonal_disc("polygon", 6, 12));
+  scene.contacts = {frictionless(6000)};
+  const auto radius = [](double of_circle, int sides) {
+    return of_circle * std::sqrt(2 * M_PI / sides / std::sin(2 * M_PI / sides));
+  };
+  const double top = radius(1, outline_nodes), depth = 0.003;
+  scene.grains.push_back(grains("polygon", "polygon", BodyKind::rigid, {{x, top + radius(3, 12) - depth}}));
+  return scene;
+}
+
+/// Until the next search for candidates it may slide by a skin, from between two nodes onto one, which then bears alone
+/// what both did.
+TEST(TimeStepBound, holds_where_a_coarse_node_slides_onto_a_fine_one) {
+  constexpr int outline_nodes = 90, places = 9;
+  const double spacing = 2 * std::sin(M_PI / outline_nodes);
+  double x[places], truth[places], bound[places], skin = 0;
+  for (int i = 0; i < places; ++i) {
+    x[i] = spacing * (i / (places - 1.0) - 0.5);
+    Bench bench(corner_on_fine_outline(x[i], outline_nodes));
+    ASSERT_GT(contacts_of(bench), 0);
+    truth[i] = largest_square_frequency(bench, 1e-7), bound[i] = bound_of(bench);
+    skin = bench.forces.contact().skin();
+  }
+  EXPECT_GT(*std::max_element(truth, truth + places), 1.7 * *std::min_element(truth, truth + places))
+      << "EXACT: 2 for nodes of one mass, but for the disc's own stiffness; or there is nothing to see";
+  for (int i = 0; i < places; ++i)
+    for (int j = 0; j < places; ++j)
+      if (std::abs(x[i] - x[j]) < skin) {
+        EXPECT_GE(bound[i], truth[j]) << "INDEPENDENT: dense eigenvalues; from " << x[i] << " to " << x[j];
+      }
 }
 
 /// The bound gives away a factor of at most 2 in w^2 for two compliant bodies and about 2 for absolute values and the
