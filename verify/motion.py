@@ -33,8 +33,8 @@ class Motion:
         return np.bincount(self.triangles.ravel(), np.repeat(self.areas() / 3, 3), self.positions.shape[1])
 
     def momenta(self, velocities: np.ndarray, mass: str) -> np.ndarray:
-        """[nodes x 2] of linear triangles over their density, m3/s, for [nodes x 2] velocities: D v of lumped mass, inv(W) v
-        with W = 2 inv(D) - inv(D) M inv(D) of corrected mass; M the consistent mass, D its row sums."""
+        """[nodes x 2] of linear triangles over their density, m3/s, for [nodes x 2] velocities: D v of lumped mass,
+        inv(W) v with W = 2 inv(D) - inv(D) M inv(D) of corrected mass; M the consistent mass, D its row sums."""
         lumped = self.node_areas()
         if mass == "lumped":
             return lumped[:, None] * velocities

@@ -128,9 +128,9 @@ def scatter_of_slope() -> float:
 
 
 def test_profile() -> None:
-    CASE.check_rate("profile: L2 error, penalty's share known", spacings(), mesh_errors("profile"), 1, scatter_of_slope(),
-                    "at an edge all is alike but for h: pressures of the size of the root of h/a are off at a few nodes of "
-                    "a share h/a; two standard errors by the rests' scatter")
+    CASE.check_rate("profile: L2 error, penalty's share known", spacings(), mesh_errors("profile"), 1,
+                    scatter_of_slope(), "at an edge all is alike but for h: pressures of the size of the root of h/a are "
+                    "off at a few nodes, a share h/a; two standard errors by the rests' scatter")
 
 
 def test_peak() -> None:
@@ -154,8 +154,8 @@ def test_share_of_the_penalty() -> None:
     found, expected = ([peak_change(a, b, with_springs) for a, b in zip(stiff, soft)] for with_springs in (False, True))
     share = 2 / MIDDLING / half_width(stiff[0].load)
     CASE.check(Label.INDEPENDENT, f"peak: change by half the stiffness over that on springs, {MIDDLING} segments",
-               np.mean(found) / np.mean(expected), 1, share, "half-plane on springs; both of order h/a, the next terms a "
-               "share h/a of them")
+               np.mean(found) / np.mean(expected), 1, share,
+               "half-plane on springs; both of order h/a, the next terms a share h/a of them")
 
 
 def peak_change(stiff: Pressed, soft: Pressed, with_springs: bool) -> float:

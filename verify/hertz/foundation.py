@@ -1,7 +1,7 @@
 """A face pressed against a rigid flat through springs: the penalty's contact on an elastic half-plane.
 
-Of a load P: x^2/(2 R) + u(x) + p(x)/k is the same everywhere in touch, u of the half-plane -2/(pi E') times the integral
-of ln|x - s| p(s), less the finite block's ACROSS P x^2. Without springs Hertz's; own numbers, for any k.
+Of a load P: x^2/(2 R) + u(x) + p(x)/k is the same everywhere in touch, u of the half-plane -2/(pi E') times the
+integral of ln|x - s| p(s), less the finite block's ACROSS P x^2. Without springs Hertz's; own numbers, for any k.
 """
 
 from __future__ import annotations

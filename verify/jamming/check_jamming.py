@@ -10,7 +10,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
-from jamming_network import Outlines
+from contact_network import Outlines
 from jamming_packing import BOTTOM, DISCS, FORCES, LEFT, RIGHT, TOP, Packing, Stage, read_packing
 from pictures import COLOURS, MARKERS, legend, panels, save
 from run_data import Frames
@@ -64,6 +64,7 @@ def scene(seed: int, outline_nodes: int) -> str:
     middle = half - CLEARANCE - length / 2  # of a wall that ends just before the next one's face
     return CASE.scene(
         end=PAUSE * len(CLOSING + OPENING), pause=PAUSE, seed=seed, nodes=NODES[outline_nodes], damping=DAMPING,
+        count=DISCS, poisson=0.4, law='"frictionless"',
         outline_nodes=outline_nodes, stiffness=STIFFNESS, length=length, low=-half, high=half,
         bottom=[middle, -half - 0.5], right=[half + 0.5, middle], top=[-middle, half + 0.5],
         left=[-half - 0.5, -middle], core=[[-CORE, -CORE], [CORE, CORE]], closing=closing,

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from jamming_network import Box, Network, Outlines, Touching, filled, network, touching
+from contact_network import Box, Network, Outlines, Touching, filled, network, touching
 from verification import Run
 
 DISCS = 400

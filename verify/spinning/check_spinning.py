@@ -74,7 +74,8 @@ def polar_strains(run: Run) -> tuple[np.ndarray, np.ndarray]:
     centres = frames.positions("bodies", 0)[:, :2][grid.cells].mean(axis=1)
     distance = np.hypot(*centres.T)
     x, y = centres.T / distance
-    xx, yy, xy = (frames.field("bodies", len(frames.times) - 1, f"strain_{of}").astype(float) for of in ("xx", "yy", "xy"))
+    last = len(frames.times) - 1
+    xx, yy, xy = (frames.field("bodies", last, f"strain_{of}").astype(float) for of in ("xx", "yy", "xy"))
     across = x**2 * xx + y**2 * yy + 2 * x * y * xy
     return distance, np.stack([across, xx + yy - across], axis=1)
 
@@ -114,7 +115,7 @@ def test_small_spin(recipe: str, mass: str) -> None:
         run = spun(recipe, mass, nodes, SLOW)
         closed, exact = linear_strains(run.spin, np.ones(1))[1][0], exact_at(run.spin)
         second, load = (exact.rim - 1) / closed - 1, run.inertia - 1
-        CASE.check(Label.EXACT, f"{recipe} {mass}, {nodes} nodes: stretch of the rim over the closed form, over inertia",
+        CASE.check(Label.EXACT, f"{recipe} {mass}, {nodes} nodes: stretch of the rim over closed form and inertia",
                    (run.rim - 1) / closed / run.inertia / (1 + second), 1,
                    2 * second * (abs(load) + run.shape_error(exact) ** 2),
                    "sum of forces x places; terms of second order, a share of the stretch: changed by twice the error "
@@ -196,9 +197,9 @@ def test_spin_is_the_angular_momentum_over_inertia() -> None:
 def test_ringing_disc_keeps_energy_and_momentum(mass: str) -> None:
     run = long_run("es-t3", mass, 0.0)
     energy = run.probe("energy.kinetic") + run.probe("energy.strain")
-    CASE.check(Label.EXACT, f"es-t3 {mass}, nothing damped: energy over that of the start - 1, largest in {TURNS} turns",
+    CASE.check(Label.EXACT, f"es-t3 {mass}, nothing damped: energy over its start - 1, largest in {TURNS} turns",
                np.abs(energy / energy[0] - 1).max(), 0, (FAST * run.steps("dt").max()) ** 2,
-               "Verlet keeps K + U - dt^2 sum F^2/8m; F is none at the start and swings up to twice the centripetal one")
+               "Verlet keeps K + U - dt^2 sum F^2/8m; F is none at first and swings up to twice the centripetal one")
     start, end = (angular_momentum(run, frame, mass) for frame in (0, -1))
     CASE.check(Label.EXACT, f"es-t3 {mass}, nothing damped: angular momentum over that of the start, {TURNS} turns",
                end / start, 1, 4 * SINGLE, "internal forces have no moment; positions and velocities of two frames in "
@@ -237,8 +238,8 @@ def draw_strains(axes: Axes) -> None:
         run = spun("mls", "corrected", 700, spin)
         for column, marker in enumerate(("x", ".")):
             exact = (exact_at(run.spin).stretches(R)[column] ** 2 - 1) / 2
-            axes.plot(run.places, factor * run.strains[:, column], marker, markersize=3, color=colour, label=
-                      f"spin {run.spin:.3g}{', x 1000' if factor > 1 else ''}: {'across' if marker == 'x' else 'around'}")
+            name = f"spin {run.spin:.3g}{', x 1000' if factor > 1 else ''}: {('across', 'around')[column]}"
+            axes.plot(run.places, factor * run.strains[:, column], marker, markersize=3, color=colour, label=name)
             axes.plot(R, factor * exact, color="k", linewidth=1)
     axes.set_title("strains, mls corrected, 700 nodes; lines: exact", fontsize=10, loc="left")
     axes.set_xlabel("distance from the middle over R, at the start")
