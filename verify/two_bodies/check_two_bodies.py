@@ -1,4 +1,4 @@
-"""Two deformable bodies in contact at large strain: engine and reference solver against GetFEM, written elsewhere."""
+"""Two deformable bodies in contact at large strain: engine and reference solver against GetFEM and CalculiX."""
 
 from __future__ import annotations
 
@@ -8,15 +8,19 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from two_bodies_discs import APPROACHES, LONG_PAUSE, NAMES, Rests, Squeeze, by_engine, by_reference
+from make_two_bodies_oracles import by_getfem, calculix_rows
 from pictures import COLOURS, MARKERS, legend, panels, save
 from squeeze import NEWTON
-from two_bodies_stored import distances, read_outlines, read_stored
+from two_bodies_discs import APPROACHES, LONG_PAUSE, NAMES, Rests, Squeeze, by_engine, by_reference
+from two_bodies_stored import Penalised, Stored, distances, read_calculix, read_outlines, read_stored
 from verification import FULL, Case, Label, observed_order
 
 CASE = Case(__file__, cost=2)
 LAWS = {"neo-hookean": [168, 340, 700, *([1400] if FULL else [])], "melody": [168, 340, *([700] if FULL else [])]}
 SAME_NODES = 168 if FULL else 96  # of engine and reference
+# Where Newton's methods stop: GetFEM at residuals of 1e-9 in each of some fifty nodes on a plate, over the least force;
+# CalculiX at what steps four times shorter change.
+GETFEM_STOPS, CALCULIX_STOPS = 1.5e-7, 3e-5
 STIFF = 2.0  # times the contact stiffness
 PERCENT = [f"{100 * approach:g} %" for approach in APPROACHES]
 
@@ -102,6 +106,39 @@ def test_force(sizes: Callable[[str], Sizes], law: str, level: int) -> None:
                "GetFEM 5.4.2 and its difference of two meshes; saw tooth between corners and facets, penalty")
 
 
+@pytest.mark.parametrize("level", range(3), ids=lambda i: f"{100 * APPROACHES[i]:g}")
+def test_calculix(sizes: Callable[[str], Sizes], level: int) -> None:
+    known, calculix = sizes("melody"), read_calculix()
+    force, error = calculix.force[level], calculix.error[level]
+    CASE.check(Label.INDEPENDENT, f"melody: force at {PERCENT[level]}, engine at h = 0 over CalculiX",
+               known.limit()[level] / force, 1, known.limit_error()[level] + error,
+               "CalculiX 2.20, its mesh and penalty; saw tooth between corners and facets, penalty")
+    CASE.check(Label.INDEPENDENT, f"melody: force at {PERCENT[level]}, GetFEM over CalculiX",
+               known.stored.force[level] / force, 1, known.stored.error[level] + error, "mesh of both, penalty")
+
+
+@pytest.mark.skipif(not FULL, reason="needs the solvers from elsewhere")
+@pytest.mark.parametrize("law", LAWS)
+def test_getfem_again(sizes: Callable[[str], Sizes], law: str) -> None:
+    known = sizes(law)
+    again = Stored(known.stored.rings[:2], np.array([by_getfem(law, int(n)).force for n in known.stored.rings[:2]]))
+    off = np.abs(again.by_rings / known.stored.by_rings[:2] - 1)
+    CASE.check(Label.FROZEN, f"{law}: GetFEM's forces, live over stored, worst", off.max(), 0, GETFEM_STOPS,
+               "Newton's residuals of 1e-9 in some fifty nodes on a plate, over the least force")
+    ratio, allowed = known.limit() / again.force, known.limit_error() + again.error
+    worst = int((np.abs(ratio - 1) / allowed).argmax())
+    CASE.check(Label.INDEPENDENT, f"{law}: engine at h = 0 over GetFEM live, worst", ratio[worst], 1, allowed[worst],
+               "GetFEM's difference of two meshes; saw tooth between corners and facets, penalty")
+
+
+@pytest.mark.skipif(not FULL, reason="needs the solvers from elsewhere")
+def test_calculix_again() -> None:
+    stored, again = read_calculix(), Penalised(np.array(calculix_rows(CASE.out)))
+    off = np.abs(again.rows[:, 2:] / stored.rows[:, 2:] - 1)
+    CASE.check(Label.FROZEN, "melody: CalculiX's forces, live over stored, worst", off.max(), 0, CALCULIX_STOPS,
+               "where its Newton's method stops: what steps four times shorter change")
+
+
 def test_order(sizes: Callable[[str], Sizes]) -> None:
     known = sizes("neo-hookean")
     CASE.check_rate("force over GetFEM, rms of approaches", list(known.spacings), list(known.rms()), 2,
@@ -149,6 +186,24 @@ def draw_errors(axes: Axes, known: Sizes) -> None:
     legend(axes)
 
 
+def draw_others(axes: Axes, known: Sizes) -> None:
+    """Meshes of the solvers from elsewhere, by rings of triangles in the soft disc."""
+    stored, calculix, getfem = known.stored, read_calculix(), read_stored("melody")
+    for i, percent in enumerate(PERCENT):
+        axes.loglog(stored.rings[:-1], np.abs(stored.by_rings[:-1, i] / stored.force[i] - 1), "o-", color=COLOURS[i],
+                    markersize=4, linewidth=1.0, label=f"GetFEM over its 64 rings, {percent}")
+        if i < len(calculix.force):
+            axes.loglog(calculix.rings, np.abs(calculix.by_rings[:, i] / getfem.force[i] - 1), "s:", color=COLOURS[i],
+                        markersize=4, linewidth=1.0, label=f"CalculiX over GetFEM's 16, {percent}")
+    ticks = sorted({*calculix.rings, *stored.rings[:-1]})
+    axes.set_xticks(ticks, [f"{rings:g}" for rings in ticks])
+    axes.set_xticks([], minor=True)
+    axes.set_ylim(1e-6, 1e-1)
+    axes.set_xlabel("rings of triangles")
+    axes.set_ylabel("|ratio of forces - 1|")
+    axes.legend(fontsize=7, frameon=False, ncols=2, loc="upper center")
+
+
 def draw_outlines(axes: Axes, known: Sizes) -> None:
     rests = known.rests[-1][0]
     for level, colour in zip((0, len(APPROACHES) - 1), COLOURS):
@@ -166,8 +221,9 @@ def draw_outlines(axes: Axes, known: Sizes) -> None:
 
 def test_picture(sizes: Callable[[str], Sizes]) -> None:
     known = sizes("neo-hookean")
-    figure, axes = panels(3, "Two discs between plates, the upper one twice as stiff", across=True)
+    figure, axes = panels(4, "Two discs between plates, the upper one twice as stiff", across=True)
     draw_forces(axes[0], known)
     draw_errors(axes[1], known)
-    draw_outlines(axes[2], known)
+    draw_others(axes[2], known)
+    draw_outlines(axes[3], known)
     save(CASE, figure, "discs")

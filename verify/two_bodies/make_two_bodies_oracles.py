@@ -26,7 +26,7 @@ STEPS = 2  # of the load, an approach
 RINGS = {"neo-hookean": [8, 16, 32, 64], "melody": [8, 16]}
 OUTLINE_RINGS = 24
 CALCULIX_REACHES = 3  # approaches: beyond 33 % its Newton's method fails with all steps and penalties that were tried
-CALCULIX = [(rings, stiffness) for rings in (4, 6, 8) for stiffness in (300.0, 3000.0)]
+CALCULIX = [(rings, penalty) for rings in (4, 6, 8) for penalty in (300.0, 3000.0)]
 OVERLAP = 0.005  # R
 
 
@@ -97,9 +97,14 @@ def write_outlines(law: str) -> None:
           ["body", *(f"{axis}_{100 * approach:g}" for approach in APPROACHES for axis in "xy")], rows)
 
 
+def calculix_rows(folder: Path) -> list[list[float]]:
+    """Rings, penalty and forces."""
+    return [[rings, stiffness, *by_calculix(rings, stiffness, folder)] for rings, stiffness in CALCULIX]
+
+
 def write_calculix() -> None:
     with TemporaryDirectory() as folder:
-        rows = [[rings, stiffness, *by_calculix(rings, stiffness, Path(folder))] for rings, stiffness in CALCULIX]
+        rows = calculix_rows(Path(folder))
     names = [f"force_{100 * approach:g}" for approach in APPROACHES[:CALCULIX_REACHES]]
     write("discs_calculix_melody", ["rings", "stiffness", *names], rows)
 
