@@ -16,7 +16,7 @@ LONG_PAUSE = 40.0  # for what is compared on the same nodes
 GAP = 0.001  # of either plate at the start, as in discs.toml
 HOLD = 20.0  # mu: of the springs at each pole, whatever their length
 STORED = 8.0  # over the kinetic energy left: damping over the rate of the slowest motion
-SIZES = {96: (36, 126, 42), 168: (48, 220, 56), 340: (68, 450, 80), 700: (100, 900, 116), 1400: (140, 1800, 160)}
+SIZES = {96: (36, 126, 42), 168: (48, 220, 56), 340: (68, 450, 80), 700: (100, 900, 116)}
 NAMES = ("soft", "stiff")
 
 
