@@ -16,6 +16,7 @@
 #include "contact/self_contact.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "core/prefetch.hpp"
 
 namespace pliant {
 namespace {
@@ -24,16 +25,6 @@ namespace {
 void add_run(const double* from, int count, double* to) {
   for (int i = 0; i < count; i += lane_count)
     store(to + i, load(to + i) + select(first_lanes(count - i), load(from + i), Lanes{}));
-}
-
-/// Of x and y, from a number on.
-template <class Field>
-void prefetch_run(const Field& field, int first, int count) {
-  constexpr int per_line = 8;
-  for (int i = 0; i < count; i += per_line) {
-    __builtin_prefetch(field.x.data() + first + i);
-    __builtin_prefetch(field.y.data() + first + i);
-  }
 }
 
 bool has_fixed_refresh(const ContactSettings& settings) {

@@ -49,8 +49,8 @@ bool overlaps(const PatchView& view) {
 
 namespace {
 
-/// What slaves put on the nodes of a master, N/m2 per metre, by rows of the window: all as they stand, and the most that
-/// a single one can where it may have slid to by the next search. Where the slave is the coarser one that is more.
+/// What slaves put on the nodes of a master, N/m2 per metre, by rows of the window: all as they stand, and the most
+/// that a single one can where it may have slid to by the next search. Where the slave is the coarser one that is more.
 class Carried {
  public:
   void clear(int rows) {
