@@ -78,8 +78,8 @@ std::vector<ProbeQuantity> motions() {
               "total force over mass"),
       by_body(
           "rotation", {"rotation [rad]", "rotation_rate [rad/s]"}, Of::any, mean_first, Node::none,
-          "from the start; of a compliant body the best fit to its positions, in (-pi, pi], and its angular momentum "
-          "over its moment of inertia"),
+          "from the start; of a compliant body the best fit to its positions, in (-pi, pi], and the angular momentum of its "
+          "nodes' masses over their moment of inertia"),
       by_body("diameter", vector_columns("diameter", "m"), Of::grains, mean_first, Node::none,
               "extents of the outline"),
       by_body("area", {"area [m2]"}, Of::grains, sum_first, Node::none, "inside the current outline"),

@@ -68,6 +68,15 @@ TEST(MotionProbes, compliant_flight) {
   EXPECT_NEAR((moved - expected).norm(), 0, 1e-6) << "EXACT but for the spin's strain";
 }
 
+// EXACT: as given, whatever the mass, and rounding of what the state holds instead of velocities.
+TEST(MotionProbes, rate_of_rotation_with_corrected_mass) {
+  Scene scene = free_disc(60, 0.5, moving({0.1, 0}, 1e-3));
+  scene.discretisation.mass = Mass::corrected;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  EXPECT_NEAR(measured(simulation, probe_of("rotation", "disc"))[1], 1e-3, 1e-13);
+}
+
 TEST(MotionProbes, reductions_go_over_bodies) {
   Scene scene = empty_scene(1);
   scene.shapes = {polygonal_disc("disc", 1, 12)};

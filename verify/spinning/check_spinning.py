@@ -182,13 +182,14 @@ def test_settled_disc_stays_as_it_is(mass: str) -> None:
                    rounding / size, "rounding of each step; of strains ten times of positions")
 
 
-def test_spin_is_the_angular_momentum_over_inertia() -> None:
+@pytest.mark.parametrize("mass", MASSES)
+def test_spin_is_the_angular_momentum_over_inertia(mass: str) -> None:
     """Velocities of Verlet are chords of two steps, so they fall short of the orientation's rate by sin(a)/a."""
-    run = long_run("mls", "lumped", VISCOSITY)
+    run = long_run("mls", mass, VISCOSITY)
     spin, rate = turning(run, SETTLED), run.probe("disc.rotation_rate")[-1]
     steps = run.steps("dt")[run.steps("time") > SETTLED]
     short = [1 - np.sin(spin * dt) / (spin * dt) for dt in (steps.mean(), steps.min(), steps.max())]
-    CASE.check(Label.EXACT, f"mls lumped: 1 - angular momentum over inertia and orientation's rate, {TURNS} turns",
+    CASE.check(Label.EXACT, f"mls {mass}: 1 - angular momentum over inertia and orientation's rate, {TURNS} turns",
                1 - rate / spin, short[0], short[2] - short[1] + run.summary["steps"] * EPSILON,
                "chords of two steps on a circle; how far steps differ, which end at probes' times")
 

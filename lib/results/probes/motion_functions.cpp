@@ -77,14 +77,15 @@ Samples acceleration(const Snapshot& snapshot, const Selection& selection) {
 }
 
 /// Angle from the start, and its rate. Compliant bodies: the turn whose image of the initial shape fits the positions
-/// best in the mean of squares over mass, and angular momentum over moment of inertia.
+/// best in the mean of squares over mass, and the angular momentum of the nodes' masses as they move over their moment
+/// of inertia.
 Vec2 rotation_of(const Snapshot& snapshot, const Body& body) {
   const State& state = snapshot.state();
   const Model& model = snapshot.model();
   if (body.kind == BodyKind::rigid)
     return {rigid_values(body, state.position)[2] - body.angle, rigid_values(body, state.reduced_momentum)[2]};
-  const Points x = dof_values(model, body, state.position), v = dof_values(model, body, state.reduced_momentum);
-  const Vec2 centre = mean_value(model, body, state.position), drift = mean_value(model, body, state.reduced_momentum);
+  const Points x = dof_values(model, body, state.position), v = dof_values(model, body, snapshot.velocities());
+  const Vec2 centre = mean_value(model, body, state.position), drift = mean_value(model, body, snapshot.velocities());
   const Discretisation& space = model.shape_of(body).space;
   double sine = 0, cosine = 0, momentum = 0, inertia = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
