@@ -35,6 +35,7 @@ DAMPING = 0.1  # of the mass
 NODES = {16: 24, 24: 40, 32: 60, 48: 100}  # field nodes by outline nodes
 COUNTS = [16, 24, 32]  # coarser ones
 ISOSTATIC = 4 * (1 - 1 / DISCS)
+ROUGHEST = 3.0  # the same of discs that cannot slide
 POSITION = 1e-6  # rounding of frames' positions, in single precision: two halves of the last bit, 9.5e-7 from 8 to 16
 ONSET = 1e-4  # pressure over E below which a packing has come apart: a tenth of that at an excess of 0.01
 QUASI_STATIC = 0.01  # kinetic over stored energy: of the order of the pressure that motion adds
@@ -208,8 +209,10 @@ def test_coordination(packings: list[Packing]) -> None:
         last = packing.stages[-1]
         CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination when opened below jamming", last.coordination,
                    0, 0, "O'Hern et al. 2003: contacts vanish at once, from isostatic to none")
-        CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination at jamming", value, ISOSTATIC, 3 * error,
-                   "isostatic, 4 (1 - 1/N); three standard errors of the line, by bootstrap")
+        middle, half = (ISOSTATIC + ROUGHEST) / 2, (ISOSTATIC - ROUGHEST) / 2
+        CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination at jamming", value, middle, half + 3 * error,
+                   "isostatic: 4 (1 - 1/N) of smooth discs, 3 of rough ones, corners lie in between; three standard "
+                   "errors of the line, by bootstrap")
 
 
 @pytest.mark.parametrize("band", BANDS)
