@@ -76,10 +76,9 @@ std::vector<ProbeQuantity> motions() {
               Node::field, "of the centre of mass; the angular velocity of rigid bodies"),
       by_body("acceleration", vector_columns("acceleration", "m/s2"), Of::any, mean_first, Node::field,
               "total force over mass"),
-      by_body(
-          "rotation", {"rotation [rad]", "rotation_rate [rad/s]"}, Of::any, mean_first, Node::none,
-          "from the start; of a compliant body the best fit to its positions, in (-pi, pi], and the angular momentum of its "
-          "nodes' masses over their moment of inertia"),
+      by_body("rotation", {"rotation [rad]", "rotation_rate [rad/s]"}, Of::any, mean_first, Node::none,
+              "from the start; of a compliant body the best fit to its positions, in (-pi, pi], and the angular "
+              "momentum of its nodes' masses over their moment of inertia"),
       by_body("diameter", vector_columns("diameter", "m"), Of::grains, mean_first, Node::none,
               "extents of the outline"),
       by_body("area", {"area [m2]"}, Of::grains, sum_first, Node::none, "inside the current outline"),
