@@ -38,9 +38,9 @@ void carry_forces(const Model& model, const Patch& old, const PatchForces& from,
     double *x = &to.x[now.entry[side]], *y = &to.y[now.entry[side]];
     std::fill_n(x, padded(now.forces(side).count), 0.0);
     std::fill_n(y, padded(now.forces(side).count), 0.0);
-    for_each_shared(model, now, side, old.forces(side), now.forces(side), [&](int before, int at, int count) {
-      std::copy_n(&aside[side].x[before], count, x + at);
-      std::copy_n(&aside[side].y[before], count, y + at);
+    // Of a small body both arcs may go all the way around and show some nodes twice: what either place had counts once.
+    for_each_shared(model, now, side, now.forces(side), old.forces(side), [&](int at, int before, int count) {
+      for (int i = 0; i < count; ++i) x[at + i] += aside[side].x[before + i], y[at + i] += aside[side].y[before + i];
     });
   }
 }
