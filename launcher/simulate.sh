@@ -94,6 +94,12 @@ compare() {
   exec "$python" "$root/scripts/compare.py" "$@"
 }
 
+study() {
+  ready study
+  prepare release pliant_engine
+  PYTHONPATH=$root/python exec "$python" -B -m pliant.study "$@"
+}
+
 schema() {
   prepare release pliant_engine
   exec "$root/build/release/pliant_engine" schema "$root"/docs/keys/*.toml "$root"/cases/*.toml

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import h5py
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
-from plots.units import readable
-from run_data import BadFolder, read_json
+from pliant.units import readable
+from pliant.results import BadFolder, read_json
 
 BAD_INPUT = 2
 LONGEST_ROW = 4096  # bytes

@@ -21,11 +21,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from plots import curves, maps
 from plots.failure import failure
-from run_data import BadFolder, Run, read_run
+from pliant.results import BadFolder, Run, read_run
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
 DOTS_PER_INCH = 200

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from run_data import Frames
+from pliant.results import Frames
 from verification import Run
 
 STRESSES = ("xx", "yy", "xy")

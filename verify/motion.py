@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fields import frames_of
-from run_data import Frames
+from pliant.results import Frames
 from verification import Run
 
 SINGLE = 6e-8  # relative rounding of frames, which are in single precision

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from run_data import read_json, read_table
+from pliant.results import read_json, read_table
 
 ROOT = Path(__file__).resolve().parents[1]
 ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "verify"), str(ROOT / "scripts")]
+sys.path[:0] = [str(ROOT / "verify"), str(ROOT / "scripts"), str(ROOT / "python")]
 
 import numpy as np
 from dolfinx.fem import Constant, assemble_scalar

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from error_study.choices import Choice
-from run_data import Frames, read_run
+from pliant.results import Frames, read_run
 
 HERE = Path(__file__).resolve().parent
 ORACLES = HERE.parents[1] / "verify/oracles"

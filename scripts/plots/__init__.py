@@ -1,1 +1,1 @@
-"""Pictures of a result folder. run_data.py reads, `maps` draws bodies, `curves` draws histories."""
+"""Pictures of a result folder. pliant.results reads, `maps` draws bodies, `curves` draws histories."""

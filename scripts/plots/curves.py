@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator
 
-from plots import units
+from pliant import units
 from plots.history import DENSE, draw_history
-from run_data import Column, Run, Table
+from pliant.results import Column, Run, Table
 
 # Okabe and Ito's colours, told apart by the colour-blind.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.tri import Triangulation
 
-from plots import units
+from pliant import units
 from plots.scenery import Scenery
-from run_data import WALL
+from pliant.results import WALL
 
 KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
 EDGE = "#2b2b2b"

@@ -6,9 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from plots import units
+from pliant import units
 from plots.drawing import EDGE
-from run_data import Run, read_json
+from pliant.results import Run, read_json
 
 COLOURS = ["#f2c079", "#9fc3d9"]
 SEGMENTS = 12  # that a picture is wide

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from plots.wrapping import body_shifts, edge_copies, wrapped_segments
-from run_data import WALL, Frames, Run
+from pliant.results import WALL, Frames, Run
 
 
 @dataclass

@@ -13,9 +13,9 @@ import pytest
 ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 ENGINE = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
 REFERENCE = Path(os.environ.get("PLIANT_REFERENCE", ROOT / "build/release/pliant_reference_solver"))
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python")]
 
-from run_data import Table, read_json, read_table
+from pliant.results import Table, read_json, read_table
 
 
 @dataclass

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from conftest import Desk
-from run_data import read_table
+from pliant.results import read_table
 
 PROBES = [("position", "all", 'reduce = "mean"'), ("position", "turner", ""), ("position", "soft 1", "node = 3"),
           ("displacement", "compliant", 'reduce = "max"'), ("displacement", "turner", "node = 1"),

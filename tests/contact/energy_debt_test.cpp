@@ -104,8 +104,8 @@ std::vector<double> on_nodes(const Model& model, const Patch& patch, int side, c
   return sum;
 }
 
-/// EXACT: a patch that goes all the way around a body and further shows some nodes twice. Laid out anew, with other nodes
-/// twice, it did to each node what it did before.
+/// EXACT: a patch that goes all the way around a body and further shows some nodes twice. Laid out anew, with other
+/// nodes twice, it did to each node what it did before.
 TEST(EnergyDebt, forces_go_along_with_their_nodes) {
   const Model model = build_model(glancing_blow(frictionless(100)));
   const int n = model.outline_of(0).count, room = 2 * n;

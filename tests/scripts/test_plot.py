@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(Path(__file__).parent)]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(Path(__file__).parent)]
 
-from plots import curves, scenery, units, wrapping
-from run_data import WALL, BadFolder, Grid, read_run, read_table
+from pliant import units
+from plots import curves, scenery, wrapping
+from pliant.results import WALL, BadFolder, Grid, read_run, read_table
 from synthetic_run import PITCH, write_run
 
 PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png",

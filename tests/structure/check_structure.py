@@ -15,7 +15,7 @@ from order_of_draws import disordered_lines
 # A folder of lib/ may include itself and the folders after it: arrows point down only.
 ORDER = ["cli", "results", "dynamics", "contact", "boundary", "bodies", "materials", "discretisation", "geometry",
          "files", "scene", "core"]
-SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts"]
+SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts", "python"]
 TEXT_SUFFIXES = {".hpp", ".cpp", ".py", ".sh", ".md", ".toml", ".txt", ".cmake", ".json", ".cff", ""}
 CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
 MAX_LINES = 300

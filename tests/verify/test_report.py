@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "verify"), str(ROOT / "scripts")]
+sys.path[:0] = [str(ROOT / "verify"), str(ROOT / "scripts"), str(ROOT / "python")]
 
 from report import report
 from verification import Row
@@ -124,7 +124,8 @@ def test_a_session_writes_red_and_broken_checks_down(tmp_path: Path, monkeypatch
     case.mkdir(parents=True)
     for name in ("conftest.py", "pytest.ini", "verification.py", "report"):
         (tmp_path / "verify" / name).symlink_to(ROOT / "verify" / name)
-    (tmp_path / "scripts").symlink_to(ROOT / "scripts")
+    for name in ("scripts", "python"):
+        (tmp_path / name).symlink_to(ROOT / name)
     (case / "check_odd.py").write_text(CASE)
     (tmp_path / "verify/unreadable").mkdir()
     (tmp_path / "verify/unreadable/check_unreadable.py").write_text("import no_such_module")

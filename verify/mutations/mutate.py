@@ -28,7 +28,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 VERIFY = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(VERIFY), str(VERIFY.parent / "scripts")]
+sys.path[:0] = [str(VERIFY), str(VERIFY.parent / "scripts"), str(VERIFY.parent / "python")]
 
 from report import report
 from unit_tests import in_short, red_tests

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from pictures import COLOURS, panels, save
 from plots import curves, maps
-from run_data import read_run
+from pliant.results import read_run
 from third_body_layer import AFTERMATH, BREAK, DIAMETER, PLATEAU, PRESSED, SAMPLING, SHORT_BLOCK, Layer
 from third_body_order import like_fraction_at_random
 from time_means import Mean, block_means

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from run_data import WALL, Frames
+from pliant.results import WALL, Frames
 from third_body_order import Neighbours, bond_order, kept_fraction, like_fraction, neighbours
 from time_means import block_means
 from verification import Run

@@ -1,4 +1,4 @@
-"""Reads what a run wrote: of scripts/, verify/ and tests. Nothing here draws."""
+"""Reads what a run wrote; frames one by one. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from plots import units
+from pliant import units
 
 COMPLIANT, RIGID, WALL = 0, 1, 2
 
@@ -180,6 +180,11 @@ class Run:
     probes: Table | None
     steps: Table | None
     frames: Frames | None
+
+    @cached_property
+    def summary(self) -> dict:
+        """summary.json: how the run ended, what it cost, its energies; {} when there is none."""
+        return read_json(self.folder / "summary.json")
 
 
 def read_run(folder: Path) -> Run:

@@ -37,3 +37,13 @@ def length(value: str | float) -> float:
     if match is None:
         raise ValueError(f"'{value}' is not a length such as '87 um'")
     return float(match[1]) * (1e-2 if match[2] == "c" else _FACTORS[match[2]])
+
+
+def time(value: str | float) -> float:
+    """Seconds of a time as scene files write it: time("4 us") is 4e-6. ValueError if none."""
+    if isinstance(value, (int, float)):
+        return float(value)
+    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnum]?)s\s*", value.replace("µ", "u").replace("μ", "u"))
+    if match is None:
+        raise ValueError(f"'{value}' is not a time such as '4 us'")
+    return float(match[1]) * _FACTORS[match[2]]

@@ -1,0 +1,31 @@
+"""Pliant's results and scenes in Python.
+
+    import pliant
+
+    run = pliant.open("results/two_discs")         # what a run wrote: see pliant.results.Run
+    run.summary["energy"]["balance_error"]
+    run.probes.column("energy.kinetic").values     # [rows], in the unit that .unit names
+    run.frames.positions("outlines", 0)            # [points x 3], m; frames are read one by one
+
+    scene = pliant.Scene.read("cases/two_discs.toml")
+    scene["shapes.disc.nodes"] = 340
+    scene.check()                                  # as the engine does; BadScene says what is wrong, and where
+    pliant.run(scene, "results/finer", threads=2)  # the same folder, opened
+
+Nothing here computes mechanics: that is the engine's.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pliant.engine import BadScene, RunFailed, run
+from pliant.results import BadFolder, Column, Frames, Grid, Run, Table, read_run
+from pliant.scene import Scene
+
+__all__ = ["BadFolder", "BadScene", "Column", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
+
+
+def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.open
+    """What a run wrote into a folder. BadFolder: it is none."""
+    return read_run(Path(folder))

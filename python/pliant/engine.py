@@ -1,0 +1,94 @@
+"""Runs the engine and asks it about scenes."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pliant.results import Run, read_json, read_run
+
+if TYPE_CHECKING:
+    from pliant.scene import Scene
+
+ROOT = Path(__file__).resolve().parents[2]
+BAD_INPUT = 2  # exit code of what is wrong before a run begins
+ENGINE_SETTINGS = {"OMP_WAIT_POLICY": "passive", "OMP_PROC_BIND": "false"}  # runs side by side must not wait actively
+
+
+class BadScene(Exception):
+    """The engine refuses a scene; the message is its own."""
+
+
+class RunFailed(Exception):
+    """A run that began did not end well; its folder has what is left of it."""
+
+
+def engine() -> Path:
+    """The program that ./pliant builds, or what PLIANT_ENGINE names."""
+    path = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
+    if not path.exists():
+        raise FileNotFoundError(f"{path}: there is no engine; ./pliant build makes it, or PLIANT_ENGINE names one")
+    return path
+
+
+def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([engine(), *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL,
+                          env={**ENGINE_SETTINGS, **os.environ}, check=False)
+
+
+@dataclass
+class Estimate:
+    """What `check` says of a scene. None: it does not say."""
+
+    text: str
+    evaluations: float | None
+    seconds: float | None
+    memory: float | None  # bytes
+    output: float | None  # bytes
+
+
+_BYTES = {"B": 1.0, "kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
+_SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "days": 86400.0, "d": 86400.0}
+
+
+def _quantity(text: str, row: str, units: dict[str, float]) -> float | None:
+    number = r"([\d.]+(?:e[-+]?\d+)?)"
+    found = re.search(rf"^{row} +(?:at least |about )*{number} ({'|'.join(units)})\b", text, re.MULTILINE)
+    return float(found[1]) * units[found[2]] if found else None
+
+
+def check(file: Path, threads: int = 1) -> Estimate:
+    """Of a scene in a file. BadScene with the engine's words. Of one that fails within the steps that `check` tries there is
+    no estimate."""
+    result = call("check", file, "--threads", str(threads))
+    if result.returncode == BAD_INPUT:
+        raise BadScene(result.stderr.strip())
+    text = result.stdout
+    found = re.search(r"^evaluations +(?:at least )?([\d.e+]+)", text, re.MULTILINE)
+    return Estimate(text, float(found[1]) if found else None, _quantity(text, "time", _SECONDS),
+                    _quantity(text, "memory", _BYTES), _quantity(text, "output", _BYTES))
+
+
+def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
+    """Runs a scene into a folder, over what is there, and opens it. BadScene, RunFailed."""
+    folder = Path(folder)
+    with tempfile.TemporaryDirectory() as scratch:
+        if isinstance(scene, (str, Path)):
+            file = Path(scene)
+        else:
+            file = scene.write(Path(scratch) / scene.file_name)
+        result = call("run", file, "--out", folder, "--force", "--threads", str(threads), *["--quiet"] * quiet)
+    if result.returncode == BAD_INPUT:
+        raise BadScene(result.stderr.strip())
+    if result.returncode != 0:
+        raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
+    return read_run(folder)
+
+
+def is_finished(folder: Path) -> bool:
+    return read_json(folder / "summary.json").get("status") == "finished"

@@ -1,0 +1,125 @@
+"""Scene files: read, changed and written, with their comments."""
+
+from __future__ import annotations
+
+import difflib
+import tempfile
+from collections.abc import Iterator, MutableMapping, MutableSequence
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+
+from pliant.engine import BadScene, Estimate, check
+
+
+class Scene:
+    """A scene by dotted paths: scene["materials.soft.young"] = "2 GPa". Members of a list go by their number or their
+    name: "grains.0.seed" or "grains.third_body.seed". What keys and values mean the engine knows: check()."""
+
+    def __init__(self, text: str, file_name: str = "scene.toml") -> None:
+        self.file_name = file_name
+        try:
+            self._document = tomlkit.parse(text)
+        except TOMLKitError as error:
+            raise BadScene(f"{file_name}: {error}") from error
+
+    @classmethod
+    def read(cls, file: str | Path) -> Scene:
+        """BadScene: it is not TOML; OSError: it cannot be read."""
+        return cls(Path(file).read_text(), Path(file).name)
+
+    def __getitem__(self, path: str) -> Any:
+        """KeyError names what there is."""
+        at: Any = self._document
+        for name in path.split("."):
+            at = _member(at, name, path)
+        return at.unwrap() if hasattr(at, "unwrap") else at
+
+    def __setitem__(self, path: str, value: Any) -> None:
+        """A key that its table lacks is added, and the table if it is one of the whole scene, as [discretisation]; what
+        is deeper, as a shape, must be there."""
+        *parents, last = path.split(".")
+        at: Any = self._document
+        if len(parents) == 1 and parents[0] not in at:
+            at[parents[0]] = tomlkit.table()
+        for name in parents:
+            at = _member(at, name, path)
+        if isinstance(at, MutableSequence):
+            at[_index(at, last, path)] = value
+        elif isinstance(at, MutableMapping):
+            at[last] = value
+        else:
+            raise KeyError(f"{path}: {'.'.join(parents)} is a value, not a table")
+
+    def __contains__(self, path: str) -> bool:
+        try:
+            self[path]
+        except KeyError:
+            return False
+        return True
+
+    def files(self, folder: Path) -> list[str]:
+        """Texts that name files which are there, seen from the scene's folder: outlines, meshes, laws."""
+        found: list[str] = []
+
+        def look(at: Any) -> None:
+            if isinstance(at, MutableMapping):
+                for value in at.values():
+                    look(value)
+            elif isinstance(at, MutableSequence):
+                for value in at:
+                    look(value)
+            elif isinstance(at, str) and at and not Path(at).is_absolute() and (folder / at).is_file():
+                found.append(str(at))
+
+        look(self._document)
+        return sorted(set(found))
+
+    def text(self) -> str:
+        return tomlkit.dumps(self._document)
+
+    def write(self, file: str | Path) -> Path:
+        file = Path(file)
+        file.write_text(self.text())
+        return file
+
+    def check(self, threads: int = 1) -> Estimate:
+        """What it costs. BadScene with the engine's words."""
+        with tempfile.TemporaryDirectory() as folder:
+            return check(self.write(Path(folder) / self.file_name), threads)
+
+
+def _names(at: Any) -> Iterator[str]:
+    if isinstance(at, MutableMapping):
+        yield from at
+    elif isinstance(at, MutableSequence):
+        for number, member in enumerate(at):
+            yield str(member["name"]) if isinstance(member, MutableMapping) and "name" in member else str(number)
+
+
+def _index(at: MutableSequence, name: str, path: str) -> int:
+    if name.isdigit() and int(name) < len(at):
+        return int(name)
+    for number, member in enumerate(at):
+        if isinstance(member, MutableMapping) and member.get("name") == name:
+            return number
+    raise KeyError(f"{path}: no member '{name}'{nearest(name, _names(at))}")
+
+
+def _member(at: Any, name: str, path: str) -> Any:
+    if isinstance(at, MutableSequence):
+        return at[_index(at, name, path)]
+    if not isinstance(at, MutableMapping):
+        raise KeyError(f"{path}: what '{name}' should be part of is a value, not a table")
+    if name not in at:
+        raise KeyError(f"{path}: no '{name}'{nearest(name, _names(at))}")
+    return at[name]
+
+
+def nearest(name: str, known: Iterator[str] | list[str]) -> str:
+    """What else there is, for a message: the nearest name first."""
+    names = list(known)
+    close = difflib.get_close_matches(name, names, 1)
+    return f"; did you mean '{close[0]}'?" if close else f"; there are: {', '.join(names)}" if names else ""

@@ -1,0 +1,113 @@
+"""Figures of a study: asked for, and of its kind."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from pliant.study.folder import Folder
+from pliant.study.table import mean_of_replicas, number_of
+
+COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
+MARKERS = "osD^vP"
+
+
+def draw_all(folder: Folder) -> list[dict[str, str]]:
+    """File and title of each, in figures/."""
+    about, table = folder.read("study.json"), folder.read("table.json")
+    (folder.path / "figures").mkdir(exist_ok=True)
+    drawn = []
+    for number, plot in enumerate(about["plots"], 1):
+        figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+        _plot(axes, plot, about, table["rows"])
+        drawn.append(_save(folder, figure, f"{number}_{plot['y']}_over_{plot['x']}", f"{plot['y']} over {plot['x']}"))
+    if "orders" in table:
+        for output in about["convergence"]["of"]:
+            figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+            _draw_order(axes, [o for o in table["orders"] if o["quantity"] == output], about["convergence"])
+            drawn.append(_save(folder, figure, f"order_{output}", f"{output}: difference from its limit"))
+    return drawn
+
+
+def _save(folder: Folder, figure: Any, name: str, title: str) -> dict[str, str]:
+    plain = "".join(c if c.isalnum() or c in "_-" else "_" for c in name)
+    file = folder.path / "figures" / f"{plain}.png"
+    figure.savefig(file, dpi=130)
+    plt.close(figure)
+    return {"file": f"figures/{file.name}", "title": title}
+
+
+def _unit_of(values: list[Any]) -> str:
+    """Of parameters such as "3 MPa": their own, where all have the same."""
+    units = {value.partition(" ")[2] if isinstance(value, str) else "" for value in values}
+    return f" [{units.pop()}]" if len(units) == 1 and units != {""} else ""
+
+
+def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
+    inputs = list(about["parameters"])
+    is_input = plot["x"] in inputs or plot["x"] == about["replicas"]
+    if plot["x"] == about["replicas"]:
+        inputs.append(plot["x"])
+    points = mean_of_replicas(rows, plot["y"], inputs)
+    if not is_input:
+        across = {str(m["inputs"]): m["value"] for m in mean_of_replicas(rows, plot["x"], inputs)}
+        points = [p for p in points if str(p["inputs"]) in across]
+    labels = [p["inputs"][plot["x"]] for p in points] if is_input else []
+    words = any(number_of(label) is None for label in labels)
+    order = list(dict.fromkeys(map(str, labels)))
+    series: dict[str, list[tuple[float, dict]]] = {}
+    for p in points:
+        if not is_input:
+            x = across[str(p["inputs"])]
+        else:
+            x = order.index(str(p["inputs"][plot["x"]])) if words else number_of(p["inputs"][plot["x"]])
+        series.setdefault(str(p["inputs"][plot["by"]]) if plot["by"] else "", []).append((x, p))
+    for (label, members), colour, marker in zip(series.items(), COLOURS * 9, MARKERS * 12):
+        members.sort(key=lambda member: member[0])
+        x, y = [m[0] for m in members], [m[1]["value"] for m in members]
+        error = [m[1]["error"] or 0.0 for m in members]
+        style = "" if not is_input or len(inputs) > 1 + (plot["by"] is not None) else "-"
+        axes.errorbar(x, y, yerr=error if any(error) else None, fmt=marker + style, color=colour, capsize=3,
+                      markersize=5, linewidth=1.2, label=f"{plot['by']} = {label}" if plot["by"] else None)
+    if words:
+        axes.set_xticks(range(len(order)), order, rotation=20)
+    axes.set_xscale("log" if "x" in plot["log"] else "linear")
+    axes.set_yscale("log" if "y" in plot["log"] else "linear")
+    unit = points[0]["unit"] if points else "-"
+    axes.set_xlabel(plot["x"] + (_unit_of(labels) if is_input and not words else ""))
+    axes.set_ylabel(plot["y"] + (f" [{unit}]" if unit != "-" else ""))
+    counts = {p["count"] for p in points}
+    if max(counts, default=1) > 1:
+        axes.set_title(f"mean and standard error of {'to'.join(sorted({str(min(counts)), str(max(counts))}))} runs",
+                       fontsize=9, loc="left")
+    if not points:
+        axes.text(0.5, 0.5, "no run has it", transform=axes.transAxes, ha="center")
+    if plot["by"]:
+        axes.legend(fontsize=8, frameon=False)
+    axes.grid(True, alpha=0.25)
+
+
+def _draw_order(axes: Axes, orders: list[dict], settings: dict) -> None:
+    for found, colour, marker in zip(orders, COLOURS * 9, MARKERS * 12):
+        label = ", ".join(f"{name} = {value}" for name, value in found["of"].items())
+        if found["limit"] is None:
+            axes.plot([], [], marker, color=colour, label=f"{label} no order".strip())
+            continue
+        h, f = (np.array(found[key]) for key in ("sizes", "values"))
+        order = np.argsort(h)
+        away = np.abs(f - found["limit"])[order]
+        axes.loglog(h[order], away, marker, color=colour, label=f"{label} order {found['order']:.2f}".strip())
+        ends = h[order][[0, -1]]
+        axes.loglog(ends, away[0] * (ends / ends[0])**found["order"], color=colour, linewidth=0.8)
+    power = settings["power"]
+    axes.set_xlabel(settings["by"] if power == 1 else f"{settings['by']}^{power:g}")
+    axes.set_ylabel("|value - limit|" + (f" [{orders[0]['unit']}]" if orders and orders[0]["unit"] != "-" else ""))
+    axes.legend(fontsize=8, frameon=False)
+    axes.grid(True, which="both", alpha=0.2)

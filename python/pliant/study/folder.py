@@ -1,0 +1,88 @@
+"""The folder of a study: what stands where in it."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from pliant.scene import Scene
+from pliant.study.points import Point
+from pliant.study.spec import Quantity, Study
+
+
+def replace(file: Path, text: str) -> None:
+    """Whole or not at all."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    part = file.with_name(f"{file.name}.part")
+    part.write_text(text)
+    os.replace(part, file)
+
+
+def replace_if_other(file: Path, text: str) -> None:
+    """So that what depends on it is made anew only if it changed."""
+    if not file.exists() or file.read_text() != text:
+        replace(file, text)
+
+
+def as_text(value: Any) -> str:
+    return json.dumps(value, indent=1) + "\n"
+
+
+@dataclass
+class Folder:
+    path: Path
+
+    @property
+    def beside(self) -> Path:
+        """Files that the scene names."""
+        return self.path / "beside"
+
+    def run(self, name: str) -> Path:
+        return self.path / "runs" / name
+
+    def scene(self, name: str) -> Path:
+        return self.run(name) / "scene.toml"
+
+    def results(self, name: str) -> Path:
+        return self.run(name) / "results"
+
+    def outcome_file(self, name: str) -> Path:
+        return self.run(name) / "outcome.json"
+
+    def outcome(self, name: str) -> dict:
+        file = self.outcome_file(name)
+        return json.loads(file.read_text()) if file.exists() else {"status": "not run", "message": ""}
+
+    def read(self, name: str) -> Any:
+        return json.loads((self.path / name).read_text())
+
+    def point(self, name: str) -> Point:
+        return Point(**self.read(f"points/{name}.json"))
+
+    def quantities(self) -> list[Quantity]:
+        return [Quantity(**table) for table in self.read("quantities.json")]
+
+    def lay_out(self, study: Study, points: list[Point]) -> None:
+        """All that the steps read, renewed where it differs."""
+        replace_if_other(self.path / "base.toml", study.scene.read_text())
+        for name in Scene.read(study.scene).files(study.scene.parent):
+            replace_if_other(self.beside / name, (study.scene.parent / name).read_text())
+        for point in points:
+            replace_if_other(self.path / f"points/{point.name}.json", as_text(asdict(point)))
+        quantities = [asdict(quantity) for quantity in study.quantities]
+        functions = {q.function: Path(q.function.rpartition(":")[0]).read_text() for q in study.quantities if q.function}
+        replace_if_other(self.path / "functions.json", as_text(functions))  # gathered anew when one changes
+        replace_if_other(self.path / "quantities.json", as_text(quantities))
+        about = {
+            "title": study.title, "study": study.file.read_text(), "scene": study.scene.name, "kind": study.kind,
+            "runs": [point.name for point in points], "parameters": [p.name for p in study.parameters],
+            "replicas": study.replicas.name if study.replicas else None,
+            "plots": [asdict(plot) for plot in study.plots],
+            "convergence": asdict(study.convergence) if study.convergence else None,
+            "regression": {"baseline": str(study.regression.baseline.resolve()),
+                           "tolerances": study.regression.tolerances} if study.regression else None,
+        }
+        replace_if_other(self.path / "study.json", as_text(about))

@@ -1,0 +1,116 @@
+"""Quantities of one run."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from pliant import units
+from pliant.results import Run
+from pliant.study.spec import Quantity
+
+BLOCKS = 8  # of a plateau, for its error
+
+
+class CannotGather(Exception):
+    """A quantity that this run does not have; the message names it."""
+
+
+@dataclass
+class Value:
+    value: float
+    error: float | None = None  # standard error, where one is known
+    unit: str = "-"
+
+
+def gather(quantity: Quantity, run: Run) -> Value:
+    if quantity.summary is not None:
+        return Value(_of_summary(quantity.summary, run.summary))
+    if quantity.function is not None:
+        return _of_function(quantity.function, run)
+    return _of_probe(quantity, run)
+
+
+def _of_summary(path: str, summary: Any) -> float:
+    at = summary
+    for name in path.split("."):
+        if not isinstance(at, dict) or name not in at:
+            raise CannotGather(f"summary.json has no {path}")
+        at = at[name]
+    if not isinstance(at, (int, float)):
+        raise CannotGather(f"{path} of summary.json is {at!r}, not a number")
+    return float(at)
+
+
+def _of_function(where: str, run: Run) -> Value:
+    file, _, name = where.rpartition(":")
+    spec = importlib.util.spec_from_file_location("quantity", file)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    function: Callable[[Run], float] | None = getattr(module, name, None)
+    if function is None:
+        raise CannotGather(f"{file} has no function '{name}'")
+    try:
+        return Value(float(function(run)))
+    except Exception as error:  # noqa: BLE001: whatever the user's function does
+        raise CannotGather(f"{name}() of {file}: {type(error).__name__}: {error}") from error
+
+
+def _of_probe(quantity: Quantity, run: Run) -> Value:
+    if run.probes is None:
+        raise CannotGather("the run has no probes")
+    try:
+        column = run.probes.column(quantity.probe or "")
+    except KeyError as error:
+        raise CannotGather(error.args[0]) from error
+    times, values = run.probes.sampled(column)
+    if quantity.window is not None:
+        first, last = (units.time(limit) for limit in quantity.window)
+        slack = 1e-9 * max(abs(first), abs(last))
+        inside = (times >= first - slack) & (times <= last + slack)
+        times, values = times[inside], values[inside]
+    if len(values) == 0:
+        raise CannotGather(f"{quantity.probe} has no value in the window")
+    return TAKES[quantity.take](times, values, column.unit)
+
+
+def _mean(times: np.ndarray, values: np.ndarray, unit: str) -> Value:
+    """Over time, by trapezoids."""
+    if len(values) == 1:
+        return Value(float(values[0]), None, unit)
+    return Value(float(np.trapz(values, times) / (times[-1] - times[0])), None, unit)
+
+
+def _plateau(times: np.ndarray, values: np.ndarray, unit: str) -> Value:
+    """Mean of the window's second half, and its standard error from the means of blocks in it."""
+    late = times >= (times[0] + times[-1]) / 2
+    value = _mean(times[late], values[late], unit)
+    if late.sum() >= 2 * BLOCKS:
+        means = [block.mean() for block in np.array_split(values[late], BLOCKS)]
+        value.error = float(np.std(means, ddof=1) / math.sqrt(BLOCKS))
+    return value
+
+
+def _slope(times: np.ndarray, values: np.ndarray, unit: str) -> Value:
+    """Of the straight line through all, by least squares."""
+    if len(values) < 2:
+        raise CannotGather("a slope needs two values")
+    away = times - times.mean()
+    return Value(float(away @ (values - values.mean()) / (away @ away)), None, f"{unit}/s")
+
+
+TAKES: dict[str, Callable[[np.ndarray, np.ndarray, str], Value]] = {
+    "mean": _mean,
+    "plateau": _plateau,
+    "slope": _slope,
+    "last": lambda _, values, unit: Value(float(values[-1]), None, unit),
+    "max": lambda _, values, unit: Value(float(values.max()), None, unit),
+    "min": lambda _, values, unit: Value(float(values.min()), None, unit),
+    "peak": lambda _, values, unit: Value(float(values[np.abs(values).argmax()]), None, unit),  # with its sign
+}

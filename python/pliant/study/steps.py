@@ -1,0 +1,82 @@
+"""The steps of a study, each a process of its own: `python -m pliant.study.steps STEP FOLDER [RUN [THREADS]]`."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+from pliant.engine import call, is_finished
+from pliant.results import read_run
+from pliant.scene import Scene
+from pliant.study import gather as gathering
+from pliant.study.folder import Folder, as_text, replace
+
+KILLED = (130, 143, -2, -15, -9)  # by signals: to be gone on with, not a failure
+
+
+def scene(folder: Folder, name: str) -> None:
+    changed = Scene.read(folder.path / "base.toml")
+    for path, value in folder.point(name).sets.items():
+        changed[path] = value
+    for other in (file for file in folder.beside.rglob("*") if file.is_file()):
+        replace(folder.run(name) / other.relative_to(folder.beside), other.read_text())
+    replace(folder.scene(name), changed.text())
+
+
+def run(folder: Folder, name: str, threads: str) -> None:
+    """Begins, goes on from a checkpoint of the same scene, or takes what is finished. A run that fails is an outcome like
+    others; one that is killed is none."""
+    scene_file, results = folder.scene(name), folder.results(name)
+    same = (results / "scene.toml").exists() and (results / "scene.toml").read_text() == scene_file.read_text()
+    if same and is_finished(results):
+        code, message = 0, ""
+    else:
+        resumes = same and (results / "checkpoint.bin").exists()
+        begin = time.monotonic()
+        way = ["--resume"] if resumes else [scene_file, "--force"]
+        result = call("run", *way, "--out", results, "--threads", threads, "--quiet")
+        code, message = result.returncode, result.stderr.strip()
+        if code in KILLED:
+            sys.exit(f"{name}: stopped; the next call goes on")
+        what = "finished" if code == 0 else "FAILED"
+        print(f"{name}: {what}{' after a checkpoint' if resumes else ''}, {time.monotonic() - begin:.1f} s", flush=True)
+    status = "finished" if code == 0 else "failed"
+    replace(folder.outcome_file(name), as_text({"status": status, "code": code, "message": message}))
+
+
+def gather(folder: Folder, name: str) -> None:
+    values: dict[str, dict] = {}
+    problems: list[str] = []
+    if folder.outcome(name)["status"] == "finished":
+        results = read_run(folder.results(name))
+        for quantity in folder.quantities():
+            try:
+                values[quantity.name] = asdict(gathering.gather(quantity, results))
+            except gathering.CannotGather as error:
+                problems.append(f"{quantity.name}: {error}")
+    replace(folder.run(name) / "quantities.json", as_text({"values": values, "problems": problems}))
+
+
+def table(folder: Folder) -> None:
+    from pliant.study.table import write_table
+    write_table(folder)
+
+
+def plots(folder: Folder) -> None:
+    from pliant.study.figures import draw_all
+    shutil.rmtree(folder.path / "figures", ignore_errors=True)
+    replace(folder.path / "plots.json", as_text(draw_all(folder)))
+
+
+def report(folder: Folder) -> None:
+    from pliant.study.report import write_report
+    write_report(folder)
+
+
+STEPS = {step.__name__: step for step in (scene, run, gather, table, plots, report)}
+
+if __name__ == "__main__":
+    STEPS[sys.argv[1]](Folder(Path(sys.argv[2])), *sys.argv[3:])

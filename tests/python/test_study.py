@@ -1,0 +1,265 @@
+"""Studies: what their files may say, what runs, what comes of it, and what a kill, a failure or a change leads to."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
+sys.path.insert(0, str(ROOT / "python"))
+
+from pliant.results import read_json
+from pliant.study.convergence import analyse, observed_order
+from pliant.study.points import points_of
+from pliant.study.reading import BadStudy
+from pliant.study.spec import read_study
+
+SCENE = """
+[time]
+end = "{end}"
+[materials.soft]
+law = "neo-hookean"
+density = 1
+young = 2.8
+poisson = 0.4
+[shapes.disc]
+kind = "disc"
+diameter = 1
+nodes = 40
+[[grains]]
+name = "disc"
+shape = "disc"
+body = "compliant"
+material = "soft"
+packing = {{ kind = "positions", positions = [[0, 0]] }}
+velocity = {{ gradient = [[0.1, 0], [0, -0.1]] }}
+[[contacts]]
+between = "all"
+law = "frictionless"
+[[probes]]
+name = "energy"
+quantity = "energy"
+period = 0.1
+"""
+STUDY = """
+scene = "scene.toml"
+[[parameters]]
+name = "nodes"
+path = "shapes.disc.nodes"
+values = [40, 60]
+[[parameters]]
+name = "young"
+path = "materials.soft.young"
+values = [2.8, 5.6]
+[[quantities]]
+name = "strain"
+probe = "energy.strain"
+take = "max"
+[[quantities]]
+name = "steps"
+summary = "steps"
+"""
+
+
+class Desk:
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.out = folder, folder / "out"
+        self.scene("1 s")
+        self.study(STUDY)
+
+    def scene(self, end: str) -> None:
+        (self.folder / "scene.toml").write_text(SCENE.format(end=end))
+
+    def study(self, text: str) -> Path:
+        file = self.folder / "study.toml"
+        file.write_text(text)
+        return file
+
+    def command(self, *options: str) -> list[str | Path]:
+        return [sys.executable, "-B", "-m", "pliant.study", self.folder / "study.toml", "--out", self.out, "--cores", "2",
+                *options]
+
+    def call(self, *options: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(self.command(*options), capture_output=True, text=True, timeout=300, check=False,
+                              env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+
+    def rows(self) -> list[dict[str, str]]:
+        with (self.out / "table.csv").open(newline="") as stream:
+            return list(csv.DictReader(stream))
+
+    def hashes(self) -> dict[str, str]:
+        return {file.parent.parent.name: read_json(file)["state_hash"]
+                for file in sorted(self.out.glob("runs/*/results/summary.json"))}
+
+    def times(self) -> dict[str, int]:
+        return {file.parent.name: file.stat().st_mtime_ns for file in self.out.glob("runs/*/outcome.json")}
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(tmp_path)
+
+
+def test_all_runs_come_into_table_and_report(desk: Desk) -> None:
+    result = desk.call()
+    assert result.returncode == 0, result.stderr
+    rows = desk.rows()
+    assert [(row["nodes"], row["young"]) for row in rows] == [("40", "2.8"), ("40", "5.6"), ("60", "2.8"), ("60", "5.6")]
+    for row in rows:
+        summary = read_json(desk.out / "runs" / row["run"] / "results/summary.json")
+        assert int(float(row["steps [-]"])) == summary["steps"]
+        assert float(row["strain [J/m]"]) > 0
+    report = (desk.out / "report.html").read_text()
+    assert "4 runs of scene.toml, 4 finished" in report and "src=\"http" not in report
+
+
+def test_only_what_changed_runs_again(desk: Desk) -> None:
+    assert desk.call().returncode == 0
+    before = desk.times()
+    assert desk.call().returncode == 0
+    assert desk.times() == before, "nothing changed"
+    desk.study(STUDY.replace("[2.8, 5.6]", "[2.8, 5.6, 8.4]"))
+    assert desk.call().returncode == 0
+    after = desk.times()
+    assert {name: after[name] for name in before} == before and len(after) == 6
+    desk.study(STUDY.replace("[2.8, 5.6]", "[2.8, 5.6, 8.4]").replace('take = "max"', 'take = "mean"'))
+    assert desk.call().returncode == 0
+    assert desk.times() == after, "another quantity of the same runs"
+
+
+def test_a_failed_run_is_reported_and_does_not_stop_the_others(desk: Desk) -> None:
+    """Three thousand times as fast, the disc turns inside out."""
+    desk.study(STUDY.replace('name = "young"\npath = "materials.soft.young"\nvalues = [2.8, 5.6]',
+                             'name = "pull"\npath = "grains.disc.velocity.gradient.0.0"\nvalues = [0.1, -300]'))
+    result = desk.call()
+    assert result.returncode == 1
+    assert result.stderr.count(": failed: ") == 2 and "nodes=40,pull=-300" in result.stderr
+    assert [row["status"] for row in desk.rows()] == ["finished", "failed", "finished", "failed"]
+    report = (desk.out / "report.html").read_text()
+    assert report.index("What failed") < report.index("All runs")
+    before = desk.times()
+    assert desk.call().returncode == 1
+    assert desk.times() == before, "it would fail again"
+    assert desk.call("--retry").returncode == 1
+    assert desk.times() != before
+
+
+def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
+    """EXACT: killed at once, with all its processes, it ends in the states of an undisturbed one."""
+    desk.scene("200 s")
+    assert desk.call().returncode == 0
+    undisturbed = desk.hashes()
+    desk.out = desk.folder / "other"
+    killed = subprocess.Popen(desk.command(), start_new_session=True, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    deadline = time.monotonic() + 60
+    while not list(desk.out.glob("runs/*/results/probes.csv")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    time.sleep(0.5)
+    os.killpg(killed.pid, signal.SIGKILL)
+    killed.wait()
+    assert len(desk.times()) < 4, "or it was not disturbed"
+    result = desk.call()
+    assert result.returncode == 0, result.stderr
+    assert desk.hashes() == undisturbed
+
+
+@pytest.mark.parametrize("old, new, message", [
+    ('path = "shapes.disc.nodes"', 'path = "shapes.dics.nodes"', "did you mean 'disc'?"),
+    ('path = "shapes.disc.nodes"', 'path = "shapes.disc.nodse"', "nodse"),
+    ("values = [40, 60]", "values = [40, 2]", "the run nodes=2,young=2.8: "),
+    ('take = "max"', 'take = "maxx"', "did you mean 'max'?"),
+    ('summary = "steps"', 'sumary = "steps"', "one of 'summary', 'probe' and 'function'"),
+    ('scene = "scene.toml"', 'scene = "scenes.toml"', "no file"),
+    ('scene = "scene.toml"', 'scene = "scene.toml"\ncombin = "zip"', "did you mean 'combine'?"),
+    ("values = [40, 60]", "values = []", "empty"),
+    ('name = "young"', 'name = "nodes"', "two parameters or quantities are called 'nodes'"),
+    ('scene = "scene.toml"', 'scene = "scene.toml"\nkind = "convergence"', "[convergence]"),
+])
+def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) -> None:
+    text = STUDY.replace(old, new)
+    assert text != STUDY
+    desk.study(text)
+    result = desk.call()
+    assert result.returncode == 2 and message in result.stderr, result.stderr
+    assert not desk.out.exists()
+
+
+def test_dry_run_lists_and_writes_nothing(desk: Desk) -> None:
+    result = desk.call("--dry-run")
+    assert result.returncode == 0 and "nodes=60,young=5.6" in result.stdout and "4 runs" in result.stdout
+    assert not desk.out.exists()
+
+
+def test_regression_tells_what_changed(desk: Desk) -> None:
+    regression = STUDY.replace("[[parameters]]", 'kind = "regression"\n[regression]\nbaseline = "baseline.csv"\n'
+                               "tolerances = { strain = 1e-9 }\n[[parameters]]", 1)
+    desk.call()
+    (desk.folder / "baseline.csv").write_text((desk.out / "table.csv").read_text())
+    desk.study(regression)
+    assert desk.call().returncode == 0
+    rows = (desk.out / "table.csv").read_text().splitlines()
+    value = desk.rows()[0]["strain [J/m]"]
+    (desk.folder / "baseline.csv").write_text("\n".join(rows).replace(value, repr(float(value) * (1 + 1e-6)), 1) + "\n")
+    desk.study(regression + "\n")
+    result = desk.call()
+    assert result.returncode == 1 and "nodes=40,young=2.8: strain was" in result.stderr
+
+
+def test_latin_hypercube_has_one_value_in_each_stratum(desk: Desk) -> None:
+    """EXACT: by definition."""
+    study = read_study(desk.study("""
+scene = "scene.toml"
+combine = "latin hypercube"
+samples = 10
+[[parameters]]
+name = "young"
+path = "materials.soft.young"
+range = { from = "1 Pa", to = "1e4 Pa", spacing = "log" }
+[[parameters]]
+name = "density"
+path = "materials.soft.density"
+range = { from = 0, to = 10 }
+[[quantities]]
+name = "steps"
+summary = "steps"
+"""))
+    points = points_of(study)
+    assert sorted(int(point.values["density"]) for point in points) == list(range(10))
+    from math import log10
+    assert sorted(int(10 * log10(float(point.values["young"].split()[0])) / 4) for point in points) == list(range(10))
+    assert [p.values for p in points] == [p.values for p in points_of(study)], "the same for the same seed"
+
+
+def test_zip_needs_equal_lengths(desk: Desk) -> None:
+    text = STUDY.replace('scene = "scene.toml"', 'scene = "scene.toml"\ncombine = "zip"')
+    assert len(points_of(read_study(desk.study(text)))) == 2
+    with pytest.raises(BadStudy, match="all need as many"):
+        read_study(desk.study(text.replace("[2.8, 5.6]", "[2.8]")))
+
+
+@pytest.mark.parametrize("order", [0.5, 1, 2, 3.7])
+def test_order_of_a_power(order: float) -> None:
+    """EXACT: f = 3 + 2 h^p, whatever the ratios of sizes."""
+    h = (0.1, 0.13, 0.3)
+    found = observed_order(h, tuple(3 + 2 * size**order for size in h))
+    assert found == pytest.approx(order, abs=1e-9)
+    sizes = [0.4, 0.1, 0.13, 0.3]
+    result = analyse(sizes, [3 + 2 * size**order for size in sizes])
+    assert result.limit == pytest.approx(3, abs=1e-9) and result.asymptotic
+    assert result.index == pytest.approx(1.25 * 2 * 0.1**order, rel=1e-6)
+
+
+def test_no_order_is_said() -> None:
+    assert analyse([1, 2, 4], [1, 2, 1]).order is None
+    mixed = analyse([1, 2, 4, 8], [1 + 0.01 * h + 0.1 * h**4 for h in (1, 2, 4, 8)])
+    assert mixed.asymptotic, "one order rules"
+    assert not analyse([1, 2, 4, 8], [1 + h + 0.02 * h**4 for h in (1, 2, 4, 8)]).asymptotic
