@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from make_pushed_disc_oracles import DRAWN, FRICTION, MESHES, SLIDING, STEPS, STUCK, by_getfem
+from make_pushed_disc_oracles import DEPTH, DRAWN, FRICTION, MESHES, SLIDING, STEPS, STUCK, by_getfem
 from pictures import COLOURS, MARKERS, legend, panels, save
-from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference
+from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference, hann
 from pushed_disc_stored import distances, read_stored, read_surfaces
 from verification import FULL, Case, Label, observed_order
 
@@ -22,6 +22,9 @@ KINDS = {"along": "tangential", "across": "normal"}
 PLACES = [*(f"at push {push:g}" for push in STUCK), *(f"in slip, push {low:g} to {high:g}" for low, high in WINDOWS)]
 QUANTITIES = [(name, i) for name in KINDS for i in range(len(PLACES)) if (name, i) != ("along", 0)]
 SLIPS = np.arange(len(PLACES)) >= len(STUCK)
+# Of the change by half the rate, that to none. At rests: of first order or higher. In slip: drag is of first order,
+# but what snaps after each tooth sets in late by rate^(2/3), as whatever passes a fold slowly.
+FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
 
 
 def by_group(values: np.ndarray, first: int) -> np.ndarray:
@@ -36,36 +39,46 @@ class Study:
 
     def __init__(self, name: str) -> None:
         self.name, self.first = name, 1 if name == "along" else 0
-        self.stored = getattr(read_stored().forces, name)
-        self.stored_error = getattr(read_stored().errors(), name)
-        coarsest = Push(SIZES[0])
-        usual = np.array([self._of(push) for push in coarsest.ways(2)])
-        harder = np.array([self._of(replace(push, stiffness=push.stiffness * STIFF)) for push in coarsest.ways(2)])
-        slower = np.array([self._of(replace(push, pause=push.pause * SLOW)) for push in coarsest.ways(2)])
-        # Of order 1 / stiffness. Drag in steady slip is of first order in the rate, what rests keep of it of first or
-        # a higher one.
-        lost = STIFF / (STIFF - 1) * (harder / usual - 1)
-        late = slower / usual - 1
-        factor = np.where(SLIPS, 2.0, 1.5)
-        self.correction = lost.mean(axis=0) + factor * late.mean(axis=0)
-        self.correction_error = by_group(np.abs(lost[0] - lost[1]) / 2 + factor * np.abs(late[0] - late[1]) / 2
-                                         + np.where(SLIPS, 0, 0.5) * np.abs(late.mean(axis=0)), self.first)
-        self.ways = np.array([[self._of(push) for push in Push(size).ways()] for size in SIZES])
-        self.force = self.ways.mean(axis=1) * (1 + self.correction)
-        spread = self.ways.std(axis=1, ddof=1) / self.stored
-        self.saw = np.array([by_group(row, self.first) for row in spread])  # [sizes x places] twice the mean's error
+        stored = read_stored()
+        self.stored, self.stored_error = getattr(stored.forces, name), getattr(stored.errors(), name)
         self.spacings = np.array([Push(size).spacing for size in SIZES])
+        lost = self._penalty()
+        self.penalty = lost.mean(axis=0)
+        found = [self._size(size) for size in SIZES]
+        self.force = np.array([force for force, _ in found]) * (1 + self.penalty)  # [sizes x places]
+        self.scatter = np.array([scatter for _, scatter in found]) / self.stored
+        self.penalty_error = by_group(np.abs(lost[0] - lost[1]) / 2, self.first)
 
     def _of(self, push: Push) -> np.ndarray:
         return getattr(result_of(push).forces, self.name)
+
+    def _penalty(self) -> np.ndarray:
+        """[2 x places] lost by it, of order 1 / stiffness."""
+        pairs = [(push, replace(push, stiffness=push.stiffness * STIFF)) for push in Push(SIZES[0]).ways(2)]
+        return STIFF / (STIFF - 1) * np.array([self._of(harder) / self._of(usual) - 1 for usual, harder in pairs])
+
+    def _size(self, size: int) -> tuple[np.ndarray, np.ndarray]:
+        """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: twice
+        that of a mean over meshes, and of the order in the rate."""
+        ways = Push(size).ways(2)
+        usual, slower = (np.array([self._of(replace(push, pause=push.pause * slow)) for push in ways])
+                         for slow in (1.0, SLOW))
+        late = (slower - usual).mean(axis=0)
+        more = [result_of(replace(push, slides=False)) for push in Push(size).ways()[2:]]
+        stuck = np.concatenate([usual[:, ~SLIPS], [getattr(result.forces, self.name) for result in more]])
+        force = np.concatenate([stuck.mean(axis=0), usual[:, SLIPS].mean(axis=0)]) + FACTOR * late
+        still = usual + FACTOR * (slower - usual)
+        means = np.concatenate([2 * stuck.std(axis=0, ddof=1) / np.sqrt(len(stuck)),
+                                2 * still[:, SLIPS].std(axis=0, ddof=1) / np.sqrt(len(still))])
+        return force, by_group(means, self.first) + by_group(FACTOR_ERROR * np.abs(late), self.first)
 
     def errors(self) -> np.ndarray:
         """[sizes x places] relative."""
         return self.force / self.stored - 1
 
     def rms(self) -> np.ndarray:
-        """[sizes] of errors over the places."""
-        return np.sqrt((self.errors()[:, self.first:] ** 2).mean(axis=1))
+        """[sizes] of errors in slip, where the saw tooth is gone from the means."""
+        return np.sqrt((self.errors()[:, SLIPS] ** 2).mean(axis=1))
 
     def weights(self) -> np.ndarray:
         """[sizes] of what a straight line in the square of the spacing takes from each for h = 0."""
@@ -77,8 +90,8 @@ class Study:
         return self.weights() @ self.force
 
     def limit_error(self) -> np.ndarray:
-        """[places] relative: saw tooth, penalty and rate, stored error."""
-        return np.abs(self.weights()) @ self.saw + self.correction_error + self.stored_error
+        """[places] relative: saw tooth and rate, penalty, stored error."""
+        return np.abs(self.weights()) @ self.scatter + self.penalty_error + self.stored_error
 
 
 KNOWN: dict[Push, Result] = {}
@@ -106,11 +119,13 @@ def test_force(studies: dict[str, Study], name: str, i: int) -> None:
 @pytest.mark.parametrize("name", KINDS)
 def test_order(studies: dict[str, Study], name: str) -> None:
     known = studies[name]
+    errors = known.rms()
     logs = np.log(known.spacings) - np.log(known.spacings).mean()
-    share = np.sqrt((known.saw[:, known.first:] ** 2).mean(axis=1)) / known.rms()
-    CASE.check_rate(f"{KINDS[name]} force over GetFEM, rms of places", list(known.spacings), list(known.rms()), 2,
-                    float(np.sqrt(((logs * share) ** 2).sum()) / (logs**2).sum()),
-                    "linear consistency and a polygon for a circle; the saw tooth's scatter")
+    own = known.scatter[:, SLIPS].max(axis=1) / errors
+    common = (known.stored_error + known.penalty_error)[SLIPS].max() / errors
+    CASE.check_rate(f"{KINDS[name]} force in slip over GetFEM, rms of windows", list(known.spacings), list(errors), 2,
+                    float((np.sqrt(((logs * own) ** 2).sum()) + np.abs((logs * common).sum())) / (logs**2).sum()),
+                    "linear consistency and a polygon for a circle; errors of rate and saw tooth by size, common ones")
 
 
 @pytest.fixture(scope="module")
@@ -120,23 +135,30 @@ def same_nodes() -> list[Result]:
     return [by_reference(CASE, push), by_reference(CASE, replace(push, points=push.points // 2, slides=False))]
 
 
+def within_steps(push: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """[windows] how far means may be off since a force that changes between samples is known at these alone: at each
+    tooth it snaps."""
+    change = np.abs(np.diff(force, prepend=force[0]))
+    return np.array([hann(push, *window) @ change / 2 for window in WINDOWS])
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_engine_and_reference(same_nodes: list[Result], name: str) -> None:
     """The engine's rate is taken out as in Study."""
-    push = same_nodes[0].push
-    usual, slower = (getattr(result_of(Push(SIZES[0], pause=pause)).forces_at(push), name)
-                     for pause in (40.0, 40.0 * SLOW))
+    moving = [result_of(replace(Push(SIZES[0]), pause=Push(SIZES[0]).pause * slow)) for slow in (1.0, SLOW)]
+    usual, slower = (getattr(result.forces, name) for result in moving)
     static, long_steps = (getattr(result.forces, name) for result in same_nodes)
     first = 1 if name == "along" else 0
-    still = slower + np.where(SLIPS, 1.0, 0.5) * (slower - usual)
-    allowed = by_group(np.abs(slower - usual) / 2, first)
+    still = usual + FACTOR * (slower - usual)
+    allowed = by_group(FACTOR_ERROR * np.abs(slower - usual), first)
     allowed[~SLIPS] += np.abs(long_steps - static[~SLIPS])[first:].max()
+    allowed[SLIPS] += sum(within_steps(result.push, getattr(result, name)) for result in (moving[0], same_nodes[0]))
     off = np.abs(still - static) / allowed
     for kind, there in (("sticks", ~SLIPS), ("slips", SLIPS)):
         i = np.flatnonzero(there)[first * (kind == "sticks") + off[there][first * (kind == "sticks"):].argmax()]
         CASE.check(Label.INDEPENDENT, f"{KINDS[name]} force that {kind}, engine over reference, worst",
                    still[i] / static[i], 1, allowed[i] / static[i],
-                   "half of what a rate half as large changes; what half as many load steps of statics change")
+                   "the order in the rate; what half as many load steps of statics change, or what changes between samples")
 
 
 @pytest.mark.parametrize("push", DRAWN)
@@ -146,12 +168,12 @@ def test_surface(studies: dict[str, Study], push: float) -> None:
     finest = Push(SIZES[-1])
     result = result_of(finest)
     place = STUCK.index(push) if push in STUCK else len(PLACES) - 1
-    across, along = (np.abs(studies[name].ways[-1, 0, place] / studies[name].stored[place] - 1)
-                     + studies[name].saw[-1, place] for name in ("across", "along"))
+    across, along = (np.abs(studies[name].errors()[-1, place]) + studies[name].scatter[-1, place]
+                     for name in ("across", "along"))
     overlap = result.forces.across.max() / 1.5 / finest.stiffness
     off = distances(result.surface(finest.rests[-1] if push in STUCK else finest.end), read_surfaces()[push])
-    CASE.check(Label.INDEPENDENT, f"block's top at push {push:g}: nodes from GetFEM's, rms", np.sqrt((off**2).mean()), 0,
-               across * 0.5 + along * min(push, 0.4) + overlap,
+    CASE.check(Label.INDEPENDENT, f"block's top at push {push:g}: nodes from GetFEM's, rms",
+               np.sqrt((off**2).mean()), 0, across * DEPTH + along * min(push, SLIDING[0]) + overlap,
                "error of the normal force times depth, of the tangential one times the way that sticks, overlap")
 
 
@@ -182,13 +204,13 @@ def draw_errors(axes: Axes, studies: dict[str, Study]) -> None:
         order = observed_order(list(known.spacings), list(known.rms()))
         axes.loglog(known.spacings, known.rms(), marker=marker, color=colour, linewidth=1.2,
                     label=f"{KINDS[name]}: {order:.2f}")
-        off = np.abs(known.limit() / known.stored - 1)[known.first:]
+        off = np.abs(known.limit() / known.stored - 1)[SLIPS]
         axes.axhline(np.sqrt((off**2).mean()), linestyle=":", color=colour, linewidth=1.0, label="at h = 0")
     spacings = studies["along"].spacings
     axes.set_xticks(spacings, [f"{h:.3f}" for h in spacings])
     axes.set_xticks([], minor=True)
     axes.set_xlabel("spacing of the block's outline over R")
-    axes.set_ylabel("|force over GetFEM - 1|, rms of places")
+    axes.set_ylabel("|force in slip over GetFEM - 1|")
     legend(axes)
 
 

@@ -13,8 +13,8 @@ from verification import Case, Run
 GAP = 0.001  # at the start, as in scene.toml
 PRESSES = 2  # rests on the way down
 WINDOWS = [(0.4, 0.8), (0.8, 1.2)]  # of the push, over which forces in slip are averaged
-# Outlines of the discs with a corner and with a facet at the lowest point, nodes of either; outlines of the blocks whose
-# segments lie differently below it, nodes of either.
+# Outlines of the discs with a corner and with a facet at the lowest point, nodes of either; outlines of the blocks,
+# whose segments lie differently below it, nodes of either.
 SIZES = {10: ((48, 50), 168, (82, 80), 380), 14: ((68, 70), 340, (114, 112), 740),
          20: ((100, 102), 700, (162, 160), 1450), 28: ((140, 142), 1400, (228, 226), 2900)}
 
@@ -54,7 +54,7 @@ class Push:
 
     def name(self) -> str:
         way = ("facet" if self.facet else "corner") + ("_shifted" if self.shifted else "")
-        return f"{self.size}_{way}_{self.stiffness:g}_{self.pause:g}_{self.friction:g}"
+        return f"{self.size}_{way}_{self.stiffness:g}_{self.pause:g}_{self.friction:g}{'' if self.slides else '_stuck'}"
 
     def ways(self, count: int = 4) -> list[Push]:
         """With other discs and blocks; the first two differ in both."""
@@ -120,11 +120,6 @@ class Result:
         self.along, self.across = -run.at("disc.force_x", at), run.at("disc.force_y", at)
         self.forces = forces(self.push, self.along, self.across)
 
-    def forces_at(self, push: np.ndarray) -> Forces:
-        """From these samples alone."""
-        there = np.abs(self.push[:, None] - push).argmin(axis=0)
-        return forces(push, self.along[there], self.across[there])
-
     def surface(self, time: float) -> np.ndarray:
         """[nodes x 2] of the block's top, without its corners."""
         frames = frames_of(self.run)
@@ -140,6 +135,7 @@ def by_engine(case: Case, push: Push) -> Result:
 
 def by_reference(case: Case, push: Push) -> Result:
     """Statics: load steps end at the points of the histories and at outputs, fewer in slip than the engine's."""
-    push = replace(push, sample=0.025)
-    run = case.reference(f"{push.name()}_{push.points}_{push.slides}_reference", push.scene(case), "--static", "--dt", repr(push.pause))
+    push = replace(push, sample=0.00625)
+    name = f"{push.name()}_{push.points}_reference"
+    run = case.reference(name, push.scene(case), "--static", "--dt", repr(push.pause))
     return Result(push, run)
