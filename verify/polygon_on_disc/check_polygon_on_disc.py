@@ -16,7 +16,7 @@ from polygon_on_disc_stored import distances, largest_from_here, read_outlines, 
 from squeeze import NEWTON
 from verification import FULL, Case, Label, observed_order
 
-CASE = Case(__file__, cost=3)
+CASE = Case(__file__, cost=2)
 CHOSEN = [size for size in SIZES if FULL or size < 28]
 GETFEM_STOPS = 1e-6  # Newton's residuals of 1e-9 in the fifty nodes of a support, over the least force
 STIFF = 2.0  # times the contact stiffness
