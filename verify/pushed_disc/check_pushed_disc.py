@@ -14,7 +14,7 @@ from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference, han
 from pushed_disc_stored import distances, read_stored, read_surfaces
 from verification import FULL, Case, Label, observed_order
 
-CASE = Case(__file__, cost=6)
+CASE = Case(__file__, cost=8)
 SIZES = [10, 14, 20, *([28] if FULL else [])]
 STIFF, SLOW = 2.0, 2.0  # times the contact stiffness; the pause
 GETFEM_STOPS = 3e-7  # Newton's residuals of 1e-9 in the fifty nodes of the disc's support, over the least force, 0.177
