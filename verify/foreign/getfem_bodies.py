@@ -1,10 +1,12 @@
 """Bodies at large strain in contact, by GetFEM (5.4): quadratic triangles, augmented Lagrangian, no penalty left.
 
 Bodies touch through GetFEM's brick of large sliding by ray tracing: the slave has multipliers of first order on its
-outline. Rigid plates without friction have pressures of second order.
+outline; slip is that since the last load step. Rigid plates without friction have pressures of second order.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import getfem
 import numpy as np
@@ -20,7 +22,7 @@ LAWS = {
     "melody": "(mu_{n}*pow(Det({F}),-2/3)*{F}+((lame_{n}+2/3*mu_{n})*(Det({F})-1)*Det({F})"
               "-mu_{n}/3*pow(Det({F}),-2/3)*(Norm_sqr({F})+1))*Inv({F})')",
 }
-OUTLINE, AXIS = 1, 2  # regions
+OUTLINE, AXIS, HELD = 1, 2, 3  # regions
 AUGMENTED = 20.0  # mu / R: the result does not depend on it
 REACH = 0.5  # R, of rays
 RESIDUAL = 1e-9
@@ -40,6 +42,8 @@ class Bodies:
         self._own: dict[str, getfem.Mesh] = {}
         self._rules: dict[str, getfem.MeshIm] = {}
         self._at = dict(imposed)
+        self._springs: dict[str, str] = {}
+        self._slip_since: list[str] = []  # bodies
         for name, value in imposed.items():
             self.model.add_initialized_data(name, value)
 
@@ -58,6 +62,23 @@ class Bodies:
         """u_x = 0 on x = 0."""
         self.model.add_normal_Dirichlet_condition_with_multipliers(self._rules[name], f"u_{name}", 2, AXIS)
 
+    def hold(self, name: str, where: Callable[[np.ndarray], np.ndarray], stiffness: float, x: str, y: str) -> None:
+        """By springs of so much a length on what is there of its outline, whose other ends move by imposed values."""
+        own, mesh = self._own[name], self.meshes[name]
+        sides = own.region(OUTLINE)
+        middles = np.array([own.pts(own.pid_in_faces(side[:, None])).mean(axis=1) for side in sides.T])
+        held = where(middles)
+        own.set_region(HELD, sides[:, held])
+        own.delete_region(OUTLINE)
+        own.set_region(OUTLINE, sides[:, ~held])
+        self._springs[name] = f"({stiffness!r}*([{x},{y}]-u_{name}))"
+        self.model.add_nonlinear_term(self._rules[name], f"-{self._springs[name]}.Test_u_{name}", HELD)
+
+    def holding_force(self, name: str) -> np.ndarray:
+        """[2] of the springs on the body."""
+        return np.array([getfem.asm_generic(self._rules[name], 0, f"{self._springs[name]}({i})", HELD, self.model)
+                         for i in (1, 2)])
+
     def press(self, name: str, plate: str, side: int) -> None:
         """By a plate at y = the imposed value of its name, above (side 1) or below (-1)."""
         self.model.add_filtered_fem_variable(f"p_{name}", fields(self._own[name], 1, 2), OUTLINE)
@@ -65,14 +86,24 @@ class Bodies:
         self.model.add_nonlinear_term(self._rules[name], f"{side}*{pressure}*Test_u_{name}(2)"
                                       f"+({pressure}-p_{name})/{AUGMENTED}*Test_p_{name}", OUTLINE)
 
-    def touch(self, slave: str, master: str) -> None:
+    def touch(self, slave: str, master: str, friction: float = 0.0) -> None:
         self.model.add_filtered_fem_variable(f"t_{slave}", fields(self._own[slave], 2, 1), OUTLINE)
         self.model.add_initialized_data("augmented", AUGMENTED)
-        brick = self.model.add_integral_large_sliding_contact_brick_raytracing("augmented", REACH)
+        before = {name: [] for name in (slave, master)}
+        options = []
+        if friction > 0:
+            self.model.add_initialized_data("friction", friction)
+            self.model.add_initialized_data("rate", 1.0)
+            options = ["friction", "rate"]
+            for name in before:
+                self.model.add_fem_data(f"w_{name}", self.model.mesh_fem_of_variable(f"u_{name}"))
+                before[name] = [f"w_{name}"]
+                self._slip_since.append(name)
+        brick = self.model.add_integral_large_sliding_contact_brick_raytracing("augmented", REACH, *options)
         self.model.add_slave_contact_boundary_to_large_sliding_contact_brick(
-            brick, self._rules[slave], OUTLINE, f"u_{slave}", f"t_{slave}")
+            brick, self._rules[slave], OUTLINE, f"u_{slave}", f"t_{slave}", *before[slave])
         self.model.add_master_contact_boundary_to_large_sliding_contact_brick(
-            brick, self._rules[master], OUTLINE, f"u_{master}")
+            brick, self._rules[master], OUTLINE, f"u_{master}", *before[master])
 
     def load(self, imposed: dict[str, float], steps: int) -> None:
         """From the last load in so many steps, in halves where Newton's method fails."""
@@ -97,6 +128,8 @@ class Bodies:
                                         "lsearch", "simplest")
         if converged:
             self._at = dict(imposed)
+            for name in self._slip_since:
+                self.model.set_variable(f"w_{name}", self.model.variable(f"u_{name}"))
         return bool(converged)
 
     def plate_force(self, name: str, plate: str, side: int) -> float:

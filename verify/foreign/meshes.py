@@ -65,3 +65,43 @@ def ring_cells(k: int, sector: int) -> list[list[tuple[int, int]]]:
     outer, inner = [(k, sector * k + j) for j in range(k + 1)], [(k - 1, sector * (k - 1) + j) for j in range(k)]
     pointing_in = [[outer[j], outer[j + 1], inner[j]] for j in range(k)]
     return pointing_in + [[inner[j], outer[j + 1], inner[j + 1]] for j in range(k - 1)]
+
+
+def full_circle(t: np.ndarray) -> np.ndarray:
+    """From the highest point, counter-clockwise."""
+    angle = 2 * np.pi * (t + 0.25)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def full_disc(rings: int, centre: tuple[float, float]) -> Mesh:
+    """Of radius 1; ring k has 6 k sides. Its outline begins and ends at the highest point."""
+    return welded(fan(full_circle, centre, rings, 6))
+
+
+def welded(mesh: Mesh) -> Mesh:
+    """Points in one place become one."""
+    _, first, number = np.unique(np.round(mesh.points, 9), axis=0, return_index=True, return_inverse=True)
+    number = number.ravel()
+    return Mesh(mesh.points[first], number[mesh.cells], mesh.outline, number[mesh.order])
+
+
+def block(columns: int, rows: int, left: float, right: float, height: float) -> Mesh:
+    """A rectangle whose top is y = 0, of squares in two triangles each; its outline is the top, from the right to the left,
+    and the bottom, from the left to the right."""
+    x, y = np.linspace(left, right, 2 * columns + 1), np.linspace(-height, 0, 2 * rows + 1)
+    points = np.stack(np.meshgrid(x, y), axis=2).reshape(-1, 2)
+
+    def at(i: int, j: int) -> int:
+        return j * (2 * columns + 1) + i
+
+    corners = []
+    for j in range(0, 2 * rows, 2):
+        for i in range(0, 2 * columns, 2):
+            a, b, c, d = (i, j), (i + 2, j), (i + 2, j + 2), (i, j + 2)
+            corners += [[a, b, c], [c, d, a]] if (i + j) % 4 == 0 else [[d, a, b], [b, c, d]]
+    cells = np.array([[at(*p) for p in cell] + [at(*(np.add(cell[k], cell[(k + 1) % 3]) // 2)) for k in range(3)]
+                      for cell in corners])
+    height_of = points[cells[:, 3:], 1]  # of the middles of sides
+    outline = np.argwhere((np.abs(height_of) < PLAIN) | (np.abs(height_of + height) < PLAIN))
+    top = [at(i, 2 * rows) for i in range(2 * columns, -1, -1)]
+    return Mesh(points, cells, outline, np.array(top + [at(i, 0) for i in range(2 * columns + 1)]))
