@@ -15,7 +15,7 @@ from pushed_disc_stored import distances, read_stored, read_surfaces
 from verification import FULL, Case, Label, observed_order
 
 CASE = Case(__file__, cost=8)
-SIZES = [10, 14, 20, *([28] if FULL else [])]
+SIZES = [10, 14, *([20, 28] if FULL else [])]
 STIFF, SLOW = 2.0, 2.0  # times the contact stiffness; the pause
 GETFEM_STOPS = 3e-7  # Newton's residuals of 1e-9 in the fifty nodes of the disc's support, over the least force, 0.177
 KINDS = {"along": "tangential", "across": "normal"}
@@ -116,6 +116,7 @@ def test_force(studies: dict[str, Study], name: str, i: int) -> None:
                "GetFEM 5.4.2, its meshes and load steps; saw tooth between meshes of one size, penalty, rate")
 
 
+@pytest.mark.skipif(not FULL, reason="two sizes have no order")
 @pytest.mark.parametrize("name", KINDS)
 def test_order(studies: dict[str, Study], name: str) -> None:
     known = studies[name]
