@@ -52,6 +52,7 @@ class Estimate:
     output: float | None  # bytes
 
 
+_COUNTS = {"thousand": 1e3, "million": 1e6, "until": 1.0}
 _BYTES = {"B": 1.0, "kB": 1e3, "MB": 1e6, "GB": 1e9, "TB": 1e12}
 _SECONDS = {"s": 1.0, "min": 60.0, "h": 3600.0, "days": 86400.0, "d": 86400.0}
 
@@ -69,8 +70,7 @@ def check(file: Path, threads: int = 1) -> Estimate:
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
     text = result.stdout
-    found = re.search(r"^evaluations +(?:at least )?([\d.e+]+)", text, re.MULTILINE)
-    return Estimate(text, float(found[1]) if found else None, _quantity(text, "time", _SECONDS),
+    return Estimate(text, _quantity(text, "evaluations", _COUNTS), _quantity(text, "time", _SECONDS),
                     _quantity(text, "memory", _BYTES), _quantity(text, "output", _BYTES))
 
 

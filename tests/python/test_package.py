@@ -1,0 +1,76 @@
+"""The package: scenes read, changed and written; runs begun and opened."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
+sys.path.insert(0, str(ROOT / "python"))
+
+import pliant
+from pliant.scene import Scene
+
+TWO_DISCS = ROOT / "cases/two_discs.toml"
+
+
+@pytest.fixture
+def scene() -> Scene:
+    scene = Scene.read(TWO_DISCS)
+    scene["time.end"] = "1 ns"
+    scene["shapes.disc.nodes"] = 40
+    return scene
+
+
+def test_a_changed_scene_keeps_all_else(scene: Scene) -> None:
+    old, new = TWO_DISCS.read_text().splitlines(), scene.text().splitlines()
+    assert [(a, b) for a, b in zip(old, new, strict=True) if a != b] == [('end = "10 ns"', 'end = "1 ns"'),
+                                                                         ("nodes = 168", "nodes = 40")]
+
+
+def test_members_by_number_and_by_name(scene: Scene) -> None:
+    scene["grains.right.velocity.uniform.0"] = "-7 m/s"
+    assert scene["grains.1.velocity.uniform"] == ["-7 m/s", "0 m/s"]
+    scene["discretisation.mass"] = "corrected"
+    assert "[discretisation]" in scene.text() and "grains.middle.name" not in scene
+
+
+@pytest.mark.parametrize("path, message", [
+    ("grains.rigth.seed", "did you mean 'right'"), ("shapes.disk.nodes", "did you mean 'disc'"),
+    ("grains.7.seed", "no member '7'"), ("time.end.unit", "a value, not a table")])
+def test_wrong_paths(scene: Scene, path: str, message: str) -> None:
+    before = scene.text()
+    with pytest.raises(KeyError, match=message):
+        scene[path] = 1
+    assert scene.text() == before
+
+
+def test_the_engine_says_what_is_wrong(scene: Scene, tmp_path: Path) -> None:
+    scene["materials.soft.poisson"] = 0.7
+    with pytest.raises(pliant.BadScene, match="poisson"):
+        scene.check()
+    with pytest.raises(pliant.BadScene, match="poisson"):
+        pliant.run(scene, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
+    """A run within a second is counted by `check`, to the three digits that it prints."""
+    estimate = scene.check()
+    run = pliant.run(scene, tmp_path / "out")
+    assert estimate.evaluations == pytest.approx(run.summary["evaluations"], rel=5e-3)
+    assert estimate.seconds is not None and estimate.memory is not None
+    assert estimate.output == pytest.approx(sum(f.stat().st_size for f in (tmp_path / "out").iterdir()), rel=0.5)
+    again = pliant.open(tmp_path / "out")
+    assert again.summary["state_hash"] == run.summary["state_hash"]
+    column = again.probes.column("velocity_left.velocity_x")
+    assert column.unit == "m/s" and column.values[0] == pytest.approx(50)
+    last = len(again.frames.times) - 1
+    moved = again.frames.positions("bodies", last)[:, 0] - again.frames.positions("bodies", 0)[:, 0]
+    assert np.abs(moved).max() > 1e-8
+    with pytest.raises(pliant.BadFolder):
+        pliant.open(tmp_path)
