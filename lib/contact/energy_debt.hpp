@@ -18,8 +18,8 @@ namespace pliant {
 /// The pressure over what the stiffness makes of the way, at most: little beside what a step does to contacts anyway,
 /// nothing at rest, and nothing where steps are short. It acts as a dashpot that sees the way of the step before: with
 /// w^2 dt^2 = a and a share b of the stiffness, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4,
-/// and a is 4 safety^2 at most. Close to that hardly anything dies out, and what is repaid keeps contacts flickering
-/// for good: nine tenths of it are used (docs/defaults.md).
+/// and a is 4 safety^2 at most. A share that changes its sign from step to step can feed such a motion well below that;
+/// with nine tenths of it no contact at rest was seen to flicker, with all of it one was (docs/defaults.md).
 inline double most_repaid(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
 /// What bodies have lost is given back while it is less than so many times kn times PatchTotals::ways: more would shake
 /// what all but stands still. A touch that begins or ends leaves an eighth at most, a pull that breaks off at a gap of
