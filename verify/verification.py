@@ -191,6 +191,12 @@ def read_rows(file: Path) -> list[dict]:
     return json.loads(file.read_text()) if file.exists() else []
 
 
+def weights_of_limit(spacings: np.ndarray, order: int) -> np.ndarray:
+    """[sizes] of what a straight line in this power of the spacing takes from each for h = 0."""
+    powers = spacings**order
+    return np.polyfit(powers, np.eye(len(powers)), 1, w=1 / powers)[1]
+
+
 def observed_order(steps: list[float], errors: list[float]) -> float:
     """Of a straight line through the logarithms, by least squares."""
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])

@@ -31,19 +31,18 @@ def readable(value: float, unit: str) -> str:
 
 def length(value: str | float) -> float:
     """Metres of a length as scene files write it: length("87 um") is 8.7e-5, length(4) is 4. ValueError if none."""
-    if isinstance(value, (int, float)):
-        return float(value)
-    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnumck]?)m\s*", value.replace("µ", "u").replace("μ", "u"))
-    if match is None:
-        raise ValueError(f"'{value}' is not a length such as '87 um'")
-    return float(match[1]) * (1e-2 if match[2] == "c" else _FACTORS[match[2]])
+    return _si(value, "m", "a length such as '87 um'", {**_FACTORS, "c": 1e-2})
 
 
 def time(value: str | float) -> float:
     """Seconds of a time as scene files write it: time("4 us") is 4e-6. ValueError if none."""
+    return _si(value, "s", "a time such as '4 us'", _FACTORS)
+
+
+def _si(value: str | float, unit: str, what: str, factors: dict[str, float]) -> float:
     if isinstance(value, (int, float)):
         return float(value)
-    match = re.fullmatch(r"\s*([-+0-9.eE]+)\s*([pnum]?)s\s*", value.replace("µ", "u").replace("μ", "u"))
-    if match is None:
-        raise ValueError(f"'{value}' is not a time such as '4 us'")
-    return float(match[1]) * _FACTORS[match[2]]
+    match = re.fullmatch(rf"\s*([-+0-9.eE]+)\s*(.?){unit}\s*", value.replace("µ", "u").replace("μ", "u"))
+    if match is None or match[2] not in factors:
+        raise ValueError(f"'{value}' is not {what}")
+    return float(match[1]) * factors[match[2]]

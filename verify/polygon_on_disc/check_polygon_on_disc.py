@@ -14,7 +14,7 @@ from pictures import COLOURS, MARKERS, legend, panels, save
 from polygon_on_disc_runs import LONG_PAUSE, NAMES, SIZES, Press, Rests, by_engine, by_reference
 from polygon_on_disc_stored import distances, largest_from_here, read_outlines, read_stored
 from squeeze import NEWTON
-from verification import FULL, Case, Label, observed_order
+from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=2)
 CHOSEN = [size for size in SIZES if FULL or size < 28]
@@ -49,8 +49,7 @@ class Sizes:
 
     def weights(self) -> np.ndarray:
         """[2 x sizes] of what straight lines in the spacing and in its square take from each for h = 0."""
-        powers = [self.spacings, self.spacings**2]
-        return np.array([np.polyfit(power, np.eye(len(power)), 1, w=1 / power)[1] for power in powers])
+        return np.array([weights_of_limit(self.spacings, order) for order in (1, 2)])
 
     def limit(self) -> np.ndarray:
         """[depths] forces at h = 0: beside corners errors are of first order, elsewhere of second."""

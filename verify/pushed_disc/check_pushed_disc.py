@@ -12,7 +12,7 @@ from make_pushed_disc_oracles import DEPTH, DRAWN, FRICTION, MESHES, SLIDING, ST
 from pictures import COLOURS, MARKERS, legend, panels, save
 from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference, hann
 from pushed_disc_stored import distances, read_stored, read_surfaces
-from verification import FULL, Case, Label, observed_order
+from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=8)
 SIZES = [10, 14, *([20, 28] if FULL else [])]
@@ -81,9 +81,8 @@ class Study:
         return np.sqrt((self.errors()[:, SLIPS] ** 2).mean(axis=1))
 
     def weights(self) -> np.ndarray:
-        """[sizes] of what a straight line in the square of the spacing takes from each for h = 0."""
-        squares = self.spacings**2
-        return np.polyfit(squares, np.eye(len(squares)), 1, w=1 / squares)[1]
+        """[sizes]"""
+        return weights_of_limit(self.spacings, 2)
 
     def limit(self) -> np.ndarray:
         """[places] at h = 0."""

@@ -13,7 +13,7 @@ from pictures import COLOURS, MARKERS, legend, panels, save
 from squeeze import NEWTON
 from two_bodies_discs import APPROACHES, LONG_PAUSE, NAMES, Rests, Squeeze, by_engine, by_reference
 from two_bodies_stored import Penalised, Stored, distances, read_calculix, read_outlines, read_stored
-from verification import FULL, Case, Label, observed_order
+from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=2)
 LAWS = {"neo-hookean": [168, 340, 700], "melody": [168, 340, *([700] if FULL else [])]}  # nodes in the soft disc
@@ -51,9 +51,8 @@ class Sizes:
         return np.sqrt((self.errors() ** 2).mean(axis=1))
 
     def weights(self) -> np.ndarray:
-        """[sizes] of what a straight line in the square of the spacing takes from each for h = 0."""
-        squares = self.spacings**2
-        return np.polyfit(squares, np.eye(len(squares)), 1, w=1 / squares)[1]
+        """[sizes]"""
+        return weights_of_limit(self.spacings, 2)
 
     def limit(self) -> np.ndarray:
         """[approaches] forces at h = 0."""
