@@ -49,9 +49,20 @@ class Scene:
         if isinstance(at, MutableSequence):
             at[_index(at, last, path)] = value
         elif isinstance(at, MutableMapping):
+            if isinstance(at.get(last), MutableMapping) and not isinstance(value, MutableMapping):
+                raise KeyError(f"{path}: it is a table, which {value!r} is not")
             at[last] = value
         else:
             raise KeyError(f"{path}: {'.'.join(parents)} is a value, not a table")
+
+    def canonical(self, path: str) -> str:
+        """With the numbers of all members of lists: two paths to one key are equal so."""
+        at: Any = self._document
+        names = []
+        for name in path.split("."):
+            names.append(str(_index(at, name, path)) if isinstance(at, MutableSequence) else name)
+            at = at.get(name) if isinstance(at, MutableMapping) else at[int(names[-1])] if at is not None else None
+        return ".".join(names)
 
     def __contains__(self, path: str) -> bool:
         try:
@@ -71,7 +82,7 @@ class Scene:
             elif isinstance(at, MutableSequence):
                 for value in at:
                     look(value)
-            elif isinstance(at, str) and at and not Path(at).is_absolute() and (folder / at).is_file():
+            elif isinstance(at, str) and _may_name_a_file(at) and (folder / at).is_file():
                 found.append(str(at))
 
         look(self._document)
@@ -89,6 +100,10 @@ class Scene:
         """What it costs. BadScene with the engine's words."""
         with tempfile.TemporaryDirectory() as folder:
             return check(self.write(Path(folder) / self.file_name), threads)
+
+
+def _may_name_a_file(text: str) -> bool:
+    return 0 < len(text) < 255 and text.isprintable() and "." in text and not Path(text).is_absolute()
 
 
 def _names(at: Any) -> Iterator[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,11 +17,12 @@ import pytest
 ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 sys.path.insert(0, str(ROOT / "python"))
 
+from pliant.engine import engine
 from pliant.results import read_json
 from pliant.study.convergence import analyse, observed_order
 from pliant.study.points import points_of
 from pliant.study.reading import BadStudy
-from pliant.study.spec import read_study
+from pliant.study.study_file import read_study
 
 SCENE = """
 [time]
@@ -149,7 +151,38 @@ def test_a_failed_run_is_reported_and_does_not_stop_the_others(desk: Desk) -> No
     assert desk.call().returncode == 1
     assert desk.times() == before, "it would fail again"
     assert desk.call("--retry").returncode == 1
-    assert desk.times() != before
+    after = desk.times()
+    assert {name for name in before if after[name] != before[name]} == {"nodes=40,pull=-300", "nodes=60,pull=-300"}
+
+
+def test_what_was_taken_away_is_run_again(desk: Desk) -> None:
+    assert desk.call().returncode == 0
+    before = desk.hashes()
+    shutil.rmtree(desk.out / "runs/nodes=40,young=2.8/results")
+    assert desk.call().returncode == 0
+    assert desk.hashes() == before
+
+
+def test_an_outline_that_changed_is_another_scene(desk: Desk) -> None:
+    """The engine keeps it in its results as outline_disc.csv: as its own file may be called."""
+    def square(side: float) -> None:
+        corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
+        (desk.folder / "outline_disc.csv").write_text("\n".join(f"{x},{y}" for x, y in corners) + "\n")
+
+    square(0.5)
+    text = SCENE.format(end="1 s").replace('kind = "disc"\ndiameter = 1\n', 'kind = "file"\nfile = "outline_disc.csv"\n')
+    (desk.folder / "scene.toml").write_text(text)
+    assert desk.call().returncode == 0, desk.call().stderr
+    before = desk.hashes()
+    square(0.6)
+    assert desk.call().returncode == 0
+    assert all(desk.hashes()[name] != value for name, value in before.items())
+
+
+def test_a_folder_with_a_blank_and_quotes(desk: Desk) -> None:
+    desk.out = desk.folder / "it's \"mine\" & $HOME"
+    assert desk.call().returncode == 0
+    assert len(desk.rows()) == 4
 
 
 def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
@@ -183,6 +216,15 @@ def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
     ("values = [40, 60]", "values = []", "empty"),
     ('name = "young"', 'name = "nodes"', "two parameters or quantities are called 'nodes'"),
     ('scene = "scene.toml"', 'scene = "scene.toml"\nkind = "convergence"', "[convergence]"),
+    ("values = [40, 60]", "values = [40, 40]", "'values' has 40 twice"),
+    ('path = "materials.soft.young"', 'path = "shapes.disc.nodes"', "which 'nodes' sets too"),
+    ('name = "young"\npath = "materials.soft.young"', 'name = "young"\npaths = ["grains.0.seed", "grains.disc.seed"]',
+     "sets too"),
+    ('path = "materials.soft.young"', 'path = "materials.soft"', "it is a table"),
+    ('name = "strain"', 'name = "run"', "nothing can be called 'run'"),
+    ('take = "max"', 'take = "max"\nwindow = ["1 s", "0.5 s"]', "begin before it ends"),
+    ('take = "max"', 'take = "max"\nwindow = ["1 MPa", "2 MPa"]', "not a time"),
+    ('summary = "steps"', 'function = "none.py:f"', "FILE.py:NAME"),
 ])
 def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) -> None:
     text = STUDY.replace(old, new)
@@ -209,7 +251,6 @@ def test_regression_tells_what_changed(desk: Desk) -> None:
     rows = (desk.out / "table.csv").read_text().splitlines()
     value = desk.rows()[0]["strain [J/m]"]
     (desk.folder / "baseline.csv").write_text("\n".join(rows).replace(value, repr(float(value) * (1 + 1e-6)), 1) + "\n")
-    desk.study(regression + "\n")
     result = desk.call()
     assert result.returncode == 1 and "nodes=40,young=2.8: strain was" in result.stderr
 
@@ -263,3 +304,28 @@ def test_no_order_is_said() -> None:
     mixed = analyse([1, 2, 4, 8], [1 + 0.01 * h + 0.1 * h**4 for h in (1, 2, 4, 8)])
     assert mixed.asymptotic, "one order rules"
     assert not analyse([1, 2, 4, 8], [1 + h + 0.02 * h**4 for h in (1, 2, 4, 8)]).asymptotic
+    equal = analyse([1, 2, 4], [3, 3, 3])
+    assert equal.order is None and "equal" in equal.note
+    assert analyse([1, 2, 4], [3, float("nan"), 3]).order is None
+    assert analyse([0, 2, 4], [3, 4, 5]).order is None
+
+
+def test_units_must_agree_where_numbers_count(desk: Desk) -> None:
+    """0.5 ns and 600 ps are no 0.5 and 600."""
+    text = STUDY.replace("values = [2.8, 5.6]", 'values = ["2 Pa", "3 kPa"]')
+    assert len(points_of(read_study(desk.study(text)))) == 4
+    with pytest.raises(BadStudy, match="different units"):
+        read_study(desk.study(text + '[[plots]]\nx = "young"\ny = "strain"\n'))
+
+
+def test_a_regression_sees_another_engine(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    desk.call()
+    (desk.folder / "baseline.csv").write_text((desk.out / "table.csv").read_text())
+    desk.study(STUDY.replace("[[parameters]]", 'kind = "regression"\n[regression]\nbaseline = "baseline.csv"\n'
+                             "tolerances = { strain = 1e-9 }\n[[parameters]]", 1))
+    assert desk.call().returncode == 0
+    other = tmp_path / "other_engine"
+    other.write_text(f'#!/bin/sh\n[ "$1" != run ] || {{ echo "error: planted" >&2; exit 1; }}\nexec {engine()} "$@"\n')
+    other.chmod(0o755)
+    monkeypatch.setenv("PLIANT_ENGINE", str(other))
+    assert desk.call().returncode == 1

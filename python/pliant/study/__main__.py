@@ -15,10 +15,12 @@ from pathlib import Path
 
 from pliant.engine import BadScene, Estimate, check
 from pliant.scene import Scene
-from pliant.study.folder import Folder
+from pliant.study.folder import Folder, copy_if_other
+from pliant.study.gather import CannotGather, function_of
 from pliant.study.points import Point, points_of
 from pliant.study.reading import BadStudy
-from pliant.study.spec import Study, read_study
+from pliant.study.spec import Study
+from pliant.study.study_file import read_study
 
 HERE = Path(__file__).resolve().parent
 PACKAGE = HERE.parents[1]
@@ -47,21 +49,50 @@ def scene_of(base: Scene, point: Point) -> Scene:
     return scene
 
 
-def check_all(study: Study, points: list[Point]) -> list[Estimate]:
-    """Each scene as the engine reads it: nothing runs if one is wrong."""
-    base, estimates = Scene.read(study.scene), []
+def check_paths(study: Study, base: Scene) -> None:
+    """No key is set twice."""
+    taken: dict[str, str] = {}
+    for p in [*study.parameters, *([study.replicas] if study.replicas else [])]:
+        for path in p.paths:
+            key = base.canonical(path)
+            for other, name in taken.items():
+                if f"{key}.".startswith(f"{other}.") or f"{other}.".startswith(f"{key}."):
+                    raise BadStudy(f"{study.file}: '{p.name}' sets {path}, which '{name}' sets too")
+            taken[key] = p.name
+
+
+def files_beside(study: Study, scenes: list[Scene]) -> list[str]:
+    """Those that scenes name; they go along, so they must be at or below the scene's folder."""
+    names = sorted({name for scene in scenes for name in scene.files(study.scene.parent)})
+    for name in names:
+        if ".." in Path(name).parts:
+            raise BadStudy(f"{study.scene}: names {name}; a study takes along only files at or below the scene's folder")
+    return names
+
+
+def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[str]]:
+    """Each scene as the engine reads it: nothing runs if one is wrong. Estimates, and files that go along."""
+    unique_names = {point.name: point for point in points}
+    if len(unique_names) < len(points):
+        raise BadStudy(f"{study.file}: two runs would have the same values")
+    for quantity in study.quantities:
+        if quantity.function is not None:
+            function_of(quantity.function)
+    base = Scene.read(study.scene)
+    check_paths(study, base)
+    scenes, estimates = [scene_of(base, point) for point in points], []
+    files = files_beside(study, scenes)
     with tempfile.TemporaryDirectory() as scratch:
-        for name in base.files(study.scene.parent):
-            (Path(scratch) / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(study.scene.parent / name, Path(scratch) / name)
-        for point in points:
-            file = scene_of(base, point).write(Path(scratch) / study.scene.name)
+        for name in files:
+            copy_if_other(study.scene.parent / name, Path(scratch) / name)
+        for point, scene in zip(points, scenes):
+            file = scene.write(Path(scratch) / study.scene.name)
             try:
                 estimates.append(check(file, study.threads))
             except BadScene as error:
                 said = str(error).replace(str(file), str(study.scene))
                 raise BadStudy(f"{study.file}: the run {point.name}: {said}") from error
-    return estimates
+    return estimates, files
 
 
 def describe(points: list[Point], estimates: list[Estimate]) -> None:
@@ -80,18 +111,19 @@ def describe(points: list[Point], estimates: list[Estimate]) -> None:
 
 
 @contextmanager
-def alone(folder: Folder) -> Iterator[None]:
-    """One call at a time in a folder; a killed one leaves no lock."""
+def alone(folder: Folder) -> Iterator[int]:
+    """One call at a time in a folder; a killed one leaves no lock. Gives its descriptor, for those who
+    work on."""
     folder.path.mkdir(parents=True, exist_ok=True)
     with (folder.path / ".lock").open("w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise BadStudy(f"{folder.path}: another call works in this folder") from None
-        yield
+        yield lock.fileno()
 
 
-def snakemake(folder: Folder, study: Study, options: argparse.Namespace) -> int:
+def snakemake(folder: Folder, study: Study, options: argparse.Namespace, lock: int) -> int:
     command = ["/usr/bin/snakemake", "--snakefile", HERE / "Snakefile", "--directory", folder.path / "workflow",
                "--config", f"out={folder.path}", f"package={PACKAGE}", f"threads={study.threads}",
                f"python={sys.executable}", "--keep-going", "--nolock", "--rerun-incomplete", "--rerun-triggers",
@@ -102,23 +134,30 @@ def snakemake(folder: Folder, study: Study, options: argparse.Namespace) -> int:
     else:
         command += ["--cores", str(options.cores)]
     (folder.path / "workflow").mkdir(exist_ok=True)
-    return subprocess.run(command, stdin=subprocess.DEVNULL, check=False).returncode
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[lock]) as process:
+        while True:
+            try:
+                return process.wait()
+            except KeyboardInterrupt:
+                print("pliant study: stopping; runs write their checkpoints", file=sys.stderr)
 
 
 def run(study: Study, options: argparse.Namespace) -> int:
     points = points_of(study)
-    estimates = check_all(study, points)
+    estimates, files = check_all(study, points)
     if options.dry_run:
         describe(points, estimates)
         return 0
     folder = Folder((options.out or Path("results/studies") / study.name).absolute())
-    with alone(folder):
-        folder.lay_out(study, points)
+    with alone(folder) as lock:
+        folder.lay_out(study, points, files)
         for point in points:
             if options.retry and folder.outcome(point.name)["status"] == "failed":
                 folder.outcome_file(point.name).unlink()
                 shutil.rmtree(folder.results(point.name), ignore_errors=True)
-        code = snakemake(folder, study, options)
+            if not folder.results(point.name).is_dir():  # someone took the data away
+                folder.outcome_file(point.name).unlink(missing_ok=True)
+        code = snakemake(folder, study, options, lock)
         if code != 0:
             print("pliant study: not ended; the same command goes on from here", file=sys.stderr)
             return FAILED
@@ -129,9 +168,13 @@ def tell(folder: Folder) -> int:
     table = folder.read("table.json")
     bad = [row for row in table["rows"] if row["status"] != "finished" or row["problems"]]
     for row in bad:
-        print(f"{row['run']}: {row['status']}: {'; '.join([row['message'], *row['problems']])}", file=sys.stderr)
+        print(f"{row['run']}: {row['status']}: {'; '.join(filter(None, [row['message'], *row['problems']]))}",
+              file=sys.stderr)
     changed = [r for r in table.get("regression", []) if not r["good"]]
     for r in changed:
+        if r["quantity"] == "-":
+            print(f"{r['run']}: is in the baseline alone", file=sys.stderr)
+            continue
         print(f"{r['run']}: {r['quantity']} was {r['then']}, is {r['now']}; {r['tolerance']:g} allowed", file=sys.stderr)
     for order in table.get("orders", []):
         of = "".join(f", {name} = {value}" for name, value in order["of"].items())
@@ -146,8 +189,14 @@ def tell(folder: Folder) -> int:
 def main() -> int:
     options = arguments()
     try:
+        if options.cores < 1 or options.jobs < 1:
+            raise BadStudy("--cores and --jobs must be at least 1")
+        if options.slurm and shutil.which("sbatch") is None:
+            raise BadStudy("--slurm: there is no sbatch here")
+        if options.out is not None and set("{}") & set(str(options.out)):
+            raise BadStudy(f"--out: '{options.out}' has braces, which Snakemake reads as names")
         return run(read_study(options.study), options)
-    except (BadStudy, OSError) as error:
+    except (BadStudy, BadScene, CannotGather, UnicodeDecodeError, OSError) as error:
         print(f"pliant study: {error}", file=sys.stderr)
         return BAD_INPUT
 

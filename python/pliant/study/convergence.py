@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 
 SAFETY = 1.25  # Roache's, of three and more sizes
-LARGEST_ORDER = 10.0
+LEAST_ORDER, LARGEST_ORDER = 0.1, 10.0  # others are scatter
 ASYMPTOTIC = 0.1  # how far the ratio of two indices may be from the order's own power of the ratio of sizes
 
 
@@ -23,7 +23,7 @@ class Order:
 
 
 def observed_order(h: tuple[float, float, float], f: tuple[float, float, float]) -> float | None:
-    """p with (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p), sizes ascending; None: none up to LARGEST_ORDER."""
+    """p with (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p), sizes ascending; None: none from LEAST_ORDER to LARGEST_ORDER."""
     (h1, h2, h3), (f1, f2, f3) = h, f
     if f2 == f1 or (f3 - f2) / (f2 - f1) <= 0:
         return None
@@ -32,7 +32,7 @@ def observed_order(h: tuple[float, float, float], f: tuple[float, float, float])
     def excess(p: float) -> float:
         return (h3**p - h2**p) / (h2**p - h1**p) - wanted  # grows with p
 
-    low, high = 1e-3, LARGEST_ORDER
+    low, high = LEAST_ORDER, LARGEST_ORDER
     if excess(low) > 0 or excess(high) < 0:
         return None
     for _ in range(80):
@@ -44,10 +44,16 @@ def observed_order(h: tuple[float, float, float], f: tuple[float, float, float])
 def analyse(sizes: list[float], values: list[float]) -> Order:
     """Of the three finest; a fourth tells whether they are in the asymptotic range."""
     pairs = sorted(zip(sizes, values))
+    if not all(math.isfinite(h) and h > 0 and math.isfinite(f) for h, f in pairs):
+        return Order(None, None, None, False, "a size or a value is no number")
+    if len({h for h, _ in pairs}) < len(pairs):
+        return Order(None, None, None, False, "two sizes are equal")
     if len(pairs) < 3:
         return Order(None, None, None, None, "fewer than three sizes finished")
     h, f = [list(column) for column in zip(*pairs)]
     p = observed_order((h[0], h[1], h[2]), (f[0], f[1], f[2]))
+    if p is None and math.isclose(f[0], f[1], rel_tol=1e-12):
+        return Order(None, None, None, None, "the two finest values are equal")
     if p is None:
         return Order(None, None, None, False, "no order: the values do not approach a limit in order")
     ratio = (h[1] / h[0])**p

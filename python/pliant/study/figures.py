@@ -13,7 +13,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from pliant.study.folder import Folder
-from pliant.study.table import mean_of_replicas, number_of
+from pliant.study.spec import number_of
+from pliant.study.table import mean_of_replicas
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
 MARKERS = "osD^vP"
@@ -38,7 +39,7 @@ def draw_all(folder: Folder) -> list[dict[str, str]]:
 
 def _save(folder: Folder, figure: Any, name: str, title: str) -> dict[str, str]:
     plain = "".join(c if c.isalnum() or c in "_-" else "_" for c in name)
-    file = folder.path / "figures" / f"{plain}.png"
+    file = folder.path / "figures" / f"{plain[:80]}.png"
     figure.savefig(file, dpi=130)
     plt.close(figure)
     return {"file": f"figures/{file.name}", "title": title}
@@ -53,8 +54,8 @@ def _unit_of(values: list[Any]) -> str:
 def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
     inputs = list(about["parameters"])
     is_input = plot["x"] in inputs or plot["x"] == about["replicas"]
-    if plot["x"] == about["replicas"]:
-        inputs.append(plot["x"])
+    if about["replicas"] and about["replicas"] in (plot["x"], plot["by"]):
+        inputs.append(about["replicas"])
     points = mean_of_replicas(rows, plot["y"], inputs)
     if not is_input:
         across = {str(m["inputs"]): m["value"] for m in mean_of_replicas(rows, plot["x"], inputs)}
@@ -85,11 +86,11 @@ def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
     axes.set_ylabel(plot["y"] + (f" [{unit}]" if unit != "-" else ""))
     counts = {p["count"] for p in points}
     if max(counts, default=1) > 1:
-        axes.set_title(f"mean and standard error of {'to'.join(sorted({str(min(counts)), str(max(counts))}))} runs",
+        axes.set_title(f"mean and standard error of {' to '.join(map(str, sorted({min(counts), max(counts)})))} runs",
                        fontsize=9, loc="left")
     if not points:
         axes.text(0.5, 0.5, "no run has it", transform=axes.transAxes, ha="center")
-    if plot["by"]:
+    if plot["by"] and points:
         axes.legend(fontsize=8, frameon=False)
     axes.grid(True, alpha=0.25)
 

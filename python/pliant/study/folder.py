@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from pliant.scene import Scene
+from pliant.engine import engine
 from pliant.study.points import Point
 from pliant.study.spec import Quantity, Study
 
@@ -25,6 +26,13 @@ def replace_if_other(file: Path, text: str) -> None:
     """So that what depends on it is made anew only if it changed."""
     if not file.exists() or file.read_text() != text:
         replace(file, text)
+
+
+def copy_if_other(source: Path, target: Path) -> None:
+    content = source.read_bytes()
+    if not target.exists() or target.read_bytes() != content:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)
 
 
 def as_text(value: Any) -> str:
@@ -46,6 +54,14 @@ class Folder:
     def scene(self, name: str) -> Path:
         return self.run(name) / "scene.toml"
 
+    def fingerprint(self, name: str) -> str:
+        """Of all that a run depends on."""
+        digest = hashlib.sha256(self.scene(name).read_bytes())
+        others = [file for file in self.beside.rglob("*") if file.is_file()] + [self.path / "engine.json"]
+        for file in sorted(file for file in others if file.exists()):
+            digest.update(file.read_bytes())
+        return digest.hexdigest()
+
     def results(self, name: str) -> Path:
         return self.run(name) / "results"
 
@@ -65,11 +81,13 @@ class Folder:
     def quantities(self) -> list[Quantity]:
         return [Quantity(**table) for table in self.read("quantities.json")]
 
-    def lay_out(self, study: Study, points: list[Point]) -> None:
-        """All that the steps read, renewed where it differs."""
+    def lay_out(self, study: Study, points: list[Point], files: list[str]) -> None:
+        """All that the steps read, renewed where it differs. `files`: those that scenes name, beside the scene."""
         replace_if_other(self.path / "base.toml", study.scene.read_text())
-        for name in Scene.read(study.scene).files(study.scene.parent):
-            replace_if_other(self.beside / name, (study.scene.parent / name).read_text())
+        for name in files:
+            copy_if_other(study.scene.parent / name, self.beside / name)
+        if study.regression:  # another engine is what it is there to see
+            replace_if_other(self.path / "engine.json", as_text(hashlib.sha256(engine().read_bytes()).hexdigest()))
         for point in points:
             replace_if_other(self.path / f"points/{point.name}.json", as_text(asdict(point)))
         quantities = [asdict(quantity) for quantity in study.quantities]
@@ -82,7 +100,7 @@ class Folder:
             "replicas": study.replicas.name if study.replicas else None,
             "plots": [asdict(plot) for plot in study.plots],
             "convergence": asdict(study.convergence) if study.convergence else None,
-            "regression": {"baseline": str(study.regression.baseline.resolve()),
+            "regression": {"baseline": study.regression.baseline.read_text(),
                            "tolerances": study.regression.tolerances} if study.regression else None,
         }
         replace_if_other(self.path / "study.json", as_text(about))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import importlib.util
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,6 +31,13 @@ class Value:
 
 
 def gather(quantity: Quantity, run: Run) -> Value:
+    found = _gather(quantity, run)
+    if not math.isfinite(found.value):
+        raise CannotGather(f"it is {found.value}")
+    return found
+
+
+def _gather(quantity: Quantity, run: Run) -> Value:
     if quantity.summary is not None:
         return Value(_of_summary(quantity.summary, run.summary))
     if quantity.function is not None:
@@ -47,19 +56,34 @@ def _of_summary(path: str, summary: Any) -> float:
     return float(at)
 
 
-def _of_function(where: str, run: Run) -> Value:
+def function_of(where: str) -> Callable[[Run], Any]:
+    """CannotGather: the file cannot be loaded, or has no such function. It may import what stands beside it."""
     file, _, name = where.rpartition(":")
     spec = importlib.util.spec_from_file_location("quantity", file)
-    assert spec is not None and spec.loader is not None
+    if spec is None or spec.loader is None:
+        raise CannotGather(f"{file} is no file of Python")
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    function: Callable[[Run], float] | None = getattr(module, name, None)
-    if function is None:
-        raise CannotGather(f"{file} has no function '{name}'")
+    sys.path.insert(0, str(Path(file).parent))
     try:
-        return Value(float(function(run)))
-    except Exception as error:  # noqa: BLE001: whatever the user's function does
-        raise CannotGather(f"{name}() of {file}: {type(error).__name__}: {error}") from error
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # noqa: BLE001: whatever the user's file does
+        raise CannotGather(f"{file}: {type(error).__name__}: {error}") from error
+    finally:
+        sys.path.pop(0)
+    if not callable(getattr(module, name, None)):
+        raise CannotGather(f"{file} has no function '{name}'")
+    return getattr(module, name)
+
+
+def _of_function(where: str, run: Run) -> Value:
+    function = function_of(where)
+    try:
+        value = function(run)
+    except (Exception, SystemExit) as error:  # noqa: BLE001: whatever the user's function does
+        raise CannotGather(f"{where}: {type(error).__name__}: {error}") from error
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise CannotGather(f"{where} returned {value!r}, not a number")
+    return Value(float(value))
 
 
 def _of_probe(quantity: Quantity, run: Run) -> Value:
@@ -73,6 +97,9 @@ def _of_probe(quantity: Quantity, run: Run) -> Value:
     if quantity.window is not None:
         first, last = (units.time(limit) for limit in quantity.window)
         slack = 1e-9 * max(abs(first), abs(last))
+        period = float(np.diff(times).max(initial=0.0))
+        if len(times) == 0 or times[0] > first + period + slack or times[-1] < last - period - slack:
+            raise CannotGather(f"{quantity.probe} does not cover the window, {first:g} to {last:g} s")
         inside = (times >= first - slack) & (times <= last + slack)
         times, values = times[inside], values[inside]
     if len(values) == 0:

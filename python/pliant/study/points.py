@@ -25,7 +25,7 @@ class Point:
         """Of its folder: it does not change when a study gets other values beside these."""
         text = ",".join(f"{name}={value}" for name, value in self.values.items()) or "as_it_is"
         plain = re.sub(r"[^A-Za-z0-9.=,+-]+", "_", text)
-        if plain == text.replace(" ", "_") and len(plain) <= LONGEST_NAME:
+        if plain == text and len(plain) <= LONGEST_NAME:
             return plain
         return f"{plain[:LONGEST_NAME - 9]}-{hashlib.sha256(text.encode()).hexdigest()[:8]}"
 

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
-
-from pliant.study.reading import BadStudy, Reader, quantity, unique
 
 TAKES = ["mean", "last", "max", "min", "peak", "plateau", "slope"]
 
@@ -80,177 +77,26 @@ class Study:
         return self.file.stem
 
 
-def read_study(file: Path) -> Study:
-    """BadStudy; OSError."""
+def number_of(value: Any) -> float | None:
+    """Of a parameter's value, "3 MPa" without its unit; None: it is no number."""
     try:
-        text = tomllib.loads(file.read_text())
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise BadStudy(f"{file}: {error}") from error
-    top = Reader(text, str(file))
-    scene = file.parent / top.take("scene", str)
-    if not scene.is_file():
-        top.fail(f"scene: {scene} is no file")
-    kind = top.choice("kind", ["sweep", "convergence", "regression"], "sweep")
-    combine = top.choice("combine", ["cross", "zip", "latin hypercube"], "cross")
-    hypercube = combine == "latin hypercube"
-    title, threads = top.take("title", str, file.stem), top.whole("threads", 1, 1)
-    samples = top.whole("samples", 1) if hypercube else 0
-    seed = top.whole("seed", 0, 1) if hypercube else 0
-    parameters = [_parameter(reader, hypercube) for reader in top.tables("parameters")]
-    replicas = _replicas(top.table("replicas"))
-    quantities = [_quantity(reader, file.parent) for reader in top.tables("quantities")]
-    plots = [_plot(reader) for reader in top.tables("plots")]
-    convergence = _convergence(top.table("convergence"))
-    regression = _regression(top.table("regression"), file.parent)
-    top.done()
-    study = Study(file, title, scene, kind, combine, samples, seed, threads, parameters, replicas, quantities, plots,
-                  convergence, regression)
-    _check_names(study, top)
-    return study
+        if isinstance(value, str):
+            return float(value.split()[0])
+        return float(value) if isinstance(value, (int, float)) else None
+    except (ValueError, IndexError):
+        return None
 
 
-def _check_names(study: Study, top: Reader) -> None:
-    inputs = [p.name for p in study.parameters] + ([study.replicas.name] if study.replicas else [])
-    outputs = [q.name for q in study.quantities]
-    unique(inputs + outputs, "parameters or quantities", top)
-    if not outputs:
-        top.fail("no [[quantities]]: nothing would come of it")
-
-    def known(name: str, names: list[str], place: str) -> None:
-        if name not in names:
-            top.fail(f"{place}: nothing is called '{name}'; there are: {', '.join(names)}")
-
-    for plot in study.plots:
-        known(plot.x, inputs + outputs, "[[plots]]: x")
-        known(plot.y, outputs, "[[plots]]: y")
-        if plot.by is not None:
-            known(plot.by, inputs, "[[plots]]: by")
-    if study.combine == "zip" and len({len(p.values) for p in study.parameters}) > 1:
-        top.fail("combine = \"zip\": parameters have " +
-                 ", ".join(f"{len(p.values)} ({p.name})" for p in study.parameters) + " values; all need as many")
-    if (study.kind == "convergence") != (study.convergence is not None):
-        top.fail("kind = \"convergence\" and [convergence] belong together")
-    if (study.kind == "regression") != (study.regression is not None):
-        top.fail("kind = \"regression\" and [regression] belong together")
-    if study.convergence:
-        known(study.convergence.by, inputs, "[convergence]: by")
-        for name in study.convergence.of:
-            known(name, outputs, "[convergence]: of")
-        if len(next(p for p in study.parameters if p.name == study.convergence.by).values) < 3:
-            top.fail(f"[convergence]: '{study.convergence.by}' needs three values at least, for an order")
-    if study.regression:
-        for name in study.regression.tolerances:
-            known(name, outputs, "[regression]: tolerances")
-
-
-def _paths(reader: Reader) -> list[str]:
-    if reader.has("path") == reader.has("paths"):
-        reader.fail("one of 'path' and 'paths' is needed")
-    return [reader.take("path", str)] if reader.has("path") else reader.names("paths")
-
-
-def _parameter(reader: Reader, hypercube: bool) -> Parameter:
-    parameter = Parameter(reader.take("name", str), _paths(reader))
-    if reader.has("values") == reader.has("range"):
-        reader.fail("one of 'values' and 'range' is needed")
-    if reader.has("values"):
-        if hypercube:
-            reader.fail("a Latin hypercube takes a 'range', from and to")
-        parameter.values = reader.take("values", list)
-        if not parameter.values:
-            reader.fail("'values' is empty")
-    else:
-        _range(reader, parameter, hypercube)
-    reader.done()
-    return parameter
-
-
-def _range(reader: Reader, parameter: Parameter, hypercube: bool) -> None:
-    limits = reader.table("range")
-    assert limits is not None
-    first, unit = quantity(limits.take("from", (int, float, str)), limits, "from")
-    last, other = quantity(limits.take("to", (int, float, str)), limits, "to")
-    if unit != other:
-        limits.fail(f"'from' is in '{unit}' and 'to' in '{other}'")
-    parameter.logarithmic = limits.choice("spacing", ["linear", "log"], "linear") == "log"
-    if parameter.logarithmic and min(first, last) <= 0:
-        limits.fail("spacing = \"log\" needs numbers above 0")
-    if hypercube:
-        parameter.limits = (first, last, unit)
-    else:
-        count = limits.whole("count", 2)
-        parameter.values = [between(first, last, i / (count - 1), unit, parameter.logarithmic) for i in range(count)]
-    limits.done()
+def units_of(values: list[Any]) -> set[str]:
+    return {value.strip().partition(" ")[2].strip() if isinstance(value, str) else "" for value in values}
 
 
 def between(first: float, last: float, share: float, unit: str, logarithmic: bool) -> Any:
-    value = first * (last / first)**share if logarithmic else first + (last - first) * share
-    value = float(f"{value:.6g}")
-    return f"{value:g} {unit}" if unit else value
-
-
-def _replicas(reader: Reader | None) -> Parameter | None:
-    if reader is None:
-        return None
-    name, paths = reader.take("name", str, "seed"), _paths(reader)
-    if reader.has("seeds") == reader.has("count"):
-        reader.fail("one of 'seeds' and 'count' is needed")
-    seeds = reader.take("seeds", list) if reader.has("seeds") else list(range(1, reader.whole("count", 1) + 1))
-    if not seeds or not all(isinstance(seed, int) and seed >= 0 for seed in seeds):
-        reader.fail("'seeds' must be whole numbers")
-    reader.done()
-    return Parameter(name, paths, seeds)
-
-
-def _quantity(reader: Reader, folder: Path) -> Quantity:
-    result = Quantity(reader.take("name", str))
-    if sum(map(reader.has, ("summary", "probe", "function"))) != 1:
-        reader.fail("one of 'summary', 'probe' and 'function' is needed")
-    result.summary = reader.take("summary", str, None)
-    result.probe = reader.take("probe", str, None)
-    if result.probe is not None:
-        result.take = reader.choice("take", TAKES)
-        window = reader.take("window", list, None)
-        if window is not None:
-            if len(window) != 2:
-                reader.fail("'window' is two times, from and to")
-            result.window = (window[0], window[1])
-            for time in window:
-                quantity(time, reader, "window")
-    result.function = reader.take("function", str, None)
-    if result.function is not None:
-        file, _, name = result.function.partition(":")
-        if not name or not (folder / file).is_file():
-            reader.fail(f"'function' is '{result.function}'; it must be FILE.py:NAME, a file beside the study's")
-        result.function = f"{(folder / file).resolve()}:{name}"
-    reader.done()
-    return result
-
-
-def _plot(reader: Reader) -> Plot:
-    plot = Plot(reader.take("x", str), reader.take("y", str), reader.take("by", str, None), reader.names("log", []))
-    for axis in plot.log:
-        if axis not in ("x", "y"):
-            reader.fail(f"'log' is {plot.log!r}; it may hold \"x\" and \"y\"")
-    reader.done()
-    return plot
-
-
-def _convergence(reader: Reader | None) -> Convergence | None:
-    if reader is None:
-        return None
-    result = Convergence(reader.take("by", str), float(reader.take("power", (int, float), 1)), reader.names("of"))
-    reader.done()
-    return result
-
-
-def _regression(reader: Reader | None, folder: Path) -> Regression | None:
-    if reader is None:
-        return None
-    baseline = folder / reader.take("baseline", str)
-    tolerances = reader.take("tolerances", dict)
-    for name, value in tolerances.items():
-        if not isinstance(value, (int, float)) or value < 0:
-            reader.fail(f"tolerances: '{name}' is {value!r}; it must be a number, relative, 0 or more")
-    reader.done()
-    return Regression(baseline, {name: float(value) for name, value in tolerances.items()})
+    """A share of the way; the ends as they are given. Whole numbers stay whole where nothing is lost."""
+    if share in (0, 1):
+        value = last if share else first
+    else:
+        value = float(f"{first * (last / first)**share if logarithmic else first + (last - first) * share:.12g}")
+    if unit:
+        return f"{value!r} {unit}"
+    return int(value) if value == int(value) and abs(value) < 2**53 else value

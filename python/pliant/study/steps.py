@@ -12,8 +12,9 @@ from pliant.engine import call, is_finished
 from pliant.results import read_run
 from pliant.scene import Scene
 from pliant.study import gather as gathering
-from pliant.study.folder import Folder, as_text, replace
+from pliant.study.folder import Folder, as_text, copy_if_other, replace
 
+FILES = 4  # exit code: a full disk, another run in the folder
 KILLED = (130, 143, -2, -15, -9)  # by signals: to be gone on with, not a failure
 
 
@@ -22,7 +23,7 @@ def scene(folder: Folder, name: str) -> None:
     for path, value in folder.point(name).sets.items():
         changed[path] = value
     for other in (file for file in folder.beside.rglob("*") if file.is_file()):
-        replace(folder.run(name) / other.relative_to(folder.beside), other.read_text())
+        copy_if_other(other, folder.run(name) / other.relative_to(folder.beside))
     replace(folder.scene(name), changed.text())
 
 
@@ -30,17 +31,19 @@ def run(folder: Folder, name: str, threads: str) -> None:
     """Begins, goes on from a checkpoint of the same scene, or takes what is finished. A run that fails is an outcome like
     others; one that is killed is none."""
     scene_file, results = folder.scene(name), folder.results(name)
-    same = (results / "scene.toml").exists() and (results / "scene.toml").read_text() == scene_file.read_text()
+    begun, print_now = folder.run(name) / "begun", folder.fingerprint(name)
+    same = begun.exists() and begun.read_text() == print_now
     if same and is_finished(results):
         code, message = 0, ""
     else:
         resumes = same and (results / "checkpoint.bin").exists()
         begin = time.monotonic()
+        replace(begun, print_now)
         way = ["--resume"] if resumes else [scene_file, "--force"]
         result = call("run", *way, "--out", results, "--threads", threads, "--quiet")
         code, message = result.returncode, result.stderr.strip()
-        if code in KILLED:
-            sys.exit(f"{name}: stopped; the next call goes on")
+        if code in KILLED or code == FILES:
+            sys.exit(f"{name}: stopped{': ' * bool(message)}{message}; the next call goes on")
         what = "finished" if code == 0 else "FAILED"
         print(f"{name}: {what}{' after a checkpoint' if resumes else ''}, {time.monotonic() - begin:.1f} s", flush=True)
     status = "finished" if code == 0 else "failed"

@@ -5,20 +5,11 @@ from __future__ import annotations
 import csv
 import io
 import math
-from pathlib import Path
 from typing import Any
 
 from pliant.study.convergence import analyse
 from pliant.study.folder import Folder, as_text, replace
-from pliant.study.reading import BadStudy
-
-
-def number_of(value: Any) -> float | None:
-    """Of a parameter's value, "3 MPa" without its unit; None: it is a word."""
-    try:
-        return float(value.split()[0]) if isinstance(value, str) else float(value)
-    except (ValueError, IndexError):
-        return None
+from pliant.study.spec import number_of
 
 
 def rows_of(folder: Folder) -> list[dict[str, Any]]:
@@ -104,18 +95,14 @@ def _orders(about: dict, rows: list[dict]) -> list[dict[str, Any]]:
 
 def _regression(settings: dict, rows: list[dict]) -> list[dict[str, Any]]:
     """Each value beside the baseline's; a run or a value that is missing on either side is a difference."""
-    file = Path(settings["baseline"])
-    if not file.exists():
-        raise BadStudy(f"{file}: there is no baseline; a table.csv of this study that is trusted can become one")
-    with file.open(newline="") as stream:
-        baseline = {row["run"]: {key.split(" [")[0]: value for key, value in row.items()}
-                    for row in csv.DictReader(stream)}
+    baseline = {row["run"]: {key.split(" [")[0]: value for key, value in row.items()}
+                for row in csv.DictReader(io.StringIO(settings["baseline"]))}
     result = []
     for row in rows:
         for name, tolerance in settings["tolerances"].items():
             now = row["outputs"].get(name, {}).get("value")
             text = baseline.get(row["run"], {}).get(name)
-            then = float(text) if text else None
+            then = number_of(text) if text else None
             if now is None or then is None:
                 change = None
             else:
