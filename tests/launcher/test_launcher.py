@@ -357,12 +357,12 @@ def test_readme_names_every_command(launcher: Launcher) -> None:
     assert set(readme_commands()) == set(listed)
 
 
-@pytest.mark.parametrize("command", ["run", "check", "modes", "plot", "compare", "export", "test", "verify", "build"])
+@pytest.mark.parametrize("command", ["run", "check", "modes", "plot", "compare", "study", "export", "test", "verify", "build"])
 def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
     usage = re.match(r".*(\n +.*)*", launcher(command, "--help").stdout)[0]
     readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
     assert readme <= set(re.findall(r"--[a-z-]+", usage))
-    if command in {"run", "check", "modes", "plot", "compare", "export", "verify"}:
+    if command in {"run", "check", "modes", "plot", "compare", "study", "export", "verify"}:
         assert readme == set(re.findall(r"--[a-z-]+", usage))
 
 
