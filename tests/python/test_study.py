@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT / "python"))
 
 from pliant.engine import engine
 from pliant.results import read_json
+from pliant.study.__main__ import check_all
 from pliant.study.convergence import analyse, observed_order
 from pliant.study.points import points_of
 from pliant.study.reading import BadStudy
@@ -235,6 +236,14 @@ def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) ->
     assert not desk.out.exists()
 
 
+@pytest.mark.parametrize("file", sorted((ROOT / "studies").glob("*.toml")), ids=lambda file: file.stem)
+def test_studies_that_come_along_are_sound(file: Path) -> None:
+    study = read_study(file)
+    points = points_of(study)
+    check_all(study, [points[0], points[-1]])
+    assert len({point.name for point in points}) == len(points)
+
+
 def test_dry_run_lists_and_writes_nothing(desk: Desk) -> None:
     result = desk.call("--dry-run")
     assert result.returncode == 0 and "nodes=60,young=5.6" in result.stdout and "4 runs" in result.stdout
@@ -283,6 +292,10 @@ summary = "steps"
 def test_zip_needs_equal_lengths(desk: Desk) -> None:
     text = STUDY.replace('scene = "scene.toml"', 'scene = "scene.toml"\ncombine = "zip"')
     assert len(points_of(read_study(desk.study(text)))) == 2
+    twice = read_study(desk.study(text.replace("[40, 60]", "[40, 40]")))
+    assert len(points_of(twice)) == 2, "with other partners"
+    with pytest.raises(BadStudy, match="same values"):
+        check_all(twice, [*points_of(twice), *points_of(twice)])
     with pytest.raises(BadStudy, match="all need as many"):
         read_study(desk.study(text.replace("[2.8, 5.6]", "[2.8]")))
 

@@ -32,7 +32,7 @@ def read_study(file: Path) -> Study:
     title, threads = top.take("title", str, file.stem), top.whole("threads", 1, 1)
     samples = top.whole("samples", 1) if hypercube else 0
     seed = top.whole("seed", 0, 1) if hypercube else 0
-    parameters = [_parameter(reader, hypercube) for reader in top.tables("parameters")]
+    parameters = [_parameter(reader, combine) for reader in top.tables("parameters")]
     replicas = _replicas(top.table("replicas"))
     quantities = [_quantity(reader, file.parent) for reader in top.tables("quantities")]
     plots = [_plot(reader) for reader in top.tables("plots")]
@@ -97,7 +97,8 @@ def _paths(reader: Reader) -> list[str]:
     return [reader.take("path", str)] if reader.has("path") else reader.names("paths")
 
 
-def _parameter(reader: Reader, hypercube: bool) -> Parameter:
+def _parameter(reader: Reader, combine: str) -> Parameter:
+    hypercube = combine == "latin hypercube"
     parameter = Parameter(reader.take("name", str), _paths(reader))
     if reader.has("values") == reader.has("range"):
         reader.fail("one of 'values' and 'range' is needed")
@@ -107,7 +108,8 @@ def _parameter(reader: Reader, hypercube: bool) -> Parameter:
         parameter.values = reader.take("values", list)
         if not parameter.values:
             reader.fail("'values' is empty")
-        _refuse_repeated(parameter.values, "values", reader)
+        if combine == "cross":
+            _refuse_repeated(parameter.values, "values", reader)
     else:
         _range(reader, parameter, hypercube)
     reader.done()
