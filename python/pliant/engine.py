@@ -64,8 +64,8 @@ def _quantity(text: str, row: str, units: dict[str, float]) -> float | None:
 
 
 def check(file: Path, threads: int = 1) -> Estimate:
-    """Of a scene in a file. BadScene with the engine's words. Of one that fails within the steps that `check` tries there is
-    no estimate."""
+    """Of a scene in a file. BadScene with the engine's words. Of one that fails within the steps that `check` tries there
+    is no estimate."""
     result = call("check", file, "--threads", str(threads))
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
@@ -81,7 +81,7 @@ def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1, quiet: 
         if isinstance(scene, (str, Path)):
             file = Path(scene)
         else:
-            file = scene.write(Path(scratch) / scene.file_name)
+            file = scene.write_whole(Path(scratch))
         result = call("run", file, "--out", folder, "--force", "--threads", str(threads), *["--quiet"] * quiet)
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())

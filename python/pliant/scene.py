@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import shutil
 import tempfile
 from collections.abc import Iterator, MutableMapping, MutableSequence
 from pathlib import Path
@@ -18,8 +19,9 @@ class Scene:
     """A scene by dotted paths: scene["materials.soft.young"] = "2 GPa". Members of a list go by their number or their
     name: "grains.0.seed" or "grains.third_body.seed". What keys and values mean the engine knows: check()."""
 
-    def __init__(self, text: str, file_name: str = "scene.toml") -> None:
-        self.file_name = file_name
+    def __init__(self, text: str, file_name: str = "scene.toml", folder: Path | None = None) -> None:
+        """`folder`: where the files are that the scene names; None: it names none."""
+        self.file_name, self.folder = file_name, folder
         try:
             self._document = tomlkit.parse(text)
         except TOMLKitError as error:
@@ -28,7 +30,7 @@ class Scene:
     @classmethod
     def read(cls, file: str | Path) -> Scene:
         """BadScene: it is not TOML; OSError: it cannot be read."""
-        return cls(Path(file).read_text(), Path(file).name)
+        return cls(Path(file).read_text(), Path(file).name, Path(file).parent)
 
     def __getitem__(self, path: str) -> Any:
         """KeyError names what there is."""
@@ -56,12 +58,16 @@ class Scene:
             raise KeyError(f"{path}: {'.'.join(parents)} is a value, not a table")
 
     def canonical(self, path: str) -> str:
-        """With the numbers of all members of lists: two paths to one key are equal so."""
+        """With the numbers of all members of lists: two paths to one key are equal so. KeyError: no such member."""
         at: Any = self._document
         names = []
         for name in path.split("."):
-            names.append(str(_index(at, name, path)) if isinstance(at, MutableSequence) else name)
-            at = at.get(name) if isinstance(at, MutableMapping) else at[int(names[-1])] if at is not None else None
+            if isinstance(at, MutableSequence):
+                name = str(_index(at, name, path))
+                at = at[int(name)]
+            else:
+                at = at.get(name) if isinstance(at, MutableMapping) else None
+            names.append(name)
         return ".".join(names)
 
     def __contains__(self, path: str) -> bool:
@@ -71,8 +77,12 @@ class Scene:
             return False
         return True
 
-    def files(self, folder: Path) -> list[str]:
-        """Texts that name files which are there, seen from the scene's folder: outlines, meshes, laws."""
+    def copy(self) -> Scene:
+        return Scene(self.text(), self.file_name, self.folder)
+
+    def files(self) -> list[str]:
+        """Outlines, meshes and the like: texts that name files which are there, seen from the scene's folder. BadScene:
+        one is not at or below it, so it could not go along with a copy of the scene."""
         found: list[str] = []
 
         def look(at: Any) -> None:
@@ -82,11 +92,20 @@ class Scene:
             elif isinstance(at, MutableSequence):
                 for value in at:
                     look(value)
-            elif isinstance(at, str) and _may_name_a_file(at) and (folder / at).is_file():
+            elif isinstance(at, str) and self.folder and _may_name_a_file(at) and (self.folder / at).is_file():
+                if ".." in Path(at).parts:
+                    raise BadScene(f"{self.file_name}: names {at}; only files at or below the scene's folder go along")
                 found.append(str(at))
 
         look(self._document)
         return sorted(set(found))
+
+    def write_whole(self, folder: Path) -> Path:
+        """Under its own name, with the files that it names."""
+        for name in self.files():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(self.folder / name, folder / name)
+        return self.write(folder / self.file_name)
 
     def text(self) -> str:
         return tomlkit.dumps(self._document)
@@ -99,7 +118,7 @@ class Scene:
     def check(self, threads: int = 1) -> Estimate:
         """What it costs. BadScene with the engine's words."""
         with tempfile.TemporaryDirectory() as folder:
-            return check(self.write(Path(folder) / self.file_name), threads)
+            return check(self.write_whole(Path(folder)), threads)
 
 
 def _may_name_a_file(text: str) -> bool:

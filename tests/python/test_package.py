@@ -74,3 +74,16 @@ def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
     assert np.abs(moved).max() > 1e-8
     with pytest.raises(pliant.BadFolder):
         pliant.open(tmp_path)
+
+
+def test_files_that_a_scene_names_go_along(tmp_path: Path) -> None:
+    text = (ROOT / "docs/keys/grains.toml").read_text()
+    (tmp_path / "outline.csv").write_text((ROOT / "docs/keys/outline.csv").read_text())
+    (tmp_path / "grains.toml").write_text(text)
+    scene = Scene.read(tmp_path / "grains.toml")
+    assert scene.files() == ["outline.csv"]
+    assert scene.check().memory is not None
+    (tmp_path / "below").mkdir()
+    (tmp_path / "below/grains.toml").write_text(text.replace("outline.csv", "../outline.csv"))
+    with pytest.raises(pliant.BadScene, match="at or below"):
+        Scene.read(tmp_path / "below/grains.toml").check()

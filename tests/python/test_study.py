@@ -215,6 +215,8 @@ def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
     ('scene = "scene.toml"', 'scene = "scenes.toml"', "no file"),
     ('scene = "scene.toml"', 'scene = "scene.toml"\ncombin = "zip"', "did you mean 'combine'?"),
     ("values = [40, 60]", "values = []", "empty"),
+    ('path = "shapes.disc.nodes"', 'path = "grains.disk.seed"', "no member 'disk'; did you mean 'disc'?"),
+    ('path = "shapes.disc.nodes"', 'path = "time.end.unit"', "a value, not a table"),
     ('name = "young"', 'name = "nodes"', "two parameters or quantities are called 'nodes'"),
     ('scene = "scene.toml"', 'scene = "scene.toml"\nkind = "convergence"', "[convergence]"),
     ("values = [40, 60]", "values = [40, 40]", "'values' has 40 twice"),

@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
+from foreign.stored import distances_from_half
 from make_polygon_on_disc_oracles import DEPTHS, FIRST, RINGS, by_getfem
 from pictures import COLOURS, MARKERS, legend, panels, save
 from polygon_on_disc_runs import LONG_PAUSE, NAMES, SIZES, Press, Rests, by_engine, by_reference
-from polygon_on_disc_stored import distances, largest_from_here, read_outlines, read_stored
+from polygon_on_disc_stored import largest_from_here, read_outlines, read_stored
 from squeeze import NEWTON
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
@@ -103,7 +104,7 @@ def test_shape(sizes: Callable[[str], Sizes], first: str, level: int) -> None:
     polygon = known.spacings[-1] ** 2 / 12  # by which corners stand out of the circle
     for name in NAMES:
         places = known.rests[-1][0].outline(name, level)
-        off = distances(places - [places[:, 0].mean(), 0], read_outlines(first)[name][level])
+        off = distances_from_half(places - [places[:, 0].mean(), 0], read_outlines(first)[name][level])
         CASE.check(Label.INDEPENDENT, f"{first} first: {name} at depth {DEPTHS[level]:g}, nodes from GetFEM's outline,"
                    " rms", np.sqrt((off**2).mean()), 0, polygon + lost * DEPTHS[level],
                    "corners of the polygon of the circle's area; errors of the force times the depth")

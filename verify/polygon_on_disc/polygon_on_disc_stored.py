@@ -1,4 +1,4 @@
-"""The stored numbers of oracles/, and distances from stored outlines."""
+"""The stored numbers of oracles/."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from foreign.stored import read_table
 from make_polygon_on_disc_oracles import FIRST, MODULI
 
 FOLDER = Path(__file__).parent / "oracles"
@@ -39,13 +40,8 @@ def largest_from_here(values: np.ndarray) -> np.ndarray:
     return np.maximum.accumulate(values[..., ::-1], axis=-1)[..., ::-1]
 
 
-def read_table(name: str) -> np.ndarray:
-    lines = [line for line in (FOLDER / f"{name}.csv").read_text().splitlines() if not line.startswith("#")]
-    return np.loadtxt(lines[1:], delimiter=",", ndmin=2)
-
-
 def read_stored(first: str) -> Stored:
-    table = read_table("polygon_on_disc_getfem")
+    table = read_table(FOLDER / "polygon_on_disc_getfem.csv")
     table = table[table[:, 0] == FIRST.index(first), 1:]
     disc, hexagon = table[table[:, 0] == 0, 1:], table[table[:, 0] == 1, 1:]
     return Stored(disc[:, 0], disc[:, 1:], hexagon[-1, 1:])
@@ -53,14 +49,6 @@ def read_stored(first: str) -> Stored:
 
 def read_outlines(first: str) -> dict[str, np.ndarray]:
     """By body [depths x nodes x 2] of the halves x >= 0, from the lowest point up."""
-    table = read_table(f"polygon_on_disc_{first}_outlines")
+    table = read_table(FOLDER / f"polygon_on_disc_{first}_outlines.csv")
     halves = [table[table[:, 0] == i, 1:] for i in range(len(MODULI))]
     return {name: half.reshape(len(half), -1, 2).transpose(1, 0, 2) for name, half in zip(MODULI, halves)}
-
-
-def distances(places: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """[nodes] from an outline whose half x >= 0 is a polyline."""
-    ends, ways = half[:-1], np.diff(half, axis=0)
-    seen = np.stack([np.abs(places[:, 0]), places[:, 1]], axis=1)[:, None] - ends
-    along = np.clip((seen * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
-    return np.linalg.norm(seen - along[..., None] * ways, axis=2).min(axis=1)

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
+from foreign.stored import distances
 from make_pushed_disc_oracles import DEPTH, DRAWN, FRICTION, MESHES, SLIDING, STEPS, STUCK, by_getfem
 from pictures import COLOURS, MARKERS, legend, panels, save
 from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference, hann
-from pushed_disc_stored import distances, read_stored, read_surfaces
+from pushed_disc_stored import read_stored, read_surfaces
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=8)

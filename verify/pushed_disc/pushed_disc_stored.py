@@ -1,4 +1,4 @@
-"""The stored numbers of oracles/, and distances from stored surfaces."""
+"""The stored numbers of oracles/."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from foreign.stored import read_table
 from make_pushed_disc_oracles import DRAWN, STUCK
 from pushed_disc_runs import Forces, forces
 
@@ -55,26 +56,13 @@ class Stored:
         return Forces(*found)
 
 
-def read_table(name: str) -> np.ndarray:
-    lines = [line for line in (FOLDER / f"{name}.csv").read_text().splitlines() if not line.startswith("#")]
-    return np.loadtxt(lines[1:], delimiter=",", ndmin=2)
-
-
 def read_stored() -> Stored:
-    table = read_table("pushed_disc_getfem")
+    table = read_table(FOLDER / "pushed_disc_getfem.csv")
     keys = dict.fromkeys(tuple(int(value) for value in row[:3]) for row in table)
     return Stored({key: table[(table[:, :3] == key).all(axis=1), 3:] for key in keys})
 
 
 def read_surfaces() -> dict[float, np.ndarray]:
     """[nodes x 2] of the block's top by push."""
-    table = read_table("pushed_disc_surfaces")
+    table = read_table(FOLDER / "pushed_disc_surfaces.csv")
     return {push: table[:, 2 * i:2 * i + 2] for i, push in enumerate(DRAWN)}
-
-
-def distances(places: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """[places] from a polyline."""
-    starts, ways = line[:-1], np.diff(line, axis=0)
-    seen = places[:, None] - starts
-    along = np.clip((seen * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
-    return np.linalg.norm(seen - along[..., None] * ways, axis=2).min(axis=1)

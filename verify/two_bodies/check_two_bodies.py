@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
+from foreign.stored import distances_from_half
 from make_two_bodies_oracles import by_getfem, calculix_rows
 from pictures import COLOURS, MARKERS, legend, panels, save
 from squeeze import NEWTON
 from two_bodies_discs import APPROACHES, LONG_PAUSE, NAMES, Rests, Squeeze, by_engine, by_reference
-from two_bodies_stored import Penalised, Stored, distances, read_calculix, read_outlines, read_stored
+from two_bodies_stored import Penalised, Stored, read_calculix, read_outlines, read_stored
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=2)
@@ -149,7 +150,7 @@ def test_shape(sizes: Callable[[str], Sizes], level: int) -> None:
     known = sizes("neo-hookean")
     finest = known.rests[-1][0]
     for name, own in zip(NAMES, Squeeze(known.nodes[-1]).outlines):
-        off = distances(finest.outline(name, level), read_outlines("neo-hookean")[name][level])
+        off = distances_from_half(finest.outline(name, level), read_outlines("neo-hookean")[name][level])
         CASE.check(Label.INDEPENDENT, f"{name} disc at {PERCENT[level]}: nodes from GetFEM's outline, rms",
                    np.sqrt((off**2).mean()), 0, shape_error(known, own, level),
                    "corners of the polygon of the circle's area; overlap of the penalty; mesh as of the force")

@@ -1,4 +1,4 @@
-"""The stored numbers of oracles/, and distances from stored outlines."""
+"""The stored numbers of oracles/."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+from foreign.stored import read_table
 
 FOLDER = Path(__file__).parent / "oracles"
 BODIES = ("soft", "stiff")
@@ -31,12 +33,8 @@ class Stored:
         return np.full_like(change, change.max())
 
 
-def read_table(name: str) -> np.ndarray:
-    return np.loadtxt(FOLDER / f"{name}.csv", delimiter=",", skiprows=1, ndmin=2)
-
-
 def read_stored(law: str) -> Stored:
-    table = read_table(f"discs_getfem_{law}")
+    table = read_table(FOLDER / f"discs_getfem_{law}.csv")
     return Stored(table[:, 0], table[:, 1:])
 
 
@@ -70,19 +68,11 @@ class Penalised:
 
 
 def read_calculix() -> Penalised:
-    return Penalised(read_table("discs_calculix_melody"))
+    return Penalised(read_table(FOLDER / "discs_calculix_melody.csv"))
 
 
 def read_outlines(law: str) -> dict[str, np.ndarray]:
     """By body [approaches x nodes x 2] of the halves x >= 0, from the lowest point up."""
-    table = read_table(f"discs_outlines_{law}")
+    table = read_table(FOLDER / f"discs_outlines_{law}.csv")
     halves = [table[table[:, 0] == i, 1:] for i in range(len(BODIES))]
     return {name: half.reshape(len(half), -1, 2).transpose(1, 0, 2) for name, half in zip(BODIES, halves)}
-
-
-def distances(places: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """[nodes] from an outline whose half x >= 0 is a polyline."""
-    ends, ways = half[:-1], np.diff(half, axis=0)
-    seen = np.stack([np.abs(places[:, 0]), places[:, 1]], axis=1)[:, None] - ends
-    along = np.clip((seen * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
-    return np.linalg.norm(seen - along[..., None] * ways, axis=2).min(axis=1)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pliant.engine import BadScene, Estimate, check
 from pliant.scene import Scene
-from pliant.study.folder import Folder, copy_if_other
+from pliant.study.folder import Folder
 from pliant.study.gather import CannotGather, function_of
 from pliant.study.points import Point, points_of
 from pliant.study.reading import BadStudy
@@ -40,7 +40,7 @@ def arguments() -> argparse.Namespace:
 
 
 def scene_of(base: Scene, point: Point) -> Scene:
-    scene = Scene(base.text(), base.file_name)
+    scene = base.copy()
     for path, value in point.sets.items():
         try:
             scene[path] = value
@@ -61,15 +61,6 @@ def check_paths(study: Study, base: Scene) -> None:
             taken[key] = p.name
 
 
-def files_beside(study: Study, scenes: list[Scene]) -> list[str]:
-    """Those that scenes name; they go along, so they must be at or below the scene's folder."""
-    names = sorted({name for scene in scenes for name in scene.files(study.scene.parent)})
-    for name in names:
-        if ".." in Path(name).parts:
-            raise BadStudy(f"{study.scene}: names {name}; a study takes along only files at or below the scene's folder")
-    return names
-
-
 def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[str]]:
     """Each scene as the engine reads it: nothing runs if one is wrong. Estimates, and files that go along."""
     unique_names = {point.name: point for point in points}
@@ -79,14 +70,12 @@ def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[s
         if quantity.function is not None:
             function_of(quantity.function)
     base = Scene.read(study.scene)
-    check_paths(study, base)
     scenes, estimates = [scene_of(base, point) for point in points], []
-    files = files_beside(study, scenes)
+    check_paths(study, base)
+    files = sorted({name for scene in scenes for name in scene.files()})
     with tempfile.TemporaryDirectory() as scratch:
-        for name in files:
-            copy_if_other(study.scene.parent / name, Path(scratch) / name)
         for point, scene in zip(points, scenes):
-            file = scene.write(Path(scratch) / study.scene.name)
+            file = scene.write_whole(Path(scratch))
             try:
                 estimates.append(check(file, study.threads))
             except BadScene as error:
@@ -149,6 +138,8 @@ def run(study: Study, options: argparse.Namespace) -> int:
         describe(points, estimates)
         return 0
     folder = Folder((options.out or Path("results/studies") / study.name).absolute())
+    if set("{}") & set(str(folder.path)):
+        raise BadStudy(f"{folder.path}: Snakemake reads braces as names; give another folder by --out")
     with alone(folder) as lock:
         folder.lay_out(study, points, files)
         for point in points:
@@ -193,8 +184,6 @@ def main() -> int:
             raise BadStudy("--cores and --jobs must be at least 1")
         if options.slurm and shutil.which("sbatch") is None:
             raise BadStudy("--slurm: there is no sbatch here")
-        if options.out is not None and set("{}") & set(str(options.out)):
-            raise BadStudy(f"--out: '{options.out}' has braces, which Snakemake reads as names")
         return run(read_study(options.study), options)
     except (BadStudy, BadScene, CannotGather, UnicodeDecodeError, OSError) as error:
         print(f"pliant study: {error}", file=sys.stderr)

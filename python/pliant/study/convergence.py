@@ -23,7 +23,8 @@ class Order:
 
 
 def observed_order(h: tuple[float, float, float], f: tuple[float, float, float]) -> float | None:
-    """p with (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p), sizes ascending; None: none from LEAST_ORDER to LARGEST_ORDER."""
+    """p with (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p), sizes ascending; None: none from LEAST_ORDER to
+    LARGEST_ORDER."""
     (h1, h2, h3), (f1, f2, f3) = h, f
     if f2 == f1 or (f3 - f2) / (f2 - f1) <= 0:
         return None

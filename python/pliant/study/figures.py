@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from pliant.study.folder import Folder
-from pliant.study.spec import number_of
+from pliant.study.spec import number_of, units_of
 from pliant.study.table import mean_of_replicas
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
@@ -46,9 +46,9 @@ def _save(folder: Folder, figure: Any, name: str, title: str) -> dict[str, str]:
 
 
 def _unit_of(values: list[Any]) -> str:
-    """Of parameters such as "3 MPa": their own, where all have the same."""
-    units = {value.partition(" ")[2] if isinstance(value, str) else "" for value in values}
-    return f" [{units.pop()}]" if len(units) == 1 and units != {""} else ""
+    """Of parameters such as "3 MPa": their own, which all share."""
+    units = units_of(values)
+    return f" [{units.pop()}]" if units != {""} and units else ""
 
 
 def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
@@ -74,7 +74,8 @@ def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
         members.sort(key=lambda member: member[0])
         x, y = [m[0] for m in members], [m[1]["value"] for m in members]
         error = [m[1]["error"] or 0.0 for m in members]
-        style = "" if not is_input or len(inputs) > 1 + (plot["by"] is not None) else "-"
+        all_inputs_shown = is_input and len(inputs) <= 1 + (plot["by"] is not None)
+        style = "-" if all_inputs_shown else ""
         axes.errorbar(x, y, yerr=error if any(error) else None, fmt=marker + style, color=colour, capsize=3,
                       markersize=5, linewidth=1.2, label=f"{plot['by']} = {label}" if plot["by"] else None)
     if words:

@@ -48,6 +48,14 @@ class Folder:
         """Files that the scene names."""
         return self.path / "beside"
 
+    def files_beside(self) -> list[Path]:
+        return sorted(file for file in self.beside.rglob("*") if file.is_file())
+
+    @property
+    def engine_file(self) -> Path:
+        """Which engine runs were made by; of a regression alone."""
+        return self.path / "engine.json"
+
     def run(self, name: str) -> Path:
         return self.path / "runs" / name
 
@@ -57,9 +65,9 @@ class Folder:
     def fingerprint(self, name: str) -> str:
         """Of all that a run depends on."""
         digest = hashlib.sha256(self.scene(name).read_bytes())
-        others = [file for file in self.beside.rglob("*") if file.is_file()] + [self.path / "engine.json"]
-        for file in sorted(file for file in others if file.exists()):
-            digest.update(file.read_bytes())
+        for file in [*self.files_beside(), self.engine_file]:
+            if file.exists():
+                digest.update(file.read_bytes())
         return digest.hexdigest()
 
     def results(self, name: str) -> Path:
@@ -86,8 +94,13 @@ class Folder:
         replace_if_other(self.path / "base.toml", study.scene.read_text())
         for name in files:
             copy_if_other(study.scene.parent / name, self.beside / name)
+        for other in self.files_beside():
+            if str(other.relative_to(self.beside)) not in files:
+                other.unlink()
         if study.regression:  # another engine is what it is there to see
-            replace_if_other(self.path / "engine.json", as_text(hashlib.sha256(engine().read_bytes()).hexdigest()))
+            replace_if_other(self.engine_file, as_text(hashlib.sha256(engine().read_bytes()).hexdigest()))
+        else:
+            self.engine_file.unlink(missing_ok=True)
         for point in points:
             replace_if_other(self.path / f"points/{point.name}.json", as_text(asdict(point)))
         quantities = [asdict(quantity) for quantity in study.quantities]

@@ -10,6 +10,7 @@ from typing import Any
 
 import jinja2
 
+from pliant.results import read_json
 from pliant.study.folder import Folder, replace
 
 HERE = Path(__file__).resolve().parent
@@ -34,7 +35,6 @@ def write_report(folder: Folder) -> None:
 
 def _machine(folder: Folder, rows: list[dict]) -> dict[str, Any]:
     """Of the runs: what their summaries say of program and cost."""
-    from pliant.results import read_json
     summaries = [read_json(folder.results(row["run"]) / "summary.json") for row in rows]
     return {"commits": sorted({s["commit"] for s in summaries if "commit" in s}),
             "compilers": sorted({s["compiler"] for s in summaries if "compiler" in s}),

@@ -22,7 +22,7 @@ def scene(folder: Folder, name: str) -> None:
     changed = Scene.read(folder.path / "base.toml")
     for path, value in folder.point(name).sets.items():
         changed[path] = value
-    for other in (file for file in folder.beside.rglob("*") if file.is_file()):
+    for other in folder.files_beside():
         copy_if_other(other, folder.run(name) / other.relative_to(folder.beside))
     replace(folder.scene(name), changed.text())
 
@@ -31,14 +31,14 @@ def run(folder: Folder, name: str, threads: str) -> None:
     """Begins, goes on from a checkpoint of the same scene, or takes what is finished. A run that fails is an outcome like
     others; one that is killed is none."""
     scene_file, results = folder.scene(name), folder.results(name)
-    begun, print_now = folder.run(name) / "begun", folder.fingerprint(name)
-    same = begun.exists() and begun.read_text() == print_now
+    begun, fingerprint = folder.run(name) / "begun", folder.fingerprint(name)
+    same = begun.exists() and begun.read_text() == fingerprint
     if same and is_finished(results):
         code, message = 0, ""
     else:
         resumes = same and (results / "checkpoint.bin").exists()
         begin = time.monotonic()
-        replace(begun, print_now)
+        replace(begun, fingerprint)
         way = ["--resume"] if resumes else [scene_file, "--force"]
         result = call("run", *way, "--out", results, "--threads", threads, "--quiet")
         code, message = result.returncode, result.stderr.strip()
