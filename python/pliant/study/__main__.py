@@ -119,7 +119,8 @@ def snakemake(folder: Folder, study: Study, options: argparse.Namespace, lock: i
                "mtime", "--quiet", "all"]
     if options.slurm:
         command += ["--cluster", "sbatch --parsable --cpus-per-task={threads} --job-name=pliant-{rule} "
-                    f"--output={folder.path}/workflow/slurm-%j.log", "--jobs", str(options.jobs), "--latency-wait", "60"]
+                    f"--output={folder.path}/workflow/slurm-%j.log",
+                    "--jobs", str(options.jobs), "--latency-wait", "60"]
     else:
         command += ["--cores", str(options.cores)]
     (folder.path / "workflow").mkdir(exist_ok=True)
@@ -166,7 +167,8 @@ def tell(folder: Folder) -> int:
         if r["quantity"] == "-":
             print(f"{r['run']}: is in the baseline alone", file=sys.stderr)
             continue
-        print(f"{r['run']}: {r['quantity']} was {r['then']}, is {r['now']}; {r['tolerance']:g} allowed", file=sys.stderr)
+        print(f"{r['run']}: {r['quantity']} was {r['then']}, is {r['now']}; {r['tolerance']:g} allowed",
+              file=sys.stderr)
     for order in table.get("orders", []):
         of = "".join(f", {name} = {value}" for name, value in order["of"].items())
         found = (f"order {order['order']:.2f}, limit {order['limit']:.5g}, index {order['index']:.2g}"
