@@ -18,7 +18,8 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
-from pliant.results import BadFolder, Frames, Run, Table, read_json, read_run
+from pliant.frames import BadFolder, Frames
+from pliant.results import Run, Table, read_json, read_run
 
 EQUAL, DIFFERENT, NOT_COMPARABLE = 0, 1, 2
 # Of the machine and the day, not of the run.

@@ -19,7 +19,8 @@ import h5py
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from pliant.units import readable
-from pliant.results import BadFolder, read_json
+from pliant.frames import BadFolder
+from pliant.results import read_json
 
 BAD_INPUT = 2
 LONGEST_ROW = 4096  # bytes

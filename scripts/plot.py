@@ -4,8 +4,10 @@
     ./pliant plot out/third_body_mini
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
 
-grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, steps.png, forces.png, energy.png, probes.png (what else
-the scene's probes measure), failure.png (of a run that could not go on: the place): what the run has data for; the rest is named and left out. Exit code 2: no such result folder, 4: a picture cannot be written.
+grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, chains.png (contact forces), network.png
+(their statistics), coarse.png (means over cells), steps.png, forces.png, energy.png, probes.png (what else the scene's
+probes measure), failure.png (of a run that could not go on: the place): what the run has data for; the rest is named and
+left out. Exit code 2: no such result folder, 4: a picture cannot be written.
 """
 
 import argparse
@@ -23,9 +25,13 @@ from matplotlib.figure import Figure
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
+from pliant.frames import BadFolder
+from pliant.results import Run, read_run
 from plots import curves, maps
+from plots.chains import chains
+from plots.coarse import coarse
 from plots.failure import failure
-from pliant.results import BadFolder, Run, read_run
+from plots.network import network
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
 DOTS_PER_INCH = 200
@@ -60,6 +66,9 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),
         "von_mises.png": (lambda: maps.von_mises(run, chosen) if frames else None, "frames with von_mises"),
         "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with contact_damage and bonds at the start"),
+        "chains.png": (lambda: chains(run, chosen) if frames else None, "frames with contacts ([frames] contacts = true)"),
+        "network.png": (lambda: network(run, chosen) if frames else None, "frames with 50 contacts or more"),
+        "coarse.png": (lambda: coarse(run, chosen) if frames else None, "frames of 50 grains or more"),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),

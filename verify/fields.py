@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.results import Frames
+from pliant.frames import Frames
 from verification import Run
 
 STRESSES = ("xx", "yy", "xy")

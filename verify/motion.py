@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fields import frames_of
-from pliant.results import Frames
+from pliant.frames import Frames
 from verification import Run
 
 SINGLE = 6e-8  # relative rounding of frames, which are in single precision

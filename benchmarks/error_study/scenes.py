@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from error_study.choices import Choice
-from pliant.results import Frames, read_run
+from pliant.frames import Frames
+from pliant.results import read_run
 
 HERE = Path(__file__).resolve().parent
 ORACLES = HERE.parents[1] / "verify/oracles"

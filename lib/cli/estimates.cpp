@@ -18,6 +18,8 @@ constexpr double compressed_share = 0.7;
 /// or row of a CSV file.
 constexpr double dataset_bytes = 2600, frame_groups_bytes = 1600, file_bytes = 100'000;
 constexpr double xdmf_dataset_bytes = 240, xdmf_frame_bytes = 1300;
+/// Pairs in touch of a dense packing of equal discs, and the columns of results/contact_network.hpp.
+constexpr double pairs_a_body = 3, contact_values = 8;
 constexpr double probe_cell_bytes = 17, step_row_bytes = 75;
 
 /// Points and cells of the grids of a frame.
@@ -172,6 +174,7 @@ double frame_bytes(const Model& model) {
   const GridSize size = grid_size(model);
   double values = 2 * size.points + 2 * size.outline_points;
   for (const std::string& field : model.scene.frames.fields) values += values_of(frame_field(field), size);
+  if (model.scene.frames.contacts) values += pairs_a_body * contact_values * static_cast<double>(model.bodies.size());
   return sizeof(float) * values;
 }
 
@@ -180,7 +183,7 @@ OutputSize output_size(const Model& model, double steps) {
   OutputSize size;
   size.frames = output_count(scene.frames.period, scene.time.end);
   const double frames = static_cast<double>(size.frames),
-               datasets = 2 + static_cast<double>(scene.frames.fields.size());
+               datasets = 2 + static_cast<double>(scene.frames.fields.size()) + (scene.frames.contacts ? 5 : 0);
   if (size.frames > 0) {
     size.frames_h5 =
         file_bytes + frames * (compressed_share * frame_bytes(model) + datasets * dataset_bytes + frame_groups_bytes);

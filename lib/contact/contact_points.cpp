@@ -24,6 +24,7 @@ std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHist
   const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
+    const SlaveNodes nodes = load_slaves(pass, i);
     Record<Law> now;
     const Contact c = answer(law, view.window, p, touching, history, pass.record + i, now);
     const auto damage_of = [](const Record<Law>& record, int lane) {
@@ -35,7 +36,7 @@ std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHist
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
       points.push_back({view.body(side), view.body(1 - side), index - turn_of(index, count) * count, p.gap[lane],
                         c.slip[lane], c.pressure[lane], c.shear[lane], damage_of(now, lane), at.length[lane],
-                        Vec2(p.normal_x[lane], p.normal_y[lane]), side});
+                        Vec2(p.normal_x[lane], p.normal_y[lane]), side, Vec2(nodes.x[lane], nodes.y[lane])});
     }
   };
   std::visit(

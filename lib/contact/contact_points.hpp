@@ -18,6 +18,7 @@ struct ContactPoint {
   double length = 0;          ///< tributary length, m; each of the two passes carries half of the force
   Vec2 normal{0, 0};          ///< of the master, outward
   int side = 0;               ///< of the pair that the slave is: 0 the first; of a body and its image only this tells
+  Vec2 position{0, 0};        ///< of the node where the pair's first body sees it, m
 };
 
 /// Two bodies, a body and its own periodic image, or parts of one body, in touch.

@@ -94,9 +94,29 @@ Hdf5Group write_frame(Hdf5File& file, double time, const GridFrame& frame) {
   return group;
 }
 
+Hdf5Group write_table(Hdf5File& file, double time, const FrameTable& table) {
+  Hdf5Group group = file.new_group();
+  group.write_attribute("time", time);
+  for (const auto& [name, components, values] : table.columns) group.write(name, values, components);
+  return group;
+}
+
+void check_table(const std::filesystem::path& file, const std::string& name, const FrameTable& table) {
+  if (table.name != name)
+    throw OutputError(fmt::format("{}: table '{}' was given; expected is '{}'", file.string(), table.name, name));
+  const auto rows_of = [](const auto& column) {
+    return column.values.size() / static_cast<std::size_t>(column.components);
+  };
+  for (const auto& column : table.columns)
+    require_size(file, name + "/" + column.name, column.values.size(),
+                 rows_of(table.columns.front()) * static_cast<std::size_t>(column.components));
+}
+
 /// What a frame may add to the file at most, should nothing compress.
-std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames) {
+std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables) {
   std::uintmax_t values = 0;
+  for (const FrameTable& table : tables)
+    for (const FrameTable::Column& column : table.columns) values += column.values.size();
   for (const GridFrame& frame : frames) {
     values += frame.positions.size();
     for (const Field& field : frame.fields) values += field.values.size() * 3 / 2;
@@ -109,42 +129,55 @@ std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames) {
 struct FrameFile::Implementation {
   std::filesystem::path heavy, light;
   std::vector<Grid> grids;
+  std::vector<std::string> tables;
   XdmfDocument document;
   int count = 0;
 
   /// Topologies are let go of: they may be as large as all the rest of a run.
-  Implementation(const std::filesystem::path& folder, const std::vector<GridTopology>& topologies, Opening opening)
+  Implementation(const std::filesystem::path& folder, const std::vector<GridTopology>& topologies, Opening opening,
+                 std::vector<std::string> table_names)
       : heavy(folder / "frames.h5"),
         light(folder / "frames.xdmf"),
         grids(topologies.begin(), topologies.end()),
+        tables(std::move(table_names)),
         document(heavy, topologies) {
     if (opening == Opening::resume) return;
     Hdf5File file(heavy, Hdf5File::Mode::create);
     for (const GridTopology& grid : topologies) write_topology(file, grid);
+    for (const std::string& table : tables) file.publish(file.new_group(expected_frames), "/" + table);
     file.write_empty_list("/times");
     file.close();
     write_file_atomically(light, document.text());
   }
 
   /// Opened and closed for each frame: between frames both files are complete, whatever ends the run. A frame is
-  /// published when it is in the file, grid by grid, and its time listed last: it counts when it is whole.
-  void append(double time, const std::vector<GridFrame>& frames) {
-    check(frames);
-    reserve_disk_space(heavy, frame_bytes(frames));
-    write(time, frames);
+  /// published when it is in the file, group by group, and its time listed last: it counts when it is whole.
+  void append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) {
+    check(frames, rows);
+    reserve_disk_space(heavy, frame_bytes(frames, rows));
+    write(time, frames, rows);
     document.add(count, time, grids, frames);
     write_file_atomically(light, document.text());
     ++count;
   }
 
-  void write(double time, const std::vector<GridFrame>& frames) const {
+  /// Of grids and tables, in this order.
+  std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const Grid& grid : grids) all.push_back(grid.name);
+    all.insert(all.end(), tables.begin(), tables.end());
+    return all;
+  }
+
+  void write(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) const {
     Hdf5File file(heavy, Hdf5File::Mode::append);
     std::vector<Hdf5Group> groups;
-    groups.reserve(frames.size());
+    groups.reserve(frames.size() + rows.size());
     for (const GridFrame& frame : frames) groups.push_back(write_frame(file, time, frame));
+    for (const FrameTable& table : rows) groups.push_back(write_table(file, time, table));
     file.flush();
-    for (std::size_t g = 0; g < grids.size(); ++g) {
-      file.publish(groups[g], frame_group(grids[g].name, count));
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      file.publish(groups[g], frame_group(names()[g], count));
       file.flush();
     }
     groups.clear();  // before the file closes: an open group would keep it open
@@ -160,32 +193,37 @@ struct FrameFile::Implementation {
       throw OutputError(fmt::format("{}: has {} frames, {} at the checkpoint; it was changed: start anew (--force)",
                                     heavy.string(), there, wanted));
     if (there > wanted) file.shorten_list("/times", wanted);
-    for (const Grid& grid : grids) {
+    for (const std::string& name : names()) {
       int end = count;
-      while (file.has(frame_group(grid.name, end))) ++end;
+      while (file.has(frame_group(name, end))) ++end;
       // The last first: a kill in between leaves no gap, behind which the next call would not look.
-      while (end > count) file.remove(frame_group(grid.name, --end));
+      while (end > count) file.remove(frame_group(name, --end));
     }
     file.close();
     write_file_atomically(light, document.text());
   }
 
-  void check(const std::vector<GridFrame>& frames) const {
-    if (frames.size() != grids.size()) {
-      throw OutputError(fmt::format("{}: a frame of {} grids was given, the file has {}; give one for each grid",
-                                    heavy.string(), frames.size(), grids.size()));
+  void check(const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) const {
+    if (frames.size() != grids.size() || rows.size() != tables.size()) {
+      throw OutputError(
+          fmt::format("{}: a frame of {} grids and {} tables was given, the file has {} and {}; give one for each",
+                      heavy.string(), frames.size(), rows.size(), grids.size(), tables.size()));
     }
     for (std::size_t g = 0; g < grids.size(); ++g) check_frame(heavy, grids[g], frames[g]);
+    for (std::size_t t = 0; t < tables.size(); ++t) check_table(heavy, tables[t], rows[t]);
   }
 };
 
-FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening)
-    : implementation_(
-          std::make_unique<Implementation>(folder, checked(folder / "frames.h5", std::move(grids)), opening)) {}
+FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening,
+                     std::vector<std::string> tables)
+    : implementation_(std::make_unique<Implementation>(folder, checked(folder / "frames.h5", std::move(grids)), opening,
+                                                       std::move(tables))) {}
 
 FrameFile::~FrameFile() = default;
 
-void FrameFile::append(double time, const std::vector<GridFrame>& frames) { implementation_->append(time, frames); }
+void FrameFile::append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables) {
+  implementation_->append(time, frames, tables);
+}
 
 int FrameFile::count() const { return implementation_->count; }
 

@@ -39,15 +39,28 @@ struct GridFrame {
   std::vector<Field> fields;
 };
 
+/// Columns of one length, which may be another in every frame.
+struct FrameTable {
+  std::string name;
+  struct Column {
+    std::string name;
+    int components = 1;
+    std::vector<float> values;  ///< [rows x components]
+  };
+  std::vector<Column> columns;
+};
+
 /// frames.h5 with frames.xdmf beside it. Layout: /<grid>/cells, /<grid>/<constant field>, and /<grid>/<frame, six
-/// digits>/{position,<field>...}, with attribute `time` (s) on the frame's group; /times lists them. After every append
-/// both files are complete and readable. Throws OutputError.
+/// digits>/{position,<field>...}, with attribute `time` (s) on the frame's group; /times lists them. A table is not in
+/// the XDMF file: /<table>/<frame>/<column>. After every append both files are complete and readable. Throws
+/// OutputError.
 class FrameFile {
  public:
-  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening = Opening::create);
+  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening = Opening::create,
+            std::vector<std::string> tables = {});
   ~FrameFile();
-  /// One GridFrame a grid, in the order of the constructor.
-  void append(double time, const std::vector<GridFrame>& frames);
+  /// One GridFrame a grid and one FrameTable a table, in the order of the constructor.
+  void append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables = {});
   int count() const;
 
   template <class Visitor>

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "results/body_motion.hpp"
+#include "results/contact_network.hpp"
 
 namespace pliant {
 namespace {
@@ -45,7 +46,9 @@ FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& fo
   std::vector<GridTopology> grids;  // moved, not copied: they are as large as all the rest
   grids.push_back(bodies_grid());
   grids.push_back(outlines_grid());
-  file_ = std::make_unique<FrameFile>(folder, std::move(grids), opening);
+  std::vector<std::string> tables;
+  if (model.scene.frames.contacts) tables.emplace_back(contact_network_name);
+  file_ = std::make_unique<FrameFile>(folder, std::move(grids), opening, std::move(tables));
 }
 
 void FrameRecorder::choose_fields() {
@@ -108,7 +111,9 @@ void FrameRecorder::record_last(Simulation& simulation) {
 
 void FrameRecorder::record(Simulation& simulation) {
   const Snapshot snapshot(simulation);
-  file_->append(simulation.state().time, {bodies_frame(snapshot), outlines_frame(snapshot)});
+  std::vector<FrameTable> tables;
+  if (model_.scene.frames.contacts) tables.push_back(contact_network(snapshot));
+  file_->append(simulation.state().time, {bodies_frame(snapshot), outlines_frame(snapshot)}, tables);
   ++count_;
 }
 

@@ -9,7 +9,8 @@
 namespace pliant {
 
 /// frames.h5 and frames.xdmf: grid "bodies" (triangles of all grains) and grid "outlines" (segments of all bodies),
-/// with the fields that the scene asks for and no others. Positions are not wrapped into the period.
+/// with the fields that the scene asks for and no others, and the table "contacts" if it does. Positions are not
+/// wrapped into the period.
 class FrameRecorder {
  public:
   FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);

@@ -158,6 +158,7 @@ Frames read_frames(TableReader table, const Scene& scene) {
       if (frames.fields[i] == frames.fields[j]) table.fail("fields", fmt::format("\"{}\" twice", frames.fields[i]));
     }
   }
+  table.optional("contacts", frames.contacts, Flag{});
   table.finish();
   return frames;
 }

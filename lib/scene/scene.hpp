@@ -248,6 +248,7 @@ struct Probe {
 struct Frames {
   double period = 0;                ///< s; 0: no frames
   std::vector<std::string> fields;  ///< names of frame_fields(); kind and body are always there
+  bool contacts = false;            ///< all pairs in touch with their forces: results/contact_network.hpp
 };
 
 struct TimeSettings {

@@ -5,7 +5,10 @@
     run = pliant.open("results/two_discs")         # what a run wrote: see pliant.results.Run
     run.summary["energy"]["balance_error"]
     run.probes.column("energy.kinetic").values     # [rows], in the unit that .unit names
-    run.frames.positions("outlines", 0)            # [points x 3], m; frames are read one by one
+    run.frames.positions("outlines", 0)            # [points x 2], m; frames are read one by one
+    run.frames.bodies("rigid", 0, box)             # numbers of bodies, by kind and place; centres, polygons, contacts
+
+    # from pliant import order, network, coarse: neighbours and clusters; chains of forces; means over cells
 
     scene = pliant.Scene.read("cases/two_discs.toml")
     scene["shapes.disc.nodes"] = 340
@@ -20,10 +23,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from pliant.engine import BadScene, RunFailed, run
-from pliant.results import BadFolder, Column, Frames, Grid, Run, Table, read_run
+from pliant.frames import BadFolder, Contacts, Frames, Grid
+from pliant.results import Column, Run, Table, read_run
 from pliant.scene import Scene
 
-__all__ = ["BadFolder", "BadScene", "Column", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
+__all__ = ["BadFolder", "BadScene", "Column", "Contacts", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
 
 
 def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.open

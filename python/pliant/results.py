@@ -1,4 +1,4 @@
-"""Reads what a run wrote; frames one by one. Nothing here draws."""
+"""Reads what a run wrote. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -11,16 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-import h5py
 import numpy as np
 
 from pliant import units
-
-COMPLIANT, RIGID, WALL = 0, 1, 2
-
-
-class BadFolder(Exception):
-    """The folder is no result folder, or one of its files cannot be read; the message names it."""
+from pliant.frames import BadFolder, Frames
 
 
 @dataclass
@@ -61,40 +55,6 @@ class Table:
         return self.time[there], column.values[there]
 
 
-@dataclass
-class Grid:
-    """Topology of "bodies" (triangles) or "outlines" (segments), with what kind and which body each cell is of."""
-
-    cells: np.ndarray  # [cells x points a cell]
-    kind: np.ndarray  # [cells]
-    body: np.ndarray  # [cells]
-
-    def closed_across(self) -> Grid:
-        """With one more segment for each wall, from its last point to its first: a wall is an open line that goes on in
-        the next period."""
-        uses = np.bincount(self.cells.ravel())
-        extra = []
-        for wall in np.unique(self.body[self.kind == WALL]):
-            points = np.unique(self.cells[self.body == wall])
-            ends = points[uses[points] == 1]
-            if len(ends) == 2:
-                extra.append((ends, wall))
-        cells = np.array([ends for ends, _ in extra], dtype=int).reshape(-1, 2)
-        bodies = np.array([wall for _, wall in extra], dtype=int)
-        return Grid(
-            np.concatenate([self.cells, cells]),
-            np.concatenate([self.kind, np.full(len(extra), WALL)]),
-            np.concatenate([self.body, bodies]),
-        )
-
-    @cached_property
-    def point_body(self) -> np.ndarray:
-        """[points] body of each point."""
-        bodies = np.zeros(self.cells.max(initial=-1) + 1, dtype=int)
-        bodies[self.cells] = self.body[:, None]
-        return bodies
-
-
 def read_json(file: Path) -> dict:
     """{} when there is none."""
     try:
@@ -128,43 +88,6 @@ def _column(text: str, values: np.ndarray) -> Column:
     match = re.fullmatch(r"(?:(.*)\.)?(.*?)(?: \[(.*)\])?", text)
     assert match is not None  # every part is optional
     return Column(match[1] or "", match[2], match[3] or "-", values)
-
-
-class Frames:
-    """frames.h5, read frame by frame. Frames that a killed run did not finish are not listed, so not seen."""
-
-    def __init__(self, file: Path, period: float | None) -> None:
-        self.path = file
-        try:
-            self._file = h5py.File(file, "r")
-            self.times: np.ndarray = self._file["times"][()]
-            self.grids = {name: self._grid(name) for name in ("bodies", "outlines") if name in self._file}
-        except (OSError, KeyError) as error:
-            raise BadFolder(f"{file}: not a file of frames: {error}") from error
-        if period is not None and "outlines" in self.grids:
-            self.grids["outlines"] = self.grids["outlines"].closed_across()
-
-    def _grid(self, name: str) -> Grid:
-        group = self._file[name]
-        return Grid(group["cells"][()], group["kind"][()].astype(int), group["body"][()].astype(int))
-
-    def positions(self, grid: str, index: int) -> np.ndarray:
-        """[points x 2], m."""
-        values = self.field(grid, index, "position")
-        if values is None:
-            raise BadFolder(f"{self.path}: frame {index} of '{grid}' has no positions")
-        return values.astype(float)
-
-    def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
-        """[points or cells (x 3)]; None when the run did not store it."""
-        path = f"{grid}/{index:06}/{name}"
-        try:
-            return self._file[path][()] if path in self._file else None
-        except OSError as error:
-            raise BadFolder(f"{self.path}: {path} cannot be read: {error}") from error
-
-    def nearest(self, time: float) -> int:
-        return int(np.abs(self.times - time).argmin())
 
 
 @dataclass

@@ -11,7 +11,7 @@ from matplotlib.tri import Triangulation
 
 from pliant import units
 from plots.scenery import Scenery
-from pliant.results import WALL
+from pliant.frames import WALL
 
 KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
 EDGE = "#2b2b2b"

@@ -11,7 +11,8 @@ from matplotlib.patches import Patch
 from pliant import units
 from plots.drawing import EDGE, KIND_COLOURS, Box, draw, draw_coloured, finish_sheet, outline_width, sheet, whole_and_window
 from plots.scenery import Scenery, common_box, refined, scenery
-from pliant.results import COMPLIANT, RIGID, WALL, Frames, Run
+from pliant.frames import COMPLIANT, RIGID, WALL, Frames
+from pliant.results import Run
 
 NEUTRAL = "#c9c9c9"
 # Colours of a quantity that is not linear over a triangle are exact at this share of the picture's width.

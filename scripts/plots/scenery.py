@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from plots.wrapping import body_shifts, edge_copies, wrapped_segments
-from pliant.results import WALL, Frames, Run
+from pliant.frames import WALL, Frames
+from pliant.results import Run
 
 
 @dataclass

@@ -111,6 +111,7 @@ period = 0.5
 [frames]
 period = 0.5
 fields = ["velocity", "von_mises", "contact_pressure"]
+contacts = true
 """
 
 # The same for a few steps, with as many frames and probes as LAYER.

@@ -99,6 +99,21 @@ TEST_F(FrameFiles, IndependentReaderSeesAWrongShape) {
   EXPECT_EQ(check_xdmf(), 1);
 }
 
+TEST_F(FrameFiles, TablesHaveOtherLengthsInEveryFrame) {
+  FrameFile file(folder_, small_grids(), Opening::create, {"contacts"});
+  file.append(0, small_frame(0), {{"contacts", {{"force", 2, {1, 2, 3, 4}}, {"length", 1, {5, 6}}}}});
+  file.append(1, small_frame(0), {{"contacts", {{"force", 2, {}}, {"length", 1, {}}}}});
+  EXPECT_EQ(read_array("/contacts/000000/force"), (std::vector<double>{1, 2, 3, 4}));
+  EXPECT_EQ(read_array("/contacts/000000/length"), (std::vector<double>{5, 6}));
+  EXPECT_TRUE(read_array("/contacts/000001/force").empty());
+  EXPECT_EQ(check_xdmf(), 0);
+  const FrameTable ragged{"contacts", {{"force", 2, {1, 2}}, {"length", 1, {1, 2}}}};
+  EXPECT_THROW(file.append(2, small_frame(0), {ragged}), OutputError);
+  EXPECT_THROW(file.append(2, small_frame(0), {{"others", {}}}), OutputError);
+  EXPECT_THROW(file.append(2, small_frame(0)), OutputError);
+  EXPECT_EQ(read_array("/times"), (std::vector<double>{0, 1}));
+}
+
 TEST_F(FrameFiles, EmptyGridsAreFine) {
   FrameFile file(folder_, {{{"bodies", 0, 3}, {}, {field("kind", Field::Centre::cell, 1, {})}}});
   file.append(0, {GridFrame{}});

@@ -13,7 +13,8 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(Path(__file__).
 
 from pliant import units
 from plots import curves, scenery, wrapping
-from pliant.results import WALL, BadFolder, Grid, read_run, read_table
+from pliant.frames import WALL, BadFolder, Grid
+from pliant.results import read_run, read_table
 from synthetic_run import PITCH, write_run
 
 PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png",

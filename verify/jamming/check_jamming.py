@@ -13,7 +13,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from contact_network import Outlines
 from jamming_packing import BOTTOM, DISCS, FORCES, LEFT, RIGHT, TOP, Packing, Stage, read_packing
 from pictures import COLOURS, MARKERS, legend, panels, save
-from pliant.results import Frames
+from pliant.frames import Frames
 from verification import FULL, Case, Label
 
 CASE = Case(__file__, cost=4)

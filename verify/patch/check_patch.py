@@ -12,7 +12,7 @@ from fem.meshes import disc
 from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from pictures import COLOURS, legend, panels, save
-from pliant.results import COMPLIANT, Frames
+from pliant.frames import COMPLIANT, Frames
 from squeeze import RECIPES
 from verification import Case, Label, Run
 

@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 
 from pictures import COLOURS, panels, save
 from plots import curves, maps
+from pliant.order import like_fraction_at_random
 from pliant.results import read_run
 from third_body_layer import AFTERMATH, BREAK, DIAMETER, PLATEAU, PRESSED, SAMPLING, SHORT_BLOCK, Layer
-from third_body_order import like_fraction_at_random
 from time_means import Mean, block_means
 from verification import FULL, ROOT, Case, Label, Run
 

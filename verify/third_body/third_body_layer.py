@@ -7,12 +7,13 @@ from functools import cached_property
 
 import numpy as np
 
-from pliant.results import WALL, Frames
-from third_body_order import Neighbours, bond_order, kept_fraction, like_fraction, neighbours
+from pliant.frames import Frames
+from pliant.order import Neighbours, bond_order, kept_fraction, like_fraction, neighbours
 from time_means import block_means
 from verification import Run
 
 DIAMETER = 1e-6  # m
+NEIGHBOUR = 1.3  # diameters between centres: between the hexagonal packing's first neighbours, 1, and second, 1.73
 PRESSED = 1e-6  # s, when the pressure is whole and shear begins
 SAMPLING = 5e-9  # s, of forces
 SMOOTHED = 10  # samples of forces in a mean: 50 ns, as the paper's curves are smooth
@@ -35,26 +36,18 @@ class Layer:
 
     @cached_property
     def grains(self) -> np.ndarray:
-        grid = self.frames.grids["outlines"]
-        return np.unique(grid.body[grid.kind != WALL])
+        return self.frames.bodies("grain")
 
     @cached_property
     def kinds(self) -> np.ndarray:
         """[grains] 0 compliant, 1 rigid."""
-        grid = self.frames.grids["outlines"]
-        return np.array([grid.kind[grid.body == grain][0] for grain in self.grains])
-
-    def centres(self, index: int) -> np.ndarray:
-        """[grains x 2] m, means of the outlines."""
-        body = self.frames.grids["outlines"].point_body
-        points = self.frames.positions("outlines", index)[: len(body)]
-        sums = np.stack([np.bincount(body, column) for column in points.T], axis=1)
-        return (sums / np.bincount(body)[:, None])[self.grains]
+        return self.frames.kinds[self.grains]
 
     @cached_property
     def neighbours(self) -> list[Neighbours]:
         """By frame."""
-        return [neighbours(self.centres(i), self.period, DIAMETER) for i in range(len(self.frames.times))]
+        return [neighbours(self.frames.centres(i)[self.grains], NEIGHBOUR * DIAMETER, self.period)
+                for i in range(len(self.frames.times))]
 
     @cached_property
     def order(self) -> np.ndarray:
