@@ -23,13 +23,13 @@ int index_of_material(const Scene& scene, const std::string& name) {
 
 void require_all(const Grains& grains, const std::vector<int>& choice) {
   for (std::size_t m = 0; m < grains.mix.size(); ++m)
-    if (std::find(choice.begin(), choice.end(), static_cast<int>(m)) == choice.end())
+    if (grains.mix[m].share > 0 && std::find(choice.begin(), choice.end(), static_cast<int>(m)) == choice.end())
       throw InputError(fmt::format(
           "mix: a share of {} of {} grains is less than one of '{}'; take more grains, or leave that entry out",
           grains.mix[m].share, choice.size(), grains.mix[m].material));
 }
 
-/// Entry of the mix that each grain gets, [grains]. Throws InputError when one of them gets no grain.
+/// Entry of the mix that each grain gets, [grains]. Throws InputError when one with a share gets no grain.
 std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
   std::vector<double> shares;
   for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);

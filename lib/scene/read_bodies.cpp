@@ -32,7 +32,7 @@ std::vector<MixEntry> read_mix(TableReader& table, const Scene& scene) {
   double sum = 0;
   for (TableReader& part : table.tables("mix")) {
     mix.push_back(read_mix_entry(part, scene));
-    part.required("share", mix.back().share, share_of_grains);
+    part.required("share", mix.back().share, Quantity{"1", Range{.low = 0, .high = 1}});
     part.finish();
     sum += mix.back().share;
   }

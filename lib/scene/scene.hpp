@@ -103,7 +103,7 @@ struct ShapeShare {
 struct MixEntry {
   BodyKind body = BodyKind::compliant;
   std::string material;
-  double share = 1;  ///< shares of a mix sum to 1
+  double share = 1;  ///< shares of a mix sum to 1; 0: no grain, as at the end of a row of studies
 };
 
 /// How grains get their entries of a mix.

@@ -112,6 +112,19 @@ TEST(MixInTurn, PositionsAsListed) {
   EXPECT_EQ(bodies[2].kind, BodyKind::compliant);
 }
 
+/// EXACT: the end of a row of studies, with nothing of one kind.
+TEST(MixInTurn, AShareOfNothingIsNoGrain) {
+  for (const MixOrder order : {MixOrder::in_turn, MixOrder::random})
+    for (const double share : {0.0, 1.0}) {
+      Scene scene = mixed(PackingKind::grid, 3, 2);
+      scene.grains[0].mix[0].share = share;
+      scene.grains[0].mix[1].share = 1 - share;
+      scene.grains[0].mix_order = order;
+      for (const PlacedBody& body : place_bodies(scene))
+        EXPECT_EQ(body.kind, share == 1 ? BodyKind::compliant : BodyKind::rigid);
+    }
+}
+
 TEST(MixInTurn, AShareOfLessThanOneGrainIsRefused) {
   for (const MixOrder order : {MixOrder::in_turn, MixOrder::random}) {
     Scene scene = mixed(PackingKind::grid, 2, 2);

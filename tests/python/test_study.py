@@ -228,6 +228,8 @@ def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
     ('take = "max"', 'take = "max"\nwindow = ["1 s", "0.5 s"]', "begin before it ends"),
     ('take = "max"', 'take = "max"\nwindow = ["1 MPa", "2 MPa"]', "not a time"),
     ('summary = "steps"', 'function = "none.py:f"', "FILE.py:NAME"),
+    ('scene = "scene.toml"', 'scene = "scene.toml"\nset.shapes.disc.nodes = 40', "which '[set]' sets too"),
+    ('scene = "scene.toml"', 'scene = "scene.toml"\nset.shapes.disk.nodes = 40', "did you mean 'disc'?"),
 ])
 def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) -> None:
     text = STUDY.replace(old, new)
@@ -236,6 +238,13 @@ def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) ->
     result = desk.call()
     assert result.returncode == 2 and message in result.stderr, result.stderr
     assert not desk.out.exists()
+
+
+@pytest.mark.parametrize("written", ['"materials.soft.poisson" = 0.3', "materials.soft.poisson = 0.3"])
+def test_what_all_runs_share_is_in_no_name(desk: Desk, written: str) -> None:
+    points = points_of(read_study(desk.study(f"{STUDY}\n[set]\n{written}\n")))
+    assert [point.name for point in points] == [point.name for point in points_of(read_study(desk.study(STUDY)))]
+    assert all(point.sets["materials.soft.poisson"] == 0.3 and len(point.sets) == 3 for point in points)
 
 
 @pytest.mark.parametrize("file", sorted((ROOT / "studies").glob("*.toml")), ids=lambda file: file.stem)

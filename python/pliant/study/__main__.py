@@ -51,7 +51,7 @@ def scene_of(base: Scene, point: Point) -> Scene:
 
 def check_paths(study: Study, base: Scene) -> None:
     """No key is set twice."""
-    taken: dict[str, str] = {}
+    taken: dict[str, str] = {base.canonical(path): "[set]" for path in study.fixed}
     for p in [*study.parameters, *([study.replicas] if study.replicas else [])]:
         for path in p.paths:
             key = base.canonical(path)

@@ -45,7 +45,7 @@ def points_of(study: Study) -> list[Point]:
             if study.replicas:
                 chosen.append((study.replicas, seed))
             all_points.append(Point({p.name: value for p, value in chosen},
-                                    {path: value for p, value in chosen for path in p.paths}))
+                                    study.fixed | {path: value for p, value in chosen for path in p.paths}))
     return all_points
 
 

@@ -65,6 +65,7 @@ class Study:
     samples: int
     seed: int
     threads: int
+    fixed: dict[str, Any]  # by path in the scene, of all runs alike
     parameters: list[Parameter]
     replicas: Parameter | None
     quantities: list[Quantity]

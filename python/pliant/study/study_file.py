@@ -32,6 +32,7 @@ def read_study(file: Path) -> Study:
     title, threads = top.take("title", str, file.stem), top.whole("threads", 1, 1)
     samples = top.whole("samples", 1) if hypercube else 0
     seed = top.whole("seed", 0, 1) if hypercube else 0
+    fixed = _paths_of(top.take("set", dict, {}))
     parameters = [_parameter(reader, combine) for reader in top.tables("parameters")]
     replicas = _replicas(top.table("replicas"))
     quantities = [_quantity(reader, file.parent) for reader in top.tables("quantities")]
@@ -39,10 +40,18 @@ def read_study(file: Path) -> Study:
     convergence = _convergence(top.table("convergence"))
     regression = _regression(top.table("regression"), file.parent)
     top.done()
-    study = Study(file, title, scene, kind, combine, samples, seed, threads, parameters, replicas, quantities, plots,
-                  convergence, regression)
+    study = Study(file, title, scene, kind, combine, samples, seed, threads, fixed, parameters, replicas, quantities,
+                  plots, convergence, regression)
     _check_names(study, top)
     return study
+
+
+def _paths_of(table: dict[str, Any], before: str = "") -> dict[str, Any]:
+    """Values by dotted path: "a.b" = 1 and a.b = 1 are the same."""
+    flat: dict[str, Any] = {}
+    for key, value in table.items():
+        flat |= _paths_of(value, f"{before}{key}.") if isinstance(value, dict) else {f"{before}{key}": value}
+    return flat
 
 
 def _check_names(study: Study, top: Reader) -> None:
