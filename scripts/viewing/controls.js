@@ -12,17 +12,15 @@ function fillControls() {
 }
 
 function fillHelp() {
-  const { factor, unit } = about.length, rows = byId("errors");
   const row = (...cells) => {
-    const made = element(rows, "tr");
+    const made = element(byId("errors"), "tr");
     cells.forEach((cell) => element(made, "td", undefined, cell));
   };
-  const inLength = (value) => `${Number((value * factor).toPrecision(2))} ${unit}`;
-  row("positions", inLength(about.error), "");
+  row("positions", about.error_text, "");
   for (const field of about.fields) {
-    const of = (value) => `${round(Number((value * field.factor).toPrecision(4)))} ${field.unit}`.trim();
-    row(field.at === "points" ? `${field.label}, each component` : field.label, of(field.step / 2),
-      `${of(field.least)} to ${of(field.largest)}`);
+    const [least, largest] = [field.least, field.largest].map((value) => withUnit(value, field));
+    const name = field.at === "points" ? `${field.label}, each component` : field.label;
+    row(name, field.error_text, `${least} to ${largest}`);
   }
 }
 

@@ -81,6 +81,10 @@ class Scale:
     def two_sided(self) -> bool:
         return self.low < self.centre < self.high
 
+    @property
+    def negative(self) -> bool:
+        return self.low < self.centre == self.high
+
     def codes(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Whole numbers, and where there is no value."""
         missing = ~np.isfinite(values)
@@ -139,6 +143,8 @@ class Spread:
             return 0.0, max(1.0, self.largest)
         if below <= _ONE_SIDED * above:
             return self.centre, self.centre + self._end(above, extremes[0])
+        if above <= _ONE_SIDED * below:
+            return self.centre - self._end(below, extremes[1]), self.centre
         end = self._end(self._quantile(self.counts.sum(axis=0)), max(extremes))
         return self.centre - end, self.centre + end
 

@@ -19,8 +19,8 @@ _WHOLE = 1  # damage of a node that no bond holds
 
 
 def packed(numbers: np.ndarray, missing: np.ndarray | None = None) -> bytes:
-    """Number of planes, then the lowest byte of every code, then the next. Codes are 0 for what is missing and 1, 2, 3, 4
-    for 0, -1, 1, -2, and so on."""
+    """Number of planes, then the lowest byte of every code, then the next. Codes are 0 for what is missing and 1, 2, 3,
+    4 for 0, -1, 1, -2, and so on."""
     numbers = numbers.ravel().astype(np.int64)
     codes = np.where(numbers < 0, -2 * numbers, 2 * numbers + 1)
     if missing is not None:

@@ -70,16 +70,30 @@ def _box(run: Run, packing: Packing) -> list[float]:
 def _field(field: Field) -> dict[str, Any]:
     scale = field.scale
     assert scale is not None
-    palette = TWO_SIDED if scale.two_sided else field.look.colours
+    of = measure(max(abs(scale.low), abs(scale.high)), field.look.unit)
+    palette = TWO_SIDED if scale.two_sided else field.look.colours + ("_r" if scale.negative else "")
     return {"name": field.name, "label": field.look.label, "at": field.look.at, "once": field.once, "low": scale.low,
             "high": scale.high, "centre": scale.centre, "step": scale.step, "least": scale.least,
-            "largest": scale.largest, "palette": palette,
-            **measure(max(abs(scale.low), abs(scale.high)), field.look.unit)}
+            "largest": scale.largest, "palette": palette, "error_text": _error(field),
+            "digits": _digits(field, of["factor"]), **of}
+
+
+def _digits(field: Field, factor: float) -> int:
+    """Behind the point: as many as steps need, and not many more."""
+    assert field.scale is not None
+    return 0 if field.look.step is not None else int(np.clip(np.ceil(-np.log10(field.scale.step * factor / 4)), 0, 12))
+
+
+def _error(field: Field) -> str:
+    assert field.scale is not None
+    return "none" if field.look.step is not None else readable(field.scale.step / 2, field.look.unit, 3)
 
 
 def _palette(name: str) -> dict[str, Any]:
+    """Colours of a map; one that is reversed has its ends reversed too."""
     colours = matplotlib.colormaps[name](np.arange(256))
-    return {"colours": [to_hex(colour) for colour in colours], "below": BEYOND[name][0], "above": BEYOND[name][1]}
+    below, above = BEYOND[name] if name in BEYOND else BEYOND[name.removesuffix("_r")][::-1]
+    return {"colours": [to_hex(colour) for colour in colours], "below": below, "above": above}
 
 
 def _probe(column: Column) -> dict[str, Any]:
@@ -119,8 +133,8 @@ def about(run: Run, packing: Packing) -> dict[str, Any]:
     latest = max(float(np.abs(times).max()), float(run.probes.time.max()) if run.probes is not None else 0.0)
     return {
         "title": run.title, "times": [float(t) for t in times], "frames": packing.chosen, "period": run.period,
-        "box": box, "step": step, "fine": step / FINE, "error": ERROR * step,
-        "error_text": readable(ERROR * step, "m", 2), "fields": fields,
+        "box": box, "step": step, "fine": step / FINE, "error_text": readable(ERROR * step, "m", 3),
+        "fields": fields,
         "palettes": {name: _palette(name) for name in {field["palette"] for field in fields}},
         "colours": {"kinds": KIND_COLOURS, "edge": EDGE, "neutral": NEUTRAL},
         "probes": [_probe(column) for column in _shown(run.probes)], "time": measure(latest, "s"),

@@ -80,21 +80,19 @@ function alongOutline(model, frame, values, hit) {
 
 const kindNames = ["compliant", "rigid", "wall"];
 
-/// Digits that mean something: steps of what is stored, and not much finer.
-function digits(field) { return Math.min(Math.max(0, Math.ceil(-Math.log10((field.step * field.factor) / 4))), 12); }
-
-function withUnit(value, of, decimals) {
-  return `${(value * of.factor).toFixed(decimals).replace("-", "\u2212")} ${of.unit}`.trim();
+function withUnit(value, field) {
+  const text = (value * field.factor).toFixed(field.digits), sign = Number(text) < 0 ? "\u2212" : "";
+  return `${sign}${text.replace("-", "")} ${field.unit}`.trim();
 }
 
 /// Lines that tell what is at a hit.
 function told(model, frame, field, values, hit) {
   const lines = [`body ${hit.body}, ${kindNames[model.kind[hit.body]]}`];
   if (!field) return lines;
-  const { value, parts } = valueAt(model, frame, field, values, hit), decimals = digits(field);
+  const { value, parts } = valueAt(model, frame, field, values, hit);
   if (Number.isNaN(value)) return [...lines, `${field.label}: none`];
   const beyond = value > field.high + field.step / 2 || value < field.low - field.step / 2 ? ", beyond the scale" : "";
-  lines.push(`${field.label} ${withUnit(value, field, decimals)}${beyond}`);
-  if (parts) lines.push(`x ${withUnit(parts[0], field, decimals)}, y ${withUnit(parts[1], field, decimals)}`);
+  lines.push(`${field.label} ${withUnit(value, field)}${beyond}`);
+  if (parts) lines.push(`x ${withUnit(parts[0], field)}, y ${withUnit(parts[1], field)}`);
   return lines;
 }
