@@ -9,6 +9,7 @@ import numpy as np
 
 STEPS = 1000  # that a colour scale is divided into; values beyond it are kept in the same steps
 QUANTILE = 0.995
+CONTACT_QUANTILE = 0.98  # of what acts along outlines: corners carry many times what faces do
 _ONE_SIDED = 0.02  # a scale has one side where the other holds less than this share of it
 _PER_OCTAVE, _OCTAVES = 64, 300
 
@@ -24,7 +25,13 @@ class Look:
     centre: float = 0.0
     span: tuple[float, float] | None = None  # where it is known beforehand
     step: float | None = None  # of whole numbers
+    quantile: float = QUANTILE  # of magnitudes, that a scale ends at
     at: str = "cells"  # of the bodies' grid, or its "points", where a vector stands, or points of "outlines"
+
+    @property
+    def fixed(self) -> bool:
+        """Its scale says all."""
+        return self.step is not None or self.span is not None
 
     @property
     def grid(self) -> str:
@@ -40,7 +47,7 @@ def _number(label: str) -> Look:
 
 
 def _contact(label: str, unit: str) -> Look:
-    return Look(label, unit, "YlOrRd", of_compliant=False, at="outlines")
+    return Look(label, unit, "YlOrRd", of_compliant=False, quantile=CONTACT_QUANTILE, at="outlines")
 
 
 LOOKS = {
@@ -57,7 +64,7 @@ LOOKS = {
     "scale": Look("size over that of the shape", "-", "viridis", of_compliant=False),
     "contact_pressure": _contact("contact pressure", "Pa"),
     "contact_shear": _contact("contact shear", "Pa"),
-    "contact_damage": Look("damage of bonds, 1 torn", "-", "turbo", of_compliant=False, span=(0.0, 1.0), at="outlines"),
+    "contact_damage": Look("bond damage, 1 torn", "-", "turbo", of_compliant=False, span=(0.0, 1.0), at="outlines"),
     "contact_gap": _contact("contact gap", "m"),
     "contact_slip": _contact("contact slip", "m"),
     **{f"stress_{axes}": Look(f"stress {axes}", "Pa") for axes in ("xx", "yy", "xy", "zz")},
@@ -120,11 +127,12 @@ class Spread:
         for side, chosen in enumerate((apart > 0, apart < 0)):
             self.counts[side] += np.bincount(bins[chosen], minlength=self.counts.shape[1])
 
-    def _quantile(self, counts: np.ndarray) -> float:
+    @staticmethod
+    def _quantile(counts: np.ndarray, share: float) -> float:
         """Upper edge of the bin where it lies, 0 without values."""
         if counts.sum() == 0:
             return 0.0
-        index = int(np.searchsorted(counts.cumsum(), QUANTILE * counts.sum()))
+        index = int(np.searchsorted(counts.cumsum(), share * counts.sum()))
         return 2.0 ** ((index + 1) / _PER_OCTAVE - _OCTAVES // 2)
 
     def scale(self, look: Look) -> Scale:
@@ -133,19 +141,19 @@ class Spread:
         if look.span is not None:
             low, high = look.span
         else:
-            low, high = self._limits(whole=look.step is not None)
+            low, high = self._limits(look)
         return Scale(low, high, self.centre, look.step or (high - low) / STEPS, least, largest)
 
-    def _limits(self, whole: bool) -> tuple[float, float]:
-        above, below = (self._quantile(counts) for counts in self.counts)
+    def _limits(self, look: Look) -> tuple[float, float]:
+        above, below = (self._quantile(counts, look.quantile) for counts in self.counts)
         extremes = self.largest - self.centre, self.centre - self.least
-        if whole:
+        if look.step is not None:
             return 0.0, max(1.0, self.largest)
         if below <= _ONE_SIDED * above:
             return self.centre, self.centre + self._end(above, extremes[0])
         if above <= _ONE_SIDED * below:
             return self.centre - self._end(below, extremes[1]), self.centre
-        end = self._end(self._quantile(self.counts.sum(axis=0)), max(extremes))
+        end = self._end(self._quantile(self.counts.sum(axis=0), look.quantile), max(extremes))
         return self.centre - end, self.centre + end
 
     @staticmethod

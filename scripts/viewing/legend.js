@@ -18,12 +18,31 @@ function element(parent, tag, className, text) {
   return parent.appendChild(made);
 }
 
+/// The scale as many times as long as the page came with it.
+function stretch(field, times) {
+  field.ends ??= [field.low, field.high];
+  field.stretch = times;
+  [field.low, field.high] = field.ends.map((end) => field.centre + times * (end - field.centre));
+}
+
 function showLegend(parent, model, field) {
   parent.replaceChildren();
   if (!field) return showKinds(parent, model);
   const { factor, unit } = field, palette = about.palettes[field.palette];
   element(parent, "div", "legend-title", field.at === "points" ? `${field.label}, norm` : field.label);
-  element(parent, "div", "legend-unit", unit ? `in ${unit}` : "");
+  const row = element(parent, "div", "legend-unit", unit ? `in ${unit}` : "");
+  if (!field.fixed) {
+    const buttons = element(row, "span", "stretches");
+    for (const [text, share] of [["\u00f72", 0.5], ["\u00d72", 2]]) {
+      const button = element(buttons, "button", "stretch", text);
+      button.title = share < 1 ? "half the scale" : "twice the scale";
+      button.addEventListener("click", () => {
+        stretch(field, field.stretch * share);
+        showLegend(parent, model, field);
+        show();
+      });
+    }
+  }
   const column = element(parent, "div", "bar-column");
   const above = field.largest > field.high + field.step / 2, below = field.least < field.low - field.step / 2;
   const end = (kind, colour, value) => {
@@ -42,7 +61,7 @@ function showLegend(parent, model, field) {
     tick.style.bottom = `${(100 * (value - low)) / (high - low)}%`;
   }
   if (below) end("below", palette.below, field.least);
-  if (field.at === "outlines") entry(parent, about.colours.neutral, "bodies");
+  if (field.at === "outlines") entry(parent, about.colours.bodies, "bodies");
   if (field.at === "cells" && !field.once) entry(parent, about.colours.neutral, "no value");
 }
 

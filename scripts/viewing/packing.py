@@ -15,7 +15,7 @@ from viewing.fields import LOOKS, Look, Scale, Spread
 from viewing.shapes import Points, Shapes
 
 _LEVEL = 6
-_WHOLE = 1  # damage of a node that no bond holds
+_TORN = 1  # damage of a node without bonds
 
 
 def packed(numbers: np.ndarray, missing: np.ndarray | None = None) -> bytes:
@@ -93,11 +93,12 @@ class Packing:
         return values[self.cell_order].astype(float)[None]
 
     def _bonded(self, field: Field, values: np.ndarray) -> np.ndarray:
-        """Damage has a meaning where a bond was in the first frame: none forms later."""
+        """Damage has a meaning where a bond was in the first frame of all: none forms later."""
         if field.name != "contact_damage":
             return values
         if self._unbonded is None:
-            self._unbonded = values == _WHOLE
+            first = self.frames.field("outlines", 0, field.name)
+            self._unbonded = np.zeros(len(values), dtype=bool) if first is None else first[: len(values)] == _TORN
         return np.where(self._unbonded, np.nan, values)
 
     def chunks(self) -> Iterator[tuple[str, str]]:

@@ -22,10 +22,12 @@ from viewing.shapes import ERROR, FINE
 HERE = Path(__file__).resolve().parent
 SCRIPTS = ["unpack.js", "raster.js", "picture.js", "overlay.js", "picking.js", "curve.js",
            "legend.js", "controls.js", "viewer.js"]
-TWO_SIDED = "RdBu_r"
+TWO_SIDED = {"cells": "RdBu_r", "outlines": "coolwarm"}
+BODIES = "#dddddd"  # where colours are along outlines: the middle of coolwarm, so that next to nothing is not seen
 # Below and above a scale: colours that it has not.
 BEYOND = {"inferno": ("#57d400", "#00d5ff"), "cividis": ("#57d400", "#ff2d95"), "viridis": ("#ff8c00", "#ff2d95"),
-          "YlOrRd": ("#57d400", "#0a84ff"), "turbo": ("#ffffff", "#ffffff"), TWO_SIDED: ("#57d400", "#ffb000")}
+          "YlOrRd": ("#57d400", "#0a84ff"), "turbo": ("#ffffff", "#ffffff"), "RdBu_r": ("#57d400", "#ffb000"),
+          "coolwarm": ("#57d400", "#ffb000")}
 # A column of more rows keeps, of each of so many stretches, the least and the largest, and those nearest to the frames.
 ROWS, STRETCHES = 4000, 1500
 
@@ -71,10 +73,10 @@ def _field(field: Field) -> dict[str, Any]:
     scale = field.scale
     assert scale is not None
     of = measure(max(abs(scale.low), abs(scale.high)), field.look.unit)
-    palette = TWO_SIDED if scale.two_sided else field.look.colours + ("_r" if scale.negative else "")
+    palette = TWO_SIDED[field.look.at] if scale.two_sided else field.look.colours + ("_r" if scale.negative else "")
     return {"name": field.name, "label": field.look.label, "at": field.look.at, "once": field.once, "low": scale.low,
             "high": scale.high, "centre": scale.centre, "step": scale.step, "least": scale.least,
-            "largest": scale.largest, "palette": palette, "error_text": _error(field),
+            "largest": scale.largest, "palette": palette, "error_text": _error(field), "fixed": field.look.fixed,
             "digits": _digits(field, of["factor"]), **of}
 
 
@@ -136,7 +138,7 @@ def about(run: Run, packing: Packing) -> dict[str, Any]:
         "box": box, "step": step, "fine": step / FINE, "error_text": readable(ERROR * step, "m", 3),
         "fields": fields,
         "palettes": {name: _palette(name) for name in {field["palette"] for field in fields}},
-        "colours": {"kinds": KIND_COLOURS, "edge": EDGE, "neutral": NEUTRAL},
+        "colours": {"kinds": KIND_COLOURS, "edge": EDGE, "neutral": NEUTRAL, "bodies": BODIES},
         "probes": [_probe(column) for column in _shown(run.probes)], "time": measure(latest, "s"),
         "length": measure(max(box[1] - box[0], box[3] - box[2]), "m"),
         "outlines": packing.points.outlines is not None,

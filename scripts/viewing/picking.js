@@ -92,7 +92,7 @@ function told(model, frame, field, values, hit) {
   const { value, parts } = valueAt(model, frame, field, values, hit);
   if (Number.isNaN(value)) return [...lines, `${field.label}: none`];
   const beyond = value > field.high + field.step / 2 || value < field.low - field.step / 2 ? ", beyond the scale" : "";
-  lines.push(`${field.label} ${withUnit(value, field)}${beyond}`);
+  lines.push(`${field.label}: ${withUnit(value, field)}${beyond}`);
   if (parts) lines.push(`x ${withUnit(parts[0], field)}, y ${withUnit(parts[1], field)}`);
   return lines;
 }

@@ -1,7 +1,7 @@
 // The picture: cells of grains, walls, outlines, and colours along outlines.
 
 const PLAIN = pixel("#ffffff"), OUTSIDE = pixel("#eef0f2");
-const kindPixels = about.colours.kinds.map(pixel), neutralPixel = pixel(about.colours.neutral);
+const kindPixels = about.colours.kinds.map(pixel), bodyPixel = pixel(about.colours.bodies);
 const COMPLIANT = 0, WALL = 2;
 
 /// Metres to pixels: the middle of the canvas and pixels a metre.
@@ -64,18 +64,18 @@ function projected(model, frame, view) {
 }
 
 function paintCells(raster, model, shown, field, values, scale) {
-  const { cells, cellStart, kind, points } = model, { pixels, seen } = shown;
+  const { cells, cellStart, kind } = model, { pixels, seen } = shown, half = values ? values.length / 2 : 0;
   for (const [body, dx] of seen) {
     for (let cell = cellStart[body]; cell < cellStart[body + 1]; cell++) {
       const a = cells[3 * cell], b = cells[3 * cell + 1], c = cells[3 * cell + 2];
-      const corners = [pixels[2 * a] + dx, pixels[2 * a + 1], pixels[2 * b] + dx, pixels[2 * b + 1], pixels[2 * c] + dx,
-        pixels[2 * c + 1]];
+      const ax = pixels[2 * a] + dx, bx = pixels[2 * b] + dx, cx = pixels[2 * c] + dx;
+      const ay = pixels[2 * a + 1], by = pixels[2 * b + 1], cy = pixels[2 * c + 1];
       if (field && field.at === "points") {
-        const n = values.length / 2;
-        raster.vectors(...corners, values[a], values[n + a], values[b], values[n + b], values[c], values[n + c], scale);
+        const [u, v, w] = [a, b, c].map((point) => [values[point], values[half + point]]);
+        raster.vectors(ax, ay, bx, by, cx, cy, u, v, w, scale);
       } else {
-        const colour = !field ? kindPixels[kind[body]] : field.at === "cells" ? scale.of(values[cell]) : neutralPixel;
-        raster.triangle(...corners, colour);
+        const colour = !field ? kindPixels[kind[body]] : field.at === "cells" ? scale.of(values[cell]) : bodyPixel;
+        raster.triangle(ax, ay, bx, by, cx, cy, colour);
       }
     }
   }

@@ -50,7 +50,7 @@ class Raster {
   }
 
   /// Colours of the norm of a vector (u, v) that is linear over the triangle.
-  vectors(ax, ay, bx, by, cx, cy, au, av, bu, bv, cu, cv, scale) {
+  vectors(ax, ay, bx, by, cx, cy, [au, av], [bu, bv], [cu, cv], scale) {
     const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
     if (area === 0) return;
     const slope = (a, b, c) => [((b - a) * (cy - ay) - (c - a) * (by - ay)) / area,

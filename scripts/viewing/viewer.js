@@ -113,6 +113,7 @@ function keepAddress() {
   addressTimer = setTimeout(() => {
     const items = [`frame=${state.frame}`];
     if (state.field) items.push(`field=${state.field.name}`);
+    if (state.field && state.field.stretch !== 1) items.push(`stretch=${state.field.stretch}`);
     if (about.probes[state.probe]) items.push(`probe=${encodeURIComponent(about.probes[state.probe].name)}`);
     for (const { body, cell, weights } of state.marks)
       items.push(`mark=${[body, cell, ...weights.map((weight) => weight.toFixed(4))].join(":")}`);
@@ -126,6 +127,8 @@ function readAddress() {
   const items = new URLSearchParams(location.hash.slice(1)), numbers = (text) => text.split(":").map(Number);
   state.frame = Math.min(Math.max(Math.floor(Number(items.get("frame"))) || 0, 0), about.times.length - 1);
   state.probe = Math.max(0, about.probes.findIndex((probe) => probe.name === items.get("probe")));
+  const times = Number(items.get("stretch")), chosen = about.fields.find((field) => field.name === items.get("field"));
+  for (const field of about.fields) stretch(field, field === chosen && times > 0 ? times : 1);
   chooseField(items.get("field") ?? "kind");
   byId("probe").value = `${state.probe}`;
   state.marks = [];

@@ -79,7 +79,12 @@ def test_values_and_colours_move_with_the_slider(run: Path) -> None:
         state.pointer = {{ place: [{u}, {v}] }};
         Object.assign(view, {{ x: {u}, y: {v} }});
         await show();
-        return [first, [tip(), colour({u}, {v}), byId("time").textContent], location.hash];""")
+        const second = [tip(), colour({u}, {v}), byId("time").textContent];
+        document.querySelectorAll(".stretch")[1].click();
+        await until(() => !byId("tip").hidden && now.field.stretch === 2);
+        await show();
+        return [first, second, colour({u}, {v})];""")
+    assert_colour(found.pop(), field | {"low": 2 * field["low"], "high": 2 * field["high"]}, float(values[1][cell]))
     for (told, rgb, time), index, of in zip(found, (1, 3), values):
         value = float(of[cell])
         who, what = told.splitlines()
@@ -121,7 +126,8 @@ def test_colours_along_outlines_and_of_walls(run: Path) -> None:
     inside = cell_middle(frames, 1, 0)
     *along, wall, out, grain = in_browser(page, "frame=1&field=contact_pressure", f"""
         await shown(1);
-        const found = [], outer = [colour({PERIOD / 2}, {-1.05 * ROW_PITCH}), colour({-0.02 * PERIOD}, 0), colour({inside[0]}, {inside[1]})];
+        const found = [], outer = [colour({PERIOD / 2}, {-1.05 * ROW_PITCH}), colour({-0.02 * PERIOD}, 0),
+          colour({inside[0]}, {inside[1]})];
         for (const [x, y, nx, ny] of {json.dumps(middles)}) {{
           Object.assign(view, {{ x, y, scale: 8 * view.smallest }});
           await show();
@@ -130,7 +136,7 @@ def test_colours_along_outlines_and_of_walls(run: Path) -> None:
         return [...found, ...outer];""")
     assert_colour(along[0], field, means[segments[0]])
     assert hexadecimal(along[1]) == about(page)["palettes"][field["palette"]]["above"]
-    assert [hexadecimal(rgb) for rgb in (wall, out, grain)] == ["#a6a6a6", "#eef0f2", "#c9c9c9"]
+    assert [hexadecimal(rgb) for rgb in (wall, out, grain)] == ["#a6a6a6", "#eef0f2", "#dddddd"]
 
 
 def test_all_positions_and_fields(run: Path) -> None:
@@ -224,7 +230,8 @@ def test_keys_marks_zoom_and_curves(run: Path) -> None:
     assert found["zoom"][1:] == pytest.approx([0, 0], abs=1), "the place under the pointer stays, to a pixel"
     assert found["pan"] == pytest.approx([-40, -30], abs=1e-6)
     read, rounding = number(found["curve"])
-    assert read == pytest.approx(10 * (frames.times[1] - 1e-6) * 1e6, abs=rounding + 1e-5) and "\u00b5m" in found["curve"]
+    assert read == pytest.approx(10 * (frames.times[1] - 1e-6) * 1e6, abs=rounding + 1e-5)
+    assert found["curve"].endswith(" \u00b5m")
     assert found["address"] == "#frame=2&field=pressure&probe=place.position_x"
 
 

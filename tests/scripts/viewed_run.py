@@ -54,7 +54,7 @@ def add_fields(folder: Path) -> None:
                 pressure[5:9] = 5e9
             outlines["contact_pressure"] = pressure.astype("f4")
             outlines["contact_gap"] = np.where(pressure > 0, -1e-9 * random.random(points), np.nan).astype("f4")
-            outlines["contact_damage"] = np.where(np.arange(points) % 3, 1, 0.2 * index).astype("f4")
+            outlines["contact_damage"] = np.where(np.arange(points) % 3, 1, index / 3).astype("f4")
 
 
 def write_viewed_run(folder: Path) -> Path:
