@@ -79,6 +79,11 @@ shape-functions() {
   "$python" "$root/scripts/shape_functions.py" "$@"
 }
 
+view() {
+  ready view
+  exec "$python" "$root/scripts/view.py" "$@"
+}
+
 export_frame() {
   ready
   exec "$python" "$root/scripts/export.py" "$@"

@@ -118,10 +118,6 @@ def compare_tables(name: str, a: Table | None, b: Table | None, result: Comparis
         result.add(f"{name} {column}", one[column][rows[0]], other[column][rows[1]], times)
 
 
-def fields(frames: Frames, grid: str, index: int) -> set[str]:
-    return set(frames._file[f"{grid}/{index:06}"])
-
-
 def compare_frames(a: Frames | None, b: Frames | None, result: Comparison) -> None:
     if a is None or b is None:
         if a is not b:
@@ -136,7 +132,7 @@ def compare_frames(a: Frames | None, b: Frames | None, result: Comparison) -> No
 
 
 def compare_grid(grid: str, a: Frames, b: Frames, rows: tuple[np.ndarray, np.ndarray], result: Comparison) -> None:
-    names = fields(a, grid, rows[0][0]), fields(b, grid, rows[1][0])
+    names = a.stored(grid, rows[0][0]), b.stored(grid, rows[1][0])
     for name in sorted(names[0] ^ names[1]):
         result.notes.append(f"frames {grid}/{name}: only in the {'first' if name in names[0] else 'second'} run")
     times = [f"t = {time:.6g} s" for time in a.times[rows[0]]]

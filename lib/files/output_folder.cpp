@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 
 /// A file whose kind a run or its plots write. Scene files other than scene.toml are the user's own.
 bool is_result(const fs::directory_entry& entry) {
-  constexpr std::array<std::string_view, 12> endings = {".csv", ".h5",  ".xdmf", ".json", ".png",  ".svg",
-                                                        ".log", ".tmp", ".bin",  ".vtu",  ".lock", ".msh"};
+  constexpr std::array<std::string_view, 13> endings = {".csv", ".h5",  ".xdmf", ".json", ".png", ".svg", ".log",
+                                                        ".tmp", ".bin", ".vtu",  ".lock", ".msh", ".html"};
   if (!entry.is_regular_file()) return false;
   const std::string ending = entry.path().extension().string();
   return entry.path().filename() == "scene.toml" || std::find(endings.begin(), endings.end(), ending) != endings.end();

@@ -80,6 +80,7 @@ class Frames:
             self._file = h5py.File(file, "r")
             self.times: np.ndarray = self._file["times"][()]
             self.grids = {name: self._grid(name) for name in ("bodies", "outlines") if name in self._file}
+            self.constants = {name: self._constants(name) for name in self.grids}
         except (OSError, KeyError) as error:
             raise BadFolder(f"{file}: not a file of frames: {error}") from error
         if period is not None and "outlines" in self.grids:
@@ -89,6 +90,11 @@ class Frames:
         group = self._file[name]
         return Grid(group["cells"][()], group["kind"][()].astype(int), group["body"][()].astype(int))
 
+    def _constants(self, grid: str) -> set[str]:
+        """Names of the fields that are written once, beside the topology."""
+        group = self._file[grid]
+        return {name for name in group if group.get(name, getclass=True) is h5py.Dataset} - {"cells", "kind", "body"}
+
     def positions(self, grid: str, index: int) -> np.ndarray:
         """[points x 2], m."""
         values = self.field(grid, index, "position")
@@ -97,12 +103,17 @@ class Frames:
         return values.astype(float)
 
     def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
-        """[points or cells (x 3)]; None when the run did not store it."""
-        path = f"{grid}/{index:06}/{name}"
+        """[points or cells (x 3)], also of what is written once; None when the run did not store it."""
+        once = name in self.constants.get(grid, ())
+        path = f"{grid}/{name}" if once else f"{grid}/{index:06}/{name}"
         try:
             return self._file[path][()] if path in self._file else None
         except OSError as error:
             raise BadFolder(f"{self.path}: {path} cannot be read: {error}") from error
+
+    def stored(self, grid: str, index: int) -> set[str]:
+        """Names of what a frame holds, its positions among them."""
+        return set(self._file[f"{grid}/{index:06}"])
 
     def nearest(self, time: float) -> int:
         return int(np.abs(self.times - time).argmin())

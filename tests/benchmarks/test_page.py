@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
-import subprocess
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
@@ -13,13 +11,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "benchmarks"))
+sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests/support")]
 
 import history
 import page
+from browser import BROWSER, dumped
 from page import Measured
 
-BROWSER = next(filter(None, map(shutil.which, ["chromium-headless-shell", "chromium"])), None)
 needs_charts = pytest.mark.skipif(not page.CHARTS.exists(), reason="libjs-chart.js is not installed")
 needs_browser = pytest.mark.skipif(not (BROWSER and page.CHARTS.exists()), reason="chromium is not installed")
 MACHINE = {"cpu": "Processor </script>", "cores": 2}
@@ -91,18 +89,10 @@ class Shown(HTMLParser):
             self.rows[self.section][-1][-1] += text
 
 
-def show(file: Path) -> Shown:
-    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=5000", "--dump-dom",
-               file.as_uri()]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    assert result.returncode == 0, result.stderr
-    return Shown(result.stdout)
-
-
 @needs_browser
 def test_the_page_shows_what_was_measured(tmp_path: Path, inputs: list[str]) -> None:
     assert page.main(inputs) == 0
-    shown = show(tmp_path / "out/index.html")
+    shown = Shown(dumped((tmp_path / "out/index.html").as_uri()))
     assert shown.rows["counts"] == [["counted", "at now", "since the one before", "since the first"],
                                     ["step", "1\u202f890", "\u221210.00 %", "\u22125.50 %"],
                                     ["contact_forces", "33", "+10.00 %", "+10.00 %"]]
@@ -125,7 +115,7 @@ def test_the_page_shows_what_was_measured(tmp_path: Path, inputs: list[str]) -> 
 def test_what_is_missing_is_told(tmp_path: Path) -> None:
     options = ["--repository", str(tmp_path), "--history", str(tmp_path / "none"), "--out", str(tmp_path)]
     assert page.main(options) == 0
-    shown = show(tmp_path / "index.html")
+    shown = Shown(dumped((tmp_path / "index.html").as_uri()))
     assert "No counts yet" in shown.text and "No seconds yet" in shown.text
     assert not shown.labels.keys() & {"counts", "seconds"}
 

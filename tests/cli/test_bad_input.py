@@ -143,8 +143,12 @@ def test_force_overwrites_results(desk) -> None:
     desk.write(TWO_DISCS)
     assert desk.run("--out", "out", "--until", "1 ns", "--quiet").returncode == 0
     first = desk.summary("out")
+    drawn = [desk.folder / "out" / name for name in ("grains.png", "frame_000001.vtu", "view.html")]
+    for file in drawn:
+        file.touch()
     assert desk.run("--out", "out", "--until", "2 ns", "--quiet", "--force").returncode == 0
     assert desk.summary("out")["state_hash"] != first["state_hash"]
+    assert not any(file.exists() for file in drawn), "pictures of the run before"
 
 
 def test_force_spares_a_folder_of_someone_else(desk) -> None:

@@ -266,7 +266,7 @@ def test_schema_reads_the_scenes_of_docs_and_cases(launcher: Launcher) -> None:
     assert launcher("schema").stdout.startswith("[schema]" + "".join(files))
 
 
-@pytest.mark.parametrize("command", ["info", "compare"])
+@pytest.mark.parametrize("command", ["info", "compare", "view"])
 def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, command: str) -> None:
     (launcher.root / f"scripts/{command}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
     result = launcher(command, "my results", "--tolerance", "1e-6")
@@ -357,12 +357,12 @@ def test_readme_names_every_command(launcher: Launcher) -> None:
     assert set(readme_commands()) == set(listed)
 
 
-@pytest.mark.parametrize("command", ["run", "check", "modes", "plot", "compare", "study", "export", "test", "verify", "build"])
+@pytest.mark.parametrize("command", ["run", "check", "modes", "plot", "compare", "study", "export", "view", "test", "verify", "build"])
 def test_readme_and_help_have_the_same_options(launcher: Launcher, command: str) -> None:
     usage = re.match(r".*(\n +.*)*", launcher(command, "--help").stdout)[0]
     readme = set(re.findall(r"--[a-z-]+", readme_commands()[command]))
     assert readme <= set(re.findall(r"--[a-z-]+", usage))
-    if command in {"run", "check", "modes", "plot", "compare", "study", "export", "verify"}:
+    if command in {"run", "check", "modes", "plot", "compare", "study", "export", "view", "verify"}:
         assert readme == set(re.findall(r"--[a-z-]+", usage))
 
 

@@ -17,7 +17,7 @@ ORDER = ["cli", "results", "dynamics", "contact", "boundary", "bodies", "materia
          "files", "scene", "core"]
 SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts", "python"]
 TEXT_SUFFIXES = {".hpp", ".cpp", ".py", ".sh", ".md", ".toml", ".txt", ".cmake", ".json", ".cff", ""}
-CODE_SUFFIXES = {".hpp", ".cpp", ".py"}
+CODE_SUFFIXES = {".hpp", ".cpp", ".py", ".js", ".css"}
 MAX_LINES = 300
 LONGER = {  # and why
     "lib/scene/scene.hpp": "all that a scene can say, in one place",
