@@ -229,6 +229,9 @@ def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
     ('take = "max"', 'take = "max"\nwindow = ["1 MPa", "2 MPa"]', "not a time"),
     ('summary = "steps"', 'function = "none.py:f"', "FILE.py:NAME"),
     ('scene = "scene.toml"', 'scene = "scene.toml"\nset.shapes.disc.nodes = 40', "which '[set]' sets too"),
+    ('probe = "energy.strain"', 'probe = "energy.strian"', "no probe 'energy.strian'; did you mean 'energy.strain'?"),
+    ('summary = "steps"', 'summary = "setps"', "no number 'setps'; did you mean 'steps'?"),
+    ('take = "max"', 'take = "max"\nwindow = ["0.5 s", "1.5 s"]', "'strain': the window ends at 1.5 s, the run nodes=40"),
     ('scene = "scene.toml"', 'scene = "scene.toml"\nset.shapes.disk.nodes = 40', "did you mean 'disc'?"),
 ])
 def test_bad_input_runs_nothing(desk: Desk, old: str, new: str, message: str) -> None:

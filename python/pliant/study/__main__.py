@@ -19,6 +19,7 @@ from pliant.study.folder import Folder
 from pliant.study.gather import CannotGather, function_of
 from pliant.study.points import Point, points_of
 from pliant.study.reading import BadStudy
+from pliant.study.rehearsal import check_windows, rehearse
 from pliant.study.spec import Study
 from pliant.study.study_file import read_study
 
@@ -81,6 +82,9 @@ def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[s
             except BadScene as error:
                 said = str(error).replace(str(file), str(study.scene))
                 raise BadStudy(f"{study.file}: the run {point.name}: {said}") from error
+            check_windows(study, scene, point.name)
+            if point is points[0]:
+                rehearse(study, file, Path(scratch))
     return estimates, files
 
 
