@@ -24,6 +24,7 @@ from pliant.study.convergence import analyse, observed_order
 from pliant.study.points import points_of
 from pliant.study.reading import BadStudy
 from pliant.study.study_file import read_study
+from pliant.study.table import means_of_replicas
 
 SCENE = """
 [time]
@@ -324,6 +325,20 @@ def test_order_of_a_power(order: float) -> None:
     result = analyse(sizes, [3 + 2 * size**order for size in sizes])
     assert result.limit == pytest.approx(3, abs=1e-9) and result.asymptotic
     assert result.index == pytest.approx(1.25 * 2 * 0.1**order, rel=1e-6)
+
+
+def test_means_over_replicas() -> None:
+    """EXACT: a failed replica counts in nothing, one that lacks a quantity in the others."""
+    def row(size: int, seed: int, **outputs: float) -> dict:
+        return {"inputs": {"size": size, "seed": seed},
+                "outputs": {name: {"value": value, "error": None, "unit": "N"} for name, value in outputs.items()}}
+
+    rows = [row(1, 1, f=1.0, g=4.0), row(1, 2, f=3.0), row(1, 3), row(2, 1, f=5.0)]
+    first, second = means_of_replicas(rows, ["f", "g"], ["size"])
+    assert first["inputs"] == {"size": 1} and second["inputs"] == {"size": 2}
+    assert (first["outputs"]["f"]["value"], first["outputs"]["f"]["error"], first["outputs"]["f"]["count"]) == (2, 1, 2)
+    assert (first["outputs"]["g"]["value"], first["outputs"]["g"]["error"], first["outputs"]["g"]["count"]) == (4, None, 1)
+    assert second["outputs"]["f"]["value"] == 5 and "g" not in second["outputs"]
 
 
 def test_no_order_is_said() -> None:

@@ -28,6 +28,7 @@ def write_report(folder: Folder) -> None:
     page = environment.get_template("report.html.j2").render(
         about=about, rows=rows, inputs=list(rows[0]["inputs"]) if rows else [], quantities=table["quantities"],
         failed=[row for row in rows if row["status"] != "finished" or row["problems"]], pictures=pictures,
+        means=table.get("means", []), parameters=about["parameters"],
         orders=table.get("orders", []), regression=table.get("regression", []), machine=_machine(folder, rows),
         base=(folder.path / "base.toml").read_text())
     replace(folder.path / "report.html", page)

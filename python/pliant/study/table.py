@@ -42,6 +42,18 @@ def mean_of_replicas(rows: list[dict], output: str, inputs: list[str]) -> list[d
     return means
 
 
+def means_of_replicas(rows: list[dict], names: list[str], inputs: list[str]) -> list[dict[str, Any]]:
+    """For each choice of the inputs its means by name; replicas that lack a quantity count in the others."""
+    groups: dict[str, dict[str, Any]] = {}
+    for row in rows:
+        chosen = {name: row["inputs"][name] for name in inputs}
+        groups.setdefault(str(chosen), {"inputs": chosen, "outputs": {}})
+    for name in names:
+        for mean in mean_of_replicas(rows, name, inputs):
+            groups[str(mean["inputs"])]["outputs"][name] = mean
+    return list(groups.values())
+
+
 def write_table(folder: Folder) -> None:
     about, rows = folder.read("study.json"), rows_of(folder)
     names = [quantity.name for quantity in folder.quantities()]
@@ -50,6 +62,9 @@ def write_table(folder: Folder) -> None:
         table["orders"] = _orders(about, rows)
     if about["regression"]:
         table["regression"] = _regression(about["regression"], rows)
+    if about["replicas"]:
+        table["means"] = means_of_replicas(rows, names, about["parameters"])
+        replace(folder.path / "means.csv", _means_as_csv(table["means"], names, about["parameters"]))
     replace(folder.path / "table.csv", _as_csv(rows, names))
     replace(folder.path / "table.json", as_text(table))
 
@@ -71,6 +86,19 @@ def _as_csv(rows: list[dict], names: list[str]) -> str:
                          *(repr(of[name]["value"]) if name in of else "" for name in names),
                          *(repr(of[name]["error"]) if name in of and of[name]["error"] is not None else ""
                            for name in with_error)])
+    return text.getvalue()
+
+
+def _means_as_csv(means: list[dict], names: list[str], inputs: list[str]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    units = {name: next((m["outputs"][name]["unit"] for m in means if name in m["outputs"]), "-") for name in names}
+    writer.writerow([*inputs, *(column for name in names
+                                for column in (f"{name} [{units[name]}]", f"{name} standard error", f"{name} runs"))])
+    for mean in means:
+        cells = [mean["outputs"].get(name, {"value": None, "error": None, "count": 0}) for name in names]
+        writer.writerow([*mean["inputs"].values(), *("" if value is None else repr(value) for cell in cells
+                                                     for value in (cell["value"], cell["error"], cell["count"]))])
     return text.getvalue()
 
 
