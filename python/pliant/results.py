@@ -94,6 +94,12 @@ class Grid:
         bodies[self.cells] = self.body[:, None]
         return bodies
 
+    @cached_property
+    def cells_by_body(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cells, those of body 0 first, and where in them those of each body begin; one more entry ends the last."""
+        starts = np.concatenate([[0], np.cumsum(np.bincount(self.body))])
+        return np.argsort(self.body, kind="stable"), starts
+
 
 def read_json(file: Path) -> dict:
     """{} when there is none."""
@@ -156,12 +162,22 @@ class Frames:
         return values.astype(float)
 
     def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
-        """[points or cells (x 3)]; None when the run did not store it."""
+        """[points or cells (x 3)], of the frame or written once for all; None when the run did not store it."""
         path = f"{grid}/{index:06}/{name}"
+        if path not in self._file:
+            path = f"{grid}/{name}"
         try:
             return self._file[path][()] if path in self._file else None
         except OSError as error:
             raise BadFolder(f"{self.path}: {path} cannot be read: {error}") from error
+
+    def names(self, grid: str) -> list[str]:
+        """Fields that the first frame has, and those that are written once for all."""
+        if grid not in self._file:
+            return []
+        frame = self._file[grid].get(f"{0:06}", {})
+        once = [name for name in self._file[grid] if not name.isdigit() and name not in ("cells", "kind", "body")]
+        return [name for name in (*frame, *once) if name != "position"]
 
     def nearest(self, time: float) -> int:
         return int(np.abs(self.times - time).argmin())
