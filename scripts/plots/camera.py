@@ -25,6 +25,7 @@ class Camera:
     box: Box  # about the origin of each frame
     origins: np.ndarray  # [frames x 2], m
     names: tuple[str, str] = ("x", "y")  # of the axes
+    body: int | None = None  # that is followed
 
 
 def whole_or_window(run: Run, indices: Sequence[int], window: Box | None, shear: bool, seen: Progress) -> Camera:
@@ -83,10 +84,11 @@ def follow(run: Run, indices: Sequence[int], body: int, seen: Progress) -> Camer
         size = max(size, *np.ptp(place, axis=0))
         seen(number)
     room = with_margin(*extent(run, indices[0]), run.period)
-    width = max(min(_SIZES * size, max(room[1] - room[0], _SHAPE * (room[3] - room[2]))), 2.5 * size)
+    most = run.period or max(room[1] - room[0], _SHAPE * (room[3] - room[2]))  # neither images of it nor a void
+    width = max(min(_SIZES * size, most), 2.5 * size)
     half = 0.5 * width, 0.5 * width / _SHAPE
     names = tuple(f"{axis} from body {body}" for axis in "xy")
-    return Camera((-half[0], half[0], -half[1], half[1]), np.array(origins), names)
+    return Camera((-half[0], half[0], -half[1], half[1]), np.array(origins), names, body)
 
 
 def _points_of(run: Run, body: int) -> tuple[str, np.ndarray]:

@@ -19,7 +19,7 @@ from plots.wrapping import Box
 from pliant.results import WALL
 
 KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
-EDGE = "#2b2b2b"
+EDGE, MARK = "#2b2b2b", "#56b4e9"
 
 
 class Triangles(Artist):
@@ -62,8 +62,9 @@ def place(axes: Axes, box: Box, names: tuple[str, str] = ("x", "y")) -> None:
     axes.set_ylabel(units.label(names[1], unit))
 
 
-def draw(axes: Axes, scene: Scenery, painting: Painting, box: Box, line_width: float) -> list[Artist]:
-    """The painting with outlines of grains, and walls."""
+def draw(axes: Axes, scene: Scenery, painting: Painting, box: Box, line_width: float,
+         marked: int | None = None) -> list[Artist]:
+    """The painting with outlines of grains, that of one of them marked, and walls."""
     factor, _ = _scale(box)
     artists = [axes.add_artist(Triangles(painting.triangles * factor, painting.colours))]
     artists += _draw_lines(axes, scene.edges * factor, line_width)
@@ -71,6 +72,8 @@ def draw(axes: Axes, scene: Scenery, painting: Painting, box: Box, line_width: f
         coloured = LineCollection(painting.lines * factor, colors=painting.line_colours, linewidths=4 * line_width,
                                   capstyle="round", zorder=2.5)
         artists.append(axes.add_collection(coloured, autolim=False))
+    if marked is not None:
+        artists += _draw_lines(axes, scene.edges[scene.edge_body == marked] * factor, 2.0, MARK, 3)
     return artists + _draw_walls(axes, scene, box, factor)
 
 
@@ -78,11 +81,11 @@ def _scale(box: Box) -> tuple[float, str]:
     return units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
 
 
-def _draw_lines(axes: Axes, segments: np.ndarray, width: float) -> list[Artist]:
+def _draw_lines(axes: Axes, segments: np.ndarray, width: float, colour: str = EDGE, zorder: float = 2) -> list[Artist]:
     """One path with gaps, whose extent nobody asks for: both are faster."""
     gaps = np.full((len(segments), 1, 2), np.nan)
     points = np.concatenate([segments, gaps], axis=1).reshape(-1, 2)
-    line = Line2D(*points.T, color=EDGE, linewidth=width, zorder=2, solid_capstyle="round")
+    line = Line2D(*points.T, color=colour, linewidth=width, zorder=zorder, solid_capstyle="round")
     line.set_in_layout(False)
     return [axes.add_artist(line)]
 

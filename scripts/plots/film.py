@@ -52,7 +52,8 @@ def curve_of(run: Run, column: Column, start: float, end: float) -> Curve | None
     if not np.isfinite(values).any():
         return None
     factor, unit = units.scale(float(np.nanmax(np.abs(values))), column.unit)
-    name = f"{column.name.replace('_', ' ')} of '{of or column.source}'".removesuffix(" of ''")
+    quantity = column.name.replace("_", " ")
+    name = f"{quantity} of '{of}'" if of else f"{column.source}: {quantity}".removeprefix(": ")
     return Curve(units.label(name, unit), time, values * factor)
 
 
@@ -147,7 +148,8 @@ class Film:
         self._canvas.restore_region(self._still)
         index, box = self._indices[number], self._camera.box
         scene = scenery(self._run, index, box, self._camera.origins[number])
-        artists = draw(self._map, scene, self._shown.paint(scene, index, box), box, self._line_width)
+        painting = self._shown.paint(scene, index, box)
+        artists = draw(self._map, scene, painting, box, self._line_width, self._camera.body)
         for artist in sorted(artists, key=lambda a: a.get_zorder()):
             self._map.draw_artist(artist)
             artist.remove()

@@ -18,6 +18,7 @@ class Scenery:
     kind: np.ndarray  # [triangles]
     edges: np.ndarray  # [segments x 2 x 2] outlines of grains
     edge_cells: np.ndarray  # [segments] cell of the outlines' grid each is a picture of
+    edge_body: np.ndarray  # [segments]
     walls: np.ndarray  # [segments x 2 x 2]
     wall_below: np.ndarray  # [segments] whether the grains are above
 
@@ -30,14 +31,16 @@ def scenery(run: Run, index: int, box: Box | None = None, origin: Sequence[float
         box = (0.0, run.period, -np.inf, np.inf) if run.period is not None else (-np.inf, np.inf, -np.inf, np.inf)
     points = frames.positions("bodies", index) - origin
     triangles, cells = _polygons(frames, "bodies", points, run.period, box)
-    edges, edge_cells, walls = np.empty((0, 2, 2)), np.empty(0, dtype=int), np.empty((0, 2, 2))
+    edges, edge_cells, edge_body, walls = np.empty((0, 2, 2)), np.empty(0, int), np.empty(0, int), np.empty((0, 2, 2))
     if "outlines" in frames.grids:
         outline_points = frames.positions("outlines", index) - origin
         edges, edge_cells = _polygons(frames, "outlines", outline_points, run.period, box)
+        edge_body = frames.grids["outlines"].body[edge_cells]
         walls = _walls(frames, outline_points, run.period, box)
     middle = points[:, 1].mean() if len(points) else walls[:, :, 1].mean()
     kind = frames.grids["bodies"].kind[cells]
-    return Scenery(triangles, cells, kind, edges, edge_cells, walls, walls[:, :, 1].mean(axis=1) < middle)
+    below = walls[:, :, 1].mean(axis=1) < middle
+    return Scenery(triangles, cells, kind, edges, edge_cells, edge_body, walls, below)
 
 
 def _polygons(

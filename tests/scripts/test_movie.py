@@ -95,8 +95,9 @@ def test_a_followed_body_stays_in_the_middle_and_whole(discs: Path, tmp_path: Pa
         seen = [x] if abs(x) < 4.5e-6 else [-4.7e-6, 4.7e-6]  # half of it at either side
         assert all(has(picture, panel.pixel(at, y, box), RIGID) for at in seen), moment
     assert max(sizes) < 1.05 * min(sizes)
-    radius = RADIUS / (box[1] - box[0]) * (panel.right - panel.left) - 1  # but for its outline
+    radius = RADIUS / (box[1] - box[0]) * (panel.right - panel.left) - 1.5  # but for its outline
     assert sizes[0] == pytest.approx(np.pi * radius**2, rel=0.1)
+    assert (pictures[2][:, :, 2] > pictures[2][:, :, 0] + 60)[panel.inside].sum() > 50, "the outline is marked"
 
 
 @pytest.mark.parametrize("options, together", [(["--window", "6e-6", "14e-6", "-2e-6", "1e-6"], False), ([], True)])
