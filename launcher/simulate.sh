@@ -76,7 +76,7 @@ plot() {
 
 movie() {
   ready movie
-  exec "$python" -B "$root/scripts/movie.py" "$@"
+  exec "$python" "$root/scripts/movie.py" "$@"
 }
 
 shape-functions() {
