@@ -74,6 +74,11 @@ plot() {
   draw "$@"
 }
 
+movie() {
+  ready movie
+  exec "$python" "$root/scripts/movie.py" "$@"
+}
+
 shape-functions() {
   prepare release pliant_engine
   "$python" "$root/scripts/shape_functions.py" "$@"

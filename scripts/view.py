@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from pliant.frames import BadFolder
 from pliant.results import Run, read_run
-from pliant.scene import nearest
+from pliant.names import nearest
 from pliant.units import readable
 from viewing import page
 from viewing.packing import Field, Packing, fields_of

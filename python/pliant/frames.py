@@ -51,6 +51,12 @@ class Grid:
         bodies[self.cells] = self.body[:, None]
         return bodies
 
+    @cached_property
+    def cells_by_body(self) -> tuple[np.ndarray, np.ndarray]:
+        """Cells, those of body 0 first, and where in them those of each body begin; one more entry ends the last."""
+        starts = np.concatenate([[0], np.cumsum(np.bincount(self.body))])
+        return np.argsort(self.body, kind="stable"), starts
+
 
 @dataclass
 class Contacts:
@@ -114,6 +120,12 @@ class Frames:
     def stored(self, grid: str, index: int) -> set[str]:
         """Names of what a frame holds, its positions among them."""
         return set(self._file[f"{grid}/{index:06}"])
+
+    def names(self, grid: str) -> list[str]:
+        """Fields that the first frame has, and those that are written once for all."""
+        if grid not in self.grids:
+            return []
+        return [name for name in self._file[f"{grid}/{0:06}"] if name != "position"] + sorted(self.constants[grid])
 
     def nearest(self, time: float) -> int:
         return int(np.abs(self.times - time).argmin())

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import shutil
 import tempfile
 from collections.abc import Iterator, MutableMapping, MutableSequence
@@ -13,6 +12,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
 from pliant.engine import BadScene, Estimate, check
+from pliant.names import nearest
 
 
 class Scene:
@@ -150,10 +150,3 @@ def _member(at: Any, name: str, path: str) -> Any:
     if name not in at:
         raise KeyError(f"{path}: no '{name}'{nearest(name, _names(at))}")
     return at[name]
-
-
-def nearest(name: str, known: Iterator[str] | list[str]) -> str:
-    """What else there is, for a message: the nearest name first."""
-    names = list(known)
-    close = difflib.get_close_matches(name, names, 1)
-    return f"; did you mean '{close[0]}'?" if close else f"; there are: {', '.join(names)}" if names else ""

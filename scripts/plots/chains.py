@@ -11,8 +11,9 @@ from matplotlib.figure import Figure
 from pliant import units
 from pliant.network import Network, of_frame
 from pliant.results import Run
-from plots.drawing import Box, draw, finish_sheet, sheet
-from plots.scenery import common_box, scenery
+from plots.drawing import Painting, draw, finish_sheet, place, sheet
+from plots.scenery import scenery, whole_box
+from plots.wrapping import Box
 
 PALE = ["#fbeedd", "#c8c8c8", "#a6a6a6"]  # compliant, rigid, wall
 WIDEST = 0.35  # of the mean branch: line of the largest force
@@ -30,11 +31,12 @@ def chains(run: Run, indices: list[int]) -> Figure | None:
     largest = float(np.quantile(magnitudes, 0.995)) or 1.0
     factor, unit = units.scale(largest, "N/m")
     mappable = ScalarMappable(Normalize(-largest * factor, largest * factor), plt.get_cmap("RdBu"))
-    sceneries = [scenery(run, index) for index in indices]
-    box = common_box(sceneries)
+    box = whole_box(run, indices)
     figure, axes = sheet(box, len(indices), f"{run.title}: contact forces", beside=1.4)
-    for panel, scene, network in zip(axes, sceneries, networks):
-        draw(panel, scene, scene.triangles, to_rgba_array(PALE)[scene.kind], box, 0.15)
+    for panel, index, network in zip(axes, indices, networks):
+        scene = scenery(run, index, box)
+        place(panel, box)
+        draw(panel, scene, Painting(scene.triangles, to_rgba_array(PALE)[scene.kind]), box, 0.15)
         _draw_lines(panel, network, run.period, box, largest, mappable, factor)
     finish_sheet(axes, [run.frames.times[index] for index in indices])
     figure.colorbar(mappable, ax=axes, label=units.label("force, pressing positive", unit), extend="both", shrink=0.8,

@@ -7,8 +7,8 @@ from matplotlib.figure import Figure
 from pliant import units
 from pliant.coarse import CoarseFields, coarse_fields
 from pliant.results import Run
-from plots.drawing import sheet
-from plots.scenery import scenery
+from plots.drawing import place, sheet
+from plots.scenery import whole_box
 
 CELL = 1.0  # mean diameters of the grains
 
@@ -22,7 +22,7 @@ def coarse(run: Run, indices: list[int]) -> Figure | None:
         return None
     fields = coarse_fields(run.frames, index, CELL * _mean_diameter(run, index))
     panels = _panels(fields)
-    box = scenery(run, index).box
+    box = whole_box(run, [index])
     time = units.readable(run.frames.times[index], "s")
     figure, axes = sheet(box, len(panels), f"{run.title}: means over cells at t = {time}", beside=1.4)
     for panel, (name, values, unit, colours, symmetric) in zip(axes, panels):
@@ -61,13 +61,10 @@ def _draw(axes: Axes, fields: CoarseFields, values: np.ndarray, name: str, unit:
           box: tuple[float, float, float, float]) -> None:
     largest = float(np.nanquantile(np.abs(values), 0.995)) or 1.0
     factor, scaled = units.scale(largest, unit)
-    length, length_unit = units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
+    length, _ = units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
     low = -largest if symmetric else min(0.0, float(np.nanquantile(values, 0.005)))
     picture = axes.imshow(values * factor, origin="lower", extent=np.multiply(fields.box, length), cmap=colours,
                           vmin=low * factor, vmax=largest * factor, interpolation="nearest", aspect="equal")
-    axes.set_xlim(box[0] * length, box[1] * length)
-    axes.set_ylim(box[2] * length, box[3] * length)
-    axes.set_xlabel(units.label("x", length_unit))
-    axes.set_ylabel(units.label("y", length_unit))
+    place(axes, box)
     axes.figure.colorbar(picture, ax=axes, label=units.label(name, scaled), extend="both" if symmetric else "max",
                          shrink=0.8, pad=0.02)

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator
 
 from pliant import units
+from plots.friction import force_sources, friction, loaded
 from plots.history import DENSE, draw_history
 from pliant.results import Column, Run, Table
 
@@ -100,23 +101,6 @@ def _rejection_note(table: Table) -> str:
     return f"{rejected:.0f} rejections in {evaluated:.0f} force evaluations ({100 * rejected / evaluated:.2g} %)"
 
 
-def _force_sources(table: Table) -> list[str]:
-    """Names of the probes that hold both components of a force."""
-    return [c.source for c in table.columns if c.name == "force_x" and table.get("force_y", c.source) is not None]
-
-
-def _friction(run: Run, table: Table, source: str) -> tuple[np.ndarray, np.ndarray]:
-    """Times and friction factor of a wall: its own probe where there is one, else the ratio of its forces."""
-    wall = run.probe_of.get(source, source)
-    for column in table.columns:
-        if column.name == "friction_factor" and run.probe_of.get(column.source, column.source) == wall:
-            return table.sampled(column)
-    force_x, force_y = table.get("force_x", source), table.get("force_y", source)
-    assert force_x is not None and force_y is not None
-    loaded = np.isfinite(force_x.values) & (np.abs(force_y.values) > 0)
-    return table.time[loaded], force_x.values[loaded] / np.abs(force_y.values[loaded])
-
-
 def _caption(name: str, unit: str, time: np.ndarray, values: np.ndarray) -> str:
     """Largest magnitude, with its time, and the mean over the last quarter of the time."""
     peak = int(np.nanargmax(np.abs(values)))
@@ -127,19 +111,10 @@ def _caption(name: str, unit: str, time: np.ndarray, values: np.ndarray) -> str:
     )
 
 
-def _loaded(table: Table, source: str, time: np.ndarray) -> np.ndarray:
-    """Where a wall carries at least 5 % of its largest normal force: elsewhere a friction factor is 0 over 0."""
-    force = table.get("force_y", source)
-    assert force is not None
-    sampled_time, values = table.sampled(force)
-    magnitude = np.abs(np.interp(time, sampled_time, values))
-    return magnitude >= 0.05 * np.abs(values).max(initial=0.0)
-
-
 def forces(run: Run) -> Figure | None:
     """Normal and tangential force and friction factor of each wall with a force probe (the paper's figure 9)."""
     table = run.probes
-    sources = [] if table is None else _force_sources(table)
+    sources = [] if table is None else force_sources(table)
     if table is None or not sources:
         return None
     rubbed = [source for source in sources if _friction_matters(run, table, source)]
@@ -154,8 +129,8 @@ def forces(run: Run) -> Figure | None:
 
 def _friction_matters(run: Run, table: Table, source: str) -> bool:
     """Not on a wall without friction, where the polygons' corners leave a trace of it."""
-    time, values = _friction(run, table, source)
-    there = _loaded(table, source, time) if len(time) else np.zeros(0, dtype=bool)
+    time, values = friction(run, table, source)
+    there = loaded(table, source, time) if len(time) else np.zeros(0, dtype=bool)
     return bool(np.any(np.abs(values[there]) > 0.005))
 
 
@@ -180,8 +155,8 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
 
 
 def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor: float) -> None:
-    time, values = _friction(run, table, source)
-    values = np.where(_loaded(table, source, time), values, np.nan)
+    time, values = friction(run, table, source)
+    values = np.where(loaded(table, source, time), values, np.nan)
     draw_history(axes, time * time_factor, values, COLOURS[2])
     axes.set_ylabel("friction factor")
     axes.set_title(_caption("friction factor", "-", time, values), fontsize=9, loc="left")
@@ -242,8 +217,8 @@ def probes(run: Run) -> Figure | None:
     if table is None:
         return None
     kinetic = table.get("kinetic")
-    taken = set(_force_sources(table)) | ({kinetic.source} if kinetic is not None else set())
-    shown = {run.probe_of.get(source, source) for source in _force_sources(table)}  # their friction is in forces.png
+    taken = set(force_sources(table)) | ({kinetic.source} if kinetic is not None else set())
+    shown = {run.probe_of.get(source, source) for source in force_sources(table)}  # their friction is in forces.png
     groups: dict[tuple[str, str], list[Column]] = {}
     for column in table.columns:
         drawn = column.name == "friction_factor" and run.probe_of.get(column.source, column.source) in shown

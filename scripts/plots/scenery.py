@@ -1,89 +1,102 @@
-"""One frame as polygons in one period, ready to be drawn."""
+"""One frame as polygons in one picture, ready to be drawn."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from plots.wrapping import body_shifts, edge_copies, wrapped_segments
+from plots.wrapping import Box, extents, images, runs, shortened
 from pliant.frames import WALL, Frames
 from pliant.results import Run
 
 
 @dataclass
 class Scenery:
-    """One frame: bodies in one period, all lengths in metres."""
+    """One frame: bodies that reach into one picture, all lengths in metres."""
 
     triangles: np.ndarray  # [triangles x 3 x 2]
     cells: np.ndarray  # [triangles] cell of the grid each is a picture of
     kind: np.ndarray  # [triangles]
     edges: np.ndarray  # [segments x 2 x 2] outlines of grains
     edge_cells: np.ndarray  # [segments] cell of the outlines' grid each is a picture of
+    edge_body: np.ndarray  # [segments]
     walls: np.ndarray  # [segments x 2 x 2]
-    box: tuple[float, float, float, float]  # x and y limits
-
-    @property
-    def width(self) -> float:
-        return self.box[1] - self.box[0]
-
-    @property
-    def height(self) -> float:
-        return self.box[3] - self.box[2]
+    wall_below: np.ndarray  # [segments] whether the grains are above
 
 
-def scenery(run: Run, index: int) -> Scenery:
+def scenery(run: Run, index: int, box: Box | None = None, origin: Sequence[float] = (0.0, 0.0)) -> Scenery:
+    """What is to be seen in `box`, which is placed at `origin`: all of it, in one period, without a box."""
     frames = run.frames
     assert frames is not None
-    triangles, cells = _polygons(frames, "bodies", index, run.period)
-    kind = frames.grids["bodies"].kind[cells]
-    edges, walls, edge_cells = np.empty((0, 2, 2)), np.empty((0, 2, 2)), np.empty(0, dtype=int)
+    if box is None:
+        box = (0.0, run.period, -np.inf, np.inf) if run.period is not None else (-np.inf, np.inf, -np.inf, np.inf)
+    points = frames.positions("bodies", index) - origin
+    triangles, cells = _polygons(frames, "bodies", points, run.period, box)
+    edges, edge_cells, edge_body, walls = np.empty((0, 2, 2)), np.empty(0, int), np.empty(0, int), np.empty((0, 2, 2))
     if "outlines" in frames.grids:
-        segments, originals = _polygons(frames, "outlines", index, run.period)
-        of_wall = frames.grids["outlines"].kind[originals] == WALL
-        edges, edge_cells, walls = segments[~of_wall], originals[~of_wall], segments[of_wall]
-        if run.period is not None:
-            walls = wrapped_segments(walls, run.period)
-    return Scenery(triangles, cells, kind, edges, edge_cells, walls, _box(triangles[kind != WALL], walls, run.period))
+        outline_points = frames.positions("outlines", index) - origin
+        edges, edge_cells = _polygons(frames, "outlines", outline_points, run.period, box)
+        edge_body = frames.grids["outlines"].body[edge_cells]
+        walls = _walls(frames, outline_points, run.period, box)
+    middle = points[:, 1].mean() if len(points) else walls[:, :, 1].mean()
+    kind = frames.grids["bodies"].kind[cells]
+    below = walls[:, :, 1].mean(axis=1) < middle
+    return Scenery(triangles, cells, kind, edges, edge_cells, edge_body, walls, below)
 
 
-def _polygons(frames: Frames, grid: str, index: int, period: float | None) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of a grid as polygons [n x corners x 2], grains wrapped, and the cell each is a picture of."""
-    topology = frames.grids[grid]
-    points = frames.positions(grid, index)
-    if period is None:
-        return points[topology.cells], np.arange(len(topology.cells))
-    movable = np.zeros(topology.body.max(initial=-1) + 1, dtype=bool)
-    movable[topology.body[topology.kind != WALL]] = True
-    used = len(topology.point_body)
-    points[:used, 0] += body_shifts(points[:used], topology.point_body, movable, period)
-    if grid == "outlines":
-        return _copied_grains(points[topology.cells], topology.body, topology.kind != WALL, period)
-    return edge_copies(points[topology.cells], topology.body, period)
-
-
-def _copied_grains(
-    polygons: np.ndarray, bodies: np.ndarray, grain: np.ndarray, period: float
+def _polygons(
+    frames: Frames, grid: str, points: np.ndarray, period: float | None, box: Box
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Copies at the edges for grains alone: walls are wrapped segment by segment."""
-    copies, index = edge_copies(polygons[grain], bodies[grain], period)
-    walls = np.flatnonzero(~grain)
-    return np.concatenate([copies, polygons[walls]]), np.concatenate([np.flatnonzero(grain)[index], walls])
+    """Cells of grains as polygons [n x corners x 2], and the cell each is a picture of."""
+    topology = frames.grids[grid]
+    used = len(topology.point_body)
+    bodies, low, high = extents(points[:used], topology.point_body)
+    grains = ~np.isin(bodies, topology.body[topology.kind == WALL])
+    bodies, low, high = bodies[grains], low[grains], high[grains]
+    index, shifts = images(low, high, period, box)
+    order, starts = topology.cells_by_body
+    first, count = starts[bodies[index]], np.diff(starts)[bodies[index]]
+    cells = order[runs(first, count)]
+    polygons = points[topology.cells[cells]]
+    polygons[:, :, 0] += np.repeat(shifts, count)[:, None]
+    return polygons, cells
 
 
-def _box(grains: np.ndarray, walls: np.ndarray, period: float | None) -> tuple[float, float, float, float]:
-    corners = np.concatenate([grains.reshape(-1, 2), walls.reshape(-1, 2)])
-    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
+def _walls(frames: Frames, points: np.ndarray, period: float | None, box: Box) -> np.ndarray:
+    """Segments of walls [n x 2 x 2] at any height: what is solid behind them may be seen where they are not."""
+    topology = frames.grids["outlines"]
+    segments = points[topology.cells[topology.kind == WALL]]
     if period is not None:
-        left, right = 0.0, period
-    margin = 0.04 * max(high - low, 0.25 * (right - left))
+        segments = shortened(segments, period)
+    index, shifts = images(segments.min(axis=1), segments.max(axis=1), period, (*box[:2], -np.inf, np.inf))
+    return segments[index] + np.column_stack([shifts, np.zeros(len(shifts))])[:, None]
+
+
+def extent(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of all grains and walls, where they are: not put into one period."""
+    frames = run.frames
+    assert frames is not None
+    points = [frames.positions("bodies", index)]
+    if "outlines" in frames.grids:
+        grid = frames.grids["outlines"]
+        points.append(frames.positions("outlines", index)[np.unique(grid.cells[grid.kind == WALL])])
+    together = np.concatenate(points)
+    return together.min(axis=0), together.max(axis=0)
+
+
+def whole_box(run: Run, indices: Sequence[int]) -> Box:
+    """Room for all that these frames show."""
+    lows, highs = zip(*(extent(run, index) for index in indices))
+    return with_margin(np.min(lows, axis=0), np.max(highs, axis=0), run.period)
+
+
+def with_margin(low: np.ndarray, high: np.ndarray, period: float | None) -> Box:
+    left, right = (low[0], high[0]) if period is None else (0.0, period)
+    margin = 0.04 * max(high[1] - low[1], 0.25 * (right - left))
     # Neither a thread nor a needle: at most 6 to 1.
-    above = max(margin, 0.5 * ((right - left) / 6 - (high - low)))
-    beside = 0.0 if period is not None else max(margin, 0.5 * ((high - low) / 6 - (right - left)))
-    return left - beside, right + beside, low - above, high + above
-
-
-def common_box(sceneries: list[Scenery]) -> tuple[float, float, float, float]:
-    boxes = np.array([s.box for s in sceneries])
-    return boxes[:, 0].min(), boxes[:, 1].max(), boxes[:, 2].min(), boxes[:, 3].max()
+    above = max(margin, 0.5 * ((right - left) / 6 - (high[1] - low[1])))
+    beside = 0.0 if period is not None else max(margin, 0.5 * ((high[1] - low[1]) / 6 - (right - left)))
+    return left - beside, right + beside, low[1] - above, high[1] + above
 
 
 def refined(triangles: np.ndarray, values: np.ndarray, length: float) -> tuple[np.ndarray, np.ndarray]:

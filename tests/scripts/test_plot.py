@@ -171,17 +171,32 @@ def test_refined_triangles_keep_area_and_field() -> None:
     assert nothing.shape == (0, 3, 2)
 
 
-def test_bodies_are_wrapped_whole() -> None:
-    points = np.array([[9.5, 0], [10.7, 0], [-0.2, 1], [-0.6, 1], [25, 2], [25.5, 2]], dtype=float)
-    shifts = wrapping.body_shifts(points, np.array([0, 0, 1, 1, 2, 2]), np.array([True, True, False]), 10.0)
-    assert list(shifts) == [-10, -10, 10, 10, 0, 0]
+@pytest.mark.parametrize("period", [10.0, None])
+@pytest.mark.parametrize("box", [(0, 10, -400, 400), (-3, 4, -20, 90), (17, 49, -50, 50)])
+def test_bodies_stand_where_any_of_their_images_is_seen(period: float | None, box: wrapping.Box) -> None:
+    """INDEPENDENT: all images within 40 periods, tried one by one."""
+    random = np.random.default_rng(4)
+    low = random.uniform(-300, 300, (200, 2))
+    high = low + random.uniform(0.1, 25, (200, 2))
+    steps = range(-40, 41) if period else [0]
+    expected = [(n, 10.0 * k) for n in range(200) for k in steps
+                if high[n, 0] + 10 * k > box[0] and low[n, 0] + 10 * k < box[1]
+                and high[n, 1] > box[2] and low[n, 1] < box[3]]
+    index, shifts = wrapping.images(low, high, period, box)
+    assert expected and list(zip(index, shifts)) == expected
 
 
-def test_bodies_at_an_edge_are_copied() -> None:
-    polygons = np.array([[[-0.5, 0], [0.5, 0], [0, 1]], [[4, 0], [5, 0], [4, 1]], [[0.5, 0], [1, 0], [1, 1]]])
-    copies, index = wrapping.edge_copies(polygons, np.array([0, 1, 0]), 10.0)
-    assert list(index) == [0, 1, 2, 0, 2]  # the whole body, also its triangle inside
-    assert np.array_equal(copies[3:], polygons[[0, 2]] + np.array([10.0, 0.0]))
+def test_bodies_at_an_edge_are_copied_whole(run_folder: Path) -> None:
+    """Each body has all of its triangles as often as it is seen, moved by whole periods and no otherwise."""
+    run = read_run(run_folder)
+    scene, grid = scenery.scenery(run, 3), run.frames.grids["bodies"]
+    points = run.frames.positions("bodies", 3)
+    moved = (scene.triangles - points[grid.cells[scene.cells]]) / np.array([run.period, 1.0])
+    assert np.allclose(moved, moved[:, :1, :].round(), atol=1e-9) and (moved[:, :, 1] == 0).all()
+    seen = np.bincount(scene.cells, minlength=len(grid.cells)).reshape(24, -1)
+    assert (seen == seen[:, :1]).all() and seen.min() == 1 and seen.max() == 2
+    x = scene.triangles[:, :, 0].reshape(len(scene.cells) // seen.shape[1], -1)
+    assert (x.max(axis=1) > 0).all() and (x.min(axis=1) < run.period).all()
 
 
 def test_a_wall_is_closed_across_the_period() -> None:
@@ -189,9 +204,7 @@ def test_a_wall_is_closed_across_the_period() -> None:
     closed = grid.closed_across()
     assert closed.cells.tolist()[4:] == [[0, 2]] and closed.body[4] == 7 and closed.kind[4] == WALL
     segment = np.array([[[0.0, 0.0], [9.0, 0.0]]])
-    assert wrapping.wrapped_segments(segment, 10.0)[:, :, 0].tolist() == [[10.0, 9.0]]
-    standing_out = wrapping.wrapped_segments(segment + np.array([0.5, 0.0]), 10.0)
-    assert standing_out[:, :, 0].tolist() == [[10.5, 9.5], [0.5, -0.5]]
+    assert wrapping.shortened(segment, 10.0)[:, :, 0].tolist() == [[0.0, -1.0]]
 
 
 @pytest.mark.parametrize("value, unit, expected", [(2.5e8, "Pa", (1e-6, "MPa")), (8.7e-5, "m", (1e6, "um")),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NoReturn
 
-from pliant.scene import nearest
+from pliant.names import nearest
 
 
 class BadStudy(Exception):

@@ -8,7 +8,8 @@ from typing import Any
 from pliant import units
 from pliant.engine import call
 from pliant.results import Run, read_run
-from pliant.scene import Scene, nearest
+from pliant.names import nearest
+from pliant.scene import Scene
 from pliant.study.reading import BadStudy
 from pliant.study.spec import Quantity, Study
 
