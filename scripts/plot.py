@@ -3,11 +3,13 @@
 
     ./pliant plot out/third_body_mini
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
+    ./pliant plot out/coarse out/fine
 
 grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, chains.png (contact forces), network.png
 (their statistics), coarse.png (means over cells), steps.png, forces.png, energy.png, probes.png (what else the scene's
 probes measure), failure.png (of a run that could not go on: the place): what the run has data for; the rest is named and
-left out. Exit code 2: no such result folder, 4: a picture cannot be written.
+left out. Of several runs comparison.png alone, into the first one's folder: their probes, a curve a run. Exit code 2: no
+such result folder, 4: a picture cannot be written.
 """
 
 import argparse
@@ -30,6 +32,7 @@ from pliant.results import Run, read_run
 from plots import curves, maps
 from plots.chains import chains
 from plots.coarse import coarse
+from plots.comparison import MOST_RUNS, comparison
 from plots.failure import failure
 from plots.network import network
 
@@ -42,7 +45,8 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
         prog="pliant plot", description="Draws the pictures of a run into its result folder.",
         epilog="example: ./pliant plot out/third_body_mini",
     )
-    parser.add_argument("folder", type=Path, help="result folder of `pliant run`")
+    parser.add_argument("folders", type=Path, nargs="+", metavar="folder",
+                        help=f"result folder of `pliant run`; of 2 to {MOST_RUNS} their probes are drawn together")
     parser.add_argument("--times", type=float, nargs="+", metavar="SECONDS",
                         help="times of the maps; the nearest frames are drawn (default: four, evenly spread)")
     return parser.parse_args(arguments)
@@ -99,15 +103,28 @@ def draw_all(run: Run, times: list[float] | None) -> None:
         print(run.folder / name)
 
 
+def draw_together(runs: list[Run]) -> None:
+    figure = comparison(runs)
+    if figure is None:
+        raise BadFolder("no two of these runs have a probe in common, or none has one that is not 0 all along")
+    save(figure, runs[0].folder / "comparison.png")
+    print(runs[0].folder / "comparison.png")
+
+
 def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
     try:
-        draw_all(read_run(options.folder), options.times)
+        if len(options.folders) > MOST_RUNS:
+            raise BadFolder(f"{len(options.folders)} runs; allowed: 1 to {MOST_RUNS}")
+        if len(options.folders) > 1 and options.times:
+            raise BadFolder("--times chooses frames of one run; of several only probes are drawn")
+        runs = [read_run(folder) for folder in options.folders]
+        draw_all(runs[0], options.times) if len(runs) == 1 else draw_together(runs)
     except BadFolder as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
-        print(f"error: {options.folder}: a picture cannot be written: {error.strerror or error}; "
+        print(f"error: {options.folders[0]}: a picture cannot be written: {error.strerror or error}; "
               "check the permissions and the free disk space", file=sys.stderr)
         return OUTPUT_FAILED
     return 0

@@ -22,16 +22,16 @@ _LEGEND_COLUMNS = 6
 _DECADES = 8
 
 
-def _panels(count: int, title: str, table: Table) -> tuple[Figure, list[Axes], float]:
+def panels(count: int, title: str, time: np.ndarray) -> tuple[Figure, list[Axes], float]:
     """Panels above one another with a common axis of time, and the factor of time."""
     figure, axes = plt.subplots(
         count, 1, figsize=(9, 1.2 + 2.1 * count), sharex=True, squeeze=False, layout="constrained"
     )
     figure.suptitle(title)
-    factor, unit = units.scale(float(table.time.max()), "s")
+    factor, unit = units.scale(float(time.max()), "s")
     axes[-1, 0].set_xlabel(units.label("time", unit))
-    start = table.time.min() if table.time.min() > 0.05 * table.time.max() else 0.0
-    axes[-1, 0].set_xlim(start * factor, table.time.max() * factor)
+    start = time.min() if time.min() > 0.05 * time.max() else 0.0
+    axes[-1, 0].set_xlim(start * factor, time.max() * factor)
     for panel in axes.flat:
         panel.grid(alpha=0.3)
     figure.align_ylabels(axes)
@@ -46,7 +46,7 @@ def _logarithmic(axes: Axes, values: np.ndarray) -> None:
     axes.set_ylim(max(10.0**-_DECADES * largest, np.quantile(values, 0.005) / 2), 2 * largest)
 
 
-def _legend(axes: Axes, curves: int) -> None:
+def legend(axes: Axes, curves: int) -> None:
     """In a line above the panel: it hides nothing there, and all panels keep one width."""
     if curves > 0:
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=min(curves, _LEGEND_COLUMNS), fontsize=9,
@@ -60,13 +60,13 @@ def steps(run: Run) -> Figure | None:
     columns = [] if table is None else [c for name in wanted if (c := table.get(name)) is not None and _tells(c)]
     if table is None or not columns:
         return None
-    figure, axes, factor = _panels(len(columns), f"{run.title}: steps", table)
+    figure, axes, factor = panels(len(columns), f"{run.title}: steps", table.time)
     for panel, column, colour in zip(axes, columns, COLOURS):
         _draw_step_column(panel, table, column, factor, colour, wanted[column.name])
         if column.name == "error" and run.tolerance is not None:
             panel.axhline(run.tolerance, color=COLOURS[7], linewidth=0.8, linestyle="--", label="tolerance")
             panel.set_ylim(top=max(panel.get_ylim()[1], 2 * run.tolerance))
-            _legend(panel, 1)
+            legend(panel, 1)
     notes = [_rejection_note(table), "line: mean, band: least to largest" if len(table.time) > DENSE else ""]
     figure.supxlabel("; ".join(note for note in notes if note), fontsize=9)
     return figure
@@ -118,12 +118,12 @@ def forces(run: Run) -> Figure | None:
     if table is None or not sources:
         return None
     rubbed = [source for source in sources if _friction_matters(run, table, source)]
-    figure, axes, factor = _panels(len(sources) + len(rubbed), f"{run.title}: forces", table)
-    panels = iter(axes)
+    figure, axes, factor = panels(len(sources) + len(rubbed), f"{run.title}: forces", table.time)
+    left = iter(axes)
     for source in sources:
-        _draw_forces(next(panels), run, table, source, factor)
+        _draw_forces(next(left), run, table, source, factor)
         if source in rubbed:
-            _draw_friction(next(panels), run, table, source, factor)
+            _draw_friction(next(left), run, table, source, factor)
     return figure
 
 
@@ -151,7 +151,7 @@ def _draw_forces(axes: Axes, run: Run, table: Table, source: str, time_factor: f
         captions.append(_caption(name, column.unit, time, values))
     axes.set_ylabel(units.label("force", unit))
     axes.set_title(f"wall '{run.probe_of.get(source) or source}'\n" + "\n".join(captions), fontsize=9, loc="left")
-    _legend(axes, len(axes.get_legend_handles_labels()[0]))
+    legend(axes, len(axes.get_legend_handles_labels()[0]))
 
 
 def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor: float) -> None:
@@ -170,7 +170,7 @@ def energy(run: Run) -> Figure | None:
         return None
     columns = [c for c in table.columns if c.source == kinetic.source]
     errors = [c for c in columns if c.name.endswith("_error") and np.any(np.abs(c.values) > 0)]
-    figure, axes, time_factor = _panels(1 + len(errors), f"{run.title}: energy", table)
+    figure, axes, time_factor = panels(1 + len(errors), f"{run.title}: energy", table.time)
     energies = [c for c in columns if c.unit == kinetic.unit]
     _draw_together(axes[0], table, energies, time_factor, "energy", lambda c: c.name.replace("_", " "))
     for panel, column, colour in zip(axes[1:], errors, COLOURS):
@@ -193,7 +193,7 @@ def _draw_together(
         style = "--" if column.name == "external_work" else "-"  # what came in lies on what is stored in slow scenes
         draw_history(axes, time * time_factor, values * factor, colour, name_of(column), style)
     axes.set_ylabel(units.label(quantity, unit))
-    _legend(axes, len(columns) - len(vanishing))
+    legend(axes, len(columns) - len(vanishing))
     if vanishing:
         axes.set_title(f"zero: {', '.join(vanishing)}", fontsize=9, loc="left")
 
@@ -228,7 +228,7 @@ def probes(run: Run) -> Figure | None:
     groups = {key: columns for key, columns in groups.items() if any(np.any(c.values != 0) for c in columns)}
     if not groups:
         return None
-    figure, axes, factor = _panels(len(groups), f"{run.title}: probes", table)
+    figure, axes, factor = panels(len(groups), f"{run.title}: probes", table.time)
     for panel, ((quantity, _), columns) in zip(axes, groups.items()):
         names = {_quantity(c) for c in columns}
         title = names.pop() if len(names) == 1 else quantity

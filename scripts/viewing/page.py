@@ -13,7 +13,7 @@ from markupsafe import Markup
 from matplotlib.colors import to_hex
 
 from plots.drawing import EDGE, KIND_COLOURS
-from plots.maps import NEUTRAL
+from plots.fields import NEUTRAL
 from pliant import units
 from pliant.results import Column, Run, Table
 from viewing.packing import Field, Packing, as_text
