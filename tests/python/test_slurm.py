@@ -1,4 +1,4 @@
-"""Studies under a real Slurm of one node (one_node_slurm.py): the same bits as without it, whatever Slurm does to jobs."""
+"""Studies on a real Slurm of one node (one_node_slurm.py): the same bits as without it, whatever Slurm does to jobs."""
 
 from __future__ import annotations
 
@@ -17,31 +17,33 @@ from test_study import ROOT, SCENE, Desk
 from pliant.engine import engine
 from pliant.results import read_json
 
-LONG = ["end=8001", "end=8002", "end=8003"]
+SIX, ONE = "5, 6, 7, 16001, 16002, 16003", "16001"
+LONG = ["end=16001", "end=16002", "end=16003"]
+RUN = LONG[0]
 STUDY = """
 scene = "scene.toml"
 [[parameters]]
 name = "end"
 path = "time.end"
-values = [5, 6, 7, 8001, 8002, 8003]
+values = [{values}]
 [[quantities]]
 name = "strain"
 probe = "energy.strain"
 take = "max"
 """
-# The engine, but that long runs pause after their first checkpoint until they are told to end. Slurm tells the engine too, a
-# second SIGTERM would end it at once.
+# The engine, but that long runs pause after their first checkpoint until they are told to end. Slurm tells the engine
+# too, which a second SIGTERM would end at once.
 PAUSING_ENGINE = """#!/bin/sh
 case "$*" in
   run*--resume*) ;;
-  run*end=800*)
+  run*end=1600*)
     for out; do [ "$last" != --out ] || break; last=$out; done
     rm -f "$out/checkpoint.bin"
     {engine} "$@" &
     engine=$!
+    trap "kill -CONT $engine; sleep 1; kill $engine" TERM
     until [ -e "$out/checkpoint.bin" ]; do sleep 0.05; done
     kill -STOP $engine
-    trap "kill -CONT $engine; sleep 1; kill $engine" TERM
     touch "$out/../pauses"
     wait $engine || wait $engine
     exit
@@ -57,8 +59,8 @@ class SlurmDesk(Desk):
         super().__init__(folder)
         self.slurm, self.environment = slurm, {**slurm.environment, "PYTHONPATH": str(ROOT / "python"), "CI": "true"}
         scene = SCENE.format(end="1 s").replace("period = 0.1", "period = 1")
-        (folder / "scene.toml").write_text(f'{scene}[checkpoint]\nperiod = "0.2 s"\n')
-        self.study(STUDY.replace("5, 6, 7, 8001, 8002, 8003", values))
+        (folder / "scene.toml").write_text(f'{scene}[checkpoint]\nperiod = "0.05 s"\n')
+        self.study(STUDY.format(values=values))
         self.said = folder / "said"
         if pauses:
             program = folder / "pausing_engine"
@@ -68,7 +70,8 @@ class SlurmDesk(Desk):
 
     def start(self, *options: str, slurm: bool = True) -> subprocess.Popen[bytes]:
         with self.said.open("wb") as output:
-            return subprocess.Popen(self.command(*["--slurm"] * slurm, *options), stdin=subprocess.DEVNULL, stdout=output,
+            command = ["env", "--default-signal=INT", *self.command(*["--slurm"] * slurm, *options)]
+            return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output,
                                     stderr=subprocess.STDOUT, env=self.environment, start_new_session=True)
 
     def end(self, study: subprocess.Popen[bytes]) -> int:
@@ -117,9 +120,9 @@ def slurm() -> Iterator[OneNodeSlurm]:
 
 @pytest.fixture(scope="module", autouse=True)
 def limited(slurm: OneNodeSlurm, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple]:
-    """Slurm looks at limits every half a minute: in the meantime the other tests run."""
-    desk = SlurmDesk(tmp_path_factory.mktemp("limited"), slurm, "8001")
-    study = desk.start("--sbatch", "--time=1")
+    """Slurm looks at limits every half a minute, and warns as much earlier: in the meantime the other tests run."""
+    desk = SlurmDesk(tmp_path_factory.mktemp("limited"), slurm, ONE)
+    study = desk.start("--sbatch", "--time=2")
     yield desk, study
     if study.poll() is None:
         os.killpg(study.pid, signal.SIGKILL)
@@ -127,10 +130,10 @@ def limited(slurm: OneNodeSlurm, tmp_path_factory: pytest.TempPathFactory) -> It
 
 
 def test_what_slurm_does_to_jobs_changes_no_bit(slurm: OneNodeSlurm, tmp_path: Path) -> None:
-    """EXACT: one job is killed with all its processes, one cancelled, one queued again as after the failure of a node; the
-    study, called again, ends with the states and the table of one without Slurm."""
-    desk = SlurmDesk(tmp_path / "it's 100%j", slurm, "5, 6, 7, 8001, 8002, 8003")
-    without = SlurmDesk(tmp_path / "without", slurm, "5, 6, 7, 8001, 8002, 8003", pauses=False)
+    """EXACT: one job is killed with all its processes, one cancelled, one queued again as after the failure of a node;
+    the study, called again, ends with the states and the table of one without Slurm."""
+    desk = SlurmDesk(tmp_path / "it's 100%j", slurm, SIX)
+    without = SlurmDesk(tmp_path / "without", slurm, SIX, pauses=False)
     reference = without.start(slurm=False)
     study = desk.start()
     desk.wait_for(*(desk.file(run, "pauses") for run in LONG))
@@ -158,51 +161,51 @@ def test_what_slurm_does_to_jobs_changes_no_bit(slurm: OneNodeSlurm, tmp_path: P
 
 
 def test_a_stopped_study_cancels_its_jobs(slurm: OneNodeSlurm, tmp_path: Path) -> None:
-    desk = SlurmDesk(tmp_path, slurm, "8001")
+    desk = SlurmDesk(tmp_path, slurm, ONE)
     study = desk.start()
-    desk.wait_for(desk.file("end=8001", "pauses"))
+    desk.wait_for(desk.file(RUN, "pauses"))
     os.killpg(study.pid, signal.SIGINT)
     assert desk.end(study) == 1
-    state = slurm.call("squeue", "--states=all", "--noheader", "--format=%T", "--jobs", desk.job("end=8001"))
+    state = slurm.call("squeue", "--states=all", "--noheader", "--format=%T", "--jobs", desk.job(RUN))
     assert state in ("COMPLETING", "CANCELLED"), desk.all_said()
 
 
 def test_a_killed_study_finds_its_jobs_again(slurm: OneNodeSlurm, tmp_path: Path) -> None:
     """That of the same scene alone."""
-    desk = SlurmDesk(tmp_path, slurm, "8001")
+    desk = SlurmDesk(tmp_path, slurm, ONE)
 
     def kill(study: subprocess.Popen[bytes]) -> None:
         os.killpg(study.pid, signal.SIGKILL)
         study.wait()
 
     study = desk.start()
-    desk.wait_for(desk.file("end=8001", "pauses"))
-    first = desk.job("end=8001")
+    desk.wait_for(desk.file(RUN, "pauses"))
+    first = desk.job(RUN)
     kill(study)
     study = desk.start()
-    desk.wait_until("the same job", lambda: f"end=8001: is job {first} still" in desk.said.read_text())
+    desk.wait_until("the same job", lambda: f"{RUN}: is job {first} still" in desk.said.read_text())
     kill(study)
-    desk.file("end=8001", "pauses").unlink()
+    desk.file(RUN, "pauses").unlink()
     scene = desk.folder / "scene.toml"
     scene.write_text(scene.read_text().replace("density = 1", "density = 2"))
     study = desk.start()
-    desk.wait_for(desk.file("end=8001", "pauses"))
-    assert desk.job("end=8001") != first
+    desk.wait_for(desk.file(RUN, "pauses"))
+    assert desk.job(RUN) != first
     kill(study)
-    assert "density = 2" in desk.file("end=8001", "results/scene.toml").read_text()
+    assert "density = 2" in desk.file(RUN, "results/scene.toml").read_text()
 
 
 @pytest.mark.parametrize("options, message", [
     (["--slurm", "--sbatch", "--partition=none"], "invalid partition"),
     (["--slurm", "--sbatch", "--time=1 --nonsense"], "nonsense"),
-    (["--slurm", "--sbatch", "-o x.log"], "'-o': a study sets --output itself"),
-    (["--slurm", "--sbatch=--job-n=x"], "'--job-n=x': a study sets --job-name itself"),
+    (["--slurm", "--sbatch", "-o x.log"], "'-o': --output is for the study"),
+    (["--slurm", "--sbatch=--job-n=x"], "'--job-n=x': --job-name is for the study"),
     (["--slurm", "--sbatch", "--comment='"], "quot"),
     (["--sbatch", "--time=1"], "--sbatch has no meaning without --slurm"),
 ])
 def test_bad_options_run_nothing(slurm: OneNodeSlurm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
                                  options: list[str], message: str) -> None:
-    desk = SlurmDesk(tmp_path, slurm, "8001")
+    desk = SlurmDesk(tmp_path, slurm, ONE)
     monkeypatch.setenv("SLURM_CONF", slurm.environment["SLURM_CONF"])
     result = desk.call(*options)
     assert result.returncode == 2 and message in result.stderr, result.stderr
@@ -212,12 +215,12 @@ def test_bad_options_run_nothing(slurm: OneNodeSlurm, tmp_path: Path, monkeypatc
 def test_a_time_limit_is_announced(slurm: OneNodeSlurm, limited: tuple[SlurmDesk, subprocess.Popen[bytes]]) -> None:
     """The run writes a checkpoint, and its job is queued again and goes on from there, all in one call."""
     desk, study = limited
-    desk.wait_for(desk.file("end=8001", "pauses"))
-    desk.begin_now("end=8001")
+    desk.wait_for(desk.file(RUN, "pauses"))
+    desk.begin_now(RUN)
     assert desk.end(study) == 0, desk.all_said()
-    assert read_json(desk.file("end=8001", "outcome.json"))["job"] == desk.job("end=8001")
-    log = desk.file("end=8001", "slurm.log").read_text()
-    assert "; the same job goes on" in log and "end=8001: finished after a checkpoint" in log
+    assert read_json(desk.file(RUN, "outcome.json"))["job"] == desk.job(RUN)
+    log = desk.file(RUN, "slurm.log").read_text()
+    assert "; the same job goes on" in log and f"{RUN}: finished after a checkpoint" in log
 
 
 def test_without_slurm_it_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -136,7 +136,7 @@ def snakemake(folder: Folder, study: Study, options: argparse.Namespace, lock: i
                "mtime", "--quiet", "all"]
     if options.slurm:
         command += ["--cluster", slurm.submit_command(folder.path, options.sbatch),
-                    "--cluster-status", slurm.status_command(folder.path),
+                    "--cluster-status", slurm.status_command(folder.path), "--max-status-checks-per-second", "2",
                     "--jobs", str(options.jobs), "--local-cores", str(options.cores), "--latency-wait", "60"]
     else:
         command += ["--cores", str(options.cores)]

@@ -1,5 +1,5 @@
-"""Between Snakemake and Slurm, where each run is a job. As a program, which Snakemake calls for each job again and again,
-it needs Python's own library alone: `slurm.py submit FOLDER RUN THREADS [OPTION OF SBATCH...]` prints the job's
+"""Between Snakemake and Slurm, where each run is a job. As a program, which Snakemake calls for each job again and
+again, it needs Python's own library alone: `slurm.py submit FOLDER RUN THREADS [OPTION OF SBATCH...]` prints the job's
 number, `slurm.py status FOLDER JOB` prints running, success or failed."""
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parents[2]
 ENDED = {"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE", "FAILED", "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED",
          "REVOKED", "TIMEOUT"}
-STUCK = re.compile(r"^Partition|^Bad|[Hh]eld|NotAllowed|PerJob|NeverSatisfied")  # reasons that do not pass by themselves
+STUCK = re.compile(r"^Partition|^Bad|[Hh]eld|NotAllowed|PerJob|NeverSatisfied")  # reasons that do not pass alone
 FRESH = 3.0  # s that an answer of squeue counts: one for all jobs, not one each
 WARNING = "--signal=B:USR1@60"  # to the step, this long before the time limit
 TAKEN = {"--array": "-a", "--chdir": "-D", "--clusters": "-M", "--cpus-per-task": "-c", "--dependency": "-d",
@@ -52,7 +52,7 @@ def check_options(options: list[str], threads: int) -> None:
         name = option.partition("=")[0]
         for long, short in TAKEN.items():
             if (name.startswith("--") and long.startswith(name)) or (short and option.startswith(short)):
-                raise NoAnswer(f"'{option}': a study sets {long} itself")
+                raise NoAnswer(f"'{option}': {long} is for the study to set")
     call("sbatch", "--test-only", f"--cpus-per-task={threads}", *options, "--wrap=true")
 
 
@@ -87,7 +87,7 @@ def as_pattern(file: Path) -> str:
 
 
 def jobs_of(text: str) -> list[Job]:
-    return [Job(*line.split(" ", 3)) for line in text.splitlines()]
+    return [Job(*line.split(" ", 3)) for line in text.splitlines() if line]
 
 
 def ask() -> str:
@@ -155,8 +155,8 @@ def find(folder: Path, number: str, fresh: float) -> Job | None:
     before = file.read_text() if file.exists() else ""
     if not before or abs(time.time() - file.stat().st_mtime) > fresh:
         file.write_text(ask() + "\n")
-        for job in set(file.read_text().splitlines()) - set(before.splitlines()):
-            tell_stuck(folder, *jobs_of(job))
+        for line in set(file.read_text().splitlines()) - set(before.splitlines()):
+            tell_stuck(folder, *jobs_of(line))
     return next((job for job in jobs_of(file.read_text()) if job.number == number), None)
 
 

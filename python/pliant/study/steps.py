@@ -1,4 +1,4 @@
-"""The steps of a study, each a process of its own: `python -m pliant.study.steps STEP FOLDER [RUN [THREADS [JOB]]]`."""
+"""The steps of a study, each a process: `python -m pliant.study.steps STEP FOLDER [RUN [THREADS [JOB]]]`."""
 
 from __future__ import annotations
 
