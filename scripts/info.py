@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import argparse
 import fcntl
-import json
 import sys
 import tomllib
 from pathlib import Path
@@ -20,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from pliant.units import readable
 from pliant.frames import BadFolder
-from pliant.results import read_json
+from pliant.results import checkpoint_header, read_json
 
 BAD_INPUT = 2
 LONGEST_ROW = 4096  # bytes
@@ -31,15 +30,6 @@ def read_title(folder: Path) -> str:
         return tomllib.loads((folder / "scene.toml").read_text()).get("title", "")
     except (OSError, ValueError):
         return ""
-
-
-def checkpoint_header(folder: Path) -> dict:
-    """The line of JSON of checkpoint.bin; {} without one."""
-    try:
-        with (folder / "checkpoint.bin").open("rb") as file:
-            return json.loads(file.readline() and file.readline())
-    except (OSError, ValueError):
-        return {}
 
 
 def last_row(file: Path) -> dict[str, float]:

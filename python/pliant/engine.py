@@ -36,9 +36,15 @@ def engine() -> Path:
     return path
 
 
+def start(*arguments: str | Path) -> subprocess.Popen[str]:
+    return subprocess.Popen([engine(), *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            stdin=subprocess.DEVNULL, env={**ENGINE_SETTINGS, **os.environ})
+
+
 def call(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([engine(), *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL,
-                          env={**ENGINE_SETTINGS, **os.environ}, check=False)
+    with start(*arguments) as process:
+        output, errors = process.communicate()
+    return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
 
 
 @dataclass

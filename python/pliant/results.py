@@ -65,6 +65,15 @@ def read_json(file: Path) -> dict:
         raise BadFolder(f"{file}: cannot be read: {error}") from error
 
 
+def checkpoint_header(folder: Path) -> dict:
+    """The line of JSON of checkpoint.bin; {} without one."""
+    try:
+        with (folder / "checkpoint.bin").open("rb") as file:
+            return json.loads(file.readline() and file.readline())
+    except (OSError, ValueError):
+        return {}
+
+
 def read_table(file: Path) -> Table | None:
     """The CSV file, empty cells as NaN; None when there is none or it has no row yet."""
     if not file.exists():

@@ -207,6 +207,36 @@ def test_a_killed_study_goes_on_with_the_same_bits(desk: Desk) -> None:
     assert desk.hashes() == undisturbed
 
 
+def other_engine(desk: Desk, monkeypatch: pytest.MonkeyPatch, on_run: str) -> None:
+    program = desk.folder / "other_engine"
+    program.write_text(f'#!/bin/sh\n[ "$1" != run ] || {{ {on_run}; }}\nexec {engine()} "$@"\n')
+    program.chmod(0o755)
+    monkeypatch.setenv("PLIANT_ENGINE", str(program))
+
+
+def test_a_stopped_study_waits_for_checkpoints(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However long they take: here a second."""
+    other_engine(desk, monkeypatch, f"trap 'kill $!; sleep 1; touch {desk.folder}/written; exit 130' INT; "
+                 f"touch {desk.folder}/runs; sleep 60 >/dev/null 2>&1 & wait")
+    stopped = subprocess.Popen(["env", "--default-signal=INT", *desk.command()], start_new_session=True,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                               env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    deadline = time.monotonic() + 60
+    while not (desk.folder / "runs").exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    os.killpg(stopped.pid, signal.SIGINT)
+    assert stopped.wait(60) == 1 and (desk.folder / "written").exists()
+
+
+def test_what_another_scene_became_is_no_outcome(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As when a study is called with another one while the old still runs on a cluster."""
+    with monkeypatch.context() as patch:
+        other_engine(desk, patch, 'echo "# other" >> "$2"')
+        assert desk.call().returncode == 1
+    assert not desk.times()
+    assert desk.call().returncode == 0
+
+
 @pytest.mark.parametrize("old, new, message", [
     ('path = "shapes.disc.nodes"', 'path = "shapes.dics.nodes"', "did you mean 'disc'?"),
     ('path = "shapes.disc.nodes"', 'path = "shapes.disc.nodse"', "nodse"),
@@ -360,14 +390,11 @@ def test_units_must_agree_where_numbers_count(desk: Desk) -> None:
         read_study(desk.study(text + '[[plots]]\nx = "young"\ny = "strain"\n'))
 
 
-def test_a_regression_sees_another_engine(desk: Desk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_regression_sees_another_engine(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     desk.call()
     (desk.folder / "baseline.csv").write_text((desk.out / "table.csv").read_text())
     desk.study(STUDY.replace("[[parameters]]", 'kind = "regression"\n[regression]\nbaseline = "baseline.csv"\n'
                              "tolerances = { strain = 1e-9 }\n[[parameters]]", 1))
     assert desk.call().returncode == 0
-    other = tmp_path / "other_engine"
-    other.write_text(f'#!/bin/sh\n[ "$1" != run ] || {{ echo "error: planted" >&2; exit 1; }}\nexec {engine()} "$@"\n')
-    other.chmod(0o755)
-    monkeypatch.setenv("PLIANT_ENGINE", str(other))
+    other_engine(desk, monkeypatch, 'echo "error: planted" >&2; exit 1')
     assert desk.call().returncode == 1

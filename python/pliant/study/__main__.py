@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import fcntl
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from pliant.engine import BadScene, Estimate, check
 from pliant.scene import Scene
+from pliant.study import slurm
 from pliant.study.folder import Folder
 from pliant.study.gather import CannotGather, function_of
 from pliant.study.points import Point, points_of
@@ -28,16 +30,31 @@ PACKAGE = HERE.parents[1]
 FAILED, BAD_INPUT = 1, 2
 
 
+def with_equals_sign(words: list[str], name: str) -> list[str]:
+    """What begins with a dash is a value to argparse behind an equals sign alone."""
+    result: list[str] = []
+    for word in words:
+        if result and result[-1] == name:
+            result[-1] += f"={word}"
+        else:
+            result.append(word)
+    return result
+
+
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="pliant study", add_help=False)
     parser.add_argument("study", type=Path)
     parser.add_argument("--out", type=Path)
-    parser.add_argument("--cores", type=int, default=os.cpu_count())
+    parser.add_argument("--cores", type=int)
     parser.add_argument("--dry-run", action="store_true")
     parser.add_argument("--retry", action="store_true")
     parser.add_argument("--slurm", action="store_true")
     parser.add_argument("--jobs", type=int, default=100)
-    return parser.parse_args()
+    parser.add_argument("--sbatch", action="append", default=[])
+    options = parser.parse_args(with_equals_sign(sys.argv[1:], "--sbatch"))
+    if options.cores is None:
+        options.cores = 1 if options.slurm else os.cpu_count()
+    return options
 
 
 def scene_of(base: Scene, point: Point) -> Scene:
@@ -122,22 +139,30 @@ def snakemake(folder: Folder, study: Study, options: argparse.Namespace, lock: i
                f"python={sys.executable}", "--keep-going", "--nolock", "--rerun-incomplete", "--rerun-triggers",
                "mtime", "--quiet", "all"]
     if options.slurm:
-        command += ["--cluster", "sbatch --parsable --cpus-per-task={threads} --job-name=pliant-{rule} "
-                    f"--output={folder.path}/workflow/slurm-%j.log",
-                    "--jobs", str(options.jobs), "--latency-wait", "60"]
+        command += ["--cluster", slurm.submit_command(folder.path, options.sbatch),
+                    "--cluster-status", slurm.status_command(folder.path), "--max-status-checks-per-second", "2",
+                    "--jobs", str(options.jobs), "--local-cores", str(options.cores), "--latency-wait", "60"]
     else:
         command += ["--cores", str(options.cores)]
     (folder.path / "workflow").mkdir(exist_ok=True)
+    stopped = False
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[lock]) as process:
         while True:
             try:
-                return process.wait()
+                code = process.wait()
+                break
             except KeyboardInterrupt:
+                stopped = True
                 print("pliant study: stopping; runs write their checkpoints", file=sys.stderr)
+    if options.slurm and stopped:
+        slurm.cancel(folder.path)
+    return code
 
 
 def run(study: Study, options: argparse.Namespace) -> int:
     points = points_of(study)
+    if options.slurm:
+        slurm.check_options(options.sbatch, study.threads)
     estimates, files = check_all(study, points)
     if options.dry_run:
         describe(points, estimates)
@@ -183,14 +208,25 @@ def tell(folder: Folder) -> int:
     return FAILED if bad or changed else 0
 
 
+def words_of(options: str) -> list[str]:
+    try:
+        return shlex.split(options)
+    except ValueError as error:
+        raise BadStudy(f"--sbatch: {options}: {error}") from error
+
+
 def main() -> int:
     options = arguments()
     try:
         if options.cores < 1 or options.jobs < 1:
             raise BadStudy("--cores and --jobs must be at least 1")
-        if options.slurm and shutil.which("sbatch") is None:
-            raise BadStudy("--slurm: there is no sbatch here")
+        if options.sbatch and not options.slurm:
+            raise BadStudy("--sbatch has no meaning without --slurm")
+        options.sbatch = words_of(" ".join(options.sbatch))
         return run(read_study(options.study), options)
+    except slurm.NoAnswer as error:
+        print(f"pliant study: --slurm: {error}", file=sys.stderr)
+        return BAD_INPUT
     except (BadStudy, BadScene, CannotGather, UnicodeDecodeError, OSError) as error:
         print(f"pliant study: {error}", file=sys.stderr)
         return BAD_INPUT

@@ -1,15 +1,17 @@
-"""The steps of a study, each a process of its own: `python -m pliant.study.steps STEP FOLDER [RUN [THREADS]]`."""
+"""The steps of a study, each a process: `python -m pliant.study.steps STEP FOLDER [RUN [THREADS [JOB]]]`."""
 
 from __future__ import annotations
 
 import shutil
+import signal
+import subprocess
 import sys
 import time
 from dataclasses import asdict
 from pathlib import Path
 
-from pliant.engine import call, is_finished
-from pliant.results import read_run
+from pliant.engine import is_finished, start
+from pliant.results import checkpoint_header, read_run
 from pliant.scene import Scene
 from pliant.study import gather as gathering
 from pliant.study.folder import Folder, as_text, copy_if_other, replace
@@ -27,9 +29,9 @@ def scene(folder: Folder, name: str) -> None:
     replace(folder.scene(name), changed.text())
 
 
-def run(folder: Folder, name: str, threads: str) -> None:
+def run(folder: Folder, name: str, threads: str, job: str = "") -> None:
     """Begins, goes on from a checkpoint of the same scene, or takes what is finished. A run that fails is an outcome like
-    others; one that is killed is none."""
+    others; one that is killed is none. `job`: its number, of Slurm's."""
     scene_file, results = folder.scene(name), folder.results(name)
     begun, fingerprint = folder.run(name) / "begun", folder.fingerprint(name)
     same = begun.exists() and begun.read_text() == fingerprint
@@ -37,17 +39,47 @@ def run(folder: Folder, name: str, threads: str) -> None:
         code, message = 0, ""
     else:
         resumes = same and (results / "checkpoint.bin").exists()
-        begin = time.monotonic()
+        begin, reached = time.monotonic(), steps_of_checkpoint(results) if resumes else -1
         replace(begun, fingerprint)
         way = ["--resume"] if resumes else [scene_file, "--force"]
-        result = call("run", *way, "--out", results, "--threads", threads, "--quiet")
-        code, message = result.returncode, result.stderr.strip()
+        code, message, warned = to_its_end("run", *way, "--out", results, "--threads", threads, "--quiet")
         if code in KILLED or code == FILES:
-            sys.exit(f"{name}: stopped{': ' * bool(message)}{message}; the next call goes on")
+            moved = steps_of_checkpoint(results) > reached
+            what = "the same job" if job and warned and moved and is_queued_again(job) else "the next call"
+            sys.exit(f"{name}: stopped{': ' * bool(message)}{message}; {what} goes on")
+        if folder.fingerprint(name) != fingerprint:
+            sys.exit(f"{name}: its scene changed meanwhile; the next call runs it anew")
         what = "finished" if code == 0 else "FAILED"
         print(f"{name}: {what}{' after a checkpoint' if resumes else ''}, {time.monotonic() - begin:.1f} s", flush=True)
     status = "finished" if code == 0 else "failed"
-    replace(folder.outcome_file(name), as_text({"status": status, "code": code, "message": message}))
+    replace(folder.outcome_file(name), as_text({"status": status, "code": code, "message": message, "job": job}))
+
+
+def to_its_end(*arguments: str | Path) -> tuple[int, str, bool]:
+    """Exit code and errors of the engine; no signal ends this process first. SIGINT and SIGTERM come to both: from a
+    terminal, or from Slurm. SIGUSR1 is Slurm's warning of a time limit, to this process alone: whether it came."""
+    warnings: list[int] = []
+
+    def warn(*_: object) -> None:
+        warnings.append(signal.SIGUSR1)
+        process.terminate()
+
+    for ends in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(ends, lambda *_: None)
+    with start(*arguments) as process:
+        signal.signal(signal.SIGUSR1, warn)
+        errors = process.communicate()[1]
+    return process.returncode, errors.strip(), bool(warnings)
+
+
+def steps_of_checkpoint(results: Path) -> int:
+    return checkpoint_header(results).get("steps", -1)
+
+
+def is_queued_again(job: str) -> bool:
+    """It ends all that belongs to the job, itself too if it is slow."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    return subprocess.run(["scontrol", "requeue", job], stdin=subprocess.DEVNULL, check=False).returncode == 0
 
 
 def gather(folder: Folder, name: str) -> None:
