@@ -283,7 +283,7 @@ def test_schema_reads_the_scenes_of_docs_and_cases(launcher: Launcher) -> None:
     assert launcher("schema").stdout.startswith("[schema]" + "".join(files))
 
 
-@pytest.mark.parametrize("command", ["info", "compare"])
+@pytest.mark.parametrize("command", ["info", "compare", "docs"])
 def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, command: str) -> None:
     (launcher.root / f"scripts/{command}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
     result = launcher(command, "my results", "--tolerance", "1e-6")
