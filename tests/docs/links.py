@@ -85,8 +85,20 @@ def problems_of_markdown(root: Path, files: list[Path]) -> Iterator[str]:
                 yield f"{page.relative_to(root)}: {link} has no such anchor"
 
 
-def tracked(root: Path, suffix: str) -> list[Path]:
+def problems_of_paths(root: Path, files: list[Path]) -> Iterator[str]:
+    """Files that are named and not there, by paths from folders of the repository."""
+    folders = {name.split("/")[0] for name in listed(root, "*/*")}
+    for page in files:
+        for path in re.findall(rf"`((?:{'|'.join(sorted(folders))})/[\w./-]+)`", page.read_text()):
+            if not (root / path).exists():
+                yield f"{page.relative_to(root)}: {path} is not there"
+
+
+def listed(root: Path, pattern: str) -> list[str]:
     """Files of the repository, also those that are not committed yet."""
-    command = ["git", "-C", root, "ls-files", "-co", "--exclude-standard", f"*{suffix}"]
-    names = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-    return [root / name for name in names if (root / name).exists()]
+    command = ["git", "-C", root, "ls-files", "-co", "--exclude-standard", pattern]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
+def tracked(root: Path, suffix: str) -> list[Path]:
+    return [root / name for name in listed(root, f"*{suffix}") if (root / name).exists()]

@@ -18,7 +18,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from links import Html, problems_of_markdown, problems_of_site, tracked
+from links import Html, problems_of_markdown, problems_of_paths, problems_of_site, tracked
 
 ROOT = Path(__file__).resolve().parents[2]
 BROWSER = next(filter(None, map(shutil.which, ["chromium-headless-shell", "chromium"])), None)
@@ -56,6 +56,10 @@ def test_links_of_markdown_lead_somewhere() -> None:
     assert list(problems_of_markdown(ROOT, tracked(ROOT, ".md"))) == []
 
 
+def test_files_that_are_named_are_there() -> None:
+    assert list(problems_of_paths(ROOT, tracked(ROOT, ".md"))) == []
+
+
 def test_every_page_is_in_the_menu(site: Path) -> None:
     menu = set(re.findall(r": ([\w/]+\.md)$", (ROOT / "mkdocs.yml").read_text(), re.MULTILINE))
     assert menu == {str(page.relative_to(ROOT / "docs")) for page in (ROOT / "docs").rglob("*.md")}
@@ -87,6 +91,11 @@ def test_checks_of_links_can_fail(tmp_path: Path) -> None:
     page.write_text("# One `b`, two\n[1](#one-b-two) [2](#one) [3](c.md) `[4](d.md)`\n"
                     "```\n[5](e.md)\n```\n[6](http://x)\n")
     assert list(problems_of_markdown(tmp_path, [page])) == ["a.md: #one has no such anchor", "a.md: c.md is not there"]
+    (tmp_path / "lib").mkdir()
+    (tmp_path / "lib/a.cpp").touch()
+    page.write_text("`lib/a.cpp`, `lib/b.cpp`, `other/c.cpp`")
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    assert list(problems_of_paths(tmp_path, [page])) == ["a.md: lib/b.cpp is not there"]
 
 
 def test_a_bad_link_keeps_the_earlier_site(tmp_path: Path) -> None:
