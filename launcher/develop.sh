@@ -59,7 +59,7 @@ run_tests() {
     target=pliant_engine rest+=(-R '^cli\.cases_run$')
     ready test
   else
-    ready test verify study slurm page view browser movie
+    ready test verify study slurm page view browser movie docs
   fi
   prepare "$preset" "$target" pliant_tests
   # Tests run side by side: their threads must neither be bound to the same cores nor wait actively.
@@ -170,6 +170,11 @@ bench() {
       exit 2
       ;;
   esac
+}
+
+docs() {
+  ready docs
+  exec "$python" -B "$root/scripts/docs.py" "$@"
 }
 
 fuzz() {

@@ -7,6 +7,25 @@ set_run_defaults() {
   export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-active} GLIBC_TUNABLES=${GLIBC_TUNABLES-glibc.malloc.hugetlb=1}
 }
 
+# A program: the one that PLIANT_ENGINE or PLIANT_REFERENCE names, else the one that is built here.
+program() {
+  local named=PLIANT_ENGINE
+  [ "$1" = pliant_engine ] || named=PLIANT_REFERENCE
+  echo "${!named:-$root/build/release/$1}"
+}
+
+# What a command needs. Where PLIANT_ENGINE names an engine nothing is installed or built.
+need() {  # program or nothing, groups of packages
+  if [ -z "${PLIANT_ENGINE-}" ]; then
+    ready "${@:2}"
+    [ -z "$1" ] || prepare release "$1"
+  elif [ -n "$1" ] && [ ! -x "$(program "$1")" ]; then
+    echo "pliant: $(program "$1"): no such program; PLIANT_ENGINE and PLIANT_REFERENCE name those to use, else" \
+      "they are built" >&2
+    exit 2
+  fi
+}
+
 draw() {  # folder, or the options of plot.py
   say "drawing $1"
   if [ -n "$quiet" ]; then
@@ -41,10 +60,10 @@ run_and_draw() {  # program, its arguments, --no-plot (ours): it tells its folde
     esac
     arguments+=("$argument")
   done
-  prepare release "$program"
+  need "$program"
   told=$(mktemp) || fail "no temporary file can be made"
   export PLIANT_TELL_FOLDER=$told
-  forward_signals_to "$root/build/release/$program" "${arguments[@]}" || code=$?
+  forward_signals_to "$(program "$program")" "${arguments[@]}" || code=$?
   folder=$(<"$told")
   rm -f "$told"
   [ "$code" = 0 ] || exit "$code"
@@ -59,18 +78,18 @@ run() {
 reference() { run_and_draw pliant_reference_solver "$@"; }
 
 check() {
-  prepare release pliant_engine
+  need pliant_engine
   set_run_defaults
-  exec "$root/build/release/pliant_engine" check "$@"
+  exec "$(program pliant_engine)" check "$@"
 }
 
 modes() {
-  prepare release pliant_engine
-  exec "$root/build/release/pliant_engine" modes "$@"
+  need pliant_engine
+  exec "$(program pliant_engine)" modes "$@"
 }
 
 plot() {
-  ready
+  need ""
   draw "$@"
 }
 
@@ -80,7 +99,7 @@ movie() {
 }
 
 shape-functions() {
-  prepare release pliant_engine
+  need pliant_engine
   "$python" "$root/scripts/shape_functions.py" "$@"
 }
 
@@ -90,27 +109,26 @@ view() {
 }
 
 export_frame() {
-  ready
+  need ""
   exec "$python" "$root/scripts/export.py" "$@"
 }
 
 info() {
-  ready
+  need ""
   exec "$python" "$root/scripts/info.py" "$@"
 }
 
 compare() {
-  ready
+  need ""
   exec "$python" "$root/scripts/compare.py" "$@"
 }
 
 study() {
-  ready study
-  prepare release pliant_engine
+  need pliant_engine study
   PYTHONPATH=$root/python exec "$python" -B -m pliant.study "$@"
 }
 
 schema() {
-  prepare release pliant_engine
-  exec "$root/build/release/pliant_engine" schema "$root"/docs/keys/*.toml "$root"/cases/*.toml
+  need pliant_engine
+  exec "$(program pliant_engine)" schema "$root"/docs/keys/*.toml "$root"/cases/*.toml
 }

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Process exit codes, as documented in the README. Stopped by a signal: 128 and its number, as shells have it.
+/// Process exit codes, as docs/results.md has them. Stopped by a signal: 128 and its number, as shells have it.
 enum class ExitCode {
   success = 0,
   bad_input = 2,

@@ -31,7 +31,8 @@ def failure(run: Run) -> Figure | None:
     middle = 0.5 * (np.nanmin(points, axis=0) + np.nanmax(points, axis=0)) if place is None else np.array(place)
     half = 0.55 * np.ptp(points, axis=0).max() if place is None else 0.5 * SEGMENTS * segment
     factor, unit = units.scale(2 * half, "m")
-    figure, axes = plt.subplots(figsize=(7, 7.6), layout="constrained")
+    message = textwrap.wrap(report["message"], 96)
+    figure, axes = plt.subplots(figsize=(7, 7.4 + 0.15 * len(message)), layout="constrained")
     for (name, outline), colour in zip(outlines.items(), COLOURS):
         closed = np.vstack([outline, outline[:1]]) * factor
         axes.fill(*closed.T, facecolor=colour, alpha=0.6, label=name)
@@ -45,6 +46,6 @@ def failure(run: Run) -> Figure | None:
     axes.set_xlabel(units.label("x", unit))
     axes.set_ylabel(units.label("y", unit))
     axes.legend(loc="upper right")
-    message = "\n".join(textwrap.wrap(report["message"], 96))
-    axes.set_title(f"{run.title}: last good state, t = {good['time']:.6g} s\n{message}", fontsize=8, loc="left")
+    title = "\n".join([f"{run.title}: last good state, t = {good['time']:.6g} s", *message])
+    axes.set_title(title, fontsize=8, loc="left")
     return figure
