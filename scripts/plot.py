@@ -31,9 +31,11 @@ from pliant.frames import BadFolder
 from pliant.results import Run, read_run
 from plots import curves, maps
 from plots.chains import chains
+from plots.coarse import FEWEST as FEWEST_GRAINS
 from plots.coarse import coarse
 from plots.comparison import MOST_RUNS, comparison
 from plots.failure import failure
+from plots.network import FEWEST as FEWEST_CONTACTS
 from plots.network import network
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
@@ -70,15 +72,22 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),
         "von_mises.png": (lambda: maps.von_mises(run, chosen) if frames else None, "frames with von_mises"),
         "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with contact_damage and bonds at the start"),
-        "chains.png": (lambda: chains(run, chosen) if frames else None, "frames with contacts ([frames] contacts = true)"),
-        "network.png": (lambda: network(run, chosen) if frames else None, "frames with 50 contacts or more"),
-        "coarse.png": (lambda: coarse(run, chosen) if frames else None, "frames of 50 grains or more"),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),
         "probes.png": (lambda: curves.probes(run), "other probes in probes.csv"),
+        **(_of_contacts(run, chosen) if frames and run.frames.contacts(0) is not None else {}),
+        **({"coarse.png": (lambda: coarse(run, chosen), "frames of 50 grains or more")}
+           if frames and len(run.frames.bodies("grain")) >= FEWEST_GRAINS else {}),
         **({"failure.png": (lambda: failure(run), "failure.json with outlines")} if (run.folder / "failure.json").exists()
            else {}),
+    }
+
+
+def _of_contacts(run: Run, chosen: list[int]) -> dict[str, tuple[Callable[[], Figure | None], str]]:
+    return {
+        "chains.png": (lambda: chains(run, chosen), "contacts at these times"),
+        "network.png": (lambda: network(run, chosen), f"{FEWEST_CONTACTS} contacts at the last of these times"),
     }
 
 

@@ -11,14 +11,15 @@ from plots.drawing import place, sheet
 from plots.scenery import whole_box
 
 CELL = 1.0  # mean diameters of the grains
+FEWEST = 50  # grains, that cells say something
 
 
 def coarse(run: Run, indices: list[int]) -> Figure | None:
-    """None for fewer than 50 grains, of which cells say little."""
+    """None for few grains."""
     assert run.frames is not None
     index = indices[-1]
     grains = run.frames.bodies("grain")
-    if len(grains) < 50:
+    if len(grains) < FEWEST:
         return None
     fields = coarse_fields(run.frames, index, CELL * _mean_diameter(run, index))
     panels = _panels(fields)
