@@ -19,7 +19,10 @@ need() {  # program or nothing, groups of packages
   if [ -z "${PLIANT_ENGINE-}" ]; then
     ready "${@:2}"
     [ -z "$1" ] || prepare release "$1"
-  elif [ -n "$1" ] && [ ! -x "$(program "$1")" ]; then
+    return
+  fi
+  PLIANT_ENGINE=$(realpath -m "$PLIANT_ENGINE")  # a study runs it from other folders
+  if [ -n "$1" ] && [ ! -x "$(program "$1")" ]; then
     echo "pliant: $(program "$1"): no such program; PLIANT_ENGINE and PLIANT_REFERENCE name those to use, else" \
       "they are built" >&2
     exit 2

@@ -9,6 +9,7 @@ Exit codes: 0 built, 1 a page has a fault, 2 the folder holds something else tha
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -22,9 +23,9 @@ CONFIG = ROOT / "mkdocs.yml"
 OF_A_SITE = "sitemap.xml"  # mkdocs writes it into each
 
 
-def mkdocs(*arguments: str | Path, **options: bool) -> subprocess.CompletedProcess[str]:
+def mkdocs(*arguments: str | Path) -> list[str]:
     command = [sys.executable, "-B", "-m", "mkdocs", *arguments, "--config-file", CONFIG, "--strict"]
-    return subprocess.run(list(map(str, command)), text=True, check=False, **options)
+    return list(map(str, command))
 
 
 def complaints(said: str) -> str:
@@ -46,7 +47,8 @@ def build(out: Path) -> int:
         out.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=out.parent, prefix=f".{out.name}.") as scratch:
             site = Path(scratch) / "site"
-            result = mkdocs("build", "--site-dir", site, capture_output=True)
+            command = mkdocs("build", "--site-dir", site)
+            result = subprocess.run(command, capture_output=True, text=True, check=False)
             if result.returncode != 0:
                 print(complaints(result.stderr), file=sys.stderr)
                 return COMPLAINED
@@ -71,7 +73,9 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
 
 def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
-    return mkdocs("serve").returncode if options.serve else build(options.out.absolute())
+    if options.serve:
+        os.execv(sys.executable, mkdocs("serve"))
+    return build(options.out.absolute())
 
 
 if __name__ == "__main__":

@@ -260,12 +260,13 @@ def test_exit_codes_of_verify(launcher: Launcher, body: str, code: int) -> None:
 def test_a_named_program_is_used_and_nothing_is_installed_or_built(launcher: Launcher, command: str) -> None:
     named = {}
     for variable, program in [("PLIANT_ENGINE", "my engine"), ("PLIANT_REFERENCE", "my solver")]:
-        write_script(launcher.root / program, f'echo "{program} $*"')
-        named[variable] = str(launcher.root / program)
+        write_script(launcher.root / program, f'echo "{program} $*"; echo "$PLIANT_ENGINE"')
+        named[variable] = f"../{program}"  # seen from where the launcher is called
     result = launcher(command, "a.toml", INSTALLED="", **named)
     assert result.returncode == 0 and not launcher.log.exists()
     first = {"reference": "my solver a.toml", "plot": "plot a.toml"}.get(command, f"my engine {command}")
     assert result.stdout.startswith(first)
+    assert command == "plot" or result.stdout.splitlines()[1] == str(launcher.root / "my engine"), "from any folder"
 
 
 def test_a_named_program_must_be_there(launcher: Launcher) -> None:
