@@ -7,7 +7,6 @@ import numpy as np
 
 from plots.scenery import extent, with_margin
 from plots.wrapping import Box
-from pliant.frames import WALL
 from pliant.results import Run
 
 Progress = Callable[[int], None]

@@ -15,7 +15,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 
-from pages.blocks import BadPage, Block, blocks
+from pages.blocks import BadPage, blocks
 from pages.practice import Practice, Wrong, compare
 
 PAGES = [ROOT / "README.md", ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
