@@ -40,7 +40,8 @@ case "$*" in
     rm -f "$out/checkpoint.bin"
     {engine} "$@" &
     engine=$!
-    trap "kill -CONT $engine; sleep 1; kill $engine" TERM
+    end() {{ kill -CONT $engine; sleep ${{LAG-1}}; kill $engine; touch "$out/../ended"; }}
+    trap end TERM
     until [ -e "$out/checkpoint.bin" ]; do sleep 0.05; done
     kill -STOP $engine
     touch "$out/../pauses"
@@ -99,11 +100,14 @@ class SlurmDesk(Desk):
     def begin_now(self, run: str) -> None:
         """Its job, which is queued again: it would wait two minutes."""
         def is_waiting() -> bool:
-            state = self.slurm.call("squeue", "--noheader", "--jobs", self.job(run), "--format=%T %r")
-            return state == "PENDING BeginTime" or self.file(run, "outcome.json").exists()
+            waits = self.state(self.job(run), "%T %r") == "PENDING BeginTime"
+            return waits or self.file(run, "outcome.json").exists()
 
         self.wait_until(f"job {self.job(run)} queued again", is_waiting)
         self.slurm.call("scontrol", "update", f"JobId={self.job(run)}", "StartTime=now")
+
+    def state(self, job: str, what: str = "%T") -> str:
+        return self.slurm.call("squeue", "--states=all", "--noheader", f"--format={what}", "--jobs", job)
 
     def job(self, run: str) -> str:
         """That the study said it has."""
@@ -160,18 +164,24 @@ def test_what_slurm_does_to_jobs_changes_no_bit(slurm: OneNodeSlurm, tmp_path: P
 
 
 def test_a_stopped_study_cancels_its_jobs(slurm: OneNodeSlurm, tmp_path: Path) -> None:
+    """Which have the time to write their checkpoints, here six seconds; the next call waits for them."""
     desk = SlurmDesk(tmp_path, slurm, ONE)
+    desk.environment["LAG"] = "6"
     study = desk.start()
     desk.wait_for(desk.file(RUN, "pauses"))
     os.killpg(study.pid, signal.SIGINT)
     assert desk.end(study) == 1
-    state = slurm.call("squeue", "--states=all", "--noheader", "--format=%T", "--jobs", desk.job(RUN))
-    assert state in ("COMPLETING", "CANCELLED"), desk.all_said()
+    assert desk.state(desk.job(RUN)) in ("COMPLETING", "CANCELLED"), desk.all_said()
+    assert not desk.file(RUN, "ended").exists()
+    assert desk.end(desk.start()) == 0, desk.all_said()
+    assert desk.file(RUN, "ended").exists()
+    assert f"{RUN}: finished after a checkpoint" in desk.file(RUN, "slurm.log").read_text()
 
 
 def test_a_killed_study_finds_its_jobs_again(slurm: OneNodeSlurm, tmp_path: Path) -> None:
-    """That of the same scene alone."""
+    """Those of the same scene alone. That of another is over before the next begins, though it takes its time."""
     desk = SlurmDesk(tmp_path, slurm, ONE)
+    desk.environment["LAG"] = "8"
 
     def kill(study: subprocess.Popen[bytes]) -> None:
         os.killpg(study.pid, signal.SIGKILL)
@@ -188,8 +198,10 @@ def test_a_killed_study_finds_its_jobs_again(slurm: OneNodeSlurm, tmp_path: Path
     scene = desk.folder / "scene.toml"
     scene.write_text(scene.read_text().replace("density = 1", "density = 2"))
     study = desk.start()
+    desk.wait_until("another job", lambda: f"{RUN}: job " in desk.said.read_text())
+    desk.wait_until("that it waits", lambda: desk.state(desk.job(RUN), "%E") == f"afterany:{first}(unfulfilled)")
     desk.wait_for(desk.file(RUN, "pauses"))
-    assert desk.job(RUN) != first
+    assert desk.state(first) == "CANCELLED", desk.all_said()
     kill(study)
     assert "density = 2" in desk.file(RUN, "results/scene.toml").read_text()
 

@@ -96,19 +96,19 @@ def ask() -> str:
 
 
 def submit(folder: Path, name: str, threads: str, *options: str) -> str:
-    """A job for a run, but for one that is there already: of a study that was killed, say. Of two jobs of one name the
-    later waits until the earlier has ended."""
+    """A job for a run, unless it has one: of a study that was killed, say. One of another scene ends first."""
     label = label_of(folder, name)
-    for job in jobs_of(ask()):
-        if job.label != label or job.state in {*ENDED, "COMPLETING"}:
-            continue
-        if job.state in ("PENDING", "CONFIGURING") or is_of_now(folder, name):
+    earlier = [job for job in jobs_of(ask()) if job.label == label and job.state not in ENDED]
+    for job in earlier:
+        if job.state in ("PENDING", "CONFIGURING") or (job.state != "COMPLETING" and is_of_now(folder, name)):
             say(f"{name}: is job {job.number} still; {log_of(folder, name)}")
             return noted(folder, name, job.number)
-        call("scancel", job.number)
+    if earlier:
+        call("scancel", *(job.number for job in earlier))
+        options = (f"--dependency=afterany:{':'.join(job.number for job in earlier)}", *options)
     step = [sys.executable, "-B", "-m", "pliant.study.steps", "run", str(folder), name, threads]
     script = f'trap "" USR1\nexec env {shlex.quote(f"PYTHONPATH={PACKAGE}")} {shlex.join(step)} "$SLURM_JOB_ID"'
-    number = call("sbatch", "--parsable", f"--job-name={label}", "--dependency=singleton", f"--cpus-per-task={threads}",
+    number = call("sbatch", "--parsable", f"--job-name={label}", f"--cpus-per-task={threads}",
                   f"--output={as_pattern(log_of(folder, name))}", "--open-mode=append", "--requeue", WARNING, *options,
                   f"--wrap={script}").partition(";")[0]
     say(f"{name}: job {number}; {log_of(folder, name)}")
