@@ -15,16 +15,15 @@ import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
+
+from pliant.frames import BadFolder, Frames
 
 BAD_INPUT, OUTPUT_FAILED = 2, 4
 VTK_LINE, VTK_TRIANGLE = 3, 5
 VTK_TYPES = {"float32": "Float32", "float64": "Float64", "int32": "Int32", "uint8": "UInt8"}
-
-
-class BadInput(Exception):
-    """The folder or the frame that was asked for is not there; the message names it."""
 
 
 @dataclass
@@ -39,48 +38,53 @@ class Grid:
 
 
 def field_centres(file: Path) -> dict[str, dict[str, str]]:
-    """For each grid the fields' centres, "Node" or "Cell", as the first frame in frames.xdmf has them."""
+    """For each grid the fields' centres, "Node" or "Cell", as the first frame in frames.xdmf has them: lengths alone do
+    not tell where a grid has as many cells as points."""
     centres: dict[str, dict[str, str]] = {}
-    for collection in ElementTree.parse(file).iter("Grid"):
+    try:
+        collections = list(ElementTree.parse(file).iter("Grid"))
+    except (OSError, ElementTree.ParseError) as error:
+        raise BadFolder(f"{file}: cannot be read: {error}; give the folder that `pliant run` wrote") from error
+    for collection in collections:
         first = collection.find("Grid")
         if first is not None:
             centres[collection.attrib["Name"]] = {a.attrib["Name"]: a.attrib["Center"] for a in first.iter("Attribute")}
     return centres
 
 
-def frame_index(times: np.ndarray, time: float | None, frame: int | None) -> int:
+def frame_index(frames: Frames, time: float | None, frame: int | None) -> int:
     """The frame asked for, the one nearest to a time, or the last."""
-    if len(times) == 0:
-        raise BadInput("the run has no frame yet")
+    count = len(frames.times)
+    if count == 0:
+        raise BadFolder(f"{frames.path}: the run has no frame yet")
     if time is not None:
-        return int(np.abs(times - time).argmin())
-    index = len(times) - 1 if frame is None else frame
-    if not 0 <= index < len(times):
-        raise BadInput(f"no frame {index}; there are 0 to {len(times) - 1}")
+        return frames.nearest(time)
+    index = count - 1 if frame is None else frame
+    if not 0 <= index < count:
+        raise BadFolder(f"{frames.path}: no frame {index}; there are 0 to {count - 1}")
     return index
 
 
-def read_grid(group: h5py.Group, index: int, centres: dict[str, str]) -> Grid:
-    frame = group[f"{index:06}"]
-    plane = frame["position"][()]
+def read_grid(frames: Frames, name: str, index: int, centres: dict[str, str]) -> Grid:
+    plane = frames.field(name, index, "position")
+    if plane is None:
+        raise BadFolder(f"{frames.path}: frame {index} of '{name}' has no positions")
     points = np.column_stack([plane, np.zeros(len(plane), plane.dtype)])
-    grid = Grid(float(frame.attrs["time"]), points, group["cells"][()])
-    for name, centre in centres.items():
-        values = (frame if name in frame else group)[name][()]
-        (grid.point_data if centre == "Node" else grid.cell_data)[name] = values
+    grid = Grid(float(frames.times[index]), points, frames.grids[name].cells)
+    for field_name, centre in centres.items():
+        values = frames.field(name, index, field_name)
+        if values is None:
+            raise BadFolder(f"{frames.path}: frame {index} of '{name}' lacks {field_name}, which frames.xdmf names")
+        (grid.point_data if centre == "Node" else grid.cell_data)[field_name] = values
     return grid
 
 
 def read_frame(folder: Path, time: float | None, frame: int | None) -> tuple[int, dict[str, Grid]]:
-    """Number of the frame, and its grids by name."""
-    try:
-        with h5py.File(folder / "frames.h5", "r") as file:
-            index = frame_index(file["times"][()], time, frame)
-            centres = field_centres(folder / "frames.xdmf")
-            return index, {name: read_grid(file[name], index, fields) for name, fields in centres.items()}
-    except (OSError, KeyError, ElementTree.ParseError) as error:
-        raise BadInput(f"{folder}: frames.h5 and frames.xdmf cannot be read: {error}; "
-                       "give the folder that `pliant run` wrote") from error
+    """Number of the frame, and its grids by name; walls as they are stored, not closed across the period."""
+    frames = Frames(folder / "frames.h5", period=None)
+    index = frame_index(frames, time, frame)
+    centres = field_centres(folder / "frames.xdmf")
+    return index, {name: read_grid(frames, name, index, centres[name]) for name in frames.grids}
 
 
 def data_array(name: str, values: np.ndarray) -> str:
@@ -146,7 +150,7 @@ def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
     try:
         export(options.folder, options.time, options.frame, options.out)
-    except BadInput as error:
+    except BadFolder as error:
         print(f"error: {error}", file=sys.stderr)
         return BAD_INPUT
     except OSError as error:

@@ -13,12 +13,10 @@ import sys
 import tomllib
 from pathlib import Path
 
-import h5py
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
 from pliant.units import readable
-from pliant.frames import BadFolder
+from pliant.frames import BadFolder, Frames
 from pliant.results import checkpoint_header, read_json
 
 BAD_INPUT = 2
@@ -60,9 +58,8 @@ def is_held(folder: Path) -> bool:
 
 def frame_times(folder: Path) -> list[float]:
     try:
-        with h5py.File(folder / "frames.h5", "r") as file:
-            return [float(time) for time in file["times"][()]]
-    except (OSError, KeyError):
+        return [float(time) for time in Frames(folder / "frames.h5", period=None).times]
+    except BadFolder:
         return []
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 COMPLIANT, RIGID, WALL = 0, 1, 2
 KINDS = {"compliant": [COMPLIANT], "rigid": [RIGID], "wall": [WALL], "grain": [COMPLIANT, RIGID]}
+TOPOLOGY = {"cells", "kind", "body"}  # of a grid, beside its frames
 Box = tuple[float, float, float, float]  # least and largest x, least and largest y, m
 
 
@@ -99,7 +100,7 @@ class Frames:
     def _constants(self, grid: str) -> set[str]:
         """Names of the fields that are written once, beside the topology."""
         group = self._file[grid]
-        return {name for name in group if group.get(name, getclass=True) is h5py.Dataset} - {"cells", "kind", "body"}
+        return {name for name in group if group.get(name, getclass=True) is h5py.Dataset} - TOPOLOGY
 
     def positions(self, grid: str, index: int) -> np.ndarray:
         """[points x 2], m."""
@@ -109,8 +110,9 @@ class Frames:
         return values.astype(float)
 
     def field(self, grid: str, index: int, name: str) -> np.ndarray | None:
-        """[points or cells (x 3)], also of what is written once; None when the run did not store it."""
-        once = name in self.constants.get(grid, ())
+        """[points or cells (x 3)], also of what is written once (with kind and body); None when the run did not store
+        it."""
+        once = name in TOPOLOGY or name in self.constants.get(grid, ())
         path = f"{grid}/{name}" if once else f"{grid}/{index:06}/{name}"
         try:
             return self._file[path][()] if path in self._file else None

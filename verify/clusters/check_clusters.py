@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import h5py
 import numpy as np
 import pytest
 
 from hexagons import SIDES, Grain, cluster, facing, glued, grain_tables, probes, shapes
 from pictures import COLOURS, draw_orders, legend, panels, save
+from pliant.frames import Frames
 from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__, cost=2)
@@ -39,10 +39,10 @@ class Rest:
 
     @classmethod
     def of(cls, run: Run, grains: list[Grain]) -> Rest:
-        with h5py.File(run.folder / "frames.h5") as file:
-            last = f"{len(file['times']) - 1:06d}"
-            displacement = np.array(file[f"bodies/{last}/displacement"], dtype=float)[:, :2]
-            outline = np.array(file[f"outlines/{last}/position"], dtype=float)
+        frames = Frames(run.folder / "frames.h5", period=None)
+        last = len(frames.times) - 1
+        displacement = frames.field("bodies", last, "displacement")[:, :2].astype(float)
+        outline = frames.positions("outlines", last)
         names = [f"{grain.name}-{k}.force" for grain in grains for k in range(SIDES[NODES][grain.sort])]
         return cls(displacement, last_pair(run, [f"{grain.name}.position" for grain in grains]),
                    last_pair(run, names), outline)

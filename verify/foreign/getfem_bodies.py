@@ -64,7 +64,7 @@ class Bodies:
 
     def hold(self, name: str, where: Callable[[np.ndarray], np.ndarray], stiffness: float, x: str, y: str) -> None:
         """By springs of so much a length on what is there of its outline, whose other ends move by imposed values."""
-        own, mesh = self._own[name], self.meshes[name]
+        own = self._own[name]
         sides = own.region(OUTLINE)
         middles = np.array([own.pts(own.pid_in_faces(side[:, None])).mean(axis=1) for side in sides.T])
         held = where(middles)

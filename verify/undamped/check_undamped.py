@@ -13,7 +13,7 @@ from contact_network import Outlines
 from fields import frames_of
 from motion import SINGLE, Motion, plane, read_motion
 from pictures import COLOURS, legend, panels, save
-from time_means import CONFIDENCE, Mean, block_means
+from time_means import Mean, block_means
 from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
