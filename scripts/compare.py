@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "python"))
 
-from pliant.frames import BadFolder, Frames
+from pliant.frames import BadFolder, Contacts, Frames
 from pliant.results import Run, Table, read_json, read_run
 
 EQUAL, DIFFERENT, NOT_COMPARABLE = 0, 1, 2
@@ -127,27 +128,60 @@ def compare_frames(a: Frames | None, b: Frames | None, result: Comparison) -> No
         if grid not in a.grids or grid not in b.grids or not np.array_equal(a.grids[grid].cells, b.grids[grid].cells):
             raise BadFolder(f"the grids '{grid}' of the two runs have other cells: their frames cannot be compared")
     rows = common_times("frames", a.times, b.times, result)
-    for grid in sorted(a.grids) if len(rows[0]) else ():
+    if not len(rows[0]):
+        return
+    for grid in sorted(a.grids):
         compare_grid(grid, a, b, rows, result)
+    compare_contacts(a, b, rows, result)
 
 
 def compare_grid(grid: str, a: Frames, b: Frames, rows: tuple[np.ndarray, np.ndarray], result: Comparison) -> None:
     names = a.stored(grid, rows[0][0]), b.stored(grid, rows[1][0])
     for name in sorted(names[0] ^ names[1]):
         result.notes.append(f"frames {grid}/{name}: only in the {'first' if name in names[0] else 'second'} run")
-    times = [f"t = {time:.6g} s" for time in a.times[rows[0]]]
     for name in sorted(names[0] & names[1]):
-        worst = Comparison(0)  # frame by frame: all at once may not fit into memory
-        scale = 0.0
-        for i, (left, right) in enumerate(zip(*rows)):
-            values = [frames.field(grid, index, name).astype(float) for frames, index in ((a, left), (b, right))]
-            scale = max(scale, *(float(np.abs(value[np.isfinite(value)]).max(initial=0.0)) for value in values))
-            worst.add(f"frames {grid}/{name}", values[0], values[1], [times[i]] * len(values[0]))
-        result.compared += 1
-        if worst.differences:
-            largest = max(worst.differences, key=lambda difference: difference.absolute)
-            largest.relative = relative_to(scale, largest.absolute, name)
-            result.differences.append(largest)
+        pairs = ((a.field(grid, left, name), b.field(grid, right, name)) for left, right in zip(*rows))
+        add_frames(f"frames {grid}/{name}", pairs, a.times[rows[0]], result)
+
+
+def add_frames(name: str, pairs: Iterable[tuple[np.ndarray, np.ndarray]], times: np.ndarray,
+               result: Comparison) -> None:
+    """Frame by frame: all at once may not fit into memory."""
+    worst, scale = Comparison(0), 0.0
+    for time, (one, other) in zip(times, pairs):
+        one, other = one.astype(float), other.astype(float)
+        scale = max([scale, *(float(np.abs(x[np.isfinite(x)]).max(initial=0.0)) for x in (one, other))])
+        worst.add(name, one, other, [f"t = {time:.6g} s"] * len(one))
+    result.compared += 1
+    if worst.differences:
+        largest = max(worst.differences, key=lambda difference: difference.absolute)
+        largest.relative = relative_to(scale, largest.absolute, name)
+        result.differences.append(largest)
+
+
+def compare_contacts(a: Frames, b: Frames, rows: tuple[np.ndarray, np.ndarray], result: Comparison) -> None:
+    """Pair by pair. One that is in touch in one run alone has neither force nor length in the other; points of common
+    pairs are compared."""
+    stored = a.contacts(rows[0][0]) is not None, b.contacts(rows[1][0]) is not None
+    if stored[0] != stored[1]:
+        result.notes.append(f"frames contacts: only in the {'first' if stored[0] else 'second'} run")
+    if not all(stored):
+        return
+    for name in ("point", "force", "length"):
+        pairs = (aligned(a.contacts(left), b.contacts(right), name) for left, right in zip(*rows))
+        add_frames(f"frames contacts/{name}", pairs, a.times[rows[0]], result)
+
+
+def aligned(a: Contacts, b: Contacts, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """[pairs that either has x ...] of both; points: [pairs that both have x 2]."""
+    keys = [list(map(tuple, np.column_stack([contacts.bodies, contacts.images]))) for contacts in (a, b)]
+    union = sorted(set(keys[0]) & set(keys[1]) if name == "point" else set(keys[0]) | set(keys[1]))
+    values = []
+    for contacts, own in zip((a, b), keys):
+        of = dict(zip(own, getattr(contacts, name)))
+        absent = np.zeros_like(getattr(contacts, name)[:1].sum(axis=0))
+        values.append(np.array([of.get(key, absent) for key in union]))
+    return values[0], values[1]
 
 
 def compare(a: Run, b: Run, tolerance: float) -> Comparison:
