@@ -4,7 +4,7 @@ namespace pliant {
 namespace {
 
 /// Distances to an end node that two segments share differ by rounding: the compiler may contract them in two ways.
-constexpr double tie = 1e-12;
+constexpr double same_distance = 1e-12;
 
 /// Row of the nearest segment, at most `reach` off; -1: none. Wedges do not count: they mislead where a face ends
 /// before the bisector between it and its neighbour does. Of the two segments at an end node that which is seen more
@@ -20,8 +20,8 @@ Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, doub
     const Lanes square = height * height;
     const Lanes distance =
         select(along < 0.0, rx * rx + ry * ry, select(along > segment.length, qx * qx + qy * qy, square));
-    LaneBits nearer =
-        (distance < (1 - tie) * nearest) | ((distance <= (1 + tie) * nearest) & (found >= 0.0) & (square > steepest));
+    LaneBits nearer = (distance < (1 - same_distance) * nearest) |
+                      ((distance <= (1 + same_distance) * nearest) & (found >= 0.0) & (square > steepest));
     if (row == 0) nearer = nearer & (rx * segment.bisector_x + ry * segment.bisector_y >= 0.0);
     if (row == last) nearer = nearer & (qx * next.bisector_x + qy * next.bisector_y < 0.0);
     nearest = select(nearer, distance, nearest);

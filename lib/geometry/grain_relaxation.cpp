@@ -16,7 +16,7 @@ namespace {
 // and of an unfinished relaxation, and costs about 1 % of solid fraction.
 constexpr double clearance = 0.01;
 // A stage is over when no node lies deeper in the clearance than this share of it.
-constexpr double settled = 0.9;
+constexpr double settled_clearance = 0.9;
 constexpr double skin = 0.3;  // of the mean radius: neighbours further off are not watched
 
 }  // namespace
@@ -64,7 +64,7 @@ bool GrainRelaxation::relax(int sweeps) {
   std::fill(spin_.begin(), spin_.end(), 0.0);
   Fire fire;
   find_pairs();
-  double limit = settled * clearance;
+  double limit = settled_clearance * clearance;
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     const double deepest = push_all();
     if (deepest < limit) {

@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 /// Smoothing ends when a step lowers the distortion by less than this share of it.
-constexpr double settled = 1e-5;
+constexpr double settled_energy = 1e-5;
 constexpr int most_smoothing_steps = 200;
 constexpr double least_angle_allowed = 20 * std::numbers::pi / 180;
 
@@ -133,7 +133,7 @@ void MeshTemplate::smooth(FieldMesh& mesh) const {
     const double before = energy;
     mesh.nodes = trial.nodes;
     energy = distortion(mesh, &gradient);
-    if (before - energy < settled * before) return;
+    if (before - energy < settled_energy * before) return;
   }
 }
 

@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 // Stops when no node moves by more than this share of the spacing: far below what changes a triangle's quality.
-constexpr double settled = 1e-4;
+constexpr double settled_move = 1e-4;
 constexpr int max_sweeps = 300;
 // A large mesh is mended near its outline after few sweeps, and to even out its inside would take thousands: with 30 of
 // them the least angle of 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
@@ -98,7 +98,7 @@ void relax_interior(FieldMesh& mesh) {
   double largest_move = size.rim;
   const double sweeps =
       std::clamp<double>(node_sweeps / static_cast<double>(mesh.nodes.size()), min_sweeps, max_sweeps);
-  for (int sweep = 0; sweep < sweeps && largest_move > settled * size.rim; ++sweep) {
+  for (int sweep = 0; sweep < sweeps && largest_move > settled_move * size.rim; ++sweep) {
     const Points target = optimal_positions(mesh, size);
     largest_move = 0;
     for (std::size_t i = mesh.outline_count; i < mesh.nodes.size(); ++i) {

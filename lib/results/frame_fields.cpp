@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-const std::vector<PointState>& BodyFrame::points() {
+const std::vector<PointState>& FramedBody::points() {
   if (points_.empty())
     points_ = point_states(snapshot.model(), body, snapshot.state().position, snapshot.state().memory);
   return points_;
@@ -18,14 +18,14 @@ const std::vector<PointState>& BodyFrame::points() {
 namespace {
 
 template <auto at_points>
-void at_nodes(BodyFrame& frame, std::vector<float>& values) {
+void at_nodes(FramedBody& frame, std::vector<float>& values) {
   for (const Vec2& v : at_points(frame.snapshot, frame.body, frame.mesh.nodes))
     for (double x : {v.x(), v.y()}) values.push_back(static_cast<float>(x));
 }
 
 /// The mean of a value at a triangle's integration points, by reference area; `rigid`: what rigid bodies get.
 template <auto at_point, int rigid = 0>
-void in_cells(BodyFrame& frame, std::vector<float>& values) {
+void in_cells(FramedBody& frame, std::vector<float>& values) {
   const std::size_t cells = frame.mesh.triangles.size();
   if (frame.body.kind == BodyKind::rigid) {
     values.insert(values.end(), cells, static_cast<float>(rigid));
@@ -43,7 +43,7 @@ void in_cells(BodyFrame& frame, std::vector<float>& values) {
 
 Principal principal_of(const PointState& p) { return principal(p.stress.xx, p.stress.yy, p.stress.xy); }
 
-void contact_count(BodyFrame& frame, std::vector<float>& values) {
+void contact_count(FramedBody& frame, std::vector<float>& values) {
   const int count = frame.snapshot.contact_counts()[frame.index];
   values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(count));
 }

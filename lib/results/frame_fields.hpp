@@ -10,9 +10,9 @@
 namespace pliant {
 
 /// One body while a frame is written.
-class BodyFrame {
+class FramedBody {
  public:
-  BodyFrame(const Snapshot& snapshot, int index, const FieldMesh& mesh)
+  FramedBody(const Snapshot& snapshot, int index, const FieldMesh& mesh)
       : snapshot(snapshot), index(index), body(snapshot.model().bodies[index]), mesh(mesh) {}
   /// Integration points of a compliant body, found when first asked for.
   const std::vector<PointState>& points();
@@ -29,7 +29,7 @@ class BodyFrame {
 /// A value that stays with a body.
 using ConstantField = float (*)(const Body& body);
 /// Appends one body's values of a field on the grid of the bodies: [nodes x components] or [triangles].
-using BodyField = void (*)(BodyFrame& frame, std::vector<float>& values);
+using BodyField = void (*)(FramedBody& frame, std::vector<float>& values);
 /// Values at all outline nodes, [nodes and copies] as in OutlineField.
 using OutlineFunction = std::vector<double> (*)(const Snapshot& snapshot);
 

@@ -124,7 +124,7 @@ GridFrame FrameRecorder::bodies_frame(const Snapshot& snapshot) const {
     const Body& body = model_.bodies[b];
     if (body.wall) continue;
     for (const Vec2& x : positions_at(snapshot, body, mesh_of(body).nodes)) append(x, frame.positions);
-    BodyFrame body_frame(snapshot, static_cast<int>(b), mesh_of(body));
+    FramedBody body_frame(snapshot, static_cast<int>(b), mesh_of(body));
     for (std::size_t f = 0; f < body_fields_.size(); ++f) body_fields_[f].function(body_frame, frame.fields[f].values);
   }
   return frame;

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-struct Node {
+struct GmshNode {
   Vec2 position;
   double z = 0;
   int line = 0;  ///< of the file
@@ -22,7 +22,7 @@ using Edge = std::pair<int, int>;  // tags of its nodes, the smaller first
 
 /// What counts of a mesh: edges of its lines, and how many surface elements each edge belongs to.
 struct Mesh {
-  std::map<int, Node> nodes;
+  std::map<int, GmshNode> nodes;
   std::map<Edge, int> line_edges, surface_edges;
 };
 
@@ -83,7 +83,7 @@ class GmshReader {
   }
 
   void add_node(int tag, const std::vector<std::string_view>& coordinates) {
-    Node node;
+    GmshNode node;
     if (coordinates.size() < 3 || !parse_number(coordinates[0], node.position.x()) ||
         !parse_number(coordinates[1], node.position.y()) || !parse_number(coordinates[2], node.z))
       reader_.fail("found no node; allowed: three coordinates");

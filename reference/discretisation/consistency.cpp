@@ -79,7 +79,7 @@ std::array<std::size_t, 3> spanning_nodes(const Points& nodes) {
   const Vec2 a = nodes.front();
   const std::size_t second = farthest([&](const Vec2& x) { return (x - a).norm(); });
   const Vec2 line = nodes[second] - a;
-  return {0, second, farthest([&](const Vec2& x) { return std::abs(cross(line, x - a)); })};
+  return {0, second, farthest([&](const Vec2& x) { return std::abs(pliant::cross(line, x - a)); })};
 }
 
 /// Conditions (2) of all nodes, weighted by any linear function of place, follow from (1): of three nodes, which fix

@@ -20,7 +20,7 @@ struct Rows {
   std::vector<double> weights;
   void add(const Values& row, double weight = 1) { values.push_back(row), weights.push_back(weight); }
 };
-using Measure = std::function<Rows(const View&, const Probe&, const std::vector<const Body*>&)>;
+using Measurement = std::function<Rows(const View&, const Probe&, const std::vector<const Body*>&)>;
 
 Values reduced(const Rows& rows, Reduction how, std::size_t columns) {
   Values result(columns, rows.values.empty() && how != Reduction::sum ? none : 0.0);
@@ -177,7 +177,7 @@ Rows diameter(const View& view, const Probe&, const std::vector<const Body*>& bo
 }
 
 /// A value at each integration point. Means of J are over reference area, of stresses over the present one.
-Measure at_points(double (*value)(const PointStress&), bool present) {
+Measurement at_points(double (*value)(const PointStress&), bool present) {
   return [=](const View& view, const Probe&, const std::vector<const Body*>& bodies) {
     Rows rows;
     for (const Body* body : bodies) {
@@ -190,8 +190,8 @@ Measure at_points(double (*value)(const PointStress&), bool present) {
   };
 }
 
-const std::map<std::string, Measure>& measures() {
-  static const std::map<std::string, Measure> all{
+const std::map<std::string, Measurement>& measures() {
+  static const std::map<std::string, Measurement> all{
       {"position", position},
       {"velocity", velocity},
       {"acceleration", acceleration},
