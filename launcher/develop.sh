@@ -184,13 +184,14 @@ fuzz() {
 }
 
 lint() {
-  prepare release all
   ready lint
+  prepare lint build_info
+  local targets=("$root"/build/lint/CMakeFiles/pliant_{triangulation,scene,lib,engine,reference,reference_solver}.dir)
   local files=("$@")
-  [ $# -gt 0 ] || mapfile -t files < <(find "$root/lib" -name '*.cpp' | sort)
-  say "clang-tidy over ${#files[@]} files"
+  [ $# -gt 0 ] || mapfile -t files < <(find "${targets[@]}" -name 'unity_*.cxx' | sort)
+  [ $# -gt 0 ] && say "clang-tidy over $# files" || say "clang-tidy over lib/ and reference/"
   printf '%s\0' "${files[@]}" |
-    xargs -0 -n 1 -P "$(nproc)" clang-tidy-19 --quiet -p "$root/build/release" 2>"$root/build/lint.log" ||
+    xargs -0 -n 1 -P "$(nproc)" clang-tidy-19 --quiet -p "$root/build/lint" 2>"$root/build/lint.log" ||
     fail "clang-tidy complains; .clang-tidy has the reason of each rule"
   say "clang-tidy has no complaint"
 }
