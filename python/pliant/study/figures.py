@@ -18,6 +18,7 @@ from pliant.study.table import mean_of_replicas
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
 MARKERS = "osD^vP"
+MARKED = 8  # values at most that a logarithmic axis names one by one
 
 
 def draw_all(folder: Folder) -> list[dict[str, str]]:
@@ -78,10 +79,13 @@ def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
         style = "-" if all_inputs_shown else ""
         axes.errorbar(x, y, yerr=error if any(error) else None, fmt=marker + style, color=colour, capsize=3,
                       markersize=5, linewidth=1.2, label=f"{plot['by']} = {label}" if plot["by"] else None)
-    if words:
-        axes.set_xticks(range(len(order)), order, rotation=20)
     axes.set_xscale("log" if "x" in plot["log"] else "linear")
     axes.set_yscale("log" if "y" in plot["log"] else "linear")
+    if words:
+        axes.set_xticks(range(len(order)), order, rotation=20)
+    elif "x" in plot["log"] and is_input and len(order) <= MARKED:
+        axes.set_xticks(*zip(*sorted({(number_of(label), f"{number_of(label):g}") for label in labels})))
+        axes.set_xticks([], minor=True)
     unit = points[0]["unit"] if points else "-"
     axes.set_xlabel(plot["x"] + (_unit_of(labels) if is_input and not words else ""))
     axes.set_ylabel(plot["y"] + (f" [{unit}]" if unit != "-" else ""))
