@@ -27,7 +27,7 @@ configure() {  # preset, target that is left out without its packages, if any: l
 announce_build() {  # directory, stamp of the last build: a line before what may take minutes, none before an instant
   local sources=("$root"/{lib,reference,tests,benchmarks,cmake,CMakeLists.txt})
   if [ ! -f "$2" ] || [ -n "$(find "${sources[@]}" -newer "$2" -print -quit 2>/dev/null)" ]; then
-    say "building in ${1#"$root"/} (log: build.log)"
+    say "building in ${1#"$root"/} (log: ${2%/*}/build.log; the first time takes some minutes)"
   fi
 }
 

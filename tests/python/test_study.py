@@ -372,10 +372,13 @@ def test_means_over_replicas() -> None:
 
 
 def test_no_order_is_said() -> None:
-    assert analyse([1, 2, 4], [1, 2, 1]).order is None
+    scattered = analyse([1, 2, 4], [-1, -2, -1])
+    assert scattered.order is None and scattered.words().endswith("in order; the three finest differ by 50 %")
     mixed = analyse([1, 2, 4, 8], [1 + 0.01 * h + 0.1 * h**4 for h in (1, 2, 4, 8)])
     assert mixed.asymptotic, "one order rules"
-    assert not analyse([1, 2, 4, 8], [1 + h + 0.02 * h**4 for h in (1, 2, 4, 8)]).asymptotic
+    apart = analyse([1, 2, 4, 8], [1 + h + 0.02 * h**4 for h in (1, 2, 4, 8)])
+    assert apart.asymptotic is False
+    assert apart.words().startswith("not in the asymptotic range") and "the three finest alone: order" in apart.words()
     equal = analyse([1, 2, 4], [3, 3, 3])
     assert equal.order is None and "equal" in equal.note
     assert analyse([1, 2, 4], [3, float("nan"), 3]).order is None

@@ -200,9 +200,7 @@ def tell(folder: Folder) -> int:
               file=sys.stderr)
     for order in table.get("orders", []):
         of = "".join(f", {name} = {value}" for name, value in order["of"].items())
-        found = (f"order {order['order']:.2f}, limit {order['limit']:.5g}, index {order['index']:.2g}"
-                 if order["order"] is not None else "")
-        print(f"{order['quantity']}{of}: {'; '.join(text for text in (found, order['note']) if text)}")
+        print(f"{order['quantity']}{of}: {order['words']}")
     print(f"{len(table['rows']) - len(bad)} of {len(table['rows'])} runs are whole; {folder.path / 'table.csv'}, "
           f"{folder.path / 'report.html'}")
     return FAILED if bad or changed else 0

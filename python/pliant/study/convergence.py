@@ -21,6 +21,13 @@ class Order:
     asymptotic: bool | None  # whether the sizes agree on the order; None: only three
     note: str
 
+    def words(self) -> str:
+        """The verdict first: an order that the sizes do not agree on tells less than how far their values differ."""
+        found = (f"order {self.order:.2f}, limit {self.limit:.5g}, index {self.index:.2g}"
+                 if self.order is not None else "")
+        parts = (self.note, found and f"the three finest alone: {found}") if self.asymptotic is False else (found, self.note)
+        return "; ".join(part for part in parts if part)
+
 
 def observed_order(h: tuple[float, float, float], f: tuple[float, float, float]) -> float | None:
     """p with (f3 - f2)/(f2 - f1) = (h3^p - h2^p)/(h2^p - h1^p), sizes ascending; None: none from LEAST_ORDER to
@@ -55,8 +62,9 @@ def analyse(sizes: list[float], values: list[float]) -> Order:
     p = observed_order((h[0], h[1], h[2]), (f[0], f[1], f[2]))
     if p is None and math.isclose(f[0], f[1], rel_tol=1e-12):
         return Order(None, None, None, None, "the two finest values are equal")
+    apart = f"the three finest differ by {100 * (max(f[:3]) - min(f[:3])) / max(map(abs, f[:3])):.2g} %"
     if p is None:
-        return Order(None, None, None, False, "no order: the values do not approach a limit in order")
+        return Order(None, None, None, False, f"no order: the values do not approach a limit in order; {apart}")
     ratio = (h[1] / h[0])**p
     limit = f[0] + (f[0] - f[1]) / (ratio - 1)
     index = SAFETY * abs(f[0] - f[1]) / (ratio - 1)
@@ -64,6 +72,6 @@ def analyse(sizes: list[float], values: list[float]) -> Order:
         return Order(p, limit, index, None, "a fourth size would tell whether this is the asymptotic range")
     coarser = observed_order((h[1], h[2], h[3]), (f[1], f[2], f[3]))
     agrees = coarser is not None and math.isclose(ratio, (h[1] / h[0])**coarser, rel_tol=ASYMPTOTIC)
-    note = "" if agrees else (f"not in the asymptotic range: the three sizes after the finest say order {coarser:.2f}"
-                              if coarser is not None else "not in the asymptotic range: coarser sizes have no order")
+    of_coarser = "have no order" if coarser is None else f"say order {coarser:.2f}"
+    note = "" if agrees else f"not in the asymptotic range: the three sizes after the finest {of_coarser}; {apart}"
     return Order(p, limit, index, agrees, note)

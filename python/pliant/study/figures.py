@@ -32,6 +32,8 @@ def draw_all(folder: Folder) -> list[dict[str, str]]:
         drawn.append(_save(folder, figure, f"{number}_{plot['y']}_over_{plot['x']}", f"{plot['y']} over {plot['x']}"))
     if "orders" in table:
         for output in about["convergence"]["of"]:
+            if all(o["limit"] is None for o in table["orders"] if o["quantity"] == output):
+                continue  # a page without a point
             figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
             _draw_order(axes, [o for o in table["orders"] if o["quantity"] == output], about["convergence"])
             drawn.append(_save(folder, figure, f"order_{output}", f"{output}: difference from its limit"))
@@ -109,7 +111,8 @@ def _draw_order(axes: Axes, orders: list[dict], settings: dict) -> None:
         h, f = (np.array(found[key]) for key in ("sizes", "values"))
         order = np.argsort(h)
         away = np.abs(f - found["limit"])[order]
-        axes.loglog(h[order], away, marker, color=colour, label=f"{label} order {found['order']:.2f}".strip())
+        doubt = ", not asymptotic" if found["asymptotic"] is False else ""
+        axes.loglog(h[order], away, marker, color=colour, label=f"{label} order {found['order']:.2f}{doubt}".strip())
         ends = h[order][[0, -1]]
         axes.loglog(ends, away[0] * (ends / ends[0])**found["order"], color=colour, linewidth=0.8)
     power = settings["power"]

@@ -117,7 +117,7 @@ def _orders(about: dict, rows: list[dict]) -> list[dict[str, Any]]:
             found = analyse(sizes, values)
             result.append({"quantity": output, "unit": members[0]["unit"],
                            "of": {name: members[0]["inputs"][name] for name in others}, "sizes": sizes,
-                           "values": values, **vars(found)})
+                           "values": values, "words": found.words(), **vars(found)})
     return result
 
 
