@@ -59,7 +59,7 @@ install_wanted() {  # group: installed whole, or left out when another package w
   say "installing, if possible: ${missing[*]}"
   update_lists_once
   apt_install --no-remove "${missing[@]}" && return 0
-  say "not installed, as others would have to go (log: build/packages.log): ${missing[*]}; going on"
+  say "not installed: ${missing[*]}, as others would have to go (log: build/packages.log); going on"
   return 1
 }
 
