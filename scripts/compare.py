@@ -179,7 +179,7 @@ def aligned(a: Contacts, b: Contacts, name: str) -> tuple[np.ndarray, np.ndarray
     values = []
     for contacts, own in zip((a, b), keys):
         of = dict(zip(own, getattr(contacts, name)))
-        absent = np.zeros_like(getattr(contacts, name)[:1].sum(axis=0))
+        absent = np.zeros(getattr(contacts, name).shape[1:])
         values.append(np.array([of.get(key, absent) for key in union]))
     return values[0], values[1]
 
