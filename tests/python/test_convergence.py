@@ -49,5 +49,6 @@ def test_no_order_is_said() -> None:
     assert apart.words().startswith("not in the asymptotic range") and "the three finest alone: order" in apart.words()
     equal = analyse([1, 2, 4], [3, 3, 3])
     assert equal.order is None and "equal" in equal.note
+    assert "equal" in analyse([1, 2, 4], [0, 0, 0]).note
     assert analyse([1, 2, 4], [3, float("nan"), 3]).order is None
     assert analyse([0, 2, 4], [3, 4, 5]).order is None

@@ -39,5 +39,12 @@ def test_many_values_and_linear_axes_are_left_to_matplotlib() -> None:
     assert len(ticks(["1 GPa", "8 GPa"], [])) > 2
 
 
+def test_a_quantity_that_no_run_has_leaves_an_empty_figure() -> None:
+    figure, axes = plt.subplots()
+    figures._plot(axes, {"x": "load", "y": "force", "by": None, "log": ["x"]}, {"parameters": ["load"], "replicas": None}, [])
+    assert [text.get_text() for text in axes.texts] == ["no run has it"]
+    plt.close(figure)
+
+
 def test_words_stand_in_their_order() -> None:
     assert ticks(["soft", "hard"], []) == ["soft", "hard"]

@@ -85,7 +85,7 @@ def _plot(axes: Axes, plot: dict, about: dict, rows: list[dict]) -> None:
     axes.set_yscale("log" if "y" in plot["log"] else "linear")
     if words:
         axes.set_xticks(range(len(order)), order, rotation=20)
-    elif "x" in plot["log"] and is_input and len(order) <= MARKED:
+    elif "x" in plot["log"] and is_input and 0 < len(order) <= MARKED:
         axes.set_xticks(*zip(*sorted({(number_of(label), f"{number_of(label):g}") for label in labels})))
         axes.set_xticks([], minor=True)
     unit = points[0]["unit"] if points else "-"
