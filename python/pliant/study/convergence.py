@@ -62,7 +62,7 @@ def analyse(sizes: list[float], values: list[float]) -> Order:
     p = observed_order((h[0], h[1], h[2]), (f[0], f[1], f[2]))
     if p is None and math.isclose(f[0], f[1], rel_tol=1e-12):
         return Order(None, None, None, None, "the two finest values are equal")
-    apart = f"the three finest differ by {100 * (max(f[:3]) - min(f[:3])) / (max(map(abs, f[:3])) or 1):.2g} %"
+    apart = f"the three finest differ by {100 * (max(f[:3]) - min(f[:3])) / max(map(abs, f[:3])):.2g} %"
     if p is None:
         return Order(None, None, None, False, f"no order: the values do not approach a limit in order; {apart}")
     ratio = (h[1] / h[0])**p
