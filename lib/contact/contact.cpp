@@ -191,13 +191,19 @@ void ContactSystem::accept(const ContactHistory& history) {
 }
 
 /// Asks for what a patch looks at first: there are many, each on places of its own.
-void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, const StepStart* step) const {
+void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, const StepStart* step,
+                             const ContactHistory& from) const {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
     const Arc arc = patch.forces(side);
     const int node = model_.outline_offset[body] + arc.begin - turn_of(arc.begin, n) * n;
     prefetch_run(position, node, arc.count);
+    const auto prefetch_records = [&](const std::vector<double>& column) {
+      prefetch_run(column.data() + patch.record[side], patch.nodes[side].count);
+    };
+    prefetch_records(from.place), prefetch_records(from.slip);
     if (!keeps_debts() || !step) continue;
+    prefetch_records(from.gap);
     prefetch_run(step->position, node, arc.count);
     prefetch_run(last_.forces, patch.entry[side], arc.count);
   }
@@ -239,7 +245,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
-    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step);
+    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from);
     const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch()};
     PatchTotals& totals = now.totals[p];
     if (view.patch.is_empty())

@@ -56,7 +56,7 @@ double Verlet::first_dt() const { return first_step * std::min(largest_dt(), mod
 Proposal Verlet::propose(const State& state, double next_dt, double until) const {
   const double largest = std::min(largest_dt(), model_.scene.time.end), wish = std::min(next_dt, largest);
   const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
-  const double dt = remaining / steps;
+  const double dt = std::isfinite(steps) ? remaining / steps : wish;
   return {dt, steps > 1 ? state.time + dt : until, wish, largest,
           steps == 1          ? "output"
           : next_dt < largest ? "error"
