@@ -107,20 +107,13 @@ void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& 
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !watch_.update(outlines.position);
-  std::vector<Patch> found = search_pairs();
-  if (same_pairs) {
-    // Patches stand in the order of the pairs.
-    for (const Patch& patch : found) {
-      const int at = static_cast<int>(table_.find(patch.pair()) - patches().data());
-      const Patch old = patches()[at];
-      if (!table_.replace(at, patch, history)) {
-        lay_out_anew(found, history);
-        break;
-      }
-      if (keeps_debts()) carry_forces(model_, old, last_.forces, patches()[at], last_.forces);
-    }
-  } else
-    lay_out_anew(found, history);
+  const std::vector<int> used_up = watch_.used_up(outlines.position);
+  const std::vector<Patch> found = search(used_up);
+  const auto carry = [&](const Patch& old, const Patch& now) {
+    if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
+  };
+  // Patches stand in the order of the pairs.
+  if (!same_pairs || !table_.replace(used_up, found, history, carry)) lay_out_anew(found, history);
   locate(history);
 }
 
@@ -131,21 +124,17 @@ void ContactSystem::locate(ContactHistory& history) const {
   });
 }
 
-/// Patches of all pairs that may not keep theirs.
-std::vector<Patch> ContactSystem::search_pairs() {
-  std::vector<int> used_up;
-  for (int p = 0; p < watch_.count(); ++p)
-    if (!watch_.may_keep(p)) used_up.push_back(p);
-  std::vector<Patch> found(used_up.size());
+std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
+  std::vector<Patch> found(pairs.size());
   parallel_for_uneven(static_cast<int>(found.size()), 16, [&](int i) {
-    const BodyPair& pair = watch_[used_up[i]];
+    const BodyPair& pair = watch_[pairs[i]];
     Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.corners = has_corners(pair.first) || has_corners(pair.second);
     patch.found = refreshes_;
     find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
-    watch_.searched(used_up[i]);
+    watch_.searched(pairs[i], found_at_.position);
   });
   pairs_searched_ += static_cast<long>(found.size());
   return found;
@@ -233,8 +222,7 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
 
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                   OutlineField& force, const StepStart* step) {
-  // Also what no patch writes: states are compared by their bits.
-  if (to.layout != from.layout || to.records() != from.records()) to = from;
+  table_.follow(from, to);  // also in what no patch writes: states are compared by their bits
   if (keeps_debts()) {
     accept(from);
     trial_.number = step ? ++evaluations_ : 0;
@@ -283,7 +271,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
 void ContactSystem::add_self_patches(std::vector<Patch>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
-    watch_.add({b, b, 0});  // as any pair: the body's parts may move by the skin against each other
+    watch_.add({b, b, 0}, found_at_.position);  // as any pair: the body's parts may move by the skin against each other
     const ContactLaw law = laws_.between(b, b, refreshed_.time);
     const std::size_t others = all.size();
     find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, all, thread_scratch());

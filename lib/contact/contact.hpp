@@ -110,7 +110,7 @@ class ContactSystem {
   void remember(const Outlines& outlines);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  std::vector<Patch> search_pairs();
+  std::vector<Patch> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
   void accept(const ContactHistory& history);

@@ -29,10 +29,11 @@ double work_of_side(const PatchView& view, const PatchStep& step, int side, cons
 }
 
 void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to) {
-  PatchForces aside[2];
+  thread_local PatchForces aside[2];  // their memory is found once
   for (int side = 0; side < 2; ++side) {
     const int begin = old.entry[side], end = begin + old.forces(side).count;
-    aside[side] = {{from.x.begin() + begin, from.x.begin() + end}, {from.y.begin() + begin, from.y.begin() + end}};
+    aside[side].x.assign(from.x.begin() + begin, from.x.begin() + end);
+    aside[side].y.assign(from.y.begin() + begin, from.y.begin() + end);
   }
   for (int side = 0; side < 2; ++side) {
     double *x = &to.x[now.entry[side]], *y = &to.y[now.entry[side]];

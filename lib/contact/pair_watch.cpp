@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "core/lanes.hpp"
@@ -17,21 +18,41 @@ constexpr double blurred = 0.25;
 /// move by much more than the others (docs/defaults.md).
 constexpr double kept = 0.75;
 
-Box motion_box(const OutlineField& before, const OutlineField& now, int offset, int count) {
+/// Of the ways of an outline's nodes, eight at once from node i on. The last lanes may reach into the cyclic copies,
+/// which move as their originals.
+template <class Ways>
+Box box_of(int count, Ways&& ways) {
   Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
-  // The last lanes may reach into the cyclic copies, which move as their originals.
-  for (int i = offset; i < offset + count; i += lane_count) {
-    const Lanes dx = load(&now.x[i]) - load(&before.x[i]), dy = load(&now.y[i]) - load(&before.y[i]);
+  for (int i = 0; i < count; i += lane_count) {
+    const auto [dx, dy] = ways(i);
     x_min = min(x_min, dx), x_max = max(x_max, dx);
     y_min = min(y_min, dy), y_max = max(y_max, dy);
   }
   return {-largest(-x_min), largest(x_max), -largest(-y_min), largest(y_max)};
 }
 
+using Floats = float __attribute__((vector_size(4 * lane_count)));
+
+Lanes load_ways(const float* from) {
+  Floats value;
+  std::memcpy(&value, from, sizeof value);
+  return __builtin_convertvector(value, Lanes);
+}
+
+void store_ways(float* to, Lanes value) {
+  const Floats rounded_ways = __builtin_convertvector(value, Floats);
+  std::memcpy(to, &rounded_ways, sizeof rounded_ways);
+}
+
 /// Ways from one motion to another of the same body.
 Box way(const Box& from, const Box& to) {
   return {to.x_min - from.x_max, to.x_max - from.x_min, to.y_min - from.y_max, to.y_max - from.y_min};
 }
+
+/// Outline nodes up to which bodies' ways are kept node by node, for each of their pairs.
+constexpr int small_outline = 512;
+/// Rounding of ways that are kept, of some skins, over the skin, many times over.
+constexpr double rounded = 1e-4;
 
 /// From where nothing is known of the way.
 constexpr double far_off = 1e150;
@@ -61,12 +82,16 @@ void PairWatch::forget() {
   reference_ = {};
   pairs_.clear();
   pair_start_.clear();
+  ways_x_.clear(), ways_y_.clear(), ways_at_.clear();
   body_start_.assign(model_.bodies.size(), unknown);
 }
 
 void PairWatch::measure(const OutlineField& now) {
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    motion_[b] = motion_box(reference_, now, model_.outline_offset[b], model_.outline_of(b).count);
+    motion_[b] = box_of(model_.outline_of(b).count, [&](int i) {
+      const int node = model_.outline_offset[b] + i;
+      return std::pair(load(&now.x[node]) - load(&reference_.x[node]), load(&now.y[node]) - load(&reference_.y[node]));
+    });
   });
 }
 
@@ -95,30 +120,83 @@ Box PairWatch::common_way() const {
   return {x, x, y, y};
 }
 
+/// Boxes tell at little cost that most pairs do; of others each node's own way counts.
+bool PairWatch::stays_within(int pair, double limit, const OutlineField& now) const {
+  if (pair_way(pair) < limit) return true;
+  if (pair_start_[pair][0].x_min <= 0.5 * unknown.x_min) return false;
+  return relative_way(way_of_side(pair, 0, now), way_of_side(pair, 1, now)) < (1 - rounded) * limit;
+}
+
+bool PairWatch::keeps_ways(int pair, int side) const {
+  return model_.outline_of(body(pair, side)).count <= small_outline;
+}
+
+/// Of a body's nodes since the pair was searched.
+Box PairWatch::way_of_side(int pair, int side, const OutlineField& now) const {
+  const int b = body(pair, side);
+  if (!keeps_ways(pair, side)) return way(pair_start_[pair][side], motion_[b]);
+  return box_of(model_.outline_of(b).count, [&](int i) {
+    const int node = model_.outline_offset[b] + i, kept_at = ways_at_[pair][side] + i;
+    return std::pair(load(&now.x[node]) - load(&reference_.x[node]) - load_ways(&ways_x_[kept_at]),
+                     load(&now.y[node]) - load(&reference_.y[node]) - load_ways(&ways_y_[kept_at]));
+  });
+}
+
 bool PairWatch::is_used_up(const OutlineField& now) {
   measure(now);
   const Box common = common_way();
   const double largest_own =
       parallel_max(static_cast<int>(motion_.size()), 0, [&](int b) { return own_way(b, common); });
-  const double largest_pair = parallel_max(count(), 0, [&](int p) { return pair_way(p); });
-  return largest_pair >= skin_ || largest_own >= own_skin_;
+  if (largest_own >= own_skin_) return true;
+  return parallel_max(count(), 0, [&](int p) { return stays_within(p, skin_, now) ? 0.0 : 1.0; }) > 0;
+}
+
+/// The body has a new reference, where it is now: ways from the old one become ways from there.
+void PairWatch::shift(int pair, int side, const OutlineField& now) {
+  Box& start = pair_start_[pair][side];
+  const int b = body(pair, side);
+  if (start.x_min <= 0.5 * unknown.x_min) return;
+  if (!keeps_ways(pair, side)) {
+    start = way(motion_[b], start);
+    return;
+  }
+  start = box_of(model_.outline_of(b).count, [&](int i) {
+    const int node = model_.outline_offset[b] + i, kept_at = ways_at_[pair][side] + i;
+    const Lanes x = load_ways(&ways_x_[kept_at]) - (load(&now.x[node]) - load(&reference_.x[node])),
+                y = load_ways(&ways_y_[kept_at]) - (load(&now.y[node]) - load(&reference_.y[node]));
+    store_ways(&ways_x_[kept_at], x), store_ways(&ways_y_[kept_at], y);
+    return std::pair(x, y);
+  });
 }
 
 /// A body that has changed its shape or turned since its reference would blur the ways of all its pairs.
 void PairWatch::take_new_references(const OutlineField& now) {
-  std::vector<Box> gone(motion_.size(), none);  // by those with a new reference, from the old one
-  for (int b = 0; b < static_cast<int>(motion_.size()); ++b) {
-    if (change_of_shape(motion_[b]) < blurred * skin_) continue;
-    gone[b] = motion_[b];
-    for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
-      reference_.x[i] = now.x[i], reference_.y[i] = now.y[i];
-    body_start_[b] = way(gone[b], body_start_[b]);
+  const auto is_due = [&](int b) { return change_of_shape(motion_[b]) >= blurred * skin_; };
+  parallel_for(count(), [&](int p) {
+    for (int side = 0; side < 2; ++side)
+      if (is_due(body(p, side))) shift(p, side, now);
+  });
+  parallel_for(static_cast<int>(motion_.size()), [&](int b) {
+    if (!is_due(b)) return;
+    const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
+    std::copy_n(&now.x[first], nodes, &reference_.x[first]);
+    std::copy_n(&now.y[first], nodes, &reference_.y[first]);
+    body_start_[b] = way(motion_[b], body_start_[b]);
     motion_[b] = none;
-  }
-  for (int p = 0; p < count(); ++p) {
-    auto& [first, second] = pair_start_[p];
-    first = way(gone[pairs_[p].first], first), second = way(gone[pairs_[p].second], second);
-  }
+  });
+}
+
+/// Room for the ways of all pairs from one on.
+void PairWatch::lay_out(std::size_t first) {
+  ways_at_.resize(pairs_.size());
+  std::size_t at = first == 0 ? 0 : ways_x_.size();
+  for (std::size_t p = first; p < pairs_.size(); ++p)
+    for (int side = 0; side < 2; ++side) {
+      ways_at_[p][side] = static_cast<int>(at);
+      const int pair = static_cast<int>(p);
+      if (keeps_ways(pair, side)) at += static_cast<std::size_t>(padded(model_.outline_of(body(pair, side)).count));
+    }
+  ways_x_.resize(at), ways_y_.resize(at);
 }
 
 bool PairWatch::update(const OutlineField& now) {
@@ -132,23 +210,58 @@ bool PairWatch::update(const OutlineField& now) {
   body_start_ = motion_;
   std::vector<Box> boxes(motion_.size());
   parallel_for(static_cast<int>(boxes.size()), [&](int b) { boxes[b] = bounding_box(model_, now, b); });
-  const std::vector<BodyPair> before = std::exchange(pairs_, broad_phase(model_, boxes, margin_));
-  const std::vector<std::array<Box, 2>> start = std::exchange(pair_start_, {});
-  for (std::size_t old = 0; const BodyPair& pair : pairs_) {
-    while (old < before.size() && before[old] < pair) ++old;
-    const bool watched = old < before.size() && before[old] == pair;
-    pair_start_.push_back(watched ? start[old] : std::array<Box, 2>{unknown, unknown});
-  }
+  follow(broad_phase(model_, boxes, margin_));
   return true;
 }
 
-bool PairWatch::may_keep(int pair) const { return pair_way(pair) < kept * skin_; }
+/// What is known of pairs that were watched before stays known.
+void PairWatch::follow(std::vector<BodyPair> found) {
+  const std::vector<BodyPair> before = std::exchange(pairs_, std::move(found));
+  const auto start = std::exchange(pair_start_, std::vector(pairs_.size(), std::array<Box, 2>{unknown, unknown}));
+  const std::vector<float> x = std::exchange(ways_x_, {}), y = std::exchange(ways_y_, {});
+  const std::vector<std::array<int, 2>> at = std::exchange(ways_at_, {});
+  lay_out(0);
+  std::size_t old = 0;
+  for (int p = 0; p < count(); ++p) {
+    while (old < before.size() && before[old] < pairs_[p]) ++old;
+    if (old == before.size() || before[old] != pairs_[p]) continue;
+    pair_start_[p] = start[old];
+    for (int side = 0; side < 2; ++side) {
+      if (!keeps_ways(p, side)) continue;
+      const int nodes = padded(model_.outline_of(body(p, side)).count);
+      std::copy_n(&x[at[old][side]], nodes, &ways_x_[ways_at_[p][side]]);
+      std::copy_n(&y[at[old][side]], nodes, &ways_y_[ways_at_[p][side]]);
+    }
+  }
+}
 
-void PairWatch::searched(int pair) { pair_start_[pair] = {motion_[pairs_[pair].first], motion_[pairs_[pair].second]}; }
+std::vector<int> PairWatch::used_up(const OutlineField& now) const {
+  std::vector<char> stays(pairs_.size());
+  parallel_for(count(), [&](int p) { stays[p] = stays_within(p, kept * skin_, now); });
+  std::vector<int> result;
+  for (int p = 0; p < count(); ++p)
+    if (!stays[p]) result.push_back(p);
+  return result;
+}
 
-void PairWatch::add(const BodyPair& pair) {
+void PairWatch::searched(int pair, const OutlineField& now) {
+  for (int side = 0; side < 2; ++side) {
+    const int b = body(pair, side);
+    pair_start_[pair][side] = motion_[b];
+    if (!keeps_ways(pair, side)) continue;
+    for (int i = 0; i < model_.outline_of(b).count; i += lane_count) {
+      const int node = model_.outline_offset[b] + i, kept_at = ways_at_[pair][side] + i;
+      store_ways(&ways_x_[kept_at], load(&now.x[node]) - load(&reference_.x[node]));
+      store_ways(&ways_y_[kept_at], load(&now.y[node]) - load(&reference_.y[node]));
+    }
+  }
+}
+
+void PairWatch::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
-  pair_start_.push_back({motion_[pair.first], motion_[pair.second]});
+  pair_start_.push_back({unknown, unknown});
+  lay_out(pairs_.size() - 1);
+  searched(count() - 1, now);
 }
 
 }  // namespace pliant

@@ -26,26 +26,35 @@ class PairWatch {
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
-  /// Whether what was found of a pair may stay.
-  bool may_keep(int pair) const;
-  /// What a pair's bodies can touch was searched at the place of the last update.
-  void searched(int pair);
+  /// The pairs of which what was found may not stay, where the last update was.
+  std::vector<int> used_up(const OutlineField& now) const;
+  /// What a pair's bodies can touch was searched there.
+  void searched(int pair, const OutlineField& now);
   /// A pair that the broad phase does not find, searched just now.
-  void add(const BodyPair& pair);
+  void add(const BodyPair& pair, const OutlineField& now);
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("reference", reference_);
     visitor("pairs", pairs_), visitor("pair_start", pair_start_);
     visitor("body_start", body_start_);
+    visitor("ways_x", ways_x_), visitor("ways_y", ways_y_);
   }
+  void loaded() { lay_out(0); }
 
  private:
   void measure(const OutlineField& now);
   Box common_way() const;
   double pair_way(int pair) const;
+  bool stays_within(int pair, double limit, const OutlineField& now) const;
   double own_way(int body, const Box& common) const;
   void take_new_references(const OutlineField& now);
+  void follow(std::vector<BodyPair> found);
+  void lay_out(std::size_t first);
+  int body(int pair, int side) const { return side == 0 ? pairs_[pair].first : pairs_[pair].second; }
+  bool keeps_ways(int pair, int side) const;
+  Box way_of_side(int pair, int side, const OutlineField& now) const;
+  void shift(int pair, int side, const OutlineField& now);
 
   const Model& model_;
   double skin_, own_skin_, margin_;
@@ -53,7 +62,11 @@ class PairWatch {
   std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from there, of measure
   std::vector<BodyPair> pairs_;
   std::vector<std::array<Box, 2>> pair_start_;  ///< [pairs], motions of the two when it was searched
-  std::vector<Box> body_start_;                 ///< [bodies], motions when the broad phase looked last
+  /// The same node by node, of small bodies: from their references, m. Boxes alone would blur what bodies that shake or
+  /// turn have moved since.
+  std::vector<float> ways_x_, ways_y_;
+  std::vector<std::array<int, 2>> ways_at_;  ///< [pairs], of the first nodes
+  std::vector<Box> body_start_;              ///< [bodies], motions when the broad phase looked last
 };
 
 }  // namespace pliant

@@ -49,32 +49,30 @@ void carry(const Model& model, const Patch& from, const ContactHistory& old, con
 }
 
 /// The records of a patch alone, on which another may come to stand; none is left where they were.
-ContactHistory take_aside(ContactHistory& history, Patch& patch) {
+void take_aside(ContactHistory& history, Patch& patch, ContactHistory& aside) {
   const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
-  const std::size_t total = static_cast<std::size_t>(size[0] + size[1]);
-  ContactHistory kept{std::vector(total, 0.0), std::vector(total, 0.0), std::vector(total * history.fields(), 0.0),
-                      std::vector(history.gap.empty() ? 0 : total, 0.0),
-                      std::vector(history.gap.empty() ? 0 : total, 0.0)};
+  const std::size_t total = static_cast<std::size_t>(size[0] + size[1]), fields = history.fields();
+  aside.place.resize(total), aside.slip.resize(total), aside.of_law.resize(total * fields);
+  aside.gap.resize(history.gap.empty() ? 0 : total), aside.repaid.resize(aside.gap.size());
   for (int side = 0; side < 2; ++side) {
     const int from = patch.record[side], to = side * size[0];
     const auto move = [&](double* old, double* now, double none) {
       std::copy_n(old + from, size[side], now + to);
       std::fill_n(old + from, size[side], none);
     };
-    move(history.place.data(), kept.place.data(), nowhere);
-    move(history.slip.data(), kept.slip.data(), 0.0);
-    for (std::size_t k = 0; k < history.fields(); ++k) move(history.field(k), kept.field(k), 0.0);
+    move(history.place.data(), aside.place.data(), nowhere);
+    move(history.slip.data(), aside.slip.data(), 0.0);
+    for (std::size_t k = 0; k < fields; ++k) move(history.field(k), aside.of_law.data() + k * total, 0.0);
     if (!history.gap.empty()) {
-      move(history.gap.data(), kept.gap.data(), nowhere);
-      move(history.repaid.data(), kept.repaid.data(), 0.0);
+      move(history.gap.data(), aside.gap.data(), nowhere);
+      move(history.repaid.data(), aside.repaid.data(), 0.0);
     }
     patch.record[side] = to;
   }
-  return kept;
 }
 
 /// Space for one side's numbers: where they were if they fit, else behind all others. False without room there.
-bool take_room(int wanted, int had, int room, int& used, int& at) {
+bool find_room(int wanted, int had, int room, int& used, int& at) {
   if (wanted <= had) return true;
   if (used + wanted > room) return false;
   at = used;
@@ -119,29 +117,70 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
   });
   history = std::move(next);
   history.layout = laid_out_ = ++layout_;
+  moved_from_ = none;
   patches_ = std::move(patches);
   index();
 }
 
-bool PatchTable::replace(int at, Patch patch, ContactHistory& history) {
-  const Patch old = patches_[at];
+/// Where the numbers of new patches go. False, and nothing taken, where there is no room.
+bool PatchTable::take_room(const std::vector<int>& at, std::vector<Patch>& now, ContactHistory& history) {
   int records = records_, entries = entries_;
-  for (int side = 0; side < 2; ++side) {
-    patch.record[side] = old.record[side], patch.entry[side] = old.entry[side];
-    if (!take_room(padded(patch.nodes[side].count), padded(old.nodes[side].count), record_room_, records,
-                   patch.record[side]) ||
-        !take_room(padded(patch.forces(side).count), padded(old.forces(side).count), entry_room_, entries,
-                   patch.entry[side]))
-      return false;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Patch& old = patches_[at[i]];
+    Patch& patch = now[i];
+    for (int side = 0; side < 2; ++side) {
+      patch.record[side] = old.record[side], patch.entry[side] = old.entry[side];
+      if (!find_room(padded(patch.nodes[side].count), padded(old.nodes[side].count), record_room_, records,
+                     patch.record[side]) ||
+          !find_room(padded(patch.forces(side).count), padded(old.forces(side).count), entry_room_, entries,
+                     patch.entry[side]))
+        return false;
+    }
   }
-  Patch aside = old;
-  const ContactHistory kept = take_aside(history, aside);
-  for (int side = 0; side < 2; ++side) carry(model_, aside, kept, patch, side, history);
   records_ = records, entries_ = entries;
   history.layout = ++layout_;
-  patches_[at] = patch;
-  for (int side = 0; side < 2; ++side) arcs_[slot_[at][side]] = arc_of(patch, side);
   return true;
+}
+
+void PatchTable::note_moves(const std::vector<int>& at, const std::vector<Patch>& now) {
+  moved_.clear();
+  moved_from_ = layout_ - 1;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    for (int side = 0; side < 2; ++side) {
+      const Patch& old = patches_[at[i]];
+      moved_.push_back({old.record[side], padded(old.nodes[side].count)});
+      if (now[i].record[side] != old.record[side])
+        moved_.push_back({now[i].record[side], padded(now[i].nodes[side].count)});
+    }
+}
+
+void PatchTable::follow(const ContactHistory& from, ContactHistory& to) const {
+  if (to.layout == from.layout && to.records() == from.records()) return;
+  if (to.layout != moved_from_ || from.layout != layout_ || to.records() != from.records()) {
+    to = from;
+    return;
+  }
+  const auto copy = [](const double* old, double* now, const std::array<int, 2>& run) {
+    std::copy_n(old + run[0], run[1], now + run[0]);
+  };
+  parallel_for(static_cast<int>(moved_.size()), [&](int i) {
+    copy(from.place.data(), to.place.data(), moved_[i]);
+    copy(from.slip.data(), to.slip.data(), moved_[i]);
+    for (std::size_t k = 0; k < from.fields(); ++k) copy(from.field(k), to.field(k), moved_[i]);
+    if (from.gap.empty()) return;
+    copy(from.gap.data(), to.gap.data(), moved_[i]);
+    copy(from.repaid.data(), to.repaid.data(), moved_[i]);
+  });
+  to.owed = from.owed;
+  to.evaluation = from.evaluation;
+  to.layout = from.layout;
+}
+
+void PatchTable::move_history(const Patch& old, const Patch& now, ContactHistory& history) const {
+  thread_local ContactHistory aside;  // its memory is found once
+  Patch there = old;
+  take_aside(history, there, aside);
+  for (int side = 0; side < 2; ++side) carry(model_, there, aside, now, side, history);
 }
 
 ArcEntries PatchTable::arc_of(const Patch& patch, int side) const {

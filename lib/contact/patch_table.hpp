@@ -8,6 +8,7 @@
 #include "bodies/model.hpp"
 #include "contact/history.hpp"
 #include "contact/patch.hpp"
+#include "core/parallel.hpp"
 
 namespace pliant {
 
@@ -44,8 +45,26 @@ class PatchTable {
 
   /// Takes these, in the order of their keys, for those before. The history follows, with so many fields of laws.
   void lay_out(std::vector<Patch> patches, std::size_t fields, ContactHistory& history);
-  /// Takes a patch for one of the same bodies; the history follows. False, and nothing done, where there is no room.
-  bool replace(int at, Patch patch, ContactHistory& history);
+  /// Takes patches for those of the same bodies that have these places in the table; the history follows. Calls
+  /// also(old, now) for each, by several threads at once. False, and nothing done, where there is no room.
+  template <class Also>
+  bool replace(const std::vector<int>& at, const std::vector<Patch>& found, ContactHistory& history, Also&& also) {
+    if (at.empty()) return true;
+    std::vector<Patch> now = found;
+    if (!take_room(at, now, history)) return false;
+    note_moves(at, now);
+    parallel_for(static_cast<int>(at.size()), [&](int i) {
+      const Patch old = patches_[at[i]];
+      move_history(old, now[i], history);
+      patches_[at[i]] = now[i];
+      for (int side = 0; side < 2; ++side) arcs_[slot_[at[i]][side]] = arc_of(now[i], side);
+      also(old, now[i]);
+    });
+    return true;
+  }
+
+  /// Makes a history one of this layout that differs from another one in the records of patches alone.
+  void follow(const ContactHistory& from, ContactHistory& to) const;
 
   int entries() const { return entry_room_; }  ///< that buffers of forces must have
   /// Since this layout patches have kept their places, but for those that were replaced.
@@ -74,7 +93,7 @@ class PatchTable {
     visitor("entries", entries_), visitor("entry_room", entry_room_);
     visitor("layout", layout_), visitor("laid_out", laid_out_);
   }
-  void loaded() { index(); }
+  void loaded() { index(), moved_from_ = none; }
   /// What a checkpoint leaves out: it follows from the bodies.
   template <class LawOf>
   void set_laws(LawOf&& law_of) {
@@ -83,16 +102,24 @@ class PatchTable {
 
  private:
   void index();
+  bool take_room(const std::vector<int>& at, std::vector<Patch>& now, ContactHistory& history);
+  void note_moves(const std::vector<int>& at, const std::vector<Patch>& now);
+  void move_history(const Patch& old, const Patch& now, ContactHistory& history) const;
   ArcEntries arc_of(const Patch& patch, int side) const;
+
+  static constexpr std::int64_t none = -2;  ///< no history's layout
 
   const Model& model_;
   std::vector<Patch> patches_;
   int records_ = 0, record_room_ = 0;       ///< in use or left behind; in all
   int entries_ = 0, entry_room_ = 0;        ///< of the buffers of forces, likewise
   std::int64_t layout_ = 0, laid_out_ = 0;  ///< ContactHistory::layout: now, and of the last layout of all
-  std::vector<int> arc_begin_;              ///< [bodies + 1]
-  std::vector<ArcEntries> arcs_;            ///< of each body's patches, in their order
-  std::vector<std::array<int, 2>> slot_;    ///< [patches][sides] of arcs_
+  /// Records of which the last replacement made others, and the layout before it.
+  std::vector<std::array<int, 2>> moved_;  ///< first, count
+  std::int64_t moved_from_ = none;
+  std::vector<int> arc_begin_;            ///< [bodies + 1]
+  std::vector<ArcEntries> arcs_;          ///< of each body's patches, in their order
+  std::vector<std::array<int, 2>> slot_;  ///< [patches][sides] of arcs_
 };
 
 }  // namespace pliant

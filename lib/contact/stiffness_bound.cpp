@@ -53,10 +53,14 @@ std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std:
 
 std::vector<double> StiffnessBound::of_body(const ContactSystem& contact, int body) const {
   std::vector<double> stiffness(static_cast<std::size_t>(model_.outline_of(body).count), 0.0);
-  contact.table().for_each_run(body, [&](int node, int entry, int count) {
-    for (int i = 0; i < count; ++i) stiffness[node + i] += entries_[entry + i];
-  });
+  add_of_body(contact, body, stiffness.data(), 1);
   return stiffness;
+}
+
+void StiffnessBound::add_of_body(const ContactSystem& contact, int body, double* to, int stride) const {
+  contact.table().for_each_run(body, [&](int node, int entry, int count) {
+    for (int i = 0; i < count; ++i) to[stride * (node + i)] += entries_[entry + i];
+  });
 }
 
 }  // namespace pliant

@@ -19,6 +19,8 @@ class StiffnessBound {
   std::vector<int> update(const ContactSystem& contact, const std::vector<double>& compliance);
   /// [outline nodes of the body] N/m2.
   std::vector<double> of_body(const ContactSystem& contact, int body) const;
+  /// Adds it to every `stride`-th number.
+  void add_of_body(const ContactSystem& contact, int body, double* to, int stride) const;
 
   template <class Visitor>
   void visit(Visitor&& visitor) {

@@ -6,7 +6,6 @@
 #include <random>
 
 #include <fmt/format.h>
-#include <Eigen/Eigenvalues>
 
 #include "bodies/body_view.hpp"
 #include "bodies/damping_forces.hpp"
@@ -16,6 +15,7 @@
 #include "bodies/node_arrays.hpp"
 #include "core/parallel.hpp"
 #include "dynamics/body_frame.hpp"
+#include "dynamics/contact_frequency.hpp"
 
 namespace pliant {
 namespace {
@@ -28,26 +28,6 @@ constexpr double probe_size = 1e-6;
 /// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least,
 /// 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
-
-/// Rounds in which the bound of contact is improved, and what stays of the vector before in each: it must stay
-/// positive.
-constexpr int bound_rounds = 5;
-constexpr double blend = 0.1;
-
-/// product = D^-1 |C| x at the field nodes, C = Phi^T S Phi the stiffness that springs S, [outline nodes], N/m2, give
-/// them, D of density 1.
-void multiply_absolute(const CompliantShape& shape, const double* stiffness, const std::vector<double>& x,
-                       std::vector<double>& product) {
-  const ShapeRows& rows = shape.space.outline_rows;
-  std::ranges::fill(product, 0.0);
-  for (std::size_t k = 0; k + 1 < rows.start.size(); ++k) {
-    double absolute = 0;
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) absolute += std::abs(rows.value[e]) * x[rows.node[e]];
-    for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
-      product[rows.node[e]] += stiffness[k] * std::abs(rows.value[e]) * absolute;
-  }
-  for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_unit_mass[i];
-}
 
 /// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
 /// in the list.
@@ -102,23 +82,6 @@ std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector
   return result;
 }
 
-/// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It
-/// does not depend on the angle.
-double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, const double* stiffness) {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < outline.count; ++k) {
-    const Vec2& r = outline.points[k];
-    Eigen::Matrix<double, 2, 3> motion;
-    motion << 1, 0, -r.y(), 0, 1, r.x();
-    matrix += stiffness[k] * motion.transpose() * motion;
-  }
-  Eigen::Vector3d scale;
-  for (int c = 0; c < 3; ++c) scale[c] = std::sqrt(rigid.dof[c].inverse_mass);
-  matrix = scale.asDiagonal() * matrix * scale.asDiagonal();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix, Eigen::EigenvaluesOnly);
-  return std::max(0.0, solver.eigenvalues()[2]);
-}
-
 }  // namespace
 
 TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model), stiffness_(model) {
@@ -126,7 +89,7 @@ TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : mode
   internal_.assign(model.batches.size(), Lanes{});
   contact_.assign(model.bodies.size(), 0.0);
   for (const Body& body : model.bodies)
-    compliance_.push_back(contact_frequency(body, model.outlines[body.outline].tributary_length.data()));
+    compliance_.push_back(contact_frequency(model, body, model.outlines[body.outline].tributary_length.data()));
   contact_floor_.assign(model.bodies.size(), 0.0);
   bound_conditions();
   limit_ = limit(1);
@@ -147,7 +110,7 @@ void TimeStepBound::bound_conditions() {
     const Body& body = model_.bodies[support.body];
     std::vector<double> length(static_cast<std::size_t>(model_.outlines[body.outline].count), 0.0);
     for (std::size_t i = 0; i < support.nodes.size(); ++i) length[support.nodes[i]] = support.length[i];
-    const double frequency = contact_frequency(body, length.data());
+    const double frequency = contact_frequency(model_, body, length.data());
     support_[support.body] += support.stiffness * frequency;
     damping_[support.body] += support.damping * frequency;
   }
@@ -155,25 +118,6 @@ void TimeStepBound::bound_conditions() {
     viscous_.assign(model_.batches.size(), Lanes{});
     viscous_direction_ = direction_;
   }
-}
-
-/// Bound of w^2 that springs of this stiffness, [outline nodes], N/m2, give a body, 1/s2. For any x > 0 the largest
-/// ratio of D^-1 |C| x to x bounds the eigenvalues of D^-1 C (Collatz 1942, Wielandt 1950); the best of all rounds.
-double TimeStepBound::contact_frequency(const Body& body, const double* stiffness) const {
-  const OutlineShape& outline = model_.outlines[body.outline];
-  if (body.kind == BodyKind::rigid) return rigid_frequency(model_.rigid_bodies[body.rigid], outline, stiffness);
-  const CompliantShape& shape = model_.shape_of(body);
-  std::vector<double> x(static_cast<std::size_t>(shape.nodes()), 1.0), product(x.size());
-  double least = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < bound_rounds; ++round) {
-    multiply_absolute(shape, stiffness, x, product);
-    double largest = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, product[i] / x[i]);
-    least = std::min(least, largest);
-    if (largest == 0) break;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = blend * x[i] + product[i] / largest;
-  }
-  return shape.space.correction_bound * least / model_.batches[body.batch].density[body.lane];
 }
 
 void TimeStepBound::iterate_batch(int b, BatchMotion motion, int iterations) {
@@ -245,14 +189,15 @@ void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, 
 
 void TimeStepBound::update_contact(const ContactSystem& contact) {
   const std::vector<int> changed = stiffness_.update(contact, compliance_);
+  find_contact_frequencies(
+      model_, changed, [&](int body, double* to, int stride) { stiffness_.add_of_body(contact, body, to, stride); },
+      contact_);
   const std::vector<double> damping = contact.damping_ratios();
-  parallel_for(static_cast<int>(changed.size()), [&](int i) {
-    const int b = changed[i];
-    contact_[b] =
-        std::max(contact_floor_[b], contact_frequency(model_.bodies[b], stiffness_.of_body(contact, b).data()));
+  for (const int b : changed) {
+    contact_[b] = std::max(contact_floor_[b], contact_[b]);
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
     if (const double z = 2 * damping[b]; z > 0) contact_[b] *= std::pow(std::sqrt(1 + z * z) + z, 2);
-  });
+  }
   limit_ = limit(1);
 }
 

@@ -49,7 +49,6 @@ class TimeStepBound {
   void bound_conditions();
   void iterate_viscous(int b, const Lanes* position, int iterations);
   void iterate_batch(int b, BatchMotion motion, int iterations);
-  double contact_frequency(const Body& body, const double* stiffness) const;
   Limit limit(double contact_factor) const;
   double total(std::size_t body, double contact_factor) const;
   double damping(std::size_t body) const;

@@ -16,10 +16,10 @@ namespace {
 using namespace testing;
 
 /// How two rows of small bodies move, each step: both by `drift`, the upper one along the lower by `slide`, and down
-/// from `height` by `fall` until they touch.
+/// from `height` by `fall` until they touch; each turns by `turn`.
 struct Course {
   Vec2 drift{0, 0};
-  double slide = 0, height = 0.39, fall = 0;
+  double slide = 0, height = 0.39, fall = 0, turn = 0;
 
   Vec2 at(int body, int step) const {
     const Vec2 lower = Vec2(0.43 * (body / 2), 0.2) + step * drift;
@@ -59,6 +59,7 @@ Seen watch(int sample, const Course& course) {
     for (int body = 0; body < 12; ++body) {
       const Vec2 to = course.at(body, step) + Vec2{random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004)};
       rig.move(body, to - before[body]), fresh.move(body, to - before[body]);
+      rig.turn(body, course.turn), fresh.turn(body, course.turn);
       before[body] = to;
     }
     if (floor) rig.move(12, {0, course.drift.y()}), fresh.move(12, {0, course.drift.y()});
@@ -76,7 +77,8 @@ Seen watch(int sample, const Course& course) {
 TEST(Refresh, misses_no_contact_whatever_moves) {
   for (const Vec2& drift : {Vec2(0, 0), Vec2(0.5, -0.3)})
     for (const Course& course :
-         {Course{drift}, Course{drift, 0.04}, Course{drift, 0, 3, 0.1}, Course{drift, -0.1, 1, 0.03}}) {
+         {Course{drift}, Course{drift, 0.04}, Course{drift, 0, 3, 0.1}, Course{drift, -0.1, 1, 0.03},
+          Course{drift, 0, 0.39, 0, 0.07}, Course{drift, 0.02, 0.39, 0, -0.2}}) {
       int contacts = 0;
       for (int sample = 0; sample < 10; ++sample) contacts += watch(sample, course).contacts;
       EXPECT_GT(contacts, 100);
@@ -119,6 +121,24 @@ TEST(Refresh, searches_pairs_that_moved) {
     EXPECT_TRUE(same->nodes[0] == patch.nodes[0] && same->segments[1] == patch.segments[1]);
   }
   EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "no more than it has others";
+}
+
+/// EXACT: bodies that shake where they are are searched at the start alone, however often others are.
+TEST(Refresh, does_not_search_what_only_shakes) {
+  Random random(400);
+  ContactRig rig(two_rows(random, {}, false));
+  rig.evaluate();
+  const long at_first = rig.contact.pairs_searched();
+  long refreshes = 0;
+  for (int step = 0; step < 200; ++step) {
+    rig.move(11, {0.002, 0});
+    for (int body = 0; body < 10; ++body) rig.turn(body, (step + body) % 2 == 0 ? 0.05 : -0.05);
+    refreshes += rig.evaluate();
+  }
+  EXPECT_GT(refreshes, 6);
+  EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "pairs of the one that moves";
+  for (const Patch& patch : rig.contact.patches())
+    if (patch.second < 10) EXPECT_EQ(patch.found, 1) << patch.first << " and " << patch.second;
 }
 
 /// What is remembered of a node, by its body, side, number and the other body.

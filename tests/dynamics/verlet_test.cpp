@@ -112,6 +112,16 @@ TEST(Verlet, first_step_is_a_thousandth_of_the_bound_and_grows_by_15_percent) {
   }
 }
 
+TEST(Verlet, an_end_out_of_sight_sets_no_step) {
+  const Model model = build_model(free_disc(40, 1e9, stretching(1e-3)));
+  Simulation far(model), further(model);
+  for (int step = 0; step < 40; ++step) {
+    const double dt = far.step(1e9).dt;
+    EXPECT_NEAR(further.step(1e300).dt, dt, 1e-9 * dt) << "EXACT but for the division of 1e9 by whole steps";
+  }
+  EXPECT_GT(further.state().time, 0);
+}
+
 TEST(Verlet, steps_never_exceed_the_bound) {
   const Model model = build_model(free_disc(40, 20, stretching(0.3)));
   Simulation simulation(model);
