@@ -19,6 +19,7 @@ Vec2 node_at(const Model& model, const OutlineField& outlines, int body, int nod
 /// Where a point stands above the nearest segment of an outline.
 struct Nearest {
   double distance = 1e300, depth = 0, length = 1;
+  int number = 0;
 };
 
 /// The slave looks at the master: moved by `shift` in x or, where one is a wall, at whichever image in a period is
@@ -55,7 +56,7 @@ Nearest nearest_segment(const Model& model, const OutlineField& outlines, int ma
     // At a corner two segments are equally near; the one seen more steeply tells in from out.
     const bool same = std::abs(distance - nearest.distance) <= 1e-9 * length;
     if (same ? std::abs(depth) > std::abs(nearest.depth) : distance < nearest.distance)
-      nearest = {distance, depth, length};
+      nearest = {distance, depth, length, s};
   }
   return nearest;
 }
@@ -79,7 +80,13 @@ void look_at(const Model& model, const OutlineField& outlines, const Sight& sigh
     if (is_clear(box, shape, seen, period)) continue;
     const Nearest nearest = nearest_segment(model, outlines, master, seen, period);
     if (nearest.depth * deepest.segment_length > deepest.depth * nearest.length)
-      deepest = {slave, master, node, position, nearest.depth, nearest.length};
+      deepest = {slave,
+                 master,
+                 node,
+                 position,
+                 nearest.depth,
+                 nearest.length,
+                 nearest.length / shape.segment_length[nearest.number]};
   }
 }
 

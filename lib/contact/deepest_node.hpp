@@ -15,6 +15,7 @@ struct DeepestNode {
   Vec2 position{0, 0};        ///< m
   double depth = 0;           ///< below the master's nearest segment, m
   double segment_length = 1;  ///< of that segment, m
+  double squeeze = 1;         ///< that over what it was at first
 };
 
 /// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes

@@ -96,15 +96,25 @@ DeepestNode deepest_contact(const Forces& forces, const OutlineField& place_of_n
   return deepest_node(forces.model(), place_of_nodes, pairs);
 }
 
+/// What may help where contact is lost. Contact sees as deep as segments are long: where they are squeezed, soon.
+std::string advice(const DeepestNode& deepest) {
+  constexpr double squeezed = 0.5;
+  if (deepest.squeeze >= squeezed) return "raise the contact stiffness or remove initial overlaps";
+  return fmt::format(
+      "that segment is squeezed to {:.2f} of its length: its surface creases, and stiffer contact hardly "
+      "helps; give the shape more nodes, or press less",
+      deepest.squeeze);
+}
+
 Failure lost_contact(const Forces& forces, const OutlineField& place_of_nodes) {
   const Model& model = forces.model();
   const DeepestNode deepest = deepest_contact(forces, place_of_nodes);
   Failure failure;
   failure.words = fmt::format(
       "contact between {} and {} is lost: outline node {} of the first, at {}, has a penetration of {:.3g} m, {:.2f} "
-      "of a segment length; raise the contact stiffness or remove initial overlaps",
+      "of a segment length; {}",
       name_of(model, deepest.slave), name_of(model, deepest.master), deepest.node, place(deepest.position),
-      deepest.depth, deepest.depth / deepest.segment_length);
+      deepest.depth, deepest.depth / deepest.segment_length, advice(deepest));
   failure.cause = Failure::Cause::contact_lost;
   failure.bodies = {deepest.slave, deepest.master};
   failure.node = deepest.node;

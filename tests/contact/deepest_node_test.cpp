@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bodies/initial_state.hpp"
+#include "bodies/place_outlines.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 
@@ -28,6 +30,21 @@ TEST(DeepestNode, names_the_pair_the_node_and_the_depth) {
   EXPECT_NEAR(deepest.depth, 0.04, 1e-12) << "EXACT: overlap";
   EXPECT_NEAR(deepest.segment_length, 0.1, 1e-12) << "EXACT";
   EXPECT_NEAR(deepest.position.x(), deepest.slave == 1 ? 1.49 : 1.45, 1e-12) << "EXACT";
+}
+
+/// A block on another, whose nodes stand closer along it than they did.
+TEST(DeepestNode, knows_how_far_the_segment_is_squeezed) {
+  Scene scene = empty_scene(1);
+  scene.shapes = {box_shape("block", 1, 1, 0.1)};
+  scene.grains = {grains("lower", "block", BodyKind::rigid, {{0, 0}}),
+                  grains("upper", "block", BodyKind::rigid, {{0, 0.98}})};
+  const Model model = build_model(scene);
+  OutlineField outlines = placed_outlines(model, initial_positions(model));
+  for (int k = model.outline_offset[0]; k < model.outline_offset[1]; ++k) outlines.x[k] *= 0.3;
+  const DeepestNode deepest = deepest_node(model, outlines, {{0, 1, 0}});
+  EXPECT_NEAR(deepest.depth, 0.02, 1e-12) << "EXACT: overlap";
+  EXPECT_EQ(deepest.master, 0) << "EXACT: deeper over its shorter segments";
+  EXPECT_NEAR(deepest.squeeze, 0.3, 1e-12) << "EXACT";
 }
 
 /// A disc astride the edge of the period, in a wall: the same as away from it.
