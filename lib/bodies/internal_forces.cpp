@@ -5,6 +5,7 @@
 #include "bodies/body_view.hpp"
 #include "bodies/node_arrays.hpp"
 #include "bodies/spread_forces.hpp"
+#include "core/prefetch.hpp"
 
 namespace pliant {
 namespace {
@@ -74,9 +75,12 @@ PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch
       if (counts) totals.power += response.power;
     return response.P;
   };
+  const Upcoming<false> next_position(motion.next_position, motion.next_count);
+  const Upcoming<true> next_forces(motion.next_forces, motion.next_count);
   Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, motion.position), true);
   Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), motion.position);
   for (int point = 0; point <= last; ++point) {
+    next_position.ask(point), next_forces.ask(point);
     const Tensor<Lanes> next_P = weighted_stress(std::min(point + 1, last), F, point < last);
     F = deformation_gradient(rows, std::min(point + 2, last), motion.position);
     subtract_forces(rows, point, P, f);

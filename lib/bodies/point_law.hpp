@@ -15,6 +15,9 @@ struct BatchMotion {
   double elapsed = 0;               ///< since then, s
   Lanes* new_memory = nullptr;      ///< likewise, where it is wanted
   bool elastic = true;              ///< false: viscosity alone counts
+  // Positions and forces of the batch whose turn is next, and how many Lanes each:
+  const Lanes *next_position = nullptr, *next_forces = nullptr;
+  int next_count = 0;
 };
 
 /// What the points of a batch's bodies add up to, a lane a body.

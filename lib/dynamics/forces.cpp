@@ -94,7 +94,14 @@ void Forces::lane_forces(const Motion& motion, const OutlineField& on_outlines, 
     std::fill_n(f, 2 * batch.slots, Lanes{});
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
-    const PointTotals totals = add_internal_forces(model_, batch, step_of(batch, motion, from, to.memory), f);
+    BatchMotion step = step_of(batch, motion, from, to.memory);
+    if (b + 1 < model_.lane_batches) {
+      const Batch& next = model_.batches[b + 1];
+      step.next_position = &motion.position.compliant[next.offset];
+      step.next_forces = &to.force.compliant[next.offset];
+      step.next_count = 2 * next.slots;
+    }
+    const PointTotals totals = add_internal_forces(model_, batch, step, f);
     least_jacobian_[b] = least_of(totals.least_jacobian);
     if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
     if (afterwards) afterwards(b);
