@@ -187,12 +187,9 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, c
     const Arc arc = patch.forces(side);
     const int node = model_.outline_offset[body] + arc.begin - turn_of(arc.begin, n) * n;
     prefetch_run(position, node, arc.count);
-    const auto prefetch_records = [&](const std::vector<double>& column) {
-      prefetch_run(column.data() + patch.record[side], patch.nodes[side].count);
-    };
-    prefetch_records(from.place), prefetch_records(from.slip);
+    prefetch_run(reinterpret_cast<const double*>(from.at(patch.record[side])),
+                 padded(patch.nodes[side].count) * from.columns);
     if (!keeps_debts() || !step) continue;
-    prefetch_records(from.gap);
     prefetch_run(step->position, node, arc.count);
     prefetch_run(last_.forces, patch.entry[side], arc.count);
   }
@@ -245,8 +242,8 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   });
   const int bodies = static_cast<int>(model_.bodies.size());
   parallel_for(bodies, [&](int b) {
-    if (b + 1 < bodies)
-      table_.for_each_run(b + 1, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
+    if (b + 3 < bodies)
+      table_.for_each_run(b + 3, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
     const int n = model_.outline_of(b).count;
     double* x = &force.x[model_.outline_offset[b]];
     double* y = &force.y[model_.outline_offset[b]];

@@ -33,13 +33,13 @@ std::vector<double> ContactSystem::least_remembered(const ContactHistory& histor
     const std::span<const Remembered> all = remembered_of(patch.law);
     const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
     if (found == all.end()) continue;
-    const double* values = history.field(static_cast<std::size_t>(found - all.begin()));
+    const int column = history.first_of_law + static_cast<int>(found - all.begin());
     for (int side = 0; side < 2; ++side) {
       const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
       for (int i = 0; i < patch.nodes[side].count; ++i) {
         const int node = patch.nodes[side].begin + i;
         double& value = least[model_.outline_offset[body] + node - turn_of(node, n) * n];
-        value = std::min(value, values[patch.record[side] + i]);
+        value = std::min(value, history.number(patch.record[side] + i, column));
       }
     }
   }

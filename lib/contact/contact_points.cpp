@@ -14,8 +14,9 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 template <class Law>
 Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
                const ContactHistory& history, int record, Record<Law>& now) {
-  const Encounter at = encounter(law, window, p, touching, load(&history.place[record]), place_of(p));
-  return respond(law, at, law(p.gap), load(&history.slip[record]), load_record<remembered_count<Law>>(history, record),
+  const Lanes* before = history.at(record);
+  const Encounter at = encounter(law, window, p, touching, before[ContactHistory::place], place_of(p));
+  return respond(law, at, law(p.gap), before[ContactHistory::slip], load_record<remembered_count<Law>>(history, record),
                  now);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "contact/history.hpp"
 #include "contact/patch.hpp"
@@ -64,28 +63,27 @@ class Repayment {
         resistance_(step.resistance(stiffness)),
         lingers_(!moves_ || resistance_ != 0 ? ~LaneBits{} : LaneBits{}) {}
 
-  /// Which of eight nodes beside the master, from a record on, act.
-  LaneBits acting(const ContactHistory& from, int record, LaneBits beside, LaneBits touching) const {
-    const Lanes before = load(&from.gap[record]);
+  /// Which of eight nodes beside the master act, by what the history has of them.
+  LaneBits acting(const Lanes* from, LaneBits beside, LaneBits touching) const {
+    const Lanes before = from[ContactHistory::gap];
     return beside & (touching | (lingers_ & (before == before)));
   }
   /// Their pressure, Pa.
-  Lanes pressure(const ContactHistory& from, ContactHistory& to, int record, Lanes gap, LaneBits acting,
-                 Lanes half_length) {
-    const Lanes before = load(&from.gap[record]);
-    Lanes repaid = load(&from.repaid[record]);
+  Lanes pressure(const Lanes* from, Lanes* to, Lanes gap, LaneBits acting, Lanes half_length) {
+    const Lanes before = from[ContactHistory::gap];
+    Lanes repaid = from[ContactHistory::repaid];
     if (moves_) {
       const Lanes way = select(acting & (before == before), before - gap, Lanes{});
       ways_ += half_length * way * way;
       repaid = resistance_ * way;
     }
-    store(&to.gap[record], select(acting, gap, broadcast(std::numeric_limits<double>::quiet_NaN())));
-    store(&to.repaid[record], repaid);
+    to[ContactHistory::gap] = select(acting, gap, broadcast(ContactHistory::nowhere));
+    to[ContactHistory::repaid] = repaid;
     return repaid;
   }
-  void forget(ContactHistory& to, int record) const {
-    store(&to.gap[record], broadcast(std::numeric_limits<double>::quiet_NaN()));
-    store(&to.repaid[record], Lanes{});
+  void forget(Lanes* to) const {
+    to[ContactHistory::gap] = broadcast(ContactHistory::nowhere);
+    to[ContactHistory::repaid] = Lanes{};
   }
   double ways() const { return sum(ways_); }
   double pending() const { return 0.5 * resistance_ * sum(ways_); }

@@ -1,41 +1,68 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/lanes.hpp"
 
 namespace pliant {
 
-/// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only.
+/// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only. Of
+/// eight nodes that a pass takes at once all numbers stand side by side.
 struct ContactHistory {
-  /// On the master's outline at the last accepted step, see slip.hpp; NaN when not beside it.
-  std::vector<double> place;
-  /// Elastic tangential displacement then, m.
-  std::vector<double> slip;
-  /// What the pair's law remembers besides (laws/response.hpp): first of all records, then second of all ...; empty
-  /// when no law of the scene does.
-  std::vector<double> of_law;
-  /// For energy_debt.hpp, empty without. Of each record that touched: gap then, m, else NaN; and the pressure that
-  /// repaid, Pa. [patches]: what they owe, J/m.
-  std::vector<double> gap = {}, repaid = {}, owed = {};
+  enum Column {
+    place,   ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
+    slip,    ///< elastic tangential displacement then, m
+    gap,     ///< for energy_debt.hpp, of records that touched: then, m; else NaN
+    repaid,  ///< for the same: the pressure that repaid, Pa
+  };
+  static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
+
+  /// [eights of records][columns]: place and slip, gap and repaid where debts are kept, then what laws remember besides
+  /// (laws/response.hpp).
+  std::vector<Lanes> numbers;
+  std::int32_t columns = 2, first_of_law = 2;
+  std::vector<double> owed;  ///< [patches] where debts are kept: what they owe, J/m
   /// Which evaluation of the forces left it behind, where debts are kept; 0: none.
   std::int64_t evaluation = 0;
   /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
   std::int64_t layout = 0;
 
-  std::size_t records() const { return place.size(); }
-  std::size_t fields() const { return records() == 0 ? 0 : of_law.size() / records(); }
-  double* field(std::size_t k) { return of_law.data() + k * records(); }
-  const double* field(std::size_t k) const { return of_law.data() + k * records(); }
+  /// Columns for so many numbers of laws, and none of the records.
+  void set_columns(bool debts, int fields) {
+    first_of_law = debts ? 4 : 2;
+    columns = first_of_law + fields;
+    numbers.clear();
+  }
+  void resize(int records) { numbers.resize(static_cast<std::size_t>(records / lane_count * columns)); }
+  int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }
+  int fields() const { return columns - first_of_law; }
+  bool keeps_debts() const { return first_of_law > 2; }
+
+  /// The columns of eight records.
+  Lanes* at(int record) { return numbers.data() + record / lane_count * columns; }
+  const Lanes* at(int record) const { return numbers.data() + record / lane_count * columns; }
+  double number(int record, int column) const { return at(record)[column][record % lane_count]; }
+  void copy_record(const ContactHistory& from, int old_record, int record) {
+    for (int c = 0; c < columns; ++c) at(record)[c][record % lane_count] = from.number(old_record, c);
+  }
+  /// As of nodes that met nothing yet, but for what laws remember: 0.
+  void clear(int record, int count) {
+    for (int i = record; i < record + count; i += lane_count)
+      for (int c = 0; c < columns; ++c) {
+        const bool of_place = c == place || (c == gap && keeps_debts());
+        at(i)[c] = of_place ? broadcast(nowhere) : Lanes{};
+      }
+  }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("place", place), visitor("slip", slip), visitor("of_law", of_law), visitor("gap", gap),
-        visitor("repaid", repaid), visitor("owed", owed);
-    visitor("evaluation", evaluation), visitor("layout", layout);
+    visitor("numbers", numbers), visitor("columns", columns), visitor("first_of_law", first_of_law);
+    visitor("owed", owed), visitor("evaluation", evaluation), visitor("layout", layout);
   }
 };
 
@@ -43,12 +70,12 @@ struct ContactHistory {
 template <std::size_t count>
 std::array<Lanes, count> load_record(const ContactHistory& history, int record) {
   std::array<Lanes, count> values;
-  for (std::size_t k = 0; k < count; ++k) values[k] = load(history.field(k) + record);
+  std::copy_n(history.at(record) + history.first_of_law, count, values.begin());
   return values;
 }
 template <std::size_t count>
 void store_record(ContactHistory& history, int record, const std::array<Lanes, count>& values) {
-  for (std::size_t k = 0; k < count; ++k) store(history.field(k) + record, values[k]);
+  std::copy_n(values.begin(), count, history.at(record) + history.first_of_law);
 }
 
 }  // namespace pliant

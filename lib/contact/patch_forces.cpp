@@ -116,16 +116,14 @@ struct LaneTotals {
 
 void add(double* to, Lanes value) { store(to, load(to) + value); }
 
-constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-
 /// Of nodes that are not beside the master.
 template <class Law>
-void forget(ContactHistory& history, int record) {
-  store(&history.place[record], broadcast(nowhere));
-  store(&history.slip[record], Lanes{});
+void forget(Lanes* to, int first_of_law) {
+  to[ContactHistory::place] = broadcast(ContactHistory::nowhere);
+  to[ContactHistory::slip] = Lanes{};
   if constexpr (remembers<Law>)
     for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      store(history.field(k) + record, broadcast(Law::remembered[k].at_first));
+      to[first_of_law + static_cast<int>(k)] = broadcast(Law::remembered[k].at_first);
 }
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
@@ -168,16 +166,18 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
   const double outward = law.reach + view.skin;  // places before the touch, and what is repaid after it
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
+    const Lanes* before = from.at(record);
+    Lanes* after = to.at(record);
     const LaneBits active = first_lanes(pass.nodes.count - i);
     const Facing facing = face(pass, window, load_slaves(pass, i), i, outward);
     const Projection& p = facing.p;
     const Lanes half_length = select(active, 0.5 * facing.length, Lanes{});
-    const Lanes old_place = load(&from.place[record]), old_slip = load(&from.slip[record]);
+    const Lanes old_place = before[ContactHistory::place], old_slip = before[ContactHistory::slip];
     const Record<Law> old = load_record<remembered_count<Law>>(from, record);
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip, old);
-      forget<Law>(to, record);
-      if constexpr (repays) repaid.forget(to, record);
+      forget<Law>(after, to.first_of_law);
+      if constexpr (repays) repaid.forget(after);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
@@ -188,14 +188,14 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
     LaneBits acting = touching;
     Lanes more{};
     if constexpr (repays) {
-      acting = repaid.acting(from, record, active & p.hit, touching);
-      more = repaid.pressure(from, to, record, p.gap, acting, half_length);
+      acting = repaid.acting(before, active & p.hit, touching);
+      more = repaid.pressure(before, after, p.gap, acting, half_length);
       if constexpr (!remembers<Law>) add_pressure(law, more, traction);
     }
     Record<Law> now;
     const Contact c = respond(law, encounter(law, window, p, touching, old_place, place), traction, old_slip, old, now);
-    store(&to.place[record], select(p.hit, place, broadcast(nowhere)));
-    store(&to.slip[record], select(touching, c.slip, Lanes{}));
+    after[ContactHistory::place] = select(p.hit, place, broadcast(ContactHistory::nowhere));
+    after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
     store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
     if (!any(acting)) continue;

@@ -21,9 +21,8 @@ void locate_newcomers(const PatchView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.patch.law);
   if (!shears) return;
   for_each_facing(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Facing& at) {
-    double* place = &history.place[pass.record + i];
-    const Lanes old = load(place);
-    store(place, select(at.p.hit & (old != old), place_of(at.p), old));
+    Lanes& place = history.at(pass.record + i)[ContactHistory::place];
+    place = select(at.p.hit & (place != place), place_of(at.p), place);
   });
 }
 

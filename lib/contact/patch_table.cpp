@@ -1,7 +1,6 @@
 #include "contact/patch_table.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -14,59 +13,39 @@ namespace {
 /// Room beyond what a new layout needs, for patches that outgrow their places until the next.
 int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
 
-constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-
 /// As of nodes that met nothing yet.
 void forget_all(const Patch& patch, int side, ContactHistory& history) {
   const int begin = patch.record[side], count = padded(patch.nodes[side].count);
-  std::fill_n(history.place.data() + begin, count, nowhere);
-  std::fill_n(history.slip.data() + begin, count, 0.0);
+  history.clear(begin, count);
   const std::span<const Remembered> remembered = remembered_of(patch.law);
-  for (std::size_t k = 0; k < remembered.size(); ++k)
-    std::fill_n(history.field(k) + begin, count, remembered[k].at_first);
-  if (!history.gap.empty()) {
-    std::fill_n(history.gap.data() + begin, count, nowhere);
-    std::fill_n(history.repaid.data() + begin, count, 0.0);
-  }
+  for (int record = begin; record < begin + count; record += lane_count)
+    for (std::size_t k = 0; k < remembered.size(); ++k)
+      history.at(record)[history.first_of_law + static_cast<int>(k)] = broadcast(remembered[k].at_first);
 }
 
 /// The records of one side's nodes, from where another patch of the same bodies has them.
 void carry(const Model& model, const Patch& from, const ContactHistory& old, const Patch& to, int side,
            ContactHistory& history) {
   forget_all(to, side, history);
-  const auto copy = [&](int old_at, int at, int count) {
-    const int old_record = from.record[side] + old_at, record = to.record[side] + at;
-    std::copy_n(old.place.data() + old_record, count, history.place.data() + record);
-    std::copy_n(old.slip.data() + old_record, count, history.slip.data() + record);
-    for (std::size_t k = 0; k < remembered_of(to.law).size(); ++k)
-      std::copy_n(old.field(k) + old_record, count, history.field(k) + record);
-    if (!history.gap.empty()) {
-      std::copy_n(old.gap.data() + old_record, count, history.gap.data() + record);
-      std::copy_n(old.repaid.data() + old_record, count, history.repaid.data() + record);
-    }
-  };
-  for_each_shared(model, to, side, from.nodes[side], to.nodes[side], copy);
+  for_each_shared(model, to, side, from.nodes[side], to.nodes[side], [&](int old_at, int at, int count) {
+    for (int i = 0; i < count; ++i) history.copy_record(old, from.record[side] + old_at + i, to.record[side] + at + i);
+  });
+}
+
+/// Whole eights of records.
+void copy_eights(const ContactHistory& from, int first, int count, ContactHistory& to, int at) {
+  std::copy_n(from.at(first), count / lane_count * from.columns, to.at(at));
 }
 
 /// The records of a patch alone, on which another may come to stand; none is left where they were.
 void take_aside(ContactHistory& history, Patch& patch, ContactHistory& aside) {
   const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
-  const std::size_t total = static_cast<std::size_t>(size[0] + size[1]), fields = history.fields();
-  aside.place.resize(total), aside.slip.resize(total), aside.of_law.resize(total * fields);
-  aside.gap.resize(history.gap.empty() ? 0 : total), aside.repaid.resize(aside.gap.size());
+  aside.columns = history.columns, aside.first_of_law = history.first_of_law;
+  aside.resize(size[0] + size[1]);
   for (int side = 0; side < 2; ++side) {
     const int from = patch.record[side], to = side * size[0];
-    const auto move = [&](double* old, double* now, double none) {
-      std::copy_n(old + from, size[side], now + to);
-      std::fill_n(old + from, size[side], none);
-    };
-    move(history.place.data(), aside.place.data(), nowhere);
-    move(history.slip.data(), aside.slip.data(), 0.0);
-    for (std::size_t k = 0; k < fields; ++k) move(history.field(k), aside.of_law.data() + k * total, 0.0);
-    if (!history.gap.empty()) {
-      move(history.gap.data(), aside.gap.data(), nowhere);
-      move(history.repaid.data(), aside.repaid.data(), 0.0);
-    }
+    copy_eights(history, from, size[side], aside, to);
+    history.clear(from, size[side]);
     patch.record[side] = to;
   }
 }
@@ -98,13 +77,12 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
       patch.entry[side] = std::exchange(entries_, entries_ + padded(patch.forces(side).count));
     }
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
-  const std::size_t records = static_cast<std::size_t>(record_room_);
-  ContactHistory next{std::vector(records, nowhere), std::vector(records, 0.0), std::vector(records * fields, 0.0)};
-  if (model_.scene.keeps_energy_debts()) {
-    next.gap.assign(records, nowhere), next.repaid.assign(records, 0.0);
-    next.owed.assign(patches.size(), 0.0);
-    next.evaluation = history.evaluation;
-  }
+  ContactHistory next;
+  next.set_columns(model_.scene.keeps_energy_debts(), static_cast<int>(fields));
+  next.resize(record_room_);
+  next.clear(0, record_room_);
+  next.evaluation = history.evaluation;
+  if (next.keeps_debts()) next.owed.assign(patches.size(), 0.0);
   parallel_for(static_cast<int>(patches.size()), [&](int p) {
     const Patch& patch = patches[p];
     const Patch* from = find(patch.pair(), patch.part);
@@ -160,17 +138,8 @@ void PatchTable::follow(const ContactHistory& from, ContactHistory& to) const {
     to = from;
     return;
   }
-  const auto copy = [](const double* old, double* now, const std::array<int, 2>& run) {
-    std::copy_n(old + run[0], run[1], now + run[0]);
-  };
-  parallel_for(static_cast<int>(moved_.size()), [&](int i) {
-    copy(from.place.data(), to.place.data(), moved_[i]);
-    copy(from.slip.data(), to.slip.data(), moved_[i]);
-    for (std::size_t k = 0; k < from.fields(); ++k) copy(from.field(k), to.field(k), moved_[i]);
-    if (from.gap.empty()) return;
-    copy(from.gap.data(), to.gap.data(), moved_[i]);
-    copy(from.repaid.data(), to.repaid.data(), moved_[i]);
-  });
+  parallel_for(static_cast<int>(moved_.size()),
+               [&](int i) { copy_eights(from, moved_[i][0], moved_[i][1], to, moved_[i][0]); });
   to.owed = from.owed;
   to.evaluation = from.evaluation;
   to.layout = from.layout;

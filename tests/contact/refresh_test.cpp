@@ -150,8 +150,9 @@ Memories memories(const ContactRig& rig) {
     for (int side = 0; side < 2; ++side)
       for (int i = 0; i < patch.nodes[side].count; ++i) {
         const int body = side == 0 ? patch.first : patch.second, n = rig.count(body), at = patch.nodes[side].begin + i;
-        all[{patch.first, patch.second, side, at - turn_of(at, n) * n}] = {rig.committed.place[patch.record[side] + i],
-                                                                           rig.committed.slip[patch.record[side] + i]};
+        all[{patch.first, patch.second, side, at - turn_of(at, n) * n}] = {
+            rig.committed.number(patch.record[side] + i, ContactHistory::place),
+            rig.committed.number(patch.record[side] + i, ContactHistory::slip)};
       }
   return all;
 }

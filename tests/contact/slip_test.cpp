@@ -24,7 +24,8 @@ using Path = std::function<Vec2(double)>;
 
 double largest_slip(const ContactRig& rig) {
   double largest = 0;
-  for (const double slip : rig.committed.slip) largest = std::max(largest, std::abs(slip));
+  for (int i = 0; i < rig.committed.records(); ++i)
+    largest = std::max(largest, std::abs(rig.committed.number(i, ContactHistory::slip)));
   return largest;
 }
 

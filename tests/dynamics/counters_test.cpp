@@ -23,7 +23,7 @@ Counts count(const Scene& scene, double from, double until) {
     simulation.step(until);
     counts.pairs = std::max(counts.pairs, static_cast<double>(contact.patches().size()) / bodies);
     counts.records =
-        std::max(counts.records, static_cast<double>(simulation.state().memory.contact.place.size()) / bodies);
+        std::max(counts.records, static_cast<double>(simulation.state().memory.contact.records()) / bodies);
   }
   const double thousands = 1e-3 * static_cast<double>(simulation.state().steps - steps);
   counts.rebuilds = static_cast<double>(contact.refreshes() - rebuilds) / thousands;

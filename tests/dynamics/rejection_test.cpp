@@ -29,8 +29,9 @@ bool same_bits(const Dofs& a, const Dofs& b) {
 /// more or fewer nodes that are near but not in touch.
 std::vector<std::pair<double, double>> records(const ContactHistory& history) {
   std::vector<std::pair<double, double>> slipping;
-  for (std::size_t i = 0; i < history.place.size(); ++i)
-    if (history.slip[i] != 0) slipping.emplace_back(history.place[i], history.slip[i]);
+  for (int i = 0; i < history.records(); ++i)
+    if (const double slip = history.number(i, ContactHistory::slip); slip != 0)
+      slipping.emplace_back(history.number(i, ContactHistory::place), slip);
   std::sort(slipping.begin(), slipping.end());
   return slipping;
 }
