@@ -75,8 +75,8 @@ PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch
       if (counts) totals.power += response.power;
     return response.P;
   };
-  const Upcoming<false> next_position(motion.next_position, motion.next_count);
-  const Upcoming<true> next_forces(motion.next_forces, motion.next_count);
+  const Upcoming<Access::read> next_position(motion.next_position, motion.next_count);
+  const Upcoming<Access::write> next_forces(motion.next_forces, motion.next_count);
   Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, motion.position), true);
   Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), motion.position);
   for (int point = 0; point <= last; ++point) {

@@ -179,16 +179,19 @@ void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
-/// Asks for what a patch looks at first: there are many, each on places of its own.
+/// Asks for what a patch looks at and what it writes: there are many, each on places of its own. A write that waits for
+/// its place holds up all that follow it, and what is read back from them.
 void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, const StepStart* step,
-                             const ContactHistory& from) const {
+                             const ContactHistory& from, const ContactHistory& to, const PatchForces& forces) const {
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
     const Arc arc = patch.forces(side);
     const int node = model_.outline_offset[body] + arc.begin - turn_of(arc.begin, n) * n;
     prefetch_run(position, node, arc.count);
-    prefetch_run(reinterpret_cast<const double*>(from.at(patch.record[side])),
-                 padded(patch.nodes[side].count) * from.columns);
+    const int record = patch.record[side], numbers = padded(patch.nodes[side].count) * from.columns;
+    prefetch_run(reinterpret_cast<const double*>(from.at(record)), numbers);
+    prefetch_run<Access::write>(reinterpret_cast<const double*>(to.at(record)), numbers);
+    prefetch_run<Access::write>(forces, patch.entry[side], arc.count);
     if (!keeps_debts() || !step) continue;
     prefetch_run(step->position, node, arc.count);
     prefetch_run(last_.forces, patch.entry[side], arc.count);
@@ -230,7 +233,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
-    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from);
+    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from, to, now.forces);
     const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch()};
     PatchTotals& totals = now.totals[p];
     if (view.patch.is_empty())

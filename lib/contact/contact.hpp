@@ -121,8 +121,8 @@ class ContactSystem {
   void add_self_patches(std::vector<Patch>& all);
   void refuse_self_overlap() const;
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
-  void prefetch(const Patch& patch, const OutlineField& position, const StepStart* step,
-                const ContactHistory& from) const;
+  void prefetch(const Patch& patch, const OutlineField& position, const StepStart* step, const ContactHistory& from,
+                const ContactHistory& to, const PatchForces& forces) const;
 
   const Model& model_;
   ContactLaws laws_;
