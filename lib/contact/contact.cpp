@@ -126,7 +126,7 @@ void ContactSystem::locate(ContactHistory& history) const {
 
 std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
   std::vector<Patch> found(pairs.size());
-  parallel_for_uneven(static_cast<int>(found.size()), 16, [&](int i) {
+  parallel_for_uneven(static_cast<int>(found.size()), 4, [&](int i) {
     const BodyPair& pair = watch_[pairs[i]];
     Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;

@@ -24,11 +24,16 @@ void parallel_for(int count, Body&& body) {
   for_own_share(count, body);
 }
 
-/// As parallel_for, in chunks handed out as threads become free: for work of uneven cost.
+/// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19, whose
+/// threads steal from each other, now and then ends the program (llvm-project issues 86995 and 132164).
 template <class Body>
 void parallel_for_uneven(int count, int chunk, Body&& body) {
-#pragma omp parallel for schedule(dynamic, chunk)
-  for (int i = 0; i < count; ++i) body(i);
+#pragma omp parallel
+  {
+    const int stride = chunk * omp_get_num_threads();
+    for (int begin = chunk * omp_get_thread_num(); begin < count; begin += stride)
+      for (int i = begin; i < std::min(begin + chunk, count); ++i) body(i);
+  }
 }
 
 /// Largest value(i), at least `start`. A maximum does not depend on the order.
