@@ -24,8 +24,8 @@ void parallel_for(int count, Body&& body) {
   for_own_share(count, body);
 }
 
-/// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19, whose
-/// threads steal from each other, now and then ends the program (llvm-project issues 86995 and 132164).
+/// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19,
+/// whose threads steal from each other, now and then ends the program (llvm-project issues 86995 and 132164).
 template <class Body>
 void parallel_for_uneven(int count, int chunk, Body&& body) {
 #pragma omp parallel
