@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {
@@ -63,6 +64,11 @@ struct ContactHistory {
   void visit(Visitor&& visitor) {
     visitor("numbers", numbers), visitor("columns", columns), visitor("first_of_law", first_of_law);
     visitor("owed", owed), visitor("evaluation", evaluation), visitor("layout", layout);
+  }
+  void loaded() const {
+    const bool fits = (first_of_law == 2 || first_of_law == 4) && columns >= first_of_law &&
+                      numbers.size() % static_cast<std::size_t>(columns) == 0;
+    if (!fits) throw ArchiveError("contact records have other columns");
   }
 };
 
