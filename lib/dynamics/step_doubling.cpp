@@ -16,8 +16,8 @@ namespace pliant {
 namespace {
 
 /// The controller's factor on dt: clamped, because the error may vanish or explode.
-constexpr double least_factor = 0.2, largest_factor = 2;
-constexpr double first_step = 1e-3;  ///< of the time a wave takes from node to node
+constexpr double least_change = 0.2, largest_change = 2;
+constexpr double first_share = 1e-3;  ///< of the time a wave takes from node to node
 
 /// Least nodal distance over wave speed: a scale for the first step and the floor, not a limit.
 double wave_time(const Model& model) {
@@ -75,7 +75,7 @@ StepDoubling::StepDoubling(Forces& forces, const State&)
       trial_(model_),
       difference_(model_.compliant_size) {}
 
-double StepDoubling::first_dt() const { return first_step * wave_time_; }
+double StepDoubling::first_dt() const { return first_share * wave_time_; }
 
 Proposal StepDoubling::propose(const State& state, double next_dt, double until) const {
   const double remaining = until - state.time;
@@ -85,8 +85,8 @@ Proposal StepDoubling::propose(const State& state, double next_dt, double until)
 
 Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepReport& report) const {
   const TimeSettings& settings = model_.scene.time;
-  const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_factor;
-  const double next_dt = proposal.dt * std::clamp(factor, least_factor, largest_factor);
+  const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_change;
+  const double next_dt = proposal.dt * std::clamp(factor, least_change, largest_change);
   if (!(report.error <= settings.alpha * settings.target)) return {false, next_dt};
   return {true, proposal.wish > proposal.dt ? std::max(next_dt, proposal.wish) : next_dt};
 }
