@@ -15,7 +15,8 @@ struct BatchMotion {
   double elapsed = 0;               ///< since then, s
   Lanes* new_memory = nullptr;      ///< likewise, where it is wanted
   bool elastic = true;              ///< false: viscosity alone counts
-  // Positions and forces of the batch whose turn is next, and how many Lanes each:
+  // Positions and forces of the batch whose turn is next, asked for on the way (core/prefetch.hpp), and how many Lanes
+  // of each; null: none.
   const Lanes *next_position = nullptr, *next_forces = nullptr;
   int next_count = 0;
 };

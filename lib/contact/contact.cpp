@@ -245,8 +245,8 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   });
   const int bodies = static_cast<int>(model_.bodies.size());
   parallel_for(bodies, [&](int b) {
-    if (b + 3 < bodies)
-      table_.for_each_run(b + 3, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
+    if (b + 1 < bodies)
+      table_.for_each_run(b + 1, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
     const int n = model_.outline_of(b).count;
     double* x = &force.x[model_.outline_offset[b]];
     double* y = &force.y[model_.outline_offset[b]];

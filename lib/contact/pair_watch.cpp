@@ -57,6 +57,8 @@ constexpr double rounded = 1e-4;
 /// From where nothing is known of the way.
 constexpr double far_off = 1e150;
 constexpr Box unknown{-far_off, far_off, -far_off, far_off}, none{0, 0, 0, 0};
+/// New references move a box that is not known by little.
+bool is_known(const Box& box) { return box.x_min > 0.5 * unknown.x_min; }
 
 /// Bound on the relative way of any two nodes of two bodies, m.
 double relative_way(const Box& a, const Box& b) {
@@ -123,7 +125,7 @@ Box PairWatch::common_way() const {
 /// Boxes tell at little cost that most pairs do; of others each node's own way counts.
 bool PairWatch::stays_within(int pair, double limit, const OutlineField& now) const {
   if (pair_way(pair) < limit) return true;
-  if (pair_start_[pair][0].x_min <= 0.5 * unknown.x_min) return false;
+  if (!is_known(pair_start_[pair][0])) return false;
   return relative_way(way_of_side(pair, 0, now), way_of_side(pair, 1, now)) < (1 - rounded) * limit;
 }
 
@@ -155,7 +157,7 @@ bool PairWatch::is_used_up(const OutlineField& now) {
 void PairWatch::shift(int pair, int side, const OutlineField& now) {
   Box& start = pair_start_[pair][side];
   const int b = body(pair, side);
-  if (start.x_min <= 0.5 * unknown.x_min) return;
+  if (!is_known(start)) return;
   if (!keeps_ways(pair, side)) {
     start = way(motion_[b], start);
     return;

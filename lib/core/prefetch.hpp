@@ -11,6 +11,7 @@ enum class Access { read, write };
 template <Access access = Access::read>
 void prefetch_run(const double* numbers, int count) {
   constexpr int per_line = 8, writes = access == Access::write;
+  if (count == 0) return;
   for (int i = 0; i < count; i += per_line) __builtin_prefetch(numbers + i, writes);
   __builtin_prefetch(numbers + (count + per_line - 1) / per_line * per_line - 1, writes);
 }

@@ -172,5 +172,18 @@ TEST(ContactHistory, RefreshInPlaceChangesNothing) {
   }
 }
 
+/// EXACT: what no history can have, as in a checkpoint of something else, is refused.
+TEST(ContactHistory, refuses_other_columns) {
+  ContactHistory history;
+  history.set_columns(true, 1);
+  history.resize(16);
+  EXPECT_NO_THROW(history.loaded());
+  for (const int columns : {0, 3, 7}) {
+    ContactHistory other = history;
+    other.columns = columns;
+    EXPECT_THROW(other.loaded(), ArchiveError) << columns;
+  }
+}
+
 }  // namespace
 }  // namespace pliant
