@@ -1,16 +1,16 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "bodies/model.hpp"
 #include "contact/broad_phase.hpp"
+#include "contact/node_ways.hpp"
 
 namespace pliant {
 
 /// The pairs of bodies that may come to touch, and bounds of how far they have moved against each other since it was
 /// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
-/// pair by pair, but each its own way. Ways are from place to place: what only vibrates goes nowhere.
+/// pair by pair, but their bounding boxes together. Ways are from place to place: what only vibrates goes nowhere.
 class PairWatch {
  public:
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
@@ -36,37 +36,26 @@ class PairWatch {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("reference", reference_);
-    visitor("pairs", pairs_), visitor("pair_start", pair_start_);
-    visitor("body_start", body_start_);
-    visitor("ways_x", ways_x_), visitor("ways_y", ways_y_);
+    visitor("pairs", pairs_);
+    visitor("pair_ways", pair_ways_), visitor("swept_at", swept_at_);
   }
-  void loaded() { lay_out(0); }
+  void loaded();
 
  private:
-  void measure(const OutlineField& now);
-  Box common_way() const;
-  double pair_way(int pair) const;
+  WaysSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
+  int count_of_bodies() const { return static_cast<int>(motion_.size()); }
+  double measure(const OutlineField& now);
   bool stays_within(int pair, double limit, const OutlineField& now) const;
-  double own_way(int body, const Box& common) const;
   void take_new_references(const OutlineField& now);
   void follow(std::vector<BodyPair> found);
-  void lay_out(std::size_t first);
-  int body(int pair, int side) const { return side == 0 ? pairs_[pair].first : pairs_[pair].second; }
-  bool keeps_ways(int pair, int side) const;
-  Box way_of_side(int pair, int side, const OutlineField& now) const;
-  void shift(int pair, int side, const OutlineField& now);
 
   const Model& model_;
   double skin_, own_skin_, margin_;
   OutlineField reference_;   ///< where each body was at some time; empty: all is to be searched
   std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from there, of measure
   std::vector<BodyPair> pairs_;
-  std::vector<std::array<Box, 2>> pair_start_;  ///< [pairs], motions of the two when it was searched
-  /// The same node by node, of small bodies: from their references, m. Boxes alone would blur what bodies that shake or
-  /// turn have moved since.
-  std::vector<float> ways_x_, ways_y_;
-  std::vector<std::array<int, 2>> ways_at_;  ///< [pairs], of the first nodes
-  std::vector<Box> body_start_;              ///< [bodies], motions when the broad phase looked last
+  NodeWays pair_ways_;         ///< [pairs][sides], since each was searched
+  std::vector<Box> swept_at_;  ///< [bodies], bounding boxes when the broad phase looked
 };
 
 }  // namespace pliant

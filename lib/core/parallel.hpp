@@ -3,6 +3,8 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <vector>
 
 namespace pliant {
@@ -43,6 +45,25 @@ double parallel_max(int count, double start, Value&& value) {
 #pragma omp parallel reduction(max : result)
   for_own_share(count, [&](int i) { result = std::max(result, value(i)); });
   return result;
+}
+
+/// The same of several values at once: values(i) is an array.
+template <std::size_t size, class Values>
+std::array<double, size> parallel_max(int count, double start, Values&& values) {
+  double result[size];
+  std::fill_n(result, size, start);
+#pragma omp parallel reduction(max : result)
+  for_own_share(count, [&](int i) {
+    const std::array<double, size> found = values(i);
+    for (std::size_t k = 0; k < size; ++k) result[k] = std::max(result[k], found[k]);
+  });
+  return std::to_array(result);
+}
+
+/// Whether holds(i) for some of them.
+template <class Holds>
+bool parallel_any(int count, Holds&& holds) {
+  return parallel_max(count, 0, [&](int i) { return holds(i) ? 1.0 : 0.0; }) > 0;
 }
 
 /// Sum of value(i) whose rounding does not depend on the number of threads: fixed blocks, added in order.
