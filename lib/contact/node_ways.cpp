@@ -70,11 +70,17 @@ double relative_way(const Box& a, const Box& b) {
   return std::sqrt(dx * dx + dy * dy);
 }
 
+NodeWays::Common NodeWays::way_of_first(int body, const WaysSoFar& ways) const {
+  const int node = model_->outline_offset[body];
+  return {ways.now.x[node] - ways.reference.x[node], ways.now.y[node] - ways.reference.y[node]};
+}
+
 bool NodeWays::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
 
 /// Room for the nodes of all entries from one on.
 void NodeWays::lay_out(int first) {
   at_.resize(body_.size());
+  common_.resize(body_.size());
   std::size_t at = first == 0 ? 0 : x_.size();
   for (int e = first; e < count(); ++e) {
     at_[e] = static_cast<int>(at);
@@ -106,6 +112,7 @@ void NodeWays::append(int body) {
 
 void NodeWays::copy_entry(int entry, const NodeWays& from, int old_entry) {
   start_[entry] = from.start_[old_entry];
+  common_[entry] = from.common_[old_entry];
   if (!keeps_nodes(entry)) return;
   const int nodes = padded(model_->outline_of(body_[entry]).count);
   std::copy_n(&from.x_[from.at_[old_entry]], nodes, &x_[at_[entry]]);
@@ -116,9 +123,10 @@ void NodeWays::look(int entry, const WaysSoFar& ways) {
   const int b = body_[entry];
   start_[entry] = ways.boxes[b];
   if (!keeps_nodes(entry)) return;
+  const Common common = common_[entry] = way_of_first(b, ways);
   for (int i = 0; i < model_->outline_of(b).count; i += lane_count) {
     const auto [x, y] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    store_ways(&x_[at_[entry] + i], x), store_ways(&y_[at_[entry] + i], y);
+    store_ways(&x_[at_[entry] + i], x - common.x), store_ways(&y_[at_[entry] + i], y - common.y);
   }
 }
 
@@ -129,9 +137,10 @@ Box NodeWays::rough_way(int entry, const WaysSoFar& ways) const {
 Box NodeWays::way(int entry, const WaysSoFar& ways) const {
   if (!is_known(start_[entry]) || !keeps_nodes(entry)) return rough_way(entry, ways);
   const int b = body_[entry];
+  const Common common = common_[entry];
   return box_of(model_->outline_of(b).count, [&](int i) {
     const auto [x, y] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    return std::pair(x - load_ways(&x_[at_[entry] + i]), y - load_ways(&y_[at_[entry] + i]));
+    return std::pair(x - common.x - load_ways(&x_[at_[entry] + i]), y - common.y - load_ways(&y_[at_[entry] + i]));
   });
 }
 
@@ -143,12 +152,16 @@ void NodeWays::take_new_reference(int entry, const WaysSoFar& ways) {
     start = between(ways.boxes[b], start);
     return;
   }
+  const Common back = way_of_first(b, ways);
+  Common& common = common_[entry];
   start = box_of(model_->outline_of(b).count, [&](int i) {
     const auto [dx, dy] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    const Lanes back_x = load_ways(&x_[at_[entry] + i]) - dx, back_y = load_ways(&y_[at_[entry] + i]) - dy;
+    const Lanes back_x = load_ways(&x_[at_[entry] + i]) - (dx - back.x),
+                back_y = load_ways(&y_[at_[entry] + i]) - (dy - back.y);
     store_ways(&x_[at_[entry] + i], back_x), store_ways(&y_[at_[entry] + i], back_y);
-    return std::pair(back_x, back_y);
+    return std::pair(common.x - back.x + back_x, common.y - back.y + back_y);
   });
+  common = {common.x - back.x, common.y - back.y};
 }
 
 }  // namespace pliant

@@ -46,18 +46,25 @@ class NodeWays {
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("start", start_), visitor("x", x_), visitor("y", y_);
+    visitor("start", start_), visitor("common", common_), visitor("x", x_), visitor("y", y_);
   }
 
  private:
+  struct Common {
+    double x, y;
+  };
+  Common way_of_first(int body, const WaysSoFar& ways) const;
   bool keeps_nodes(int entry) const;
   void lay_out(int first);
 
   const Model* model_;
   std::vector<int> body_;
-  std::vector<Box> start_;    ///< [entries], ways from the reference when it looked
-  std::vector<float> x_, y_;  ///< the same node by node, of small bodies, m
-  std::vector<int> at_;       ///< [entries], of the first nodes
+  std::vector<Box> start_;  ///< [entries], ways from the reference when it looked
+  // The same node by node, of small bodies: of the first, and what others have moved more. However far all drift, that
+  // is little, and floats hold it.
+  std::vector<Common> common_;  ///< [entries], m
+  std::vector<float> x_, y_;    ///< m
+  std::vector<int> at_;         ///< [entries], of the first nodes
 };
 
 }  // namespace pliant
