@@ -26,6 +26,9 @@ struct Facing {
   /// corners at the ends of its face.
   enum Node { before, itself, after, segment_start, segment_end, corner_back, corner_on, nodes };
 
+  Facing(const MasterWindow& window, const SlaveNodes& nodes, double outward)
+      : p(project(window, nodes.x, nodes.y, outward)), length(nodes.tributary_length) {}
+
   Projection p;
   Lanes length;          ///< m
   unsigned varying = 0;  ///< one bit a lane: those whose length is not constant
@@ -64,9 +67,7 @@ void attend_to_corners(const Pass& pass, const MasterWindow& window, int i, doub
 /// From position i of the pass on; at most `outward` off.
 inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNodes& nodes, int i, double outward) {
   if (pass.corners) outward += tie * window.longest();
-  Facing facing;
-  facing.p = project(window, nodes.x, nodes.y, outward);
-  facing.length = nodes.tributary_length;
+  Facing facing(window, nodes, outward);
   if (pass.corners) [[unlikely]]
     attend_to_corners(pass, window, i, outward, facing);
   return facing;

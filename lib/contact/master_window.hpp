@@ -28,7 +28,7 @@ class MasterWindow {
 
   int count() const { return count_; }
   /// Of all rows, from 0 on; one more than segments: the end node of the last.
-  const double* column(Column c) const { return reinterpret_cast<const double*>(&entries_[c * stride_]) + 1; }
+  const double* column(Column c) const { return reinterpret_cast<const double*>(&entries_[c * stride_]); }
   MasterSegment operator[](int row) const {
     const auto entry = [&](Column c) { return column(c)[row]; };
     return {entry(x),          entry(y),         entry(tangent_x),
@@ -64,7 +64,7 @@ class MasterWindow {
   int count_ = 0, outline_count_ = 0, first_number_ = 0;
   double longest_ = 0, depth_ = 0;
   std::size_t stride_ = 0;      ///< Lanes in a column
-  std::vector<Lanes> entries_;  ///< [columns][stride], from the segment before the first on
+  std::vector<Lanes> entries_;  ///< [columns][stride]
 };
 
 /// One for each thread, so that its memory is found once.

@@ -7,6 +7,7 @@
 #include "bodies/outline.hpp"
 #include "contact/broad_phase.hpp"
 #include "contact/contact_law.hpp"
+#include "core/lanes.hpp"
 
 namespace pliant {
 
@@ -101,7 +102,7 @@ struct PatchTotals {
 
 /// Where the forces of all patches go: each arc has its own stretch, gathered later by its body in a fixed order.
 struct PatchForces {
-  std::vector<double> x, y;  ///< N/m
+  LinedNumbers x, y;  ///< N/m
 
   template <class Visitor>
   void visit(Visitor&& visitor) {

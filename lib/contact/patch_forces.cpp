@@ -20,7 +20,7 @@ template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
 
 /// Zeros in whole lanes.
-void clear(std::vector<double>& numbers, std::size_t count) {
+void clear(LinedNumbers& numbers, std::size_t count) {
   if (numbers.size() < count) numbers.resize(count);
   for (std::size_t i = 0; i < count; i += lane_count) store(&numbers[i], Lanes{});
 }
@@ -56,12 +56,15 @@ class Reactions {
   void add_to(double* x, double* y) const {
     const double* first = entries_.data() + 4;
     for (int row = 0; row <= rows_; ++row, first += 4) {
-      x[row] += first[0] + first[-2];
-      y[row] += first[1] + first[-1];
+      Two of_row, of_last;
+      std::memcpy(&of_row, first, sizeof of_row), std::memcpy(&of_last, first - 2, sizeof of_last);
+      const Two sum = of_row + of_last;
+      x[row] += sum[0], y[row] += sum[1];
     }
   }
 
  private:
+  using Two = double __attribute__((vector_size(16)));
   using Four = double __attribute__((vector_size(32)));
 
   /// to[lane] = {a, b, c, d} of the lane.
@@ -83,7 +86,7 @@ class Reactions {
   }
 
   int rows_ = 0;
-  std::vector<double> entries_;  ///< [rows and one before][4]
+  LinedNumbers entries_;  ///< [rows and one before][4]
 };
 
 /// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the

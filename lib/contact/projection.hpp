@@ -38,15 +38,20 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
                *bisector_y = window.column(MasterWindow::bisector_y),
                *bisector_at = window.column(MasterWindow::bisector_at);
   const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
-  Lanes passed = broadcast(-1), rows{};
   // Neighbours share the bisector's value, so that every node beside the arc falls to exactly one of them.
-  for (int k = 0; k <= window.count(); ++k) {
-    const LaneBits beyond = rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0;
-    passed = add_where(beyond, passed, broadcast(1));
-    rows = add_where(beyond, rows, broadcast(k));
+  const auto is_beyond = [&](int k) { return rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0; };
+  Lanes count{};
+  LaneBits in_order = ~LaneBits{};
+  // By groups whose bits a number holds: ones without a gap, none after a group that is not full.
+  constexpr int most = 32;
+  for (int first = 0; first <= window.count(); first += most) {
+    const int size = std::min(most, window.count() + 1 - first);
+    LaneBits passed{}, bit = LaneBits{} + 1;
+    for (int k = 0; k < size; ++k, bit += bit) passed |= is_beyond(first + k) & bit;
+    in_order &= ((passed & (passed + 1)) == 0) & ((passed == 0) | (count == first));
+    count += exponent_of(passed + 1);
   }
-  // As many rows add up to that only if they are the first ones.
-  return {select(passed < window.count(), passed, broadcast(-1)), rows == 0.5 * passed * (passed + 1.0)};
+  return {select(count <= window.count(), count - 1.0, broadcast(-1)), in_order};
 }
 
 /// Where nodes stand beside the segments of the rows given, at most `outward` off.

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <new>
+#include <vector>
 
 #if defined(__AVX512F__)
 #include <immintrin.h>
@@ -14,6 +18,22 @@ namespace pliant {
 inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(64)));
 using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison results and bit patterns
+
+/// For arrays whose lanes begin with a line of the cache: others take two lines each.
+template <class T>
+struct LineAllocator {
+  using value_type = T;
+  LineAllocator() = default;
+  template <class Other>
+  LineAllocator(const LineAllocator<Other>&) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
+  void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
+  bool operator==(const LineAllocator&) const = default;
+
+ private:
+  static constexpr std::align_val_t alignment{64};
+};
+using LinedNumbers = std::vector<double, LineAllocator<double>>;
 
 /// Room for this many numbers in whole lanes.
 inline int padded(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
@@ -70,6 +90,11 @@ inline Lanes round_to_integer(Lanes a) {
   constexpr double magic = 6755399441055744.0;  // 1.5 x 2^52: the sum's last bit is the unit
   const Lanes shifted = a + magic;
   return shifted - magic;
+}
+
+/// Of powers of two, below 2^52.
+inline Lanes exponent_of(LaneBits power) {
+  return __builtin_convertvector((std::bit_cast<LaneBits>(__builtin_convertvector(power, Lanes)) >> 52) - 1023, Lanes);
 }
 
 inline bool any(LaneBits mask) {

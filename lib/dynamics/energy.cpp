@@ -73,12 +73,12 @@ Audit Auditor::audit(const State& state) {
   Audit result;
   // The same forces once more: the memory stands still at an accepted state, so nothing slips. They are let go of:
   // audits are rare, and each of these is as large as a state.
-  Dofs force = zero_dofs(model);
+  Dofs force = zero_dofs(model), velocity;
   OutlineField contact_force;
   Memory memory;
   const Evaluation evaluation =
-      forces_.evaluate({state.position, material_velocity(model, state.reduced_momentum), state.time}, state.outlines,
-                       {state.memory}, {force, contact_force, memory});
+      forces_.evaluate({state.position, material_velocity(model, state.reduced_momentum, velocity), state.time},
+                       state.outlines, {state.memory}, {force, contact_force, memory});
   result.contacts = evaluation.contact.contacts;
   result.energy.contact = evaluation.contact.stored;
   result.energy.kinetic = kinetic_energy(model, state.reduced_momentum);

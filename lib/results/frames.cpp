@@ -19,6 +19,13 @@ Field empty_field(const FrameField& field) {
   return {field.name, centre, field.components, {}};
 }
 
+/// Room for a grid's frame, so that it does not grow beyond.
+void reserve(GridFrame& frame, std::size_t points, std::size_t cells) {
+  frame.positions.reserve(2 * points);
+  for (Field& field : frame.fields)
+    field.values.reserve((field.centre == Field::Centre::point ? points : cells) * field.components);
+}
+
 GridTopology empty_grid(const char* name, int cell_size) {
   return {{name, 0, cell_size}, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
 }
@@ -113,13 +120,20 @@ void FrameRecorder::record(Simulation& simulation) {
   const Snapshot snapshot(simulation);
   std::vector<FrameTable> tables;
   if (model_.scene.frames.contacts) tables.push_back(contact_network(snapshot));
-  file_->append(simulation.state().time, {bodies_frame(snapshot), outlines_frame(snapshot)}, tables);
+  std::vector<GridFrame> frames;  // moved, not copied: they are as large as a state
+  frames.push_back(bodies_frame(snapshot));
+  frames.push_back(outlines_frame(snapshot));
+  file_->append(simulation.state().time, frames, tables);
   ++count_;
 }
 
 GridFrame FrameRecorder::bodies_frame(const Snapshot& snapshot) const {
   GridFrame frame;
   for (const auto& [field, function] : body_fields_) frame.fields.push_back(empty_field(field));
+  std::size_t points = 0, cells = 0;
+  for (const Body& body : model_.bodies)
+    if (!body.wall) points += mesh_of(body).nodes.size(), cells += mesh_of(body).triangles.size();
+  reserve(frame, points, cells);
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
     const Body& body = model_.bodies[b];
     if (body.wall) continue;
@@ -137,6 +151,9 @@ GridFrame FrameRecorder::outlines_frame(const Snapshot& snapshot) const {
     frame.fields.push_back(empty_field(field));
     values.push_back(function(snapshot));
   }
+  std::size_t nodes = 0;
+  for (const Body& body : model_.bodies) nodes += static_cast<std::size_t>(model_.outlines[body.outline].count);
+  reserve(frame, nodes, 0);
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b)
     for (int i = model_.outline_offset[b]; i < model_.outline_end(b); ++i) {
       append(snapshot.outlines().at(i), frame.positions);

@@ -26,6 +26,7 @@ const std::vector<int>& Snapshot::contact_counts() const {
 }
 
 const Dofs& Snapshot::velocities() const {
+  if (!model().corrected_mass) return state().reduced_momentum;
   if (!velocities_) velocities_ = material_velocity(model(), state().reduced_momentum);
   return *velocities_;
 }

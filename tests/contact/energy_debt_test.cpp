@@ -112,7 +112,7 @@ TEST(EnergyDebt, forces_go_along_with_their_nodes) {
   Patch old, now;
   for (Patch* patch : {&old, &now}) patch->second = 1, patch->entry[1] = room;
   for (int side : {0, 1}) old.segments[side] = {-1, n + 2}, now.segments[side] = {-4, n + 3};
-  PatchForces before{std::vector<double>(2 * room), std::vector<double>(2 * room)}, after = before;
+  PatchForces before{LinedNumbers(2 * room), LinedNumbers(2 * room)}, after = before;
   std::iota(before.x.begin(), before.x.end(), 1.0);
   carry_forces(model, old, before, now, after);
   for (int side : {0, 1}) EXPECT_EQ(on_nodes(model, now, side, after), on_nodes(model, old, side, before));
