@@ -74,54 +74,58 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   warn_of_missed_contacts(outlines.position);
   watch_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
-  take_over_patches(outlines, history, clock);
+  take_over_patches(outlines, outlines.position, history, clock);
   if (start) refuse_self_overlap();
   if (start) parallel_for(table_.count(), [&](int p) { start_records(view(patches()[p]), history); });
   fresh_ = true;
 }
 
-void ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock,
+                                     const OutlineField* trial) {
+  const OutlineField& asked = trial ? *trial : outlines.position;
   const bool pair_by_pair = fresh_ && !has_fixed_refresh(model_.scene.contact) && !model_.scene.contact.self_contact &&
                             laws_.era(clock.time) == laws_.era(refreshed_.time);
-  if (!pair_by_pair) return find_candidates(outlines, history, clock);
-  take_over_patches(outlines, history, clock);
+  if (pair_by_pair) {
+    if (!trial) watch_.is_used_up(asked);
+    return take_over_patches(outlines, asked, history, clock);
+  }
+  find_candidates(outlines, history, clock);
+  return candidates_hold(asked, clock);
 }
 
-/// Where candidates are found: as all threads can copy it.
-void ContactSystem::remember(const Outlines& outlines) {
+/// Where candidates of these pairs are found.
+void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& pairs) {
   found_at_.velocity = outlines.velocity;
   found_at_.tributary_length = outlines.tributary_length;
   found_at_.position.x.resize(outlines.position.x.size());
   found_at_.position.y.resize(outlines.position.x.size());
+  std::vector<char> is_searched(model_.bodies.size(), model_.scene.contact.self_contact);
+  for (int p : pairs) is_searched[watch_[p].first] = is_searched[watch_[p].second] = 1;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    if (!is_searched[b]) return;
     const int first = model_.outline_offset[b], count = model_.outline_offset[b + 1] - first;
     std::copy_n(&outlines.position.x[first], count, &found_at_.position.x[first]);
     std::copy_n(&outlines.position.y[first], count, &found_at_.position.y[first]);
   });
 }
 
-/// Candidates at these outlines, of whatever is used up, and the history with them.
-void ContactSystem::take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
+/// Candidates at these outlines, of whatever is used up, and the history with them. Whether they hold on trial.
+bool ContactSystem::take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                                      const RunClock& clock) {
   accept(history);
-  remember(outlines);
   refreshed_ = clock;
   ++refreshes_;
-  const bool same_pairs = !watch_.update(outlines.position);
+  const bool same_pairs = !watch_.update(outlines.position, trial);
   const std::vector<int> used_up = watch_.used_up(outlines.position);
+  remember(outlines, used_up);
   const std::vector<Patch> found = search(used_up);
+  found_ = used_up;  // patches stand in the order of the pairs, unless bodies touch themselves
   const auto carry = [&](const Patch& old, const Patch& now) {
     if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
   };
-  // Patches stand in the order of the pairs.
   if (!same_pairs || !table_.replace(used_up, found, history, carry)) lay_out_anew(found, history);
-  locate(history);
-}
-
-/// Places of nodes that came near, of all patches that were just found.
-void ContactSystem::locate(ContactHistory& history) const {
-  parallel_for(table_.count(), [&](int p) {
-    if (patches()[p].found == refreshes_) locate_newcomers(view(patches()[p]), history);
-  });
+  parallel_for(static_cast<int>(found_.size()), [&](int i) { locate_newcomers(view(patches()[found_[i]]), history); });
+  return watch_.hold(used_up, trial);
 }
 
 std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
@@ -152,6 +156,9 @@ void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory
   if (model_.scene.contact.self_contact) add_self_patches(all);
   const std::vector<Patch> old = patches();
   table_.lay_out(std::move(all), laws_.remembered(), history);
+  found_.clear();
+  for (int p = 0; p < table_.count(); ++p)
+    if (patches()[p].found == refreshes_) found_.push_back(p);
   const Evaluated before = std::exchange(last_, {});
   make_room(last_);
   if (!keeps_debts()) return;

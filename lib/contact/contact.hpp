@@ -60,8 +60,10 @@ class ContactSystem {
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
-  /// The same, but patches of pairs that have used up less than three fourths of their skin stay as they are.
-  void renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
+  /// The same, but patches of pairs that have used up less than three fourths of their skin stay as they are. Returns
+  /// whether all hold on trial, where they were last asked whether they do; without one, where they are.
+  bool renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {},
+                        const OutlineField* trial = nullptr);
 
   /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
   /// was, so that contacts may repay what they owe. Without it, as for an audit, all stands still.
@@ -79,8 +81,10 @@ class ContactSystem {
   /// Of all pairs that are watched: some are empty.
   const std::vector<Patch>& patches() const { return table_.patches(); }
   const PatchTable& table() const { return table_; }
-  /// A patch where candidates were found last.
+  /// A patch that was found last, where it was.
   PatchView view(const Patch& patch) const;
+  /// Places in the table of those that were found last, if all others stayed as they were.
+  const std::vector<int>& found() const { return found_; }
   long refreshes() const { return refreshes_; }
   long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
   double skin() const { return skin_; }
@@ -106,15 +110,15 @@ class ContactSystem {
   }
 
  private:
-  void take_over_patches(const Outlines& outlines, ContactHistory& history, const RunClock& clock);
-  void remember(const Outlines& outlines);
+  bool take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                         const RunClock& clock);
+  void remember(const Outlines& outlines, const std::vector<int>& pairs);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
   std::vector<Patch> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
   void accept(const ContactHistory& history);
-  void locate(ContactHistory& history) const;
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
   PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
                      ContactHistory& to);
@@ -132,7 +136,8 @@ class ContactSystem {
   double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what has not been accepted
   std::int64_t evaluations_ = 0;
-  Outlines found_at_;  ///< where some candidates were found last
+  Outlines found_at_;       ///< of each body, where some candidates of its were found last
+  std::vector<int> found_;  ///< see found()
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0, pairs_searched_ = 0;

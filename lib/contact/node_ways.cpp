@@ -121,13 +121,13 @@ void NodeWays::copy_entry(int entry, const NodeWays& from, int old_entry) {
 
 void NodeWays::look(int entry, const WaysSoFar& ways) {
   const int b = body_[entry];
-  start_[entry] = ways.boxes[b];
-  if (!keeps_nodes(entry)) return;
   const Common common = common_[entry] = way_of_first(b, ways);
-  for (int i = 0; i < model_->outline_of(b).count; i += lane_count) {
+  const bool keeps = keeps_nodes(entry);
+  start_[entry] = box_of(model_->outline_of(b).count, [&](int i) {
     const auto [x, y] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    store_ways(&x_[at_[entry] + i], x - common.x), store_ways(&y_[at_[entry] + i], y - common.y);
-  }
+    if (keeps) store_ways(&x_[at_[entry] + i], x - common.x), store_ways(&y_[at_[entry] + i], y - common.y);
+    return std::pair(x, y);
+  });
 }
 
 Box NodeWays::rough_way(int entry, const WaysSoFar& ways) const {
@@ -149,7 +149,7 @@ void NodeWays::take_new_reference(int entry, const WaysSoFar& ways) {
   const int b = body_[entry];
   if (!is_known(start)) return;
   if (!keeps_nodes(entry)) {
-    start = between(ways.boxes[b], start);
+    start = between(box_of_ways(*model_, b, ways.now, ways.reference), start);
     return;
   }
   const Common back = way_of_first(b, ways);

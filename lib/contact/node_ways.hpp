@@ -35,13 +35,13 @@ class NodeWays {
 
   int count() const { return static_cast<int>(body_.size()); }
   int body(int entry) const { return body_[entry]; }
-  /// The entry looks at its body where it is now.
+  /// The entry looks at its body where it is now, whatever its box.
   void look(int entry, const WaysSoFar& ways);
   /// Box of the ways since then, by the boxes alone: at little cost, but blurred.
   Box rough_way(int entry, const WaysSoFar& ways) const;
   /// The same by each node, but for a share of 1e-4 of the skin; endless where nothing is known.
   Box way(int entry, const WaysSoFar& ways) const;
-  /// The body's reference becomes where it is now.
+  /// The body's reference becomes where it is now, whatever its box.
   void take_new_reference(int entry, const WaysSoFar& ways);
 
   template <class Visitor>

@@ -19,7 +19,6 @@ constexpr double kept = 0.75;
 /// Rounding of ways that are kept, of some skins, over the skin, many times over.
 constexpr double rounded = 1e-4;
 
-constexpr Box none{0, 0, 0, 0};
 constexpr double far_off = 1e300;  ///< m
 /// Before the broad phase has looked: all have come out of it.
 constexpr Box empty{far_off, -far_off, far_off, -far_off};
@@ -46,6 +45,7 @@ PairWatch::PairWatch(const Model& model, double skin, double reach)
 void PairWatch::forget() {
   reference_ = {};
   pairs_.clear();
+  use_.clear();
   pair_ways_.set_bodies({});
   swept_at_.assign(model_.bodies.size(), empty);
 }
@@ -69,40 +69,54 @@ double PairWatch::measure(const OutlineField& now) {
   return 0.5 * std::max(out[0] + out[1], out[2] + out[3]);
 }
 
-/// Boxes tell at little cost that most pairs do; of others each node's own way counts.
+/// By the boxes of their nodes' ways: at little cost, but blurred.
+double PairWatch::rough_way(int pair, const OutlineField& now) const {
+  return relative_way(pair_ways_.rough_way(2 * pair, ways(now)), pair_ways_.rough_way(2 * pair + 1, ways(now)));
+}
+
+/// By each node's own way.
+double PairWatch::way(int pair, const OutlineField& now) const {
+  return relative_way(pair_ways_.way(2 * pair, ways(now)), pair_ways_.way(2 * pair + 1, ways(now)));
+}
+
 bool PairWatch::stays_within(int pair, double limit, const OutlineField& now) const {
-  const int first = 2 * pair, second = first + 1;
-  const WaysSoFar all = ways(now);
-  return relative_way(pair_ways_.rough_way(first, all), pair_ways_.rough_way(second, all)) < limit ||
-         relative_way(pair_ways_.way(first, all), pair_ways_.way(second, all)) < (1 - rounded) * limit;
+  return rough_way(pair, now) < limit || way(pair, now) < (1 - rounded) * limit;
 }
 
 bool PairWatch::is_used_up(const OutlineField& now) {
-  return !(measure(now) < own_skin_) || parallel_any(count(), [&](int p) { return !stays_within(p, skin_, now); });
+  come_out_ = measure(now);
+  use_.resize(pairs_.size());
+  const bool some = parallel_any(count(), [&](int p) {
+    use_[p] = rough_way(p, now) < kept * skin_ ? little : stays_within(p, skin_, now) ? much : all;
+    return use_[p] == all;
+  });
+  return some || !(come_out_ < own_skin_);
 }
 
 /// A body that has changed its shape or turned since its reference would blur the ways of all its pairs.
-void PairWatch::take_new_references(const OutlineField& now) {
+void PairWatch::take_new_references(const OutlineField& here, const OutlineField& trial) {
   const auto is_due = [&](int b) { return change_of_shape(motion_[b]) >= blurred * skin_; };
   parallel_for(pair_ways_.count(), [&](int e) {
-    if (is_due(pair_ways_.body(e))) pair_ways_.take_new_reference(e, ways(now));
+    if (is_due(pair_ways_.body(e))) pair_ways_.take_new_reference(e, ways(here));
   });
   parallel_for(count_of_bodies(), [&](int b) {
     if (!is_due(b)) return;
     const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
-    std::copy_n(&now.x[first], nodes, &reference_.x[first]);
-    std::copy_n(&now.y[first], nodes, &reference_.y[first]);
-    motion_[b] = none;
+    std::copy_n(&here.x[first], nodes, &reference_.x[first]);
+    std::copy_n(&here.y[first], nodes, &reference_.y[first]);
+    motion_[b] = box_of_ways(model_, b, trial, reference_);
   });
 }
 
-bool PairWatch::update(const OutlineField& now) {
-  if (reference_.x.empty()) reference_ = now;
-  const bool due = !(measure(now) < kept * own_skin_);
-  take_new_references(now);
+bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
+  if (reference_.x.empty()) reference_ = here;
+  if (use_.size() != pairs_.size() || pairs_.empty()) is_used_up(trial);
+  const bool due = !(come_out_ < kept * own_skin_);
+  take_new_references(here, trial);
   if (!due) return false;
-  parallel_for(count_of_bodies(), [&](int b) { swept_at_[b] = bounding_box(model_, now, b); });
+  parallel_for(count_of_bodies(), [&](int b) { swept_at_[b] = bounding_box(model_, here, b); });
   follow(broad_phase(model_, swept_at_, margin_));
+  is_used_up(trial);
   return true;
 }
 
@@ -120,13 +134,19 @@ void PairWatch::follow(std::vector<BodyPair> found) {
   }
 }
 
-std::vector<int> PairWatch::used_up(const OutlineField& now) const {
-  std::vector<char> stays(pairs_.size());
-  parallel_for(count(), [&](int p) { stays[p] = stays_within(p, kept * skin_, now); });
+std::vector<int> PairWatch::used_up(const OutlineField& here) {
+  parallel_for(count(), [&](int p) {
+    if (use_[p] == much && way(p, here) < kept * skin_) use_[p] = little;
+  });
   std::vector<int> result;
   for (int p = 0; p < count(); ++p)
-    if (!stays[p]) result.push_back(p);
+    if (use_[p] != little) result.push_back(p);
+  use_.clear();
   return result;
+}
+
+bool PairWatch::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
+  return come_out_ < own_skin_ && std::ranges::all_of(pairs, [&](int p) { return stays_within(p, skin_, trial); });
 }
 
 void PairWatch::searched(int pair, const OutlineField& now) {

@@ -16,18 +16,21 @@ class PairWatch {
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
   PairWatch(const Model& model, double skin, double reach);
 
-  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now.
+  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now: on trial
+  /// when others are searched.
   bool is_used_up(const OutlineField& now);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
-  /// Which pairs are to be searched with all outlines here, and the broad phase, if it is due: pairs have other numbers
-  /// then, and true is returned.
-  bool update(const OutlineField& now);
+  /// Before pairs are searched with all outlines here: takes new references, and the broad phase, if it is due. Pairs
+  /// have other numbers then, and true is returned. `trial`: where is_used_up looked.
+  bool update(const OutlineField& here, const OutlineField& trial);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
-  /// The pairs of which what was found may not stay, where the last update was.
-  std::vector<int> used_up(const OutlineField& now) const;
+  /// The pairs of which what was found may not stay. What is asked of the others is known then: they hold on trial.
+  std::vector<int> used_up(const OutlineField& here);
+  /// Whether pairs that were searched hold on trial.
+  bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
   /// What a pair's bodies can touch was searched there.
   void searched(int pair, const OutlineField& now);
   /// A pair that the broad phase does not find, searched just now.
@@ -45,14 +48,20 @@ class PairWatch {
   WaysSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   double measure(const OutlineField& now);
+  double rough_way(int pair, const OutlineField& now) const;
+  double way(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
-  void take_new_references(const OutlineField& now);
+  void take_new_references(const OutlineField& here, const OutlineField& trial);
   void follow(std::vector<BodyPair> found);
 
   const Model& model_;
   double skin_, own_skin_, margin_;
-  OutlineField reference_;   ///< where each body was at some time; empty: all is to be searched
-  std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from there, of measure
+  OutlineField reference_;  ///< where each body was at some time; empty: all is to be searched
+  // On trial:
+  std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from the reference
+  double come_out_ = 0;      ///< of measure, m
+  enum Use : char { little, much, all };
+  std::vector<Use> use_;  ///< [pairs], of the skin; empty: nobody has asked
   std::vector<BodyPair> pairs_;
   NodeWays pair_ways_;         ///< [pairs][sides], since each was searched
   std::vector<Box> swept_at_;  ///< [bodies], bounding boxes when the broad phase looked

@@ -28,13 +28,17 @@ std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std:
   if (all) follow_layout(table);
   std::vector<int> found;
   std::vector<char> changed(model_.bodies.size(), all);
-  for (int p = 0; p < table.count(); ++p) {
+  const auto note = [&](int p) {
     const Patch& patch = table.patches()[p];
-    if (patch.found <= seen_) continue;
+    if (patch.found <= seen_) return;
     found.push_back(p);
     weighed_[p] = patch;
     changed[patch.first] = changed[patch.second] = 1;
-  }
+  };
+  if (all || contact.refreshes() != seen_ + 1)
+    for (int p = 0; p < table.count(); ++p) note(p);
+  else
+    for (int p : contact.found()) note(p);
   parallel_for(static_cast<int>(found.size()), [&](int i) {
     const Patch& patch = table.patches()[found[i]];
     for (int side = 0; side < 2; ++side)

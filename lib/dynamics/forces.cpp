@@ -36,13 +36,8 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
   const RunClock clock{time, accepted.steps};
   if (contact_.candidates_hold(trial, clock)) return {};
   bool hold = false;
-  phases_.apart(Phase::candidates, [&] {
-    contact_.renew_candidates(accepted.outlines, accepted.memory.contact, clock);
-    hold = contact_.candidates_hold(trial, clock);
-    if (hold) return;  // else a fast one among those that were kept
-    contact_.find_candidates(accepted.outlines, accepted.memory.contact, clock);
-    hold = contact_.candidates_hold(trial, clock);
-  });
+  phases_.apart(Phase::candidates,
+                [&] { hold = contact_.renew_candidates(accepted.outlines, accepted.memory.contact, clock, &trial); });
   return {true, hold};
 }
 

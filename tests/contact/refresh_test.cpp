@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "contact/master_window.hpp"
 #include "contact/pair_watch.hpp"
 #include "contact/patch_queries.hpp"
 #include "contact/stiffness_bound.hpp"
@@ -149,19 +150,45 @@ TEST(Refresh, sweeps_no_more_for_what_shakes_and_spins) {
   ContactRig rig(two_rows(random, {}, false));
   PairWatch watch(rig.model, rig.contact.skin(), 0);
   rig.show();
-  EXPECT_TRUE(watch.update(rig.outlines.position));
+  EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
   for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
   std::size_t searched = 0;
   for (int step = 0; step < 400; ++step) {
     for (int body = 0; body < 12; ++body) rig.turn(body, body % 2 == 0 ? 0.3 : (step % 4 < 2 ? 0.05 : -0.05));
     rig.show();
-    EXPECT_FALSE(watch.update(rig.outlines.position));
+    watch.is_used_up(rig.outlines.position);
+    EXPECT_FALSE(watch.update(rig.outlines.position, rig.outlines.position));
     for (int pair : watch.used_up(rig.outlines.position)) watch.searched(pair, rig.outlines.position), ++searched;
+    EXPECT_FALSE(watch.is_used_up(rig.outlines.position));
   }
   EXPECT_GT(searched, 1000) << "the pairs of those that spin";
   rig.move(11, {6 * rig.contact.skin(), 0});
   rig.show();
-  EXPECT_TRUE(watch.update(rig.outlines.position));
+  EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
+  EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
+}
+
+/// EXACT: pairs that are searched where a step begins hold at its end if they go less than a skin in it.
+TEST(Refresh, tells_whether_what_was_searched_holds_on_trial) {
+  Random random(400);
+  ContactRig rig(two_rows(random, {}, false));
+  for (const double way : {0.7, 1.3}) {
+    PairWatch watch(rig.model, rig.contact.skin(), 0);
+    rig.show();
+    watch.update(rig.outlines.position, rig.outlines.position);
+    for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
+    rig.move(11, {0.5 * rig.contact.skin(), 0});
+    rig.show();
+    const OutlineField begin = rig.outlines.position;
+    rig.move(11, {way * rig.contact.skin(), 0});
+    rig.show();
+    EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
+    EXPECT_FALSE(watch.update(begin, rig.outlines.position));
+    const std::vector<int> pairs = watch.used_up(begin);
+    EXPECT_FALSE(pairs.empty());
+    for (int pair : pairs) watch.searched(pair, begin);
+    EXPECT_EQ(watch.hold(pairs, rig.outlines.position), way < 1);
+  }
 }
 
 /// What is remembered of a node, by its body, side, number and the other body.
@@ -278,7 +305,8 @@ TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
       std::vector<double> felt(rig.model.bodies.size());
       for (const Patch& patch : rig.contact.patches()) {
         if (patch.is_empty()) continue;
-        const double all = stiffness_of(patch.law) * touching_length(rig.contact.view(patch));
+        const double all = stiffness_of(patch.law) *
+                           touching_length({rig.model, rig.outlines, patch, rig.contact.skin(), thread_scratch()});
         felt[patch.first] += all, felt[patch.second] += all;
       }
       for (int body = 0; body < 12; ++body) {
