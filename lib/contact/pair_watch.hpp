@@ -16,8 +16,8 @@ class PairWatch {
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
   PairWatch(const Model& model, double skin, double reach);
 
-  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now: on trial
-  /// when others are searched.
+  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now: on
+  /// trial, when pairs are then searched.
   bool is_used_up(const OutlineField& now);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
