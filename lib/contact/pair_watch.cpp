@@ -19,9 +19,9 @@ constexpr double kept = 0.75;
 /// Rounding of ways that are kept, of some skins, over the skin, many times over.
 constexpr double rounded = 1e-4;
 
-constexpr double far_off = 1e300;  ///< m
+constexpr double endless = 1e300;  ///< m
 /// Before the broad phase has looked: all have come out of it.
-constexpr Box empty{far_off, -far_off, far_off, -far_off};
+constexpr Box empty{endless, -endless, endless, -endless};
 
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   std::vector<int> bodies;
@@ -59,11 +59,11 @@ void PairWatch::loaded() {
 /// moved along with the middle of the bodies, m: only what bodies move against each other can bring pairs together that
 /// it left out. A wall lies in wait along all x, whatever its own way in x.
 double PairWatch::measure(const OutlineField& now) {
-  const std::array<double, 4> out = parallel_max<4>(count_of_bodies(), -far_off, [&](int b) {
+  const std::array<double, 4> out = parallel_max<4>(count_of_bodies(), -endless, [&](int b) {
     motion_[b] = box_of_ways(model_, b, now, reference_);
     const Box &then = swept_at_[b], box = bounding_box(model_, now, b);
     const bool wall = model_.bodies[b].wall;
-    return std::array{wall ? -far_off : then.x_min - box.x_min, wall ? -far_off : box.x_max - then.x_max,
+    return std::array{wall ? -endless : then.x_min - box.x_min, wall ? -endless : box.x_max - then.x_max,
                       then.y_min - box.y_min, box.y_max - then.y_max};
   });
   return 0.5 * std::max(out[0] + out[1], out[2] + out[3]);
