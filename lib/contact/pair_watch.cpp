@@ -87,7 +87,8 @@ bool PairWatch::is_used_up(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
-    use_[p] = rough_way(p, now) < kept * skin_ ? little : stays_within(p, skin_, now) ? much : all;
+    const double rough = rough_way(p, now);
+    use_[p] = rough < kept * skin_ ? little : rough < skin_ || way(p, now) < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
   });
   return some || !(come_out_ < own_skin_);
@@ -109,11 +110,14 @@ void PairWatch::take_new_references(const OutlineField& here, const OutlineField
 }
 
 bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
-  if (reference_.x.empty()) reference_ = here;
-  if (use_.size() != pairs_.size() || pairs_.empty()) is_used_up(trial);
-  const bool due = !(come_out_ < kept * own_skin_);
-  take_new_references(here, trial);
-  if (!due) return false;
+  const bool forgotten = reference_.x.empty();
+  if (forgotten) {
+    reference_ = here;
+  } else {
+    if (use_.size() != pairs_.size()) is_used_up(trial);
+    take_new_references(here, trial);
+    if (come_out_ < kept * own_skin_) return false;
+  }
   parallel_for(count_of_bodies(), [&](int b) { swept_at_[b] = bounding_box(model_, here, b); });
   follow(broad_phase(model_, swept_at_, margin_));
   is_used_up(trial);
