@@ -119,16 +119,6 @@ inline unsigned bits(LaneBits mask) {
 #endif
 }
 
-/// a + b in the lanes of the mask, a in others.
-inline Lanes add_where(LaneBits mask, Lanes a, Lanes b) {
-#if defined(__AVX512F__) && defined(__clang__)
-  return reinterpret_cast<Lanes>(_mm512_mask_add_pd(reinterpret_cast<__m512d>(a), static_cast<__mmask8>(bits(mask)),
-                                                    reinterpret_cast<__m512d>(a), reinterpret_cast<__m512d>(b)));
-#else
-  return select(mask, a + b, a);
-#endif
-}
-
 /// Mask of the first `count` lanes.
 inline LaneBits first_lanes(int count) {
   const LaneBits index = {0, 1, 2, 3, 4, 5, 6, 7};

@@ -70,6 +70,14 @@ TEST(Lanes, MasksOfTheFirstLanes) {
 }
 
 // EXACT: the sum's order is part of the promise of equal bits; largest takes every lane into account.
+TEST(Lanes, ExponentsOfPowersOfTwo) {
+  for (int first = 0; first < 48; ++first) {
+    LaneBits powers{};
+    for (int lane = 0; lane < lane_count; ++lane) powers[lane] = std::int64_t{1} << (first + lane) % 52;
+    for (int lane = 0; lane < lane_count; ++lane) EXPECT_EQ(exponent_of(powers)[lane], (first + lane) % 52);
+  }
+}
+
 TEST(Lanes, SumAndLargest) {
   const Lanes a = {1e16, 1, -1e16, 1, 3, 1e-3, 0.1, 0.7};
   const double pairs = ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));

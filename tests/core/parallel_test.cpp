@@ -1,7 +1,9 @@
 #include "core/parallel.hpp"
 
 #include <gtest/gtest.h>
+
 #include <omp.h>
+#include <array>
 
 #include "support/random.hpp"
 
@@ -68,6 +70,20 @@ TEST(Parallel, MaximumStartsFromItsFloor) {
     EXPECT_EQ(largest(10, 3), 9);
     EXPECT_EQ(largest(10, 30), 30);
     EXPECT_EQ(largest(0, -2), -2);
+  }
+}
+
+/// EXACT.
+TEST(Parallel, MaximaOfSeveralAndAnyOfMany) {
+  for (const int threads : {1, 3, 20}) {
+    const auto both = with_threads(
+        threads, [] { return parallel_max<2>(7, -1, [](int i) { return std::array{1.0 * i, -2.0 - i}; }); });
+    EXPECT_EQ(both, (std::array{6.0, -1.0}));
+    const auto some = [&](int wanted) {
+      return with_threads(threads, [&] { return parallel_any(7, [&](int i) { return i == wanted; }); });
+    };
+    EXPECT_TRUE(some(0) && some(3) && some(6));
+    EXPECT_FALSE(some(7));
   }
 }
 
