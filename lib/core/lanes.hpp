@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -21,14 +22,12 @@ using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison
 
 /// For arrays whose lanes begin with a line of the cache: others take two lines each.
 template <class T>
-struct LineAllocator {
-  using value_type = T;
+struct LineAllocator : std::allocator<T> {
   LineAllocator() = default;
   template <class Other>
-  LineAllocator(const LineAllocator<Other>&) {}
+  explicit LineAllocator(const LineAllocator<Other>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
   void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
-  bool operator==(const LineAllocator&) const = default;
 
  private:
   static constexpr std::align_val_t alignment{64};
