@@ -83,7 +83,7 @@ class ContactSystem {
   const PatchTable& table() const { return table_; }
   /// A patch that was found last, where it was.
   PatchView view(const Patch& patch) const;
-  /// Places in the table of those that were found last, if all others stayed as they were.
+  /// Places in the table of the patches that were found at the last refresh.
   const std::vector<int>& found() const { return found_; }
   long refreshes() const { return refreshes_; }
   long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not

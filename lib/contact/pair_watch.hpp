@@ -21,13 +21,13 @@ class PairWatch {
   bool is_used_up(const OutlineField& now);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
-  /// Before pairs are searched with all outlines here: takes new references, and the broad phase, if it is due. Pairs
-  /// have other numbers then, and true is returned. `trial`: where is_used_up looked.
+  /// After is_used_up(trial), before pairs are searched with all outlines here: takes new references, and the broad
+  /// phase, if it is due. Pairs have other numbers then, and true is returned.
   bool update(const OutlineField& here, const OutlineField& trial);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
-  /// The pairs of which what was found may not stay. What is asked of the others is known then: they hold on trial.
+  /// Once after each update: the pairs of which what was found may not stay. All others hold on trial.
   std::vector<int> used_up(const OutlineField& here);
   /// Whether pairs that were searched hold on trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;

@@ -42,7 +42,8 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
   const auto is_beyond = [&](int k) { return rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0; };
   Lanes count{};
   LaneBits in_order = ~LaneBits{};
-  // By groups whose bits a number holds: ones without a gap, none after a group that is not full.
+  // A bit for each bisector, in groups that a number holds. In order: no gap between ones, and none in a group unless
+  // all before it are full.
   constexpr int most = 32;
   for (int first = 0; first <= window.count(); first += most) {
     const int size = std::min(most, window.count() + 1 - first);

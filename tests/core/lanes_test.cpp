@@ -69,7 +69,7 @@ TEST(Lanes, MasksOfTheFirstLanes) {
   EXPECT_FALSE(any(counting == 8.0));
 }
 
-// EXACT: the sum's order is part of the promise of equal bits; largest takes every lane into account.
+// EXACT.
 TEST(Lanes, ExponentsOfPowersOfTwo) {
   for (int first = 0; first < 48; ++first) {
     LaneBits powers{};
@@ -78,6 +78,7 @@ TEST(Lanes, ExponentsOfPowersOfTwo) {
   }
 }
 
+// EXACT: the sum's order is part of the promise of equal bits; largest takes every lane into account.
 TEST(Lanes, SumAndLargest) {
   const Lanes a = {1e16, 1, -1e16, 1, 3, 1e-3, 0.1, 0.7};
   const double pairs = ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
