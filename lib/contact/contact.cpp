@@ -209,7 +209,7 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, c
 PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
                                   ContactHistory& to) {
   to.owed[patch] = from.owed[patch];
-  // What a dashpot takes is known at the ends of a step alone: what it seems to owe, it does not.
+  // What a dashpot takes depends on the step: what it seems to owe, it does not.
   if (is_damped(view.patch.law)) return compute_patch(view, nullptr, from, to, trial_.forces);
   const PatchTotals& before = last_.totals[patch];
   // Parts of a body that touches itself are others after a search.
@@ -241,7 +241,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from, to, now.forces);
-    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch()};
+    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0};
     PatchTotals& totals = now.totals[p];
     if (view.patch.is_empty())
       totals = {};

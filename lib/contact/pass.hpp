@@ -21,6 +21,7 @@ struct Pass {
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
+  double elapsed = 0;  ///< PatchView's
 };
 
 struct SlaveNodes {

@@ -74,6 +74,7 @@ struct PatchView {
   const Patch& patch;
   double skin;           ///< m
   MasterWindow& window;  ///< scratch: of the pass at hand
+  double elapsed = 0;    ///< in the step that led here, s; 0: not known
   int body(int side) const { return side == 0 ? patch.first : patch.second; }
   /// Periods to add to x of one side's body, m.
   double shift(int side) const { return side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0); }

@@ -150,7 +150,7 @@ template <class Law>
 Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
                   Traction& traction) {
   const Lanes rate = gap_rate(pass, i, p, touching);
-  const Lanes damping = law.damping_pressure(traction.pressure, rate, pass.damping);
+  const Lanes damping = law.damping_pressure(traction.pressure, p.gap, rate, pass.damping, pass.elapsed);
   add_pressure(law, damping, traction);
   return select(touching, -weight * damping * rate, Lanes{});
 }
@@ -243,7 +243,10 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.patch.nodes[slave_side].count == 0) continue;
     Pass pass = make_pass(view, slave_side, begin);
-    if constexpr (has_dashpot<Law>) look_up_velocities(view, slave_side, pass), pass.damping = damping;
+    if constexpr (has_dashpot<Law>) {
+      look_up_velocities(view, slave_side, pass);
+      pass.damping = damping, pass.elapsed = view.elapsed;
+    }
     fill_window(view, 1 - slave_side);
     compute_pass(law, pass, view, from, to, repaid, forces, totals);
   }

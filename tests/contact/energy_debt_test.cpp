@@ -70,7 +70,7 @@ void expect_debts_to_be_gains(const ContactRule& rule) {
   EXPECT_LT(left, 1e-9 * debts) << "repaid";
 }
 
-/// EXACT: of a dashpot it is not known what it takes within a step; repaid, the difference would be restitution lost.
+/// EXACT: what a dashpot takes depends on the step; repaid, the difference would be restitution lost.
 TEST(EnergyDebt, is_none_of_pairs_with_dashpots) {
   ContactRule rule = mohr_coulomb(100, 0.5);
   rule.restitution = 0.5;
