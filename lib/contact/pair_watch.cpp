@@ -53,6 +53,7 @@ void PairWatch::forget() {
 void PairWatch::loaded() {
   pair_ways_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size()) throw ArchiveError("bounding boxes are those of other bodies");
+  use_.assign(pairs_.size(), all);
 }
 
 /// Finds motion_, and returns how far bounding boxes have come out of those that the broad phase saw, all of these
@@ -114,7 +115,6 @@ bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
   if (forgotten) {
     reference_ = here;
   } else {
-    if (use_.size() != pairs_.size()) is_used_up(trial);
     take_new_references(here, trial);
     if (come_out_ < kept * own_skin_) return false;
   }
@@ -145,7 +145,6 @@ std::vector<int> PairWatch::used_up(const OutlineField& here) {
   std::vector<int> result;
   for (int p = 0; p < count(); ++p)
     if (use_[p] != little) result.push_back(p);
-  use_.clear();
   return result;
 }
 
@@ -159,6 +158,7 @@ void PairWatch::searched(int pair, const OutlineField& now) {
 
 void PairWatch::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
+  use_.push_back(little);
   for (int body : {pair.first, pair.second}) pair_ways_.append(body);
   searched(count() - 1, now);
 }

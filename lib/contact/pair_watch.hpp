@@ -61,7 +61,7 @@ class PairWatch {
   std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from the reference
   double come_out_ = 0;      ///< of measure, m
   enum Use : char { little, much, all };
-  std::vector<Use> use_;  ///< [pairs], of the skin; empty: nobody has asked
+  std::vector<Use> use_;  ///< [pairs], of the skin, when somebody asked last
   std::vector<BodyPair> pairs_;
   NodeWays pair_ways_;         ///< [pairs][sides], since each was searched
   std::vector<Box> swept_at_;  ///< [bodies], bounding boxes when the broad phase looked

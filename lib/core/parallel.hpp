@@ -38,16 +38,7 @@ void parallel_for_uneven(int count, int chunk, Body&& body) {
   }
 }
 
-/// Largest value(i), at least `start`. A maximum does not depend on the order.
-template <class Value>
-double parallel_max(int count, double start, Value&& value) {
-  double result = start;
-#pragma omp parallel reduction(max : result)
-  for_own_share(count, [&](int i) { result = std::max(result, value(i)); });
-  return result;
-}
-
-/// The same of several values at once: values(i) is an array.
+/// Largest of each of values(i), an array, at least `start`. A maximum does not depend on the order.
 template <std::size_t size, class Values>
 std::array<double, size> parallel_max(int count, double start, Values&& values) {
   double result[size];
@@ -58,6 +49,12 @@ std::array<double, size> parallel_max(int count, double start, Values&& values) 
     for (std::size_t k = 0; k < size; ++k) result[k] = std::max(result[k], found[k]);
   });
   return std::to_array(result);
+}
+
+/// The same of one value(i).
+template <class Value>
+double parallel_max(int count, double start, Value&& value) {
+  return parallel_max<1>(count, start, [&](int i) { return std::array{value(i)}; })[0];
 }
 
 /// Whether holds(i) for some of them.

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "contact/master_window.hpp"
-#include "contact/pair_watch.hpp"
 #include "contact/patch_queries.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "support/contact_rig.hpp"
@@ -141,54 +140,6 @@ TEST(Refresh, does_not_search_what_only_shakes) {
   EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "pairs of the one that moves";
   for (const Patch& patch : rig.contact.patches())
     if (patch.second < 10) EXPECT_EQ(patch.found, 1) << patch.first << " and " << patch.second;
-}
-
-/// EXACT: bodies that shake and spin where they are do not make the broad phase look again, however often references
-/// of theirs are renewed; one that leaves does.
-TEST(Refresh, sweeps_no_more_for_what_shakes_and_spins) {
-  Random random(400);
-  ContactRig rig(two_rows(random, {}, false));
-  PairWatch watch(rig.model, rig.contact.skin(), 0);
-  rig.show();
-  EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
-  for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
-  std::size_t searched = 0;
-  for (int step = 0; step < 400; ++step) {
-    for (int body = 0; body < 12; ++body) rig.turn(body, body % 2 == 0 ? 0.3 : (step % 4 < 2 ? 0.05 : -0.05));
-    rig.show();
-    watch.is_used_up(rig.outlines.position);
-    EXPECT_FALSE(watch.update(rig.outlines.position, rig.outlines.position));
-    for (int pair : watch.used_up(rig.outlines.position)) watch.searched(pair, rig.outlines.position), ++searched;
-    EXPECT_FALSE(watch.is_used_up(rig.outlines.position));
-  }
-  EXPECT_GT(searched, 1000) << "the pairs of those that spin";
-  rig.move(11, {6 * rig.contact.skin(), 0});
-  rig.show();
-  EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
-  EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
-}
-
-/// EXACT: pairs that are searched where a step begins hold at its end if they go less than a skin in it.
-TEST(Refresh, tells_whether_what_was_searched_holds_on_trial) {
-  Random random(400);
-  ContactRig rig(two_rows(random, {}, false));
-  for (const double way : {0.7, 1.3}) {
-    PairWatch watch(rig.model, rig.contact.skin(), 0);
-    rig.show();
-    watch.update(rig.outlines.position, rig.outlines.position);
-    for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
-    rig.move(11, {0.5 * rig.contact.skin(), 0});
-    rig.show();
-    const OutlineField begin = rig.outlines.position;
-    rig.move(11, {way * rig.contact.skin(), 0});
-    rig.show();
-    EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
-    EXPECT_FALSE(watch.update(begin, rig.outlines.position));
-    const std::vector<int> pairs = watch.used_up(begin);
-    EXPECT_FALSE(pairs.empty());
-    for (int pair : pairs) watch.searched(pair, begin);
-    EXPECT_EQ(watch.hold(pairs, rig.outlines.position), way < 1);
-  }
 }
 
 /// What is remembered of a node, by its body, side, number and the other body.
