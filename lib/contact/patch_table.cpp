@@ -1,10 +1,12 @@
 #include "contact/patch_table.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <span>
 #include <utility>
 
 #include "contact/contact_laws.hpp"
+#include "core/archive.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -155,6 +157,25 @@ void PatchTable::move_history(const Patch& old, const Patch& now, ContactHistory
 ArcEntries PatchTable::arc_of(const Patch& patch, int side) const {
   const Arc arc = patch.forces(side);
   return {arc.begin, arc.count, patch.entry[side]};
+}
+
+/// What no search leaves behind, as in a checkpoint of something else.
+void PatchTable::refuse_others() const {
+  constexpr int far = 1 << 24;  // nodes along a wall, or periods: further than any outline goes
+  const int bodies = static_cast<int>(model_.bodies.size());
+  const auto is_arc = [](const Arc& arc) { return std::abs(arc.begin) < far && arc.count >= 0 && arc.count < far; };
+  const auto fits = [](int at, int count, int room) { return at >= 0 && at % lane_count == 0 && at <= room - count; };
+  const auto is_one = [&](const Patch& patch) {
+    bool good = patch.first >= 0 && patch.first <= patch.second && patch.second < bodies && patch.images > -far &&
+                patch.images < far;
+    for (int side = 0; good && side < 2; ++side)
+      good = is_arc(patch.nodes[side]) && is_arc(patch.segments[side]) &&
+             fits(patch.record[side], padded(patch.nodes[side].count), record_room_) &&
+             fits(patch.entry[side], padded(patch.forces(side).count), entry_room_);
+    return good;
+  };
+  const bool sound = 0 <= records_ && records_ <= record_room_ && 0 <= entries_ && entries_ <= entry_room_;
+  if (!sound || !std::ranges::all_of(patches_, is_one)) throw ArchiveError("contacts are those of other bodies");
 }
 
 void PatchTable::index() {

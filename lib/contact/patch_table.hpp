@@ -93,7 +93,11 @@ class PatchTable {
     visitor("entries", entries_), visitor("entry_room", entry_room_);
     visitor("layout", layout_), visitor("laid_out", laid_out_);
   }
-  void loaded() { index(), moved_from_ = none; }
+  void loaded() {
+    refuse_others();
+    index();
+    moved_from_ = none;
+  }
   /// What a checkpoint leaves out: it follows from the bodies.
   template <class LawOf>
   void set_laws(LawOf&& law_of) {
@@ -101,6 +105,7 @@ class PatchTable {
   }
 
  private:
+  void refuse_others() const;
   void index();
   bool take_room(const std::vector<int>& at, std::vector<Patch>& now, ContactHistory& history);
   void note_moves(const std::vector<int>& at, const std::vector<Patch>& now);
