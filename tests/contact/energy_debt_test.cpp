@@ -181,7 +181,8 @@ double agitated(double speed, bool consistent, int seed) {
   scene.shapes = {disc_shape("disc", 2, 60)};
   Random random(seed);
   for (int i = 0; i < 9; ++i) {
-    const Vec2 centre(1.1 + 2.2 * (i % 3), 1.1 + 2.2 * (i / 3));
+    const int column = i % 3, row = i / 3;
+    const Vec2 centre(1.1 + 2.2 * column, 1.1 + 2.2 * row);
     const auto any = [&] { return random.uniform(-speed, speed); };
     const double vx = any(), vy = any(), spin = any();
     scene.grains.push_back(

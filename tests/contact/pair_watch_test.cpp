@@ -15,9 +15,11 @@ using namespace testing;
 Scene two_rows() {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(100)};
-  for (int i = 0; i < 12; ++i)
+  for (int i = 0; i < 12; ++i) {
+    const int column = i / 2, row = i % 2;
     add_body(scene, outline_shape("", regular(8 + i % 5, 0.2, 0.1 * i)), BodyKind::rigid,
-             {0.43 * (i / 2), 0.2 + 0.39 * (i % 2)});
+             {0.43 * column, 0.2 + 0.39 * row});
+  }
   return scene;
 }
 

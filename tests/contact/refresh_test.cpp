@@ -23,7 +23,8 @@ struct Course {
   double slide = 0, height = 0.39, fall = 0, turn = 0;
 
   Vec2 at(int body, int step) const {
-    const Vec2 lower = Vec2(0.43 * (body / 2), 0.2) + step * drift;
+    const int column = body / 2;
+    const Vec2 lower = Vec2(0.43 * column, 0.2) + step * drift;
     return body % 2 == 0 ? lower : Vec2(lower + Vec2(step * slide, std::max(0.39, height - step * fall)));
   }
 };

@@ -134,6 +134,24 @@ TEST(Failure, initial_overlap_is_named) {
                {"contact between body", "'disc'", "'floor'", "penetration", "initial overlaps", "at the start"});
 }
 
+/// EXACT: where contact is lost as segments are squeezed the advice is another one, from half their length on.
+TEST(Failure, squeezed_segments_are_told) {
+  Scene scene = empty_scene(1);
+  scene.shapes = {box_shape("block", 1, 1, 0.1)};
+  scene.grains = {grains("lower", "block", BodyKind::rigid, {{0, 0}}),
+                  grains("upper", "block", BodyKind::rigid, {{0, 0.98}})};
+  const auto message = [&](double length) {
+    Bench bench(scene);
+    for (int k = bench.model.outline_offset[0]; k < bench.model.outline_offset[1]; ++k)
+      bench.state.outlines.position.x[k] *= length;
+    Evaluation lost;
+    lost.sound = false;
+    return failure_of([&] { check_start(lost, bench.state, bench.forces); });
+  };
+  expect_words(message(0.45), {"squeezed to 0.45", "more nodes"});
+  expect_words(message(0.55), {"raise the contact stiffness"});
+}
+
 /// The first trial after a free flight may turn a grain inside out: it is a step too long, not the end of the run.
 TEST(Failure, a_trial_that_inverts_a_grain_is_rejected) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
