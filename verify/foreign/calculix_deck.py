@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from foreign.meshes import PLAIN, Mesh
 PLATE_CELLS, PLATE_FROM, PLATE_TO = 6, -0.5, 3.0  # along x
 STEEL = 1e3  # mu: of plates, all of whose nodes are placed
 SHORTEST, STEPS = 1e-5, 1000  # of an increment over its step
+SIMPSON = np.array([1, 1, 4]) / 6  # of both ends and the middle of a side
 
 
 class Failed(RuntimeError):
@@ -25,19 +27,23 @@ class Failed(RuntimeError):
 
 
 class Deck:
-    """An input file that grows: bodies and plates first, then contacts, then steps."""
+    """An input file that grows: bodies, plates and springs first, then contacts, then steps."""
 
     def __init__(self, stiffness: float) -> None:
         self._nodes, self._cells = 0, 0
         self._axis: list[int] = []
+        self._bodies: dict[str, tuple[int, Mesh]] = {}  # with its first node
         self._plates: list[str] = []
+        self._springs: dict[str, dict[int, float]] = {}  # by node
         self._model = ["*SURFACE INTERACTION,NAME=TOUCH", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
                        f"{stiffness:.15g}"]
         self._steps: list[str] = []
+        self._heights: list[dict[str, float]] = []  # by step
 
     def add(self, name: str, mesh: Mesh, mu: float, lame: float) -> None:
         """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle."""
         first = self._place(mesh.points)
+        self._bodies[name] = first, mesh
         self._axis += list(first + np.flatnonzero(np.abs(mesh.points[:, 0]) < PLAIN))
         before = self._connect(name, "CPE6", first + mesh.cells)
         middle = (mesh.points[:, 1].max() + mesh.points[:, 1].min()) / 2
@@ -59,30 +65,64 @@ class Deck:
         self._model += [f"*NSET,NSET=ALL{name}", *(str(first + k) for k in range(2 * row))]
         self._plates.append(name)
 
+    def hold(self, body: str, where: Callable[[np.ndarray], np.ndarray], stiffness: float, name: str) -> None:
+        """By springs of so much a length along x and y on what is there of its outline, Simpson's rule on each side.
+        Their other ends move as a plate does, by loads: ccx 2.20 fails with springs between two nodes (SPRING2)."""
+        first, mesh = self._bodies[body]
+        springs = self._springs[name] = {}
+        for cell, side in mesh.outline[where(mesh.side_middles())]:
+            nodes = mesh.side_nodes(cell, side)
+            a, b, middle = mesh.points[nodes]
+            ways = np.array([4 * middle - 3 * a - b, 3 * b + a - 4 * middle, b - a])  # by a parameter from 0 to 1
+            for node, share in zip(nodes, SIMPSON * np.linalg.norm(ways, axis=1)):
+                springs[first + node] = springs.get(first + node, 0.0) + stiffness * share
+        self._model += [f"*NSET,NSET=ALL{name}", *map(str, springs)]
+        for node, stiff in springs.items():
+            for axis in (1, 2):
+                self._cells += 1
+                own = f"S{self._cells}"
+                self._model += [f"*ELEMENT,TYPE=SPRING1,ELSET={own}", f"{self._cells},{node}", f"*SPRING,ELSET={own}",
+                                str(axis), f"{stiff:.15g}"]
+
     def touch(self, slave: str, master: str) -> None:
         self._model += ["*CONTACT PAIR,INTERACTION=TOUCH,TYPE=SURFACE TO SURFACE", f"{slave},{master}"]
 
     def step(self, heights: dict[str, float], increment: float) -> None:
-        """Plates moved up so far from the start, in increments of so much of the step."""
-        self._steps += [f"*STEP,NLGEOM,INC={STEPS}", "*STATIC", f"{increment:g},1.,{SHORTEST:g},{increment:g}",
-                        "*BOUNDARY", *(f"ALL{name},2,2,{height:.15g}" for name, height in heights.items())]
+        """Plates and ends of springs moved up so far from the start, in increments of so much of the step."""
+        self._heights.append(heights)
+        self._steps += [f"*STEP,NLGEOM,INC={STEPS}", "*STATIC", f"{increment:g},1.,{SHORTEST:g},{increment:g}"]
+        for name in self._plates:
+            self._steps += ["*BOUNDARY", f"ALL{name},2,2,{heights[name]:.15g}"]
+        for name, springs in self._springs.items():
+            self._steps += ["*CLOAD", *(f"{node},2,{stiff * heights[name]:.15g}" for node, stiff in springs.items())]
         for name in self._plates:
             self._steps += [f"*NODE PRINT,NSET=ALL{name},TOTALS=ONLY", "RF"]
+        for name in self._springs:
+            self._steps += [f"*NODE PRINT,NSET=ALL{name}", "U"]
         self._steps += ["*END STEP"]
 
-    def forces(self, job: Path) -> dict[str, np.ndarray]:
-        """Runs ccx; by plate [steps] the force along y that holds it, at the end of each step."""
+    def forces(self, job: Path, all_steps: bool = True) -> dict[str, np.ndarray]:
+        """Runs ccx; by plate, and by support of springs, [steps] the force along y that holds it, at the end of each
+        step, or of those that ccx gets to."""
         held = ["*NSET,NSET=AXIS", *map(str, self._axis), "*BOUNDARY", "AXIS,1,1",
                 *(f"ALL{name},1,1" for name in self._plates)]
         job.with_suffix(".inp").write_text("\n".join([*self._model, *held, *self._steps]) + "\n")
         result = subprocess.run(["ccx", job.name], cwd=job.parent, capture_output=True, text=True,
                                 stdin=subprocess.DEVNULL, env=os.environ | {"OMP_NUM_THREADS": "1"})
-        if result.returncode != 0:
+        if all_steps and result.returncode != 0:
             raise Failed(f"{job}: exit code {result.returncode}\n{result.stdout[-2000:]}")
         text = job.with_suffix(".dat").read_text()
-        found = {name: re.findall(rf"for set ALL{name} and time\s+(\S+)\s+\S+\s+(\S+)", text) for name in self._plates}
-        return {name: np.array([float(force) for time, force in rows if abs(float(time) - round(float(time))) < 1e-6])
-                for name, rows in found.items()}
+        forces = {}
+        for name in self._plates:
+            rows = re.findall(rf"for set ALL{name} and time\s+(\S+)\s+\S+\s+(\S+)", text)
+            forces[name] = np.array([float(force) for time, force in rows if ends_step(time)])
+        for name, springs in self._springs.items():
+            tables = re.findall(rf"for set ALL{name} and time\s+(\S+)\n\s+([^a-z]+)", text)
+            moved = [{int(node): float(y) for node, _, y, _ in np.reshape(table.split(), (-1, 4))}
+                     for time, table in tables if ends_step(time)]
+            forces[name] = np.array([sum(stiff * (heights[name] - u[node]) for node, stiff in springs.items())
+                                     for heights, u in zip(self._heights, moved)])
+        return forces
 
     def _place(self, points: np.ndarray) -> int:
         """Number of the first of these nodes."""
@@ -104,3 +144,7 @@ class Deck:
 
     def _material(self, name: str, lines: list[str]) -> None:
         self._model += [f"*MATERIAL,NAME=M{name}", *lines, f"*SOLID SECTION,ELSET=E{name},MATERIAL=M{name}", "1."]
+
+
+def ends_step(time: str) -> bool:
+    return abs(float(time) - round(float(time))) < 1e-6

@@ -1,4 +1,5 @@
-"""A hexagon pressed into a disc without friction, a corner or a face first: engine and reference against GetFEM."""
+"""A hexagon pressed into a disc without friction, a corner or a face first: engine and reference against GetFEM and
+CalculiX."""
 
 from __future__ import annotations
 
@@ -10,31 +11,34 @@ import pytest
 from matplotlib.axes import Axes
 
 from foreign.stored import distances_from_half
-from make_polygon_on_disc_oracles import DEPTHS, FIRST, RINGS, by_getfem
+from make_polygon_on_disc_oracles import COARSE, DEPTHS, FIRST, RINGS, SOFT, STIFF, by_calculix, by_getfem
 from pictures import COLOURS, MARKERS, legend, panels, save
 from polygon_on_disc_runs import LONG_PAUSE, NAMES, SIZES, Press, Rests, by_engine, by_reference
-from polygon_on_disc_stored import largest_from_here, read_outlines, read_stored
+from polygon_on_disc_stored import largest_from_here, read_calculix, read_outlines, read_stored
 from squeeze import NEWTON
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=2)
-CHOSEN = [size for size in SIZES if FULL or size < 28]
+CHOSEN = {"neo-hookean": [size for size in SIZES if FULL or size < 28],
+          "melody": [size for size in SIZES if size < (28 if FULL else 20)]}
+LAWS = tuple(CHOSEN)
 GETFEM_STOPS = 1e-6  # Newton's residuals of 1e-9 in the fifty nodes of a support, over the least force
-STIFF = 2.0  # times the contact stiffness
+CALCULIX_STOPS = 3e-4  # what load steps half as long change, at most (a corner at 0.1 R)
+HARDER = 2.0  # times the contact stiffness
 LEVELS = range(1, len(DEPTHS))  # at 0.1 R a corner's contact is two segments wide
 
 
 class Sizes:
-    """Forces by mesh size, two or four meshes each, without penalty; a corner or a face first."""
+    """Forces of one law by mesh size, two or four meshes each, without penalty; a corner or a face first."""
 
-    def __init__(self, first: str) -> None:
-        self.stored = read_stored(first)
-        presses = [Press(first, size) for size in CHOSEN]
+    def __init__(self, first: str, law: str) -> None:
+        self.stored = read_stored(first, law)
+        presses = [Press(first, size, law=law) for size in CHOSEN[law]]
         self.spacings = np.array([press.spacing for press in presses])
         self.rests = [[by_engine(CASE, way) for way in press.ways()] for press in presses]
         ways = np.array([[rests.force for rests in each] for each in self.rests])  # [sizes x meshes x depths]
-        harder = [replace(way, stiffness=way.stiffness * STIFF) for way in presses[0].ways()]
-        lost = STIFF / (STIFF - 1) * (np.array([by_engine(CASE, way).force for way in harder]) / ways[0] - 1)
+        harder = [replace(way, stiffness=way.stiffness * HARDER) for way in presses[0].ways()]
+        lost = HARDER / (HARDER - 1) * (np.array([by_engine(CASE, way).force for way in harder]) / ways[0] - 1)
         self.penalty, self.penalty_error = lost.mean(axis=0), np.ptp(lost, axis=0) / 2
         self.force = ways.mean(axis=1) * (1 + self.penalty)
         # [sizes x depths] twice the error of the mean
@@ -57,36 +61,57 @@ class Sizes:
         return (self.weights() @ self.force).mean(axis=0)
 
     def limit_error(self) -> np.ndarray:
-        """[depths] relative: the order, saw tooth, penalty, stored error."""
+        """[depths] relative: the order, saw tooth, penalty."""
         first, second = self.weights() @ self.force
         scatter = np.abs(self.weights().mean(axis=0)) @ largest_from_here(self.scatter)
-        return np.abs(first - second) / 2 / self.stored.force + scatter + self.penalty_error + self.stored.error
+        return np.abs(first - second) / 2 / self.stored.force + scatter + self.penalty_error
 
 
 @pytest.fixture(scope="module")
-def sizes() -> Callable[[str], Sizes]:
-    known: dict[str, Sizes] = {}
+def sizes() -> Callable[..., Sizes]:
+    known: dict[tuple[str, str], Sizes] = {}
 
-    def of(first: str) -> Sizes:
-        if first not in known:
-            known[first] = Sizes(first)
-        return known[first]
+    def of(first: str, law: str = LAWS[0]) -> Sizes:
+        if (first, law) not in known:
+            known[first, law] = Sizes(first, law)
+        return known[first, law]
 
     return of
 
 
 @pytest.mark.parametrize("first", FIRST)
 @pytest.mark.parametrize("level", LEVELS, ids=lambda i: f"{DEPTHS[i]:g}")
-def test_force(sizes: Callable[[str], Sizes], first: str, level: int) -> None:
+def test_force(sizes: Callable[..., Sizes], first: str, level: int) -> None:
     known = sizes(first)
     CASE.check(Label.INDEPENDENT, f"{first} first: force at depth {DEPTHS[level]:g}, engine at h = 0 over GetFEM",
-               known.limit()[level] / known.stored.force[level], 1, known.limit_error()[level],
+               known.limit()[level] / known.stored.force[level], 1,
+               known.limit_error()[level] + known.stored.error[level],
                "GetFEM 5.4.2, its meshes and slaves; first or second order in h, saw tooth, penalty")
 
 
 @pytest.mark.parametrize("first", FIRST)
+@pytest.mark.parametrize("level", LEVELS, ids=lambda i: f"{DEPTHS[i]:g}")
+def test_force_melody(sizes: Callable[..., Sizes], first: str, level: int) -> None:
+    known = sizes(first, "melody")
+    for solver, other in (("GetFEM", known.stored), ("CalculiX", read_calculix(first))):
+        CASE.check(Label.INDEPENDENT, f"{first} first, melody: force at depth {DEPTHS[level]:g}, engine at h = 0 over"
+                   f" {solver}", known.limit()[level] / other.force[level], 1,
+                   known.limit_error()[level] + other.error[level],
+                   f"{solver}, its meshes, slaves, penalty; first or second order in h, saw tooth, penalty")
+
+
+@pytest.mark.parametrize("first", FIRST)
+@pytest.mark.parametrize("level", range(len(DEPTHS)), ids=lambda i: f"{DEPTHS[i]:g}")
+def test_calculix(first: str, level: int) -> None:
+    getfem, calculix = read_stored(first, "melody"), read_calculix(first)
+    CASE.check(Label.INDEPENDENT, f"{first} first, melody: force at depth {DEPTHS[level]:g}, GetFEM over CalculiX",
+               getfem.force[level] / calculix.force[level], 1, getfem.error[level] + calculix.error[level],
+               "meshes and slaves of both, penalty of CalculiX 2.20")
+
+
+@pytest.mark.parametrize("first", FIRST)
 def test_engine_and_reference(first: str) -> None:
-    press = Press(first, CHOSEN[0], pause=LONG_PAUSE)
+    press = Press(first, CHOSEN[LAWS[0]][0], pause=LONG_PAUSE)
     engine, reference = by_engine(CASE, press), by_reference(CASE, press)
     ratio, allowed = engine.force / reference.force, engine.unrest() + NEWTON
     worst = int((np.abs(ratio - 1) / allowed).argmax())
@@ -96,7 +121,7 @@ def test_engine_and_reference(first: str) -> None:
 
 @pytest.mark.parametrize("first", FIRST)
 @pytest.mark.parametrize("level", LEVELS, ids=lambda i: f"{DEPTHS[i]:g}")
-def test_shape(sizes: Callable[[str], Sizes], first: str, level: int) -> None:
+def test_shape(sizes: Callable[..., Sizes], first: str, level: int) -> None:
     """A force grows at least in proportion to the depth, so an error of it is less of the depth. Bodies are moved back
     to the axis."""
     known = sizes(first)
@@ -111,7 +136,7 @@ def test_shape(sizes: Callable[[str], Sizes], first: str, level: int) -> None:
 
 
 @pytest.mark.parametrize("first", FIRST)
-def test_symmetry(sizes: Callable[[str], Sizes], first: str) -> None:
+def test_symmetry(sizes: Callable[..., Sizes], first: str) -> None:
     """The hexagon's corner stands on some place of a segment of the disc, not always on its middle."""
     known = sizes(first)
     aside = [rests.outline(name, level)[:, 0].mean() for rests in known.rests[-1] for name in NAMES for level in LEVELS]
@@ -122,13 +147,24 @@ def test_symmetry(sizes: Callable[[str], Sizes], first: str) -> None:
 
 @pytest.mark.skipif(not FULL, reason="needs the solver from elsewhere")
 @pytest.mark.parametrize("first", FIRST)
-def test_getfem_again(first: str) -> None:
-    off = np.abs(by_getfem(first, RINGS[0]).force / read_stored(first).by_rings[0] - 1)
-    CASE.check(Label.FROZEN, f"{first} first: GetFEM's forces, live over stored, worst", off.max(), 0, GETFEM_STOPS,
-               "Newton's residuals of 1e-9 in some fifty nodes of a support, over the least force")
+@pytest.mark.parametrize("law", LAWS)
+def test_getfem_again(first: str, law: str) -> None:
+    off = np.abs(by_getfem(first, RINGS[0], law=law).force / read_stored(first, law).by_rings[0] - 1)
+    CASE.check(Label.FROZEN, f"{first} first, {law}: GetFEM's forces, live over stored, worst", off.max(), 0,
+               GETFEM_STOPS, "Newton's residuals of 1e-9 in some fifty nodes of a support, over the least force")
 
 
-def draw_forces(axes: Axes, sizes: Callable[[str], Sizes]) -> None:
+@pytest.mark.skipif(not FULL, reason="needs the solver from elsewhere")
+@pytest.mark.parametrize("first", FIRST)
+def test_calculix_again(first: str) -> None:
+    stored = read_calculix(first)
+    off = [np.abs(by_calculix(first, COARSE, "disc", stiffness, CASE.out) / stored.of(0, COARSE, stiffness) - 1).max()
+           for stiffness in (SOFT, STIFF)]
+    CASE.check(Label.FROZEN, f"{first} first, melody: CalculiX's forces, live over stored, worst", max(off), 0,
+               CALCULIX_STOPS, "where its Newton's method stops: what load steps half as long change")
+
+
+def draw_forces(axes: Axes, sizes: Callable[..., Sizes]) -> None:
     for first, colour in zip(FIRST, COLOURS):
         known = sizes(first)
         axes.plot(DEPTHS, known.stored.force, "s-", color=colour, fillstyle="none", label=f"GetFEM, {first} first")
@@ -138,7 +174,7 @@ def draw_forces(axes: Axes, sizes: Callable[[str], Sizes]) -> None:
     legend(axes)
 
 
-def draw_errors(axes: Axes, sizes: Callable[[str], Sizes]) -> None:
+def draw_errors(axes: Axes, sizes: Callable[..., Sizes]) -> None:
     for first, colour, marker in zip(FIRST, COLOURS, MARKERS):
         known = sizes(first)
         order = observed_order(list(known.spacings), list(known.rms()))
@@ -150,7 +186,7 @@ def draw_errors(axes: Axes, sizes: Callable[[str], Sizes]) -> None:
     legend(axes)
 
 
-def draw_outlines(axes: Axes, sizes: Callable[[str], Sizes], first: str) -> None:
+def draw_outlines(axes: Axes, sizes: Callable[..., Sizes], first: str) -> None:
     rests, stored = sizes(first).rests[-1][0], read_outlines(first)
     for name, colour in zip(NAMES, COLOURS):
         places, half = rests.outline(name, -1), stored[name][-1]
@@ -162,7 +198,7 @@ def draw_outlines(axes: Axes, sizes: Callable[[str], Sizes], first: str) -> None
     legend(axes)
 
 
-def test_picture(sizes: Callable[[str], Sizes]) -> None:
+def test_picture(sizes: Callable[..., Sizes]) -> None:
     figure, axes = panels(4, "A hexagon, twice as stiff, pressed into a disc", across=True)
     draw_forces(axes[0], sizes)
     draw_errors(axes[1], sizes)

@@ -31,6 +31,7 @@ class Press:
     facet: bool = True
     odd: bool = False
     stiffness: float = 3e3  # of contact, mu / R
+    law: str = "neo-hookean"
     pause: float = PAUSE
 
     @property
@@ -45,7 +46,7 @@ class Press:
 
     def name(self) -> str:
         way = ("facet" if self.facet else "corner") + ("_odd" if self.odd else "_even")
-        return f"{self.first}_{self.size}_{way}_{self.stiffness:g}_{self.pause:g}"
+        return f"{self.law}_{self.first}_{self.size}_{way}_{self.stiffness:g}_{self.pause:g}"
 
     def ways(self) -> list[Press]:
         """With other discs and hexagons. A node of the disc just on the hexagon's corner would never come to rest."""
@@ -54,10 +55,11 @@ class Press:
 
     def scene(self, case: Case) -> str:
         discs, disc_nodes, hexagons, hexagon_nodes = SIZES[self.size]
-        return case.scene(levels=DEPTHS, end=float(self.rests[-1]), rest=self.pause, stiffness=self.stiffness,
-                          disc_nodes=disc_nodes, disc_outline=discs[self.facet], hexagon_nodes=hexagon_nodes,
-                          hexagon_outline=hexagons[self.odd], corners=corners(self.first).tolist(),
-                          height=height(self.first), held=[float(angle) for angle in HELD[self.first]], down=self.way())
+        return case.scene(levels=DEPTHS, end=float(self.rests[-1]), rest=self.pause, law=self.law,
+                          stiffness=self.stiffness, disc_nodes=disc_nodes, disc_outline=discs[self.facet],
+                          hexagon_nodes=hexagon_nodes, hexagon_outline=hexagons[self.odd],
+                          corners=corners(self.first).tolist(), height=height(self.first),
+                          held=[float(angle) for angle in HELD[self.first]], down=self.way())
 
     def way(self) -> list[list[float]]:
         """[[time, displacement], ...] of the hexagon's upper sides: smooth from each depth to the next."""
