@@ -23,7 +23,7 @@ CHOSEN = {"neo-hookean": [size for size in SIZES if FULL or size < 28],
           "melody": [size for size in SIZES if size < (28 if FULL else 20)]}
 LAWS = tuple(CHOSEN)
 GETFEM_STOPS = 1e-6  # Newton's residuals of 1e-9 in the fifty nodes of a support, over the least force
-CALCULIX_STOPS = 3e-4  # what load steps half as long change, at most (a corner at 0.1 R)
+CALCULIX_STOPS = 3e-4  # what load steps half as long change, at most (a corner at 0.1 R, K = 300)
 HARDER = 2.0  # times the contact stiffness
 LEVELS = range(1, len(DEPTHS))  # at 0.1 R a corner's contact is two segments wide
 

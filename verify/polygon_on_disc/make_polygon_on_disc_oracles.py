@@ -101,7 +101,8 @@ def by_getfem(first: str, rings: int, slave: str = "disc", law: str = "neo-hooke
 
 
 def by_calculix(first: str, rings: int, slave: str, stiffness: float, folder: Path) -> np.ndarray:
-    """[depths, nan beyond what it gets to] forces of the hexagon on the disc, by the law `melody` and a penalty of so many mu / R."""
+    """[depths, nan beyond what it gets to] forces of the hexagon on the disc, by the law `melody` and a penalty of so
+    many mu / R."""
     deck = Deck(stiffness)
     for name, mesh in (("disc", half_disc(rings, -1)), ("hexagon", hexagon_mesh(first, rings))):
         deck.add(name.upper(), mesh, MODULI[name], 4 * MODULI[name])
