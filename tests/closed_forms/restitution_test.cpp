@@ -38,8 +38,8 @@ double rebound(const ContactRule& rule, double safety, double height = 0.003) {
     if (touched && gap > 1e-4) break;
   }
   // Of m v^2 / 2: (z w dt)^2 for the dashpot's force 2 z w m v, which sets in within a step and costs dt^2 force^2 / (8
-  // m), and (w dt)^2 / 4 wherever a spring's contact begins or ends; w dt is at most 2 safety (sqrt(1 + 4 z^2) - 2 z).
-  EXPECT_LT(balance(simulation), 2 * safety * safety) << "RATE: the square of the step";
+  // m), and (w dt)^2 / 4 wherever a spring's contact begins or ends; w dt is at most safety (sqrt(1 + 4 z^2) - 2 z).
+  EXPECT_LT(balance(simulation), 0.5 * safety * safety) << "RATE: the square of the step";
   return simulation.state().reduced_momentum.rigid[1] / 0.1;
 }
 
