@@ -40,6 +40,7 @@ class Walk {
     } else if constexpr (requires { object.begin()->begin(); } || enumerating_elements<T>) {
       std::uint64_t size = object.size();
       leaf_.value(path + ".size", size);
+      if constexpr (Leaf::loads) leaf_.expect(path, size);
       object.resize(size);
       for (auto& element : object) (*this)(name, element);
     } else {
@@ -144,6 +145,10 @@ class LoadLeaf {
     constexpr std::size_t element = sizeof(typename T::value_type);
     values.resize(next(path, element));
     take(values.data(), values.size() * element);
+  }
+  /// So many elements follow, each with a name of its own.
+  void expect(const std::string& path, std::uint64_t elements) const {
+    if (elements > rest_.size() / (path.size() + 1)) throw ArchiveError("'" + path + "' has another size");
   }
   bool empty() const { return rest_.empty(); }
 

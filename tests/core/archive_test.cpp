@@ -92,6 +92,14 @@ TEST(Archive, another_layout_is_refused_by_name) {
   EXPECT_EQ(complaint(bytes), "none");
 }
 
+/// Before there is an attempt to make room for them.
+TEST(Archive, more_elements_than_there_are_bytes_are_refused) {
+  std::string many = saved(example());
+  const std::string name = "outer.texts.size";
+  many[many.find(name) + name.size() + 1 + 2 * sizeof(std::uint64_t) + 5] = 1;  // 2^40 and some
+  EXPECT_EQ(complaint(many), "'outer.texts' has another size");
+}
+
 TEST(Archive, bytes_that_end_early_are_refused_wherever_they_end) {
   const std::string bytes = saved(example());
   for (std::size_t size = 0; size < bytes.size(); ++size)
