@@ -161,7 +161,7 @@ ArcEntries PatchTable::arc_of(const Patch& patch, int side) const {
 
 /// What no search leaves behind, as in a checkpoint of something else.
 void PatchTable::refuse_others() const {
-  constexpr int far = 1 << 24;  // nodes along a wall, or periods: further than any outline goes
+  constexpr int far = 1 << 29;  // nodes along a wall, or periods: sums of them do not overflow
   const int bodies = static_cast<int>(model_.bodies.size());
   const auto is_arc = [](const Arc& arc) { return std::abs(arc.begin) < far && arc.count >= 0 && arc.count < far; };
   const auto fits = [](int at, int count, int room) { return at >= 0 && at % lane_count == 0 && at <= room - count; };

@@ -146,7 +146,7 @@ class LoadLeaf {
     values.resize(next(path, element));
     take(values.data(), values.size() * element);
   }
-  /// So many elements follow, each with a name of its own.
+  /// Before room is made for elements that follow: throws where fewer bytes are left than their names take.
   void expect(const std::string& path, std::uint64_t elements) const {
     if (elements > rest_.size() / (path.size() + 1)) throw ArchiveError("'" + path + "' has another size");
   }

@@ -28,9 +28,9 @@ constexpr double probe_size = 1e-6;
 /// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least,
 /// 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
-/// Pairs with dashpots repay nothing, and what a bounce leaves must not hang on the two steps that it lasts at the
-/// limit: of the longest stable step they get one over this (docs/defaults.md).
-constexpr double share_with_dashpots = 2;
+/// Of bodies in touch by dashpots, to one that is stable: these pairs repay nothing, and at the limit what a bounce
+/// leaves would hang on the two steps that it lasts (docs/defaults.md).
+constexpr double steps_with_dashpots = 2;
 
 /// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
 /// in the list.
@@ -200,7 +200,7 @@ void TimeStepBound::update_contact(const ContactSystem& contact) {
     contact_[b] = std::max(contact_floor_[b], contact_[b]);
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
     if (const double z = 2 * damping[b]; z > 0)
-      contact_[b] *= std::pow(share_with_dashpots * (std::sqrt(1 + z * z) + z), 2);
+      contact_[b] *= std::pow(steps_with_dashpots * (std::sqrt(1 + z * z) + z), 2);
   }
   limit_ = limit(1);
 }

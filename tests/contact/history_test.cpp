@@ -201,6 +201,8 @@ TEST(PatchTable, refuses_other_bodies) {
     return table;
   };
   EXPECT_NO_THROW(with([](Patch&) {}).loaded());
+  const auto far = [](Patch& p) { p.nodes[0].begin += 12 << 24, p.segments[0].begin += 12 << 24; };
+  EXPECT_NO_THROW(with(far).loaded()) << "as along a wall, periods away";
   EXPECT_THROW(with([](Patch& p) { p.second = 2; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](Patch& p) { p.first = -1; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](Patch& p) { p.first = 1, p.second = 0; }).loaded(), ArchiveError);

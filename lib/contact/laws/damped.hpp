@@ -25,8 +25,9 @@ struct Damped : Law {
  private:
   /// The pressure is there at once when a node touches, and gone at once when it may pull until the gap opens. In the
   /// step with that a node is in touch for a share s, not for half of it, which is what the mean of the pressures at
-  /// its ends makes of it: so the one in touch should count s + 1/2. Two next to it do, continuously: a touch that
-  /// seems a little more or less than a step away is the same touch.
+  /// its ends makes of it: so the one in touch should count s + 1/2. Instead it counts 3/2 s and the one a step
+  /// deeper 3/2 - s/2: together as much, s + 1/2 and 1, but without a jump where s is 0 or 1, which rates that change
+  /// would make a matter of chance.
   Lanes share(Lanes gap, Lanes rate, double step) const {
     const Lanes speed = pull ? abs(rate) : -rate, way = speed * step;
     const Lanes steps = select((gap < 0.0) & (-gap < 2 * way), -gap / way, broadcast(2));
