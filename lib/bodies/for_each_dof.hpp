@@ -6,18 +6,24 @@
 
 namespace pliant {
 
-/// Calls update(i, dof) for each rigid degree of freedom, i its index in Dofs::rigid.
+/// Calls update(i, dof) for each degree of freedom of a rigid body, i its index in Dofs::rigid.
+template <class Update>
+void for_each_dof_of(const Model& model, int rigid, Update&& update) {
+  const auto r = static_cast<std::size_t>(rigid);
+  for (std::size_t c = 0; c < 3; ++c) update(3 * r + c, model.rigid_bodies[r].dof[c]);
+}
+
+/// Of all rigid bodies.
 template <class Update>
 void for_each_rigid_dof(const Model& model, Update&& update) {
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-    for (std::size_t c = 0; c < 3; ++c) update(3 * r + c, model.rigid_bodies[r].dof[c]);
+  for (int r = 0; r < static_cast<int>(model.rigid_bodies.size()); ++r) for_each_dof_of(model, r, update);
 }
 
 /// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i,
 /// dof) for each rigid one. The bodies are shared out over the threads; updates touch only index i.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
-  parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
+  const auto of_region = [&](int r) {
     const Region& region = model.regions[r];
     const Batch& batch = model.batches[region.batch];
     with_nodes(model, batch, [&](auto nodes) {
@@ -29,8 +35,9 @@ void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&&
         compliant(i++, inverse_mass);
       }
     });
-  });
-  for_each_rigid_dof(model, rigid);
+  };
+  parallel_for(static_cast<int>(model.regions.size()), of_region, static_cast<int>(model.rigid_bodies.size()),
+               [&](int r) { for_each_dof_of(model, r, rigid); });
 }
 
 }  // namespace pliant

@@ -85,14 +85,17 @@ void show_spread(const Model& model, const Field& field, OutlineField& outlines)
   }
 }
 
-void show(const Model& model, const Field& field, OutlineField& outlines) {
-  parallel_for(model.lane_batches, [&](int b) {
+/// And calls of_rigid(r) for `rigid` bodies.
+template <class OfRigid>
+void show(const Model& model, const Field& field, OutlineField& outlines, std::size_t rigid, OfRigid&& of_rigid) {
+  const auto of_batch = [&](int b) {
     const Batch& batch = model.batches[b];
     with_tables(model, batch, [&](const auto& tables) {
       batch.scaled ? show_batch<true>(model, batch, tables.outline_rows, field, outlines)
                    : show_batch<false>(model, batch, tables.outline_rows, field, outlines);
     });
-  });
+  };
+  parallel_for(model.lane_batches, of_batch, static_cast<int>(rigid), of_rigid);
   if (!model.outline_chunks.empty()) show_spread(model, field, outlines);
 }
 
@@ -149,12 +152,13 @@ void add_to_region(const Model& model, const Region& region, const OutlineField&
 }  // namespace
 
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position) {
-  show(model, {positions, true}, position);
-  parallel_for(static_cast<int>(model.rigid_bodies.size()),
-               [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
+  show(model, {positions, true}, position, model.rigid_bodies.size(),
+       [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
 }
 
-void show_field(const Model& model, const Dofs& values, OutlineField& field) { show(model, {values, false}, field); }
+void show_field(const Model& model, const Dofs& values, OutlineField& field) {
+  show(model, {values, false}, field, 0, [](int) {});
+}
 
 OutlineField placed_outlines(const Model& model, const Dofs& positions) {
   OutlineField position(model.outline_offset.back());

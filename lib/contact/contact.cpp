@@ -251,7 +251,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
       totals = compute_patch(view, nullptr, from, to, now.forces);
   });
   const int bodies = static_cast<int>(model_.bodies.size());
-  parallel_for(bodies, [&](int b) {
+  const auto gather = [&](int b) {
     if (b + 1 < bodies)
       table_.for_each_run(b + 1, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
     const int n = model_.outline_of(b).count;
@@ -263,15 +263,16 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
       add_run(&now.forces.x[entry], count, x + node);
       add_run(&now.forces.y[entry], count, y + node);
     });
-  });
+  };
+  constexpr std::size_t block = 256;  // of patches, however many threads there are
+  block_totals_.assign((now.totals.size() + block - 1) / block, {});
+  const auto add_up = [&](int b) {
+    const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, now.totals.size());
+    for (std::size_t p = begin; p < end; ++p) block_totals_[static_cast<std::size_t>(b)].add(now.totals[p]);
+  };
+  parallel_for(bodies, gather, static_cast<int>(block_totals_.size()), add_up);
   PatchTotals total;
-  for (const PatchTotals& t : now.totals) {
-    total.stored += t.stored;
-    total.dissipated += t.dissipated;
-    total.damping_power += t.damping_power;
-    total.deepest = std::max(total.deepest, t.deepest);
-    total.contacts += t.contacts;
-  }
+  for (const PatchTotals& of_block : block_totals_) total.add(of_block);
   return total;
 }
 

@@ -136,8 +136,9 @@ class ContactSystem {
   double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what has not been accepted
   std::int64_t evaluations_ = 0;
-  Outlines found_at_;       ///< of each body, where some candidates of its were found last
-  std::vector<int> found_;  ///< see found()
+  std::vector<PatchTotals> block_totals_;  ///< scratch
+  Outlines found_at_;                      ///< of each body, where some candidates of its were found last
+  std::vector<int> found_;                 ///< see found()
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0, pairs_searched_ = 0;

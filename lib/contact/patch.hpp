@@ -93,6 +93,12 @@ struct PatchTotals {
   double recent_ways = 0;  ///< the larger of these and those of the step before
   double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
 
+  /// Another patch's, but for what belongs to one alone.
+  void add(const PatchTotals& other) {
+    stored += other.stored, dissipated += other.dissipated, damping_power += other.damping_power;
+    deepest = deepest > other.deepest ? deepest : other.deepest;
+    contacts += other.contacts;
+  }
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);

@@ -26,6 +26,16 @@ void parallel_for(int count, Body&& body) {
   for_own_share(count, body);
 }
 
+/// Two loops that do not wait for each other: whoever is done with its share of the first goes on with the second.
+template <class Body, class OtherBody>
+void parallel_for(int count, Body&& body, int other_count, OtherBody&& other_body) {
+#pragma omp parallel
+  {
+    for_own_share(count, body);
+    for_own_share(other_count, other_body);
+  }
+}
+
 /// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19,
 /// whose threads steal from each other, now and then ends the program (llvm-project issues 86995 and 132164).
 template <class Body>

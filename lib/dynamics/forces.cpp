@@ -42,7 +42,7 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
 }
 
 Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
-                            const RegionWork& afterwards) {
+                            const Afterwards& afterwards) {
   Evaluation result;
   phases_.enter(Phase::contact);
   if (from.outlines) {
@@ -60,9 +60,16 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
     on_outlines = &loaded_;
   }
   to.memory.material.resize(model_.material_memory);
-  lane_forces(motion, *on_outlines, from, to, afterwards);
+  const auto of_batch = [&](int b) {
+    lane_forces(b, motion, *on_outlines, from, to);
+    if (afterwards.region) afterwards.region(b);
+  };
+  const auto of_rigid = [&](int r) {
+    rigid_forces(r, motion, outlines.position, *on_outlines, to.force);
+    if (afterwards.rigid) afterwards.rigid(r);
+  };
+  parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
   if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, afterwards);
-  rigid_forces(motion, outlines.position, *on_outlines, to.force);
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -79,33 +86,37 @@ BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const Reca
   return step;
 }
 
-/// All forces on bodies that stand one a lane.
-void Forces::lane_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                         const RegionWork& afterwards) {
-  parallel_for(model_.lane_batches, [&](int b) {
-    const Batch& batch = model_.batches[b];
-    const Region& region = model_.regions[b];
-    Lanes* f = &to.force.compliant[batch.offset];
-    std::fill_n(f, 2 * batch.slots, Lanes{});
-    add_outline_forces(model_, region, on_outlines, f);
-    add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
-    BatchMotion step = step_of(batch, motion, from, to.memory);
-    if (b + 1 < model_.lane_batches) {
-      const Batch& next = model_.batches[b + 1];
-      step.next_position = &motion.position.compliant[next.offset];
-      step.next_forces = &to.force.compliant[next.offset];
-      step.next_count = 2 * next.slots;
-    }
-    const PointTotals totals = add_internal_forces(model_, batch, step, f);
-    least_jacobian_[b] = least_of(totals.least_jacobian);
-    if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
-    if (afterwards) afterwards(b);
-  });
+/// All forces on the bodies of a batch that stand one a lane.
+void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const Recall& from,
+                         const Output& to) {
+  const Batch& batch = model_.batches[b];
+  const Region& region = model_.regions[b];
+  Lanes* f = &to.force.compliant[batch.offset];
+  std::fill_n(f, 2 * batch.slots, Lanes{});
+  add_outline_forces(model_, region, on_outlines, f);
+  add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
+  BatchMotion step = step_of(batch, motion, from, to.memory);
+  if (b + 1 < model_.lane_batches) {
+    const Batch& next = model_.batches[b + 1];
+    step.next_position = &motion.position.compliant[next.offset];
+    step.next_forces = &to.force.compliant[next.offset];
+    step.next_count = 2 * next.slots;
+  }
+  const PointTotals totals = add_internal_forces(model_, batch, step, f);
+  least_jacobian_[b] = least_of(totals.least_jacobian);
+  if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
+}
+
+void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
+                          Dofs& force) {
+  const RigidBody& rigid = model_.rigid_bodies[r];
+  outline_force_resultant(model_, rigid, position, on_outlines, &motion.position.rigid[3 * r], &force.rigid[3 * r]);
+  add_rigid_loads(rigid, model_.scene.gravity_at(motion.time), motion.instant(), &force.rigid[3 * r]);
 }
 
 /// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
 void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                           const RegionWork& afterwards) {
+                           const Afterwards& afterwards) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
@@ -123,17 +134,7 @@ void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_spread_forces(model_, region, stresses_of(region.batch), f);
-    if (afterwards) afterwards(r);
-  });
-}
-
-void Forces::rigid_forces(const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
-                          Dofs& force) {
-  const Vec2 gravity = model_.scene.gravity_at(motion.time);
-  parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) {
-    const RigidBody& rigid = model_.rigid_bodies[r];
-    outline_force_resultant(model_, rigid, position, on_outlines, &motion.position.rigid[3 * r], &force.rigid[3 * r]);
-    add_rigid_loads(rigid, gravity, motion.instant(), &force.rigid[3 * r]);
+    if (afterwards.region) afterwards.region(r);
   });
 }
 

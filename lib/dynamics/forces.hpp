@@ -20,9 +20,13 @@ struct Evaluation {
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
 
-/// What an integrator does with the new forces of a region, an index in Model::regions, while they are in the cache.
-/// Called by several threads at once. Pass std::cref of a closure: a copy would be allocated, at every step.
-using RegionWork = std::function<void(int region)>;
+/// What an integrator does with new forces while they are in the cache: those of a region, by its index in
+/// Model::regions, and of a rigid body. Called by several threads at once. Give it std::cref of closures: copies would
+/// be allocated, at every step.
+struct Afterwards {
+  std::function<void(int region)> region;
+  std::function<void(int rigid)> rigid;
+};
 
 /// All forces on all degrees of freedom for given positions.
 class Forces {
@@ -46,9 +50,9 @@ class Forces {
     Memory& memory;               ///< that goes with these positions
   };
   /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of
-  /// each region.
+  /// each region and rigid body.
   Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
-                      const RegionWork& afterwards = {});
+                      const Afterwards& afterwards = {});
 
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
@@ -65,11 +69,11 @@ class Forces {
 
  private:
   BatchMotion step_of(const Batch& batch, const Motion& motion, const Recall& from, Memory& to) const;
-  void lane_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                   const RegionWork& afterwards);
+  void lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to);
+  void rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
+                    Dofs& force);
   void spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                     const RegionWork& afterwards);
-  void rigid_forces(const Motion& motion, const OutlineField& position, const OutlineField& on_outlines, Dofs& force);
+                     const Afterwards& afterwards);
 
   const Model& model_;
   ContactSystem contact_;

@@ -44,7 +44,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       trial_(model_),
       mean_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
-      change_(model_.regions.size()) {
+      change_(model_.regions.size() + model_.rigid_bodies.size()) {
   bound_.update_internal(state.position, state.memory);
   bound_.update_contact(forces_.contact());
 }
@@ -71,12 +71,14 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   show_outlines(model_, motion, trial_.outlines);
   const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
-  const auto finish = [&](int r) { finish_region(state, proposal.dt, r); };
+  const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
+  const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
   report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position},
-                                       {trial_.force, trial_.contact_force, trial_.memory}, std::cref(finish));
+                                       {trial_.force, trial_.contact_force, trial_.memory},
+                                       {std::cref(of_region), std::cref(of_rigid)});
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
-  report.error = report.evaluation.sound ? error(state, proposal.dt) : std::numeric_limits<double>::infinity();
+  report.error = report.evaluation.sound ? error(proposal.dt) : std::numeric_limits<double>::infinity();
 }
 
 Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
@@ -185,42 +187,36 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   });
 }
 
-/// max of dt^2 |a_new - a_old| / (6 d) over all components; rigid bodies by their outline nodes.
-double Verlet::error(const State& state, double dt) const {
-  double compliant = 0;
-  for (double change : change_) compliant = std::max(compliant, change);
-  double rigid = 0;
-  for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r) rigid = std::max(rigid, change_of_rigid(state, r));
-  return dt * dt / 6 * std::max(compliant, rigid);
-}
-
-/// Largest |a_new - a_old| over the outline's spacing, 1/s2, without drag.
-double Verlet::change_of_rigid(const State& state, std::size_t r) const {
+/// As finish_region: of its outline nodes, by their spacing.
+void Verlet::finish_rigid(const State& state, double dt, int r) {
   const RigidBody& body = model_.rigid_bodies[r];
-  const auto change = [&](std::size_t c) {
+  const auto largest_change = [&](std::size_t c) {
     const RigidDof& dof = body.dof[c];
-    const double before =
-        state.force.rigid[3 * r + c] + drag_coefficient(dof, {state.time}) * state.reduced_momentum.rigid[3 * r + c];
-    return std::abs(trial_.force.rigid[3 * r + c] - before) * dof.inverse_mass_at(state.time);
-  };
-  const double worst = std::max(change(0), change(1)) + body.max_radius * change(2);
-  return std::isfinite(worst) ? worst / model_.outlines[body.outline].spacing : std::numeric_limits<double>::infinity();
-}
-
-/// As finish_region.
-void Verlet::finish_rigid(const State& state, double dt) {
-  for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
-    const double coefficient = drag_coefficient(dof, {state.time});
-    const double before = state.reduced_momentum.rigid[i];
-    double free = before + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + trial_.force.rigid[i]);
+    const std::size_t i = 3 * static_cast<std::size_t>(r) + c;
+    const double coefficient = drag_coefficient(dof, {state.time}), before = state.reduced_momentum.rigid[i];
+    double& force = trial_.force.rigid[i];
+    const double change = std::abs(force - (state.force.rigid[i] + coefficient * before));
+    double free = before + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + force);
     if (coefficient > 0) free += dt * coefficient * dof.inverse_mass * (0.5 * before - mean_velocity_.rigid[i]);
     trial_.reduced_momentum.rigid[i] = dof.velocity_after(state.time, trial_.time, free);
-    trial_.force.rigid[i] -= coefficient * trial_.reduced_momentum.rigid[i];
-  });
+    force -= coefficient * trial_.reduced_momentum.rigid[i];
+    return change * dof.inverse_mass_at(state.time);
+  };
+  const double x = largest_change(0), y = largest_change(1), angle = largest_change(2);
+  const double worst = std::max(x, y) + body.max_radius * angle;
+  change_[model_.regions.size() + static_cast<std::size_t>(r)] = std::isfinite(x + y + angle)
+                                                                     ? worst / model_.outlines[body.outline].spacing
+                                                                     : std::numeric_limits<double>::infinity();
+}
+
+/// max of dt^2 |a_new - a_old| / (6 d) over all components.
+double Verlet::error(double dt) const {
+  double worst = 0;
+  for (double change : change_) worst = std::max(change, worst);
+  return dt * dt / 6 * worst;
 }
 
 void Verlet::finish(const State& state, StepReport& report) {
-  finish_rigid(state, report.dt);
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
   if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }

@@ -26,6 +26,7 @@ class Verlet {
   // The two passes over all degrees of freedom, which benchmarks time alone:
   void predict(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
+  void finish_rigid(const State& state, double dt, int r);
 
   double largest_dt() const { return bound_.largest_dt(); }  ///< s
   std::string governing() const { return bound_.governing(); }
@@ -39,9 +40,7 @@ class Verlet {
  private:
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
-  double error(const State& state, double dt) const;
-  void finish_rigid(const State& state, double dt);
-  double change_of_rigid(const State& state, std::size_t r) const;
+  double error(double dt) const;
 
   Forces& forces_;
   const Model& model_;
@@ -53,7 +52,7 @@ class Verlet {
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
   Dofs end_velocity_;           ///< that forces see at the end of the step, where needed
   Dofs moving_velocity_;        ///< scratch: of reduced momenta, with corrected mass
-  std::vector<double> change_;  ///< [regions], of the acceleration over the nodal distance, 1/s2
+  std::vector<double> change_;  ///< [regions and rigid bodies], of the acceleration over the nodal distance, 1/s2
 };
 
 }  // namespace pliant
