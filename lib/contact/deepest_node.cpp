@@ -2,24 +2,118 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
+#include "contact/node_strips.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
-
-Vec2 node_at(const Model& model, const OutlineField& outlines, int body, int node) {
-  const OutlineShape& shape = model.outline_of(body);
-  const int turn = turn_of(node, shape.count), at = model.outline_offset[body] + node - turn * shape.count;
-  return {outlines.x[at] + turn * shape.turn_shift, outlines.y[at]};
-}
 
 /// Where a point stands above the nearest segment of an outline.
 struct Nearest {
   double distance = 1e300, depth = 0, length = 1;
   int number = 0;
+};
+
+/// From a segment's first node, by the nearest image in a period.
+Vec2 lever(const Vec2& point, const Vec2& node, double period) {
+  Vec2 r = point - node;
+  if (period > 0) r.x() -= period * std::round(r.x() / period);
+  return r;
+}
+
+/// A body's outline as others look at it.
+class OutlineView {
+ public:
+  OutlineView(const Model& model, const OutlineField& outlines, int body)
+      : shape_(model.outline_of(body)),
+        x_(&outlines.x[model.outline_offset[body]]),
+        y_(&outlines.y[model.outline_offset[body]]),
+        box_(bounding_box(model, outlines, body)) {}
+
+  int count() const { return shape_.count; }
+  /// In [0, count()]: behind the last one stands the first one's copy.
+  Vec2 node(int k) const { return {x_[k], y_[k]}; }
+  const OutlineShape& shape() const { return shape_; }
+  const Box& box() const { return box_; }
+  /// With the nodes by strips, for one that many look at. Lengths are those of now.
+  void sort_nodes() {
+    double square = 0;
+    for (int s = 0; s < count(); ++s) square = std::max(square, (node(s + 1) - node(s)).squaredNorm());
+    strips_ = std::make_shared<NodeStrips>(x_, count(), std::sqrt(square), std::abs(shape_.turn_shift));
+  }
+
+  /// `period`: of whichever image is nearest; 0: as it stands.
+  Nearest nearest_segment(const Vec2& point, double period = 0) const {
+    Nearest nearest;
+    const auto look = [&](int s) {
+      const Vec2 along_segment = node(s + 1) - node(s);
+      const double length = along_segment.norm();
+      const Vec2 r = lever(point, node(s), period), tangent = along_segment / length;
+      const double along = std::clamp(r.dot(tangent), 0.0, length), distance = (r - along * tangent).norm();
+      const double depth = r.y() * tangent.x() - r.x() * tangent.y();
+      // At a corner two segments are equally near; the one seen more steeply tells in from out.
+      const bool same = std::abs(distance - nearest.distance) <= 1e-9 * length;
+      if (same ? std::abs(depth) > std::abs(nearest.depth) : distance < nearest.distance)
+        nearest = {distance, depth, length, s};
+    };
+    if (strips_ && fits(period))
+      strips_->from(point.x(), look, [&] { return nearest.distance; });
+    else
+      for (int s = 0; s < count(); ++s) look(s);
+    return nearest;
+  }
+
+  /// Calls visit(node) for all that may lie between these, and maybe others.
+  template <class Visit>
+  void for_each_between(double x_min, double x_max, double period, Visit&& visit) const {
+    if (strips_ && fits(period))
+      strips_->between(x_min, x_max, visit);
+    else
+      for (int k = 0; k < count(); ++k) visit(k);
+  }
+
+  /// Whether a point is on the open side of everything in the box around it: off the box, or beyond a wall's surface.
+  bool is_clear_of(const Vec2& point, double period) const {
+    if (shape_.turn_shift != 0) return shape_.turn_shift < 0 ? point.y() > box_.y_max : point.y() < box_.y_min;
+    const Vec2 middle(0.5 * (box_.x_min + box_.x_max), 0.5 * (box_.y_min + box_.y_max));
+    const Vec2 from_middle = lever(point, middle, period);
+    return std::abs(from_middle.x()) > 0.5 * (box_.x_max - box_.x_min) ||
+           std::abs(from_middle.y()) > 0.5 * (box_.y_max - box_.y_min);
+  }
+
+ private:
+  bool fits(double period) const { return (period > 0) == (shape_.turn_shift != 0); }
+
+  const OutlineShape& shape_;
+  const double *x_, *y_;
+  Box box_;
+  std::shared_ptr<const NodeStrips> strips_;  ///< shared by copies; null: not sorted
+};
+
+/// All outlines of a moment; long ones are sorted once.
+class OutlineViews {
+ public:
+  OutlineViews(const Model& model, const OutlineField& outlines) : model_(model), outlines_(outlines) {
+    constexpr int long_outline = 256;
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+      if (model.outline_of(b).count > long_outline)
+        sorted_.emplace(b, OutlineView(model, outlines, b)).first->second.sort_nodes();
+  }
+  OutlineView operator[](int body) const {
+    const auto known = sorted_.find(body);
+    return known == sorted_.end() ? OutlineView(model_, outlines_, body) : known->second;
+  }
+
+ private:
+  const Model& model_;
+  const OutlineField& outlines_;
+  std::map<int, OutlineView> sorted_;
 };
 
 /// The slave looks at the master: moved by `shift` in x or, where one is a wall, at whichever image in a period is
@@ -36,101 +130,72 @@ Sight sight_of(const Model& model, const BodyPair& pair) {
   return {pair.first, pair.second, pair.images * period};
 }
 
-/// From a segment's first node, by the nearest image in a period.
-Vec2 lever(const Vec2& point, const Vec2& node, double period) {
-  Vec2 r = point - node;
-  if (period > 0) r.x() -= period * std::round(r.x() / period);
-  return r;
+bool is_deeper(const DeepestNode& a, const DeepestNode& b) {
+  return a.depth * b.segment_length > b.depth * a.segment_length;
 }
 
-Nearest nearest_segment(const Model& model, const OutlineField& outlines, int master, const Vec2& point,
-                        double period = 0) {
-  Nearest nearest;
-  const int count = model.outline_of(master).count;
-  for (int s = 0; s < count; ++s) {
-    const Vec2 a = node_at(model, outlines, master, s), b = node_at(model, outlines, master, s + 1);
-    const double length = (b - a).norm();
-    const Vec2 r = lever(point, a, period), tangent = (b - a) / length;
-    const double along = std::clamp(r.dot(tangent), 0.0, length), distance = (r - along * tangent).norm();
-    const double depth = r.y() * tangent.x() - r.x() * tangent.y();
-    // At a corner two segments are equally near; the one seen more steeply tells in from out.
-    const bool same = std::abs(distance - nearest.distance) <= 1e-9 * length;
-    if (same ? std::abs(depth) > std::abs(nearest.depth) : distance < nearest.distance)
-      nearest = {distance, depth, length, s};
-  }
-  return nearest;
-}
-
-/// Whether a point is on the open side of everything in a box around an outline: off the box, or beyond a wall's
-/// surface.
-bool is_clear(const Box& box, const OutlineShape& shape, const Vec2& x, double period) {
-  if (shape.turn_shift != 0) return shape.turn_shift < 0 ? x.y() > box.y_max : x.y() < box.y_min;
-  const Vec2 from_middle = lever(x, Vec2(0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)), period);
-  return std::abs(from_middle.x()) > 0.5 * (box.x_max - box.x_min) ||
-         std::abs(from_middle.y()) > 0.5 * (box.y_max - box.y_min);
-}
-
-void look_at(const Model& model, const OutlineField& outlines, const Sight& sight, DeepestNode& deepest) {
-  const auto [slave, master, shift, period] = sight;
-  const OutlineShape& shape = model.outline_of(master);
-  const Box box = bounding_box(model, outlines, master);
-  const int nodes = model.outline_of(slave).count;
-  for (int node = 0; node < nodes; ++node) {
-    const Vec2 position = node_at(model, outlines, slave, node), seen = position - Vec2(shift, 0);
-    if (is_clear(box, shape, seen, period)) continue;
-    const Nearest nearest = nearest_segment(model, outlines, master, seen, period);
-    if (nearest.depth * deepest.segment_length > deepest.depth * nearest.length)
-      deepest = {slave,
-                 master,
-                 node,
-                 position,
-                 nearest.depth,
-                 nearest.length,
-                 nearest.length / shape.segment_length[nearest.number]};
-  }
-}
-
-/// Mean of a body's outline nodes.
-Vec2 middle_of(const Model& model, const OutlineField& outlines, int body) {
-  const int count = model.outline_of(body).count;
-  Vec2 sum(0, 0);
-  for (int node = 0; node < count; ++node) sum += node_at(model, outlines, body, node);
-  return sum / count;
+void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest) {
+  const OutlineView slave = views[sight.slave], master = views[sight.master];
+  const Box& box = master.box();
+  slave.for_each_between(box.x_min + sight.shift, box.x_max + sight.shift, sight.period, [&](int node) {
+    const Vec2 position = slave.node(node), seen = position - Vec2(sight.shift, 0);
+    if (master.is_clear_of(seen, sight.period)) return;
+    const Nearest nearest = master.nearest_segment(seen, sight.period);
+    const double reference = master.shape().segment_length[nearest.number];
+    const DeepestNode found{
+        sight.slave, sight.master, node, position, nearest.depth, nearest.length, nearest.length / reference};
+    if (is_deeper(found, deepest)) deepest = found;
+  });
 }
 
 /// Of two bodies on the same spot no node is deep, but their middles are.
-bool share_a_middle(const Model& model, const OutlineField& outlines, const BodyPair& pair) {
+bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPair& pair) {
   if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return false;
-  const Vec2 middle = middle_of(model, outlines, pair.first), seen = middle - Vec2(sight_of(model, pair).shift, 0);
-  const Nearest own = nearest_segment(model, outlines, pair.first, middle),
-                other = nearest_segment(model, outlines, pair.second, seen);
+  const OutlineView first = views[pair.first], second = views[pair.second];
+  Vec2 sum(0, 0);
+  for (int node = 0; node < first.count(); ++node) sum += first.node(node);
+  const Vec2 middle = sum / first.count(), seen = middle - Vec2(sight_of(model, pair).shift, 0);
+  const Nearest own = first.nearest_segment(middle), other = second.nearest_segment(seen);
   return own.depth > own.length && other.depth > other.length;
 }
 
-/// Pairs whose boxes meet, and every body with every wall: what is behind a wall's surface lies in the wall.
+/// Pairs whose boxes meet, and walls with every body that is not all on their open side: what is behind a wall's surface
+/// lies in the wall.
 std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineField& outlines) {
-  std::vector<Box> boxes;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    boxes.push_back(bounding_box(model, outlines, static_cast<int>(b)));
+  const int bodies = static_cast<int>(model.bodies.size());
+  std::vector<Box> boxes(model.bodies.size());
+  parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model, outlines, b); });
   std::vector<BodyPair> pairs;
   for (const BodyPair& p : broad_phase(model, boxes, 0))
     if (!model.bodies[p.first].wall && !model.bodies[p.second].wall) pairs.push_back(p);
-  const int bodies = static_cast<int>(model.bodies.size());
-  for (int wall = 0; wall < bodies; ++wall)
-    for (int body = 0; model.bodies[wall].wall && body < bodies; ++body)
-      if (!model.bodies[body].wall || body < wall) pairs.push_back({body, wall, 0});
+  for (int wall = 0; wall < bodies; ++wall) {
+    if (!model.bodies[wall].wall) continue;
+    const bool above = model.outline_of(wall).turn_shift < 0;  // its open side
+    for (int body = 0; body < bodies; ++body) {
+      const bool clear = above ? boxes[body].y_min > boxes[wall].y_max : boxes[body].y_max < boxes[wall].y_min;
+      if (!clear && (!model.bodies[body].wall || body < wall)) pairs.push_back({body, wall, 0});
+    }
+  }
   return pairs;
 }
 
 }  // namespace
 
 DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const std::vector<BodyPair>& pairs) {
+  const OutlineViews views(model, outlines);
+  constexpr std::size_t block = 64;
+  std::vector<DeepestNode> of_block((pairs.size() + block - 1) / block);
+  parallel_for_uneven(static_cast<int>(of_block.size()), 1, [&](int b) {
+    const std::size_t begin = block * static_cast<std::size_t>(b);
+    for (std::size_t p = begin; p < std::min(begin + block, pairs.size()); ++p) {
+      const Sight sight = sight_of(model, pairs[p]);
+      look_at(views, sight, of_block[b]);
+      look_at(views, sight.back(), of_block[b]);
+    }
+  });
   DeepestNode deepest;
-  for (const BodyPair& pair : pairs) {
-    const Sight sight = sight_of(model, pair);
-    look_at(model, outlines, sight, deepest);
-    look_at(model, outlines, sight.back(), deepest);
-  }
+  for (const DeepestNode& found : of_block)
+    if (is_deeper(found, deepest)) deepest = found;
   return deepest;
 }
 
@@ -141,8 +206,13 @@ void refuse_deep_overlap(const Model& model, const OutlineField& outlines) {
                                  model.bodies[a].name, other, how));
   };
   const std::vector<BodyPair> pairs = pairs_that_may_overlap(model, outlines);
-  for (const BodyPair& pair : pairs)
-    if (share_a_middle(model, outlines, pair)) refuse(pair.first, pair.second, "nearly wholly");
+  std::vector<char> alike(pairs.size());
+  const OutlineViews views(model, outlines);
+  parallel_for(static_cast<int>(pairs.size()), [&](int p) { alike[p] = share_a_middle(model, views, pairs[p]); });
+  if (const auto found = std::ranges::find(alike, 1); found != alike.end()) {
+    const BodyPair& pair = pairs[found - alike.begin()];
+    refuse(pair.first, pair.second, "nearly wholly");
+  }
   const DeepestNode deepest = deepest_node(model, outlines, pairs);
   if (deepest.depth > deepest.segment_length)
     refuse(deepest.slave, deepest.master,

@@ -18,9 +18,8 @@ struct DeepestNode {
   double squeeze = 1;         ///< that over what it was at first
 };
 
-/// The node that is deepest over the length of the segment above it, depth 0 when none is inside. Compares all nodes
-/// with all segments of each pair
-/// of bodies: for messages.
+/// The node that is deepest over the length of the segment above it, of all nodes of each pair of bodies; depth 0 when
+/// none is inside. For messages.
 DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const std::vector<BodyPair>& pairs);
 
 /// Throws InputError when a body starts deeper inside another than contact can see, a segment length of that other: it

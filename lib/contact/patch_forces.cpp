@@ -42,8 +42,9 @@ class Reactions {
     std::int64_t row[lane_count];
     const LaneBits rows = __builtin_convertvector(max(p.row, Lanes{}), LaneBits);
     std::memcpy(row, &rows, sizeof row);
+    double* first = entries_.data() + 4;
     for (int lane = 0; lane < lane_count; ++lane) {
-      double* at = &entries_[4 * (static_cast<std::size_t>(row[lane]) + 1)];
+      double* at = first + 4 * row[lane];
       Four sum, more;
       std::memcpy(&sum, at, sizeof sum);
       std::memcpy(&more, reaction[lane], sizeof more);

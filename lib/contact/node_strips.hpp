@@ -1,0 +1,74 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace pliant {
+
+/// The nodes of a long outline by strips across x, as wide as its longest segment at least: what is near a point is
+/// found without a look at all of them. Strips of a wall go around the period.
+class NodeStrips {
+ public:
+  /// x [count + 1]: the segments' ends, m. period 0: none.
+  NodeStrips(const double* x, int count, double longest_segment, double period)
+      : period_(period), x_min_(period > 0 ? 0.0 : *std::min_element(x, x + count)) {
+    const double extent = period > 0 ? period : *std::max_element(x, x + count) - x_min_;
+    const double most = longest_segment > 0 ? extent / longest_segment : 1.0;
+    strips_ = most > 1 ? static_cast<int>(std::min(most, 1.0 * count)) : 1;
+    width_ = extent / strips_;
+    begin_.assign(static_cast<std::size_t>(strips_) + 1, 0);
+    nodes_.resize(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) ++begin_[strip_of(x[i]) + 1];
+    for (int s = 0; s < strips_; ++s) begin_[s + 1] += begin_[s];
+    std::vector<int> next(begin_.begin(), begin_.end() - 1);
+    for (int i = 0; i < count; ++i) nodes_[next[strip_of(x[i])]++] = i;
+  }
+
+  /// Visits nodes strip by strip from x on, both ways, until strips are further off than further() says; a segment
+  /// counts by its first node.
+  template <class Visit, class Further>
+  void from(double x, Visit&& visit, Further&& further) const {
+    const int middle = strip_of(x);
+    visit_strip(middle, visit);
+    const int last = period_ > 0 ? strips_ / 2 : std::max(middle, strips_ - 1 - middle);
+    // Nodes are a strip nearer than their number says, and segments reach back by another.
+    for (int d = 1; d <= last && (d - 2) * width_ <= further(); ++d) {
+      if (period_ > 0 || middle - d >= 0) visit_strip(middle - d, visit);
+      const bool same = period_ > 0 && 2 * d == strips_;
+      if (!same && (period_ > 0 || middle + d < strips_)) visit_strip(middle + d, visit);
+    }
+  }
+
+  /// Visits all nodes of the strips that hold [x_min, x_max].
+  template <class Visit>
+  void between(double x_min, double x_max, Visit&& visit) const {
+    if (period_ > 0 && !(x_max - x_min < period_ - width_)) {
+      for (int s = 0; s < strips_; ++s) visit_strip(s, visit);
+      return;
+    }
+    const int first = strip_of(x_min), last = strip_of(x_max);
+    for (int s = first; s <= (last < first ? last + strips_ : last); ++s) visit_strip(s, visit);
+  }
+
+ private:
+  /// In [0, strips), for any number.
+  int strip_of(double x) const {
+    const double off = period_ > 0 ? x - period_ * std::floor(x / period_) : x - x_min_;
+    const double strip = off / width_;
+    return strip >= 0 ? static_cast<int>(std::min(strip, strips_ - 1.0)) : 0;
+  }
+  template <class Visit>
+  void visit_strip(int strip, Visit&& visit) const {
+    const int s = (strip + strips_) % strips_;
+    for (int i = begin_[s]; i < begin_[s + 1]; ++i) visit(nodes_[i]);
+  }
+
+  double period_, x_min_, width_ = 0;
+  int strips_ = 1;
+  std::vector<int> begin_;  ///< [strips + 1], in nodes_
+  std::vector<int> nodes_;
+};
+
+}  // namespace pliant
