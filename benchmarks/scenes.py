@@ -48,7 +48,7 @@ class Size:
 
 SERIES = [Size(10, 20, 4000), Size(100, 20, 800), Size(200, 100, 200)]
 LARGEST = Size(1000, 200, 100)
-LARGEST_MEMORY = 14e9  # bytes, with room to spare
+LARGEST_MEMORY = 8e9  # bytes, with room to spare
 THIRD_BODIES = {"third_body_mini": 10000, "third_body": 1000}  # steps
 
 
