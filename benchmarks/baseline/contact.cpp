@@ -122,15 +122,15 @@ void Contact::find_candidates(const std::vector<Body>& bodies) {
 #pragma omp parallel for schedule(dynamic, 8)
   for (int slave = 0; slave < count; ++slave) {
     candidates_[slave].resize(bodies[slave].outline.size());
-    for (int master = 0; master < count; ++master)
-      for (int image = period_ > 0 ? -1 : 0; image <= (period_ > 0 ? 1 : 0); ++image) {
-        const double shift = image * period_, far = skin_ + laws_[bodies[slave].party][bodies[master].party].reach;
-        const Box &a = boxes[slave], &b = boxes[master];
-        if (master == slave || a.top + far < b.bottom || b.top + far < a.bottom || a.right + far < b.left + shift ||
-            b.right + shift + far < a.left)
-          continue;
-        list_segments(bodies, slave, master, shift);
-      }
+    for (int master = 0; master < count; ++master) {
+      const double far = skin_ + laws_[bodies[slave].party][bodies[master].party].reach;
+      const Box &a = boxes[slave], &b = boxes[master];
+      if (master == slave || a.top + far < b.bottom || b.top + far < a.bottom) continue;
+      const double first = a.left - far - b.right, last = a.right + far - b.left;  // shifts that bring them together
+      if (period_ == 0 && first <= 0 && last >= 0) list_segments(bodies, slave, master, 0);
+      for (double image = std::ceil(first / period_); period_ > 0 && image <= std::floor(last / period_); ++image)
+        list_segments(bodies, slave, master, image * period_);
+    }
   }
 }
 
