@@ -47,8 +47,9 @@ struct PlainScene {
     contact.forces(bodies);
     difference = difference_to(scene);
   }
-  /// Share of bodies whose sum of forces is another, by more than 1e-9 of the largest. Beside creases an engine that goes
-  /// by wedges and lists that go by the nearest segment part by up to a percent of a distance (contact/projection.hpp).
+  /// Share of bodies whose sum of forces is another, by more than 1e-9 of the largest. Beside creases an engine that
+  /// goes by wedges and lists that go by the nearest segment part by up to a percent of a distance
+  /// (contact/projection.hpp).
   double difference_to(const ContactScene& scene) const {
     std::vector<double> difference(bodies.size());
     double largest = 0;

@@ -159,8 +159,8 @@ bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPai
   return own.depth > own.length && other.depth > other.length;
 }
 
-/// Pairs whose boxes meet, and walls with every body that is not all on their open side: what is behind a wall's surface
-/// lies in the wall.
+/// Pairs whose boxes meet, and walls with every body that is not all on their open side: what is behind a wall's
+/// surface lies in the wall.
 std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineField& outlines) {
   const int bodies = static_cast<int>(model.bodies.size());
   std::vector<Box> boxes(model.bodies.size());

@@ -5,7 +5,6 @@
 
 #include <limits>
 #include <numbers>
-#include <random>
 #include <set>
 
 #include "bodies/place_outlines.hpp"
@@ -18,12 +17,12 @@ namespace {
 using namespace testing;
 
 /// A closed zigzag around the origin, or one along a period, with steps of uneven length: ends of its segments.
-std::vector<double> zigzag(int count, double period, std::mt19937& random) {
-  std::uniform_real_distribution<double> shaken(-0.3, 0.3);
+std::vector<double> zigzag(int count, double period, Random& random) {
   std::vector<double> x;
-  for (int i = 0; i < count; ++i)
-    x.push_back(period > 0 ? (i + shaken(random)) * period / count
-                           : 3 * std::cos(2 * std::numbers::pi * (i + shaken(random)) / count));
+  for (int i = 0; i < count; ++i) {
+    const double turn = (i + random.uniform(-0.3, 0.3)) / count;
+    x.push_back(period > 0 ? turn * period : 3 * std::cos(2 * std::numbers::pi * turn));
+  }
   x.push_back(x[0] + period);
   return x;
 }
@@ -43,14 +42,13 @@ double distance(double point, double a, double b, double period) {
 
 /// EXACT: beside a scan of all segments, points inside and far outside, few nodes and many; a node is visited once.
 TEST(NodeStrips, finds_what_a_scan_finds) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> anywhere(-12, 12);
+  Random random(1);
   for (const double period : {0.0, 7.0})
     for (const int count : {3, 4, 9, 40, 333}) {
       const std::vector<double> x = zigzag(count, period, random);
       const NodeStrips strips(x.data(), count, longest(x), period);
       for (int trial = 0; trial < 200; ++trial) {
-        const double point = anywhere(random);
+        const double point = random.uniform(-12, 12);
         double nearest = std::numeric_limits<double>::infinity(), scanned = nearest;
         std::multiset<int> seen;
         strips.from(
@@ -70,14 +68,14 @@ TEST(NodeStrips, finds_what_a_scan_finds) {
 /// EXACT: all nodes of an interval, also over the edge of the period and where it is longer than that; of a short one
 /// not all that there are.
 TEST(NodeStrips, shows_all_of_an_interval) {
-  std::mt19937 random(2);
-  std::uniform_real_distribution<double> anywhere(-12, 12), wide(0, 9);
+  Random random(2);
   for (const double period : {0.0, 7.0})
     for (const int count : {3, 40, 333}) {
       const std::vector<double> x = zigzag(count, period, random);
       const NodeStrips strips(x.data(), count, longest(x), period);
       for (int trial = 0; trial < 200; ++trial) {
-        const double begin = anywhere(random), end = begin + wide(random);
+        const double begin = random.uniform(-12, 12);
+        const double end = begin + random.uniform(0, 9);
         std::multiset<int> seen;
         strips.between(begin, end, [&](int node) { seen.insert(node); });
         for (int i = 0; i < count; ++i) {
