@@ -46,6 +46,7 @@ void PairWatch::forget() {
   reference_ = {};
   pairs_.clear();
   use_.clear();
+  excess_.clear();
   pair_ways_.set_bodies({});
   swept_at_.assign(model_.bodies.size(), empty);
 }
@@ -53,6 +54,7 @@ void PairWatch::forget() {
 void PairWatch::loaded() {
   pair_ways_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size()) throw ArchiveError("bounding boxes are those of other bodies");
+  if (excess_.size() != pairs_.size()) throw ArchiveError("ways are those of other pairs");
   use_.assign(pairs_.size(), all);
 }
 
@@ -88,8 +90,8 @@ bool PairWatch::is_used_up(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
-    const double rough = rough_way(p, now);
-    use_[p] = rough < kept * skin_ ? little : rough < skin_ || way(p, now) < (1 - rounded) * skin_ ? much : all;
+    const double rough = rough_way(p, now), held = rough < skin_ ? rough - excess_[p] : way(p, now);
+    use_[p] = held < kept * skin_ ? little : held < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
   });
   return some || !(come_out_ < own_skin_);
@@ -127,12 +129,14 @@ bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
 /// What is known of pairs that were watched before stays known.
 void PairWatch::follow(std::vector<BodyPair> found) {
   const std::vector<BodyPair> before = std::exchange(pairs_, std::move(found));
+  const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
   const NodeWays old_ways = std::exchange(pair_ways_, NodeWays(model_));
   pair_ways_.set_bodies(both_bodies(pairs_));
   std::size_t old = 0;
   for (int p = 0; p < count(); ++p) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
     if (old == before.size() || before[old] != pairs_[p]) continue;
+    excess_[p] = old_excess[old];
     for (int side = 0; side < 2; ++side)
       pair_ways_.copy_entry(2 * p + side, old_ways, 2 * static_cast<int>(old) + side);
   }
@@ -140,7 +144,10 @@ void PairWatch::follow(std::vector<BodyPair> found) {
 
 std::vector<int> PairWatch::used_up(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
-    if (use_[p] == much && way(p, here) < kept * skin_) use_[p] = little;
+    if (use_[p] != much) return;
+    const double exact = way(p, here);
+    excess_[p] = std::max(0.0, rough_way(p, here) - exact);
+    if (exact < kept * skin_) use_[p] = little;
   });
   std::vector<int> result;
   for (int p = 0; p < count(); ++p)
@@ -153,12 +160,14 @@ bool PairWatch::hold(const std::vector<int>& pairs, const OutlineField& trial) c
 }
 
 void PairWatch::searched(int pair, const OutlineField& now) {
+  excess_[pair] = 0;
   for (int side = 0; side < 2; ++side) pair_ways_.look(2 * pair + side, ways(now));
 }
 
 void PairWatch::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(little);
+  excess_.push_back(0);
   for (int body : {pair.first, pair.second}) pair_ways_.append(body);
   searched(count() - 1, now);
 }
