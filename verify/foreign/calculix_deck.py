@@ -1,4 +1,5 @@
-"""Bodies at large strain in contact, by CalculiX (ccx 2.20): quadratic triangles of plane strain, surfaces by penalty.
+"""Bodies at large strain in contact, by CalculiX (ccx 2.20): quadratic triangles of plane strain, surfaces by penalty,
+Coulomb friction if wanted.
 
 *HYPERELASTIC, NEO HOOKE is psi = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, which is the law `melody` with C10 = mu/2,
 D1 = 2/K (docs/method.md, section 3).
@@ -29,7 +30,8 @@ class Failed(RuntimeError):
 class Deck:
     """An input file that grows: bodies, plates and springs first, then contacts, then steps."""
 
-    def __init__(self, stiffness: float) -> None:
+    def __init__(self, stiffness: float, friction: float = 0.0) -> None:
+        """The penalty is as stiff along as across."""
         self._nodes, self._cells = 0, 0
         self._axis: list[int] = []
         self._bodies: dict[str, tuple[int, Mesh]] = {}  # with its first node
@@ -37,14 +39,18 @@ class Deck:
         self._springs: dict[str, dict[int, float]] = {}  # by node
         self._model = ["*SURFACE INTERACTION,NAME=TOUCH", "*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=LINEAR",
                        f"{stiffness:.15g}"]
+        if friction > 0:
+            self._model += ["*FRICTION", f"{friction:.15g},{stiffness:.15g}"]
         self._steps: list[str] = []
-        self._heights: list[dict[str, float]] = []  # by step
+        self._places: list[dict[str, np.ndarray]] = []  # by step
 
-    def add(self, name: str, mesh: Mesh, mu: float, lame: float) -> None:
-        """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle."""
+    def add(self, name: str, mesh: Mesh, mu: float, lame: float, half: bool = True) -> None:
+        """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle. Of a
+        half one u_x = 0 on x = 0."""
         first = self._place(mesh.points)
         self._bodies[name] = first, mesh
-        self._axis += list(first + np.flatnonzero(np.abs(mesh.points[:, 0]) < PLAIN))
+        if half:
+            self._axis += list(first + np.flatnonzero(np.abs(mesh.points[:, 0]) < PLAIN))
         before = self._connect(name, "CPE6", first + mesh.cells)
         middle = (mesh.points[:, 1].max() + mesh.points[:, 1].min()) / 2
         heights = mesh.side_middles()[:, 1] - middle
@@ -87,14 +93,17 @@ class Deck:
     def touch(self, slave: str, master: str) -> None:
         self._model += ["*CONTACT PAIR,INTERACTION=TOUCH,TYPE=SURFACE TO SURFACE", f"{slave},{master}"]
 
-    def step(self, heights: dict[str, float], increment: float) -> None:
-        """Plates and ends of springs moved up so far from the start, in increments of so much of the step."""
-        self._heights.append(heights)
+    def step(self, heights: dict[str, float], increment: float, asides: dict[str, float] | None = None) -> None:
+        """Plates and ends of springs moved up, and these ends aside, so far from the start, in increments of so much of
+        the step."""
+        places = {name: np.array([(asides or {}).get(name, 0.0), height]) for name, height in heights.items()}
+        self._places.append(places)
         self._steps += [f"*STEP,NLGEOM,INC={STEPS}", "*STATIC", f"{increment:g},1.,{SHORTEST:g},{increment:g}"]
         for name in self._plates:
             self._steps += ["*BOUNDARY", f"ALL{name},2,2,{heights[name]:.15g}"]
         for name, springs in self._springs.items():
-            self._steps += ["*CLOAD", *(f"{node},2,{stiff * heights[name]:.15g}" for node, stiff in springs.items())]
+            self._steps += ["*CLOAD", *(f"{node},{axis + 1},{stiff * places[name][axis]:.15g}" for axis in (0, 1)
+                                        if axis == 1 or asides for node, stiff in springs.items())]
         for name in self._plates:
             self._steps += [f"*NODE PRINT,NSET=ALL{name},TOTALS=ONLY", "RF"]
         for name in self._springs:
@@ -102,10 +111,10 @@ class Deck:
         self._steps += ["*END STEP"]
 
     def forces(self, job: Path, all_steps: bool = True) -> dict[str, np.ndarray]:
-        """Runs ccx; by plate, and by support of springs, [steps] the force along y that holds it, at the end of each
-        step, or of those that ccx gets to."""
-        held = ["*NSET,NSET=AXIS", *map(str, self._axis), "*BOUNDARY", "AXIS,1,1",
-                *(f"ALL{name},1,1" for name in self._plates)]
+        """Runs ccx; by plate [steps] the force along y that holds it, by support of springs [steps x 2] that along x
+        and y, at the end of each step, or of those that ccx gets to."""
+        axis = ["*NSET,NSET=AXIS", *map(str, self._axis), "*BOUNDARY", "AXIS,1,1"] if self._axis else []
+        held = [*axis, *(f"ALL{name},1,1" for name in self._plates)]
         job.with_suffix(".inp").write_text("\n".join([*self._model, *held, *self._steps]) + "\n")
         result = subprocess.run(["ccx", job.name], cwd=job.parent, capture_output=True, text=True,
                                 stdin=subprocess.DEVNULL, env=os.environ | {"OMP_NUM_THREADS": "1"})
@@ -118,10 +127,10 @@ class Deck:
             forces[name] = np.array([float(force) for time, force in rows if ends_step(time)])
         for name, springs in self._springs.items():
             tables = re.findall(rf"for set ALL{name} and time\s+(\S+)\n\s+([^a-z]+)", text)
-            moved = [{int(node): float(y) for node, _, y, _ in np.reshape(table.split(), (-1, 4))}
+            moved = [{int(node): np.array([float(x), float(y)]) for node, x, y, _ in np.reshape(table.split(), (-1, 4))}
                      for time, table in tables if ends_step(time)]
-            forces[name] = np.array([sum(stiff * (heights[name] - u[node]) for node, stiff in springs.items())
-                                     for heights, u in zip(self._heights, moved)])
+            forces[name] = np.array([sum(stiff * (places[name] - u[node]) for node, stiff in springs.items())
+                                     for places, u in zip(self._places, moved)]).reshape(-1, 2)
         return forces
 
     def _place(self, points: np.ndarray) -> int:

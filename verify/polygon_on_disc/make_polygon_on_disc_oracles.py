@@ -113,7 +113,7 @@ def by_calculix(first: str, rings: int, slave: str, stiffness: float, folder: Pa
     for depth in DEPTHS:
         deck.step({"GROUND": 0.0, "RAM": -depth}, INCREMENT / (depth - before))
         before = depth
-    found = deck.forces(folder / f"{first}_{rings}_{slave}_{stiffness:g}", all_steps=False)["GROUND"]
+    found = deck.forces(folder / f"{first}_{rings}_{slave}_{stiffness:g}", all_steps=False)["GROUND"][:, 1]
     return 2 * np.pad(found, (0, len(DEPTHS) - len(found)), constant_values=np.nan)  # of two halves
 
 

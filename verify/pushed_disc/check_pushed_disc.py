@@ -1,22 +1,27 @@
-"""A stiff disc pushed along a soft block with Coulomb friction, stick and slip: engine and reference against GetFEM."""
+"""A stiff disc pushed along a soft block with Coulomb friction, stick and slip: engine and reference against GetFEM and
+CalculiX."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
 from foreign.stored import distances
-from make_pushed_disc_oracles import DEPTH, DRAWN, FRICTION, MESHES, SLIDING, STEPS, STUCK, by_getfem
+from make_pushed_disc_oracles import (CALCULIX_MESHES, DEPTH, DRAWN, FRICTION, LAWS, LONG, LONGEST, MESHES, SHORT,
+                                      SLIDING, SOFT, STEPS, STUCK, by_calculix, by_getfem)
 from pictures import COLOURS, MARKERS, legend, panels, save
 from pushed_disc_runs import WINDOWS, Push, Result, by_engine, by_reference, hann
-from pushed_disc_stored import read_stored, read_surfaces
+from pushed_disc_stored import by_group, read_calculix, read_stored, read_surfaces
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=8)
 SIZES = [10, 14, *([20, 28] if FULL else [])]
+CHOSEN = {"neo-hookean": SIZES, "melody": SIZES[:3]}  # by law
 STIFF, SLOW = 2.0, 2.0  # times the contact stiffness; the pause
 GETFEM_STOPS = 3e-7  # Newton's residuals of 1e-9 in the fifty nodes of the disc's support, over the least force, 0.177
 KINDS = {"along": "tangential", "across": "normal"}
@@ -28,24 +33,17 @@ SLIPS = np.arange(len(PLACES)) >= len(STUCK)
 FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
 
 
-def by_group(values: np.ndarray, first: int) -> np.ndarray:
-    """[places] the largest of what sticks, and of what slips: at a single place it may be small by accident."""
-    found = np.array(values, dtype=float)
-    found[~SLIPS], found[SLIPS] = values[first:len(STUCK)].max(), values[SLIPS].max()
-    return found
-
-
 class Study:
     """One component of the force on the block at all places by mesh size, corrected for penalty and rate."""
 
-    def __init__(self, name: str) -> None:
-        self.name, self.first = name, 1 if name == "along" else 0
-        stored = read_stored()
+    def __init__(self, name: str, law: str = LAWS[0]) -> None:
+        self.name, self.law, self.first = name, law, 1 if name == "along" else 0
+        stored = read_stored(law)
         self.stored, self.stored_error = getattr(stored.forces, name), getattr(stored.errors(), name)
-        self.spacings = np.array([Push(size).spacing for size in SIZES])
+        self.spacings = np.array([Push(size).spacing for size in CHOSEN[law]])
         lost = self._penalty()
         self.penalty = lost.mean(axis=0)
-        found = [self._size(size) for size in SIZES]
+        found = [self._size(size) for size in CHOSEN[law]]
         self.force = np.array([force for force, _ in found]) * (1 + self.penalty)  # [sizes x places]
         self.scatter = np.array([scatter for _, scatter in found]) / self.stored
         self.penalty_error = by_group(np.abs(lost[0] - lost[1]) / 2, self.first)
@@ -55,17 +53,18 @@ class Study:
 
     def _penalty(self) -> np.ndarray:
         """[2 x places] lost by it, of order 1 / stiffness."""
-        pairs = [(push, replace(push, stiffness=push.stiffness * STIFF)) for push in Push(SIZES[0]).ways(2)]
+        ways = Push(SIZES[0], law=self.law).ways(2)
+        pairs = [(push, replace(push, stiffness=push.stiffness * STIFF)) for push in ways]
         return STIFF / (STIFF - 1) * np.array([self._of(harder) / self._of(usual) - 1 for usual, harder in pairs])
 
     def _size(self, size: int) -> tuple[np.ndarray, np.ndarray]:
         """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: twice
         that of a mean over meshes, and of the order in the rate."""
-        ways = Push(size).ways(2)
+        ways = Push(size, law=self.law).ways(2)
         usual, slower = (np.array([self._of(replace(push, pause=push.pause * slow)) for push in ways])
                          for slow in (1.0, SLOW))
         late = (slower - usual).mean(axis=0)
-        more = [result_of(replace(push, slides=False)) for push in Push(size).ways()[2:]]
+        more = [result_of(replace(push, slides=False)) for push in Push(size, law=self.law).ways()[2:]]
         stuck = np.concatenate([usual[:, ~SLIPS], [getattr(result.forces, self.name) for result in more]])
         force = np.concatenate([stuck.mean(axis=0), usual[:, SLIPS].mean(axis=0)]) + FACTOR * late
         still = usual + FACTOR * (slower - usual)
@@ -89,9 +88,13 @@ class Study:
         """[places] at h = 0."""
         return self.weights() @ self.force
 
+    def own_error(self) -> np.ndarray:
+        """[places] of the limit, relative: saw tooth and rate, penalty."""
+        return np.abs(self.weights()) @ self.scatter + self.penalty_error
+
     def limit_error(self) -> np.ndarray:
-        """[places] relative: saw tooth and rate, penalty, stored error."""
-        return np.abs(self.weights()) @ self.scatter + self.penalty_error + self.stored_error
+        """[places] relative, with that of what is stored."""
+        return self.own_error() + self.stored_error
 
 
 KNOWN: dict[Push, Result] = {}
@@ -108,12 +111,49 @@ def studies() -> dict[str, Study]:
     return {name: Study(name) for name in KINDS}
 
 
+@pytest.fixture(scope="module")
+def melody() -> Callable[[str], Study]:
+    return cache(lambda name: Study(name, "melody"))
+
+
 @pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
 def test_force(studies: dict[str, Study], name: str, i: int) -> None:
     known = studies[name]
     CASE.check(Label.INDEPENDENT, f"{KINDS[name]} force {PLACES[i]}, engine at h = 0 over GetFEM",
                known.limit()[i] / known.stored[i], 1, known.limit_error()[i],
                "GetFEM 5.4.2, its meshes and load steps; saw tooth between meshes of one size, penalty, rate")
+
+
+@pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
+def test_calculix(name: str, i: int) -> None:
+    getfem, calculix = read_stored("melody"), read_calculix()
+    k = list(KINDS).index(name)
+    CASE.check(Label.INDEPENDENT, f"melody: {KINDS[name]} force {PLACES[i]}, GetFEM over CalculiX",
+               getattr(getfem.forces, name)[i] / calculix.force[k, i], 1,
+               getattr(getfem.errors(), name)[i] + calculix.error[k, i],
+               "meshes and load steps of both, penalty, slaves and lag of CalculiX 2.20")
+
+
+@pytest.mark.parametrize("mesh", CALCULIX_MESHES, ids=str)
+def test_lag(mesh: tuple[int, int]) -> None:
+    """Where CalculiX pairs points of both surfaces at the start of an increment only, and all slips."""
+    calculix = read_calculix()
+    along = np.array([calculix.of(mesh, SOFT, increment)[0, SLIPS] for increment in (LONGEST, LONG, SHORT)])
+    changes = np.sqrt((np.diff(along, axis=0) ** 2).mean(axis=1))
+    lag = (along[0] / (2 * along[2] - along[1]) - 1).max()
+    CASE.check(Label.RATE, f"melody: tangential force in slip, CalculiX with {mesh[0]} rings by three increments",
+               np.log2(changes[0] / changes[1]), 1, np.log2((1 + 1.5 * lag) / (1 + 0.75 * lag)),
+               "pairs of points at an increment's start; a next term of the lag's square, with the longest one's lag")
+
+
+@pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
+def test_force_melody(melody: Callable[[str], Study], name: str, i: int) -> None:
+    known, calculix, k = melody(name), read_calculix(), list(KINDS).index(name)
+    for solver, force, error in (("GetFEM", known.stored, known.stored_error),
+                                 ("CalculiX", calculix.force[k], calculix.error[k])):
+        CASE.check(Label.INDEPENDENT, f"melody: {KINDS[name]} force {PLACES[i]}, engine at h = 0 over {solver}",
+                   known.limit()[i] / force[i], 1, known.own_error()[i] + error[i],
+                   f"{solver}, its meshes and load steps; saw tooth between meshes of one size, penalty, rate")
 
 
 @pytest.mark.skipif(not FULL, reason="two sizes have no order")
@@ -159,7 +199,8 @@ def test_engine_and_reference(same_nodes: list[Result], name: str) -> None:
         i = np.flatnonzero(there)[first * (kind == "sticks") + off[there][first * (kind == "sticks"):].argmax()]
         CASE.check(Label.INDEPENDENT, f"{KINDS[name]} force that {kind}, engine over reference, worst",
                    still[i] / static[i], 1, allowed[i] / static[i],
-                   "the order in the rate; what half as many load steps of statics change, or what changes between samples")
+                   "the order in the rate; what half as many load steps of statics change, or what changes between"
+                   " samples")
 
 
 @pytest.mark.parametrize("push", DRAWN)
@@ -185,6 +226,14 @@ def test_getfem_again() -> None:
     off = np.abs(live[:, 1:] / read_stored().samples[key][:, 1:] - 1)[1:]
     CASE.check(Label.FROZEN, "GetFEM's forces, live over stored, worst", off.max(), 0, GETFEM_STOPS,
                "Newton's residuals of 1e-9 in some fifty nodes of a support, over the least force")
+
+
+@pytest.mark.skipif(not FULL, reason="needs the solver from elsewhere")
+def test_calculix_again() -> None:
+    calculix, mesh = read_calculix(), CALCULIX_MESHES[0]
+    off = np.abs(by_calculix(*mesh, SOFT, CASE.out, LONG) / calculix.samples(mesh, SOFT, LONG) - 1)[1:, 1:]
+    CASE.check(Label.FROZEN, "melody: CalculiX's forces, live over stored, worst", off.max(), 0,
+               np.abs(calculix.down()[:, 1:]).max(), "what increments half as long on the way down change")
 
 
 def draw_forces(axes: Axes, name: str) -> None:

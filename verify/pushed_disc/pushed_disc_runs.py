@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fields import frames_of
-from make_pushed_disc_oracles import DEPTH, FRICTION, SLIDING, STUCK
+from make_pushed_disc_oracles import DEPTH, FRICTION, LAWS, SLIDING, STUCK
 from verification import Case, Run
 
 GAP = 0.001  # at the start, as in scene.toml
@@ -31,6 +31,7 @@ class Push:
     friction: float = FRICTION
     points: int = 16  # of a ramp's history
     slides: bool = True
+    law: str = LAWS[0]
     sample: float = 0.0025  # of the push in slip: of outputs
 
     @property
@@ -54,7 +55,8 @@ class Push:
 
     def name(self) -> str:
         way = ("facet" if self.facet else "corner") + ("_shifted" if self.shifted else "")
-        return f"{self.size}_{way}_{self.stiffness:g}_{self.pause:g}_{self.friction:g}{'' if self.slides else '_stuck'}"
+        way += "" if self.slides else "_stuck"
+        return f"{self.law}_{self.size}_{way}_{self.stiffness:g}_{self.pause:g}_{self.friction:g}"
 
     def ways(self, count: int = 4) -> list[Push]:
         """With other discs and blocks; the first two differ in both."""
@@ -68,7 +70,7 @@ class Push:
         along = smooth_rises([0.0] * PRESSES + STUCK[1:], self.pause, self.points)
         along += [[self.end, float(SLIDING[-1])]] * self.slides
         return case.scene(end=self.end, output=self.pause * self.sample / 0.1, frame=self.pause, friction=self.friction,
-                          disc_nodes=disc_nodes, disc_outline=discs[self.facet], block_nodes=block_nodes,
+                          law=self.law, disc_nodes=disc_nodes, disc_outline=discs[self.facet], block_nodes=block_nodes,
                           block_outline=blocks[self.shifted], stiffness=self.stiffness, along=along,
                           down=smooth_rises(down, self.pause, self.points))
 
