@@ -63,8 +63,8 @@ class PairWatch {
   enum Use : char { little, much, all };
   std::vector<Use> use_;  ///< [pairs], of the skin, when somebody asked last
   std::vector<BodyPair> pairs_;
-  /// [pairs] by how much boxes told more than nodes when both were last asked, m: what boxes tell below the skin is taken
-  /// to be too much by as much, so that few pairs are asked node by node.
+  /// [pairs] by how much boxes told more than nodes when both were last asked, m: what boxes tell below the skin is
+  /// taken to be too much by as much, so that few pairs are asked node by node.
   std::vector<double> excess_;
   NodeWays pair_ways_;         ///< [pairs][sides], since each was searched
   std::vector<Box> swept_at_;  ///< [bodies], bounding boxes when the broad phase looked

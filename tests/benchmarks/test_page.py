@@ -112,7 +112,8 @@ def test_the_page_shows_what_was_measured(tmp_path: Path, inputs: list[str]) -> 
 
 
 @needs_browser
-def test_what_is_missing_is_told(tmp_path: Path) -> None:
+def test_what_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "ROOT", tmp_path)  # where no kernels were timed
     options = ["--repository", str(tmp_path), "--history", str(tmp_path / "none"), "--out", str(tmp_path)]
     assert page.main(options) == 0
     shown = Shown(dumped((tmp_path / "index.html").as_uri()))

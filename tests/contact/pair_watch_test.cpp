@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <type_traits>
+#include <vector>
+
 #include "core/archive.hpp"
 #include "support/contact_rig.hpp"
 
@@ -94,6 +97,19 @@ TEST(NodeWays, are_known_however_far_bodies_drift) {
     for (int entry = 0; entry < 2; ++entry) ways.take_new_reference(entry, now);
     reference = rig.outlines.position;
   }
+}
+
+/// EXACT: what a checkpoint has of other pairs is refused.
+TEST(PairWatch, of_other_pairs_is_refused) {
+  ContactRig rig(two_rows());
+  PairWatch watch(rig.model, rig.contact.skin(), 0);
+  rig.show();
+  watch.update(rig.outlines.position, rig.outlines.position);
+  EXPECT_NO_THROW(watch.loaded());
+  watch.visit([](const char*, auto& value) {
+    if constexpr (std::is_same_v<decltype(value), std::vector<double>&>) value.push_back(0);
+  });
+  EXPECT_THROW(watch.loaded(), ArchiveError);
 }
 
 /// EXACT: what a checkpoint has of other bodies is refused.
