@@ -72,7 +72,7 @@ struct PlainScene {
 void count_lists(benchmark::State& state, const PlainScene& plain, const ContactScene& scene) {
   state.counters["contacts"] = plain.contact.contacts();
   state.counters["candidates"] = plain.contact.candidates();
-  state.counters["difference"] = plain.difference;  // to the engine's forces
+  state.counters["difference"] = plain.difference;  // share of bodies
   if (!(plain.difference < 0.01)) state.SkipWithError("the plain lists find other forces than the engine");
   report(state, "record", records(scene.contact), {});
 }

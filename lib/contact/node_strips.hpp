@@ -26,15 +26,15 @@ class NodeStrips {
     for (int i = 0; i < count; ++i) nodes_[next[strip_of(x[i])]++] = i;
   }
 
-  /// Visits nodes strip by strip from x on, both ways, until strips are further off than further() says; a segment
-  /// counts by its first node.
-  template <class Visit, class Further>
-  void from(double x, Visit&& visit, Further&& further) const {
+  /// Visits nodes strip by strip from x on, both ways, until no node and no segment that begins at one can be as near as
+  /// limit(), which may fall on the way, m.
+  template <class Visit, class Limit>
+  void from(double x, Visit&& visit, Limit&& limit) const {
     const int middle = strip_of(x);
     visit_strip(middle, visit);
     const int last = period_ > 0 ? strips_ / 2 : std::max(middle, strips_ - 1 - middle);
     // Nodes are a strip nearer than their number says, and segments reach back by another.
-    for (int d = 1; d <= last && (d - 2) * width_ <= further(); ++d) {
+    for (int d = 1; d <= last && (d - 2) * width_ <= limit(); ++d) {
       if (period_ > 0 || middle - d >= 0) visit_strip(middle - d, visit);
       const bool same = period_ > 0 && 2 * d == strips_;
       if (!same && (period_ > 0 || middle + d < strips_)) visit_strip(middle + d, visit);

@@ -90,8 +90,9 @@ bool PairWatch::is_used_up(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
-    const double rough = rough_way(p, now), held = rough < skin_ ? rough - excess_[p] : way(p, now);
-    use_[p] = held < kept * skin_ ? little : held < (1 - rounded) * skin_ ? much : all;
+    // Below the skin by boxes a pair holds, and what is likely will do.
+    const double rough = rough_way(p, now), likely = rough < skin_ ? rough - excess_[p] : way(p, now);
+    use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
   });
   return some || !(come_out_ < own_skin_);

@@ -187,10 +187,10 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   });
 }
 
-/// As finish_region: of its outline nodes, by their spacing.
+/// As finish_region; the change is that of the outline nodes, over their spacing.
 void Verlet::finish_rigid(const State& state, double dt, int r) {
   const RigidBody& body = model_.rigid_bodies[r];
-  const auto largest_change = [&](std::size_t c) {
+  const auto finish_dof = [&](std::size_t c) {  // returns |a_new - a_old|
     const RigidDof& dof = body.dof[c];
     const std::size_t i = 3 * static_cast<std::size_t>(r) + c;
     const double coefficient = drag_coefficient(dof, {state.time}), before = state.reduced_momentum.rigid[i];
@@ -202,7 +202,7 @@ void Verlet::finish_rigid(const State& state, double dt, int r) {
     force -= coefficient * trial_.reduced_momentum.rigid[i];
     return change * dof.inverse_mass_at(state.time);
   };
-  const double x = largest_change(0), y = largest_change(1), angle = largest_change(2);
+  const double x = finish_dof(0), y = finish_dof(1), angle = finish_dof(2);
   const double worst = std::max(x, y) + body.max_radius * angle;
   change_[model_.regions.size() + static_cast<std::size_t>(r)] = std::isfinite(x + y + angle)
                                                                      ? worst / model_.outlines[body.outline].spacing

@@ -23,10 +23,9 @@ class Verlet {
   void accepted(const State& state);
   Trial& trial() { return trial_; }
 
-  // The two passes over all degrees of freedom, which benchmarks time alone:
+  // What benchmarks time alone:
   void predict(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
-  void finish_rigid(const State& state, double dt, int r);
 
   double largest_dt() const { return bound_.largest_dt(); }  ///< s
   std::string governing() const { return bound_.governing(); }
@@ -40,6 +39,7 @@ class Verlet {
  private:
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
+  void finish_rigid(const State& state, double dt, int r);
   double error(double dt) const;
 
   Forces& forces_;
