@@ -26,8 +26,8 @@ class NodeStrips {
     for (int i = 0; i < count; ++i) nodes_[next[strip_of(x[i])]++] = i;
   }
 
-  /// Visits nodes strip by strip from x on, both ways, until no node and no segment that begins at one can be as near as
-  /// limit(), which may fall on the way, m.
+  /// Visits nodes strip by strip from x on, both ways, until no node and no segment that begins at one can be as near
+  /// as limit(), which may fall on the way, m.
   template <class Visit, class Limit>
   void from(double x, Visit&& visit, Limit&& limit) const {
     const int middle = strip_of(x);
