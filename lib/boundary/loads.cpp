@@ -92,18 +92,31 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
   return work;
 }
 
+namespace {
+
+/// Of slots [first, last).
+Lanes gravity_moment(const Model& model, const Batch& batch, int first, int last, const Vec2& g, const Dofs& position) {
+  const Lanes* q = &position.compliant[batch.offset];
+  return with_nodes(model, batch, [&](const auto& nodes) {
+    Lanes moment{};
+    for (int i = first; i < last; ++i) moment += nodes.unit_mass[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
+    return moment * weighing_density(model, batch) * batch.weight;
+  });
+}
+
+}  // namespace
+
+Lanes gravity_moment(const Model& model, const Batch& batch, const Vec2& g, const Dofs& position) {
+  if (g.x() == 0 && g.y() == 0) return {};
+  return gravity_moment(model, batch, 0, batch.slots, g, position);
+}
+
 double gravity_moment(const Model& model, const Vec2& g, const Dofs& position) {
   if (g.x() == 0 && g.y() == 0) return 0;
   double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
     const Region& region = model.regions[r];
     const Batch& batch = model.batches[region.batch];
-    const Lanes* q = &position.compliant[batch.offset];
-    return with_nodes(model, batch, [&](const auto& nodes) {
-      Lanes moment{};
-      for (int i = region.first; i < region.last; ++i)
-        moment += nodes.unit_mass[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
-      return sum(moment * weighing_density(model, batch) * batch.weight);
-    });
+    return sum(gravity_moment(model, batch, region.first, region.last, g, position));
   });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
     for (int c = 0; c < 2; ++c)

@@ -28,6 +28,8 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
 
 /// sum of m g . x over all bodies, J/m: the work of a constant gravity is its growth.
 double gravity_moment(const Model& model, const Vec2& g, const Dofs& position);
+/// The same of each body of a batch; of a spread one, lanes add up to it.
+Lanes gravity_moment(const Model& model, const Batch& batch, const Vec2& g, const Dofs& position);
 
 /// Work of a gravity that has a history from one motion to a later one, J/m: trapezoidal rule. 0 for a constant one.
 double gravity_work(const Model& model, const Motion& before, const Motion& after);

@@ -51,7 +51,7 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until)
   forces.warn_of_depth(report.evaluation, scheme.trial().time);
   scheme.finish(state, report);
   take_over(forces.model(), state, scheme.trial(), next_dt, report);
-  scheme.accepted(state);
+  scheme.accepted(state, report);
   return report;
 }
 

@@ -36,6 +36,17 @@ Memory initial_memory(const Model& model);
 /// The motion of a batch at a state's positions, with its memory, and at rest.
 BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& memory);
 
+/// Of bodies that keep their energy (dynamics/body_debt.hpp); empty before the first settlement.
+struct BodyBooks {
+  std::vector<Lanes> opening;  ///< [batches] what bodies had when the books were opened, J/m
+  std::vector<double> work;    ///< [bodies] of contacts since, J/m
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("opening", opening), visitor("work", work);
+  }
+};
+
 /// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
 /// checkpoint cannot forget a part.
 struct State {
@@ -53,6 +64,7 @@ struct State {
   Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
   Dofs force;             ///< N/m
   Memory memory;
+  BodyBooks books;
   // They go with the positions, and are no part of the motion:
   Outlines outlines;           ///< with the velocities that dashpots saw
   OutlineField contact_force;  ///< on outline nodes, N/m
@@ -81,6 +93,7 @@ struct State {
     visitor("reduced_momentum", reduced_momentum);
     visitor("force", force);
     visitor("memory", memory);
+    visitor("books", books);
   }
 };
 

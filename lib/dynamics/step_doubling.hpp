@@ -21,7 +21,7 @@ class StepDoubling {
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State&, const StepReport&) {}
-  void accepted(const State&) {}
+  void accepted(const State&, const StepReport&) {}
   Trial& trial() { return trial_; }
 
   double largest_dt() const { return std::numeric_limits<double>::infinity(); }  ///< s

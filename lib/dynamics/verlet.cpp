@@ -41,6 +41,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       drag_loss_(forces.model()),
       needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
+      debts_(model_),
       trial_(model_),
       mean_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
@@ -221,7 +222,8 @@ void Verlet::finish(const State& state, StepReport& report) {
   if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
-void Verlet::accepted(const State& state) {
+void Verlet::accepted(State& state, const StepReport& report) {
+  if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(state, report.dt);
   if (state.steps % bound_period == 0)
     forces_.phases().apart(Phase::bound, [&] { bound_.update_internal(state.position, state.memory); });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/body_debt.hpp"
 #include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
 #include "dynamics/time_step_bound.hpp"
@@ -20,7 +21,7 @@ class Verlet {
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State& state, StepReport& report);
-  void accepted(const State& state);
+  void accepted(State& state, const StepReport& report);
   Trial& trial() { return trial_; }
 
   // What benchmarks time alone:
@@ -48,6 +49,7 @@ class Verlet {
   DragLoss drag_loss_;
   const bool needs_velocities_;  ///< with drag, rates or corrected mass
   TimeStepBound bound_;
+  BodyDebts debts_;
   Trial trial_;
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
   Dofs end_velocity_;           ///< that forces see at the end of the step, where needed

@@ -128,7 +128,7 @@ double bounce_gain(double height, double stiffness, bool consistent) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   const double start = simulation.audit().energy.mechanical();
-  advance(simulation, 8);
+  advance(simulation, 9);  // the last one has left the floor at 8.4: in touch forces of the moment count
   return std::abs(simulation.audit().energy.mechanical() / start - 1);
 }
 

@@ -1,0 +1,157 @@
+#include "dynamics/body_debt.hpp"
+
+#include <algorithm>
+
+#include "bodies/damping_forces.hpp"
+#include "bodies/internal_forces.hpp"
+#include "bodies/mass_correction.hpp"
+#include "bodies/node_arrays.hpp"
+#include "boundary/loads.hpp"
+
+namespace pliant {
+namespace {
+
+bool keeps_debts(const Model& model, int body) {
+  const Batch& batch = model.batches[model.bodies[body].batch];
+  const MaterialLaw law = model.groups[batch.group].law;
+  const auto on_body = [&](const auto& condition) { return condition.body == body; };
+  return law != MaterialLaw::linear_elastic && law != MaterialLaw::neo_hookean_maxwell &&
+         batch.viscosity[model.bodies[body].lane] == 0 && !has_drag(model, model.bodies[body]) &&
+         std::ranges::none_of(model.pressures, on_body) && std::ranges::none_of(model.supports, on_body);
+}
+
+/// Rigid motion of each body of a batch with its momentum and angular momentum, in the units of the batch.
+struct RigidMotion {
+  Lanes x{}, y{}, velocity_x{}, velocity_y{}, spin{};
+
+  template <class Nodes>
+  RigidMotion(const Batch& batch, const Nodes& nodes, const Lanes* q, const Lanes* v) {
+    Lanes mass{};
+    for (int i = 0; i < batch.slots; ++i) {
+      mass += nodes.unit_mass[i];
+      x += nodes.unit_mass[i] * q[2 * i], y += nodes.unit_mass[i] * q[2 * i + 1];
+      velocity_x += nodes.unit_mass[i] * v[2 * i], velocity_y += nodes.unit_mass[i] * v[2 * i + 1];
+    }
+    mass = sum_over_body(batch, mass);
+    for (Lanes* mean : {&x, &y, &velocity_x, &velocity_y}) *mean = sum_over_body(batch, *mean) / mass;
+    Lanes momentum{}, inertia{};
+    for (int i = 0; i < batch.slots; ++i) {
+      const Lanes rx = q[2 * i] - x, ry = q[2 * i + 1] - y;
+      momentum += nodes.unit_mass[i] * (rx * (v[2 * i + 1] - velocity_y) - ry * (v[2 * i] - velocity_x));
+      inertia += nodes.unit_mass[i] * (rx * rx + ry * ry);
+    }
+    spin = sum_over_body(batch, momentum) / sum_over_body(batch, inertia);
+  }
+
+  /// Of a node's velocity, what is not rigid.
+  LaneVector without(const Lanes* q, const Lanes* v) const {
+    return {v[0] - velocity_x + spin * (q[1] - y), v[1] - velocity_y - spin * (q[0] - x)};
+  }
+};
+
+/// K - dt^2 sum F^2/(8 m) of each body of a batch, J/m; of a spread one, lanes add up to it.
+Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const State& state, double dt) {
+  const Lanes *y = &state.reduced_momentum.compliant[batch.offset], *f = &state.force.compliant[batch.offset];
+  const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
+  thread_local std::vector<Lanes> impulse, scratch;  // their memory is found once
+  impulse.resize(size), scratch.resize(size);
+  return with_nodes(model, batch, [&](const auto& nodes) {
+    for (std::size_t i = 0; i < size; ++i)
+      impulse[i] = 0.5 * dt * f[i] * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density);
+    const auto twice = [&](const Lanes* momentum) {
+      const Lanes* velocity = momentum;
+      if (model.corrected_mass) correct_velocity(model, batch, momentum, scratch.data()), velocity = scratch.data();
+      Lanes total{};
+      for (std::size_t i = 0; i < size; ++i) total += nodes.unit_mass[i / 2] * (momentum[i] * velocity[i]);
+      return total;
+    };
+    return 0.5 * batch.density * batch.weight * (twice(y) - twice(impulse.data()));
+  });
+}
+
+/// Takes from the vibrations of a batch's bodies their share of what is owed, J/m.
+void scale_vibrations(const Model& model, const Batch& batch, const Lanes& owed, State& state) {
+  const Lanes* q = &state.position.compliant[batch.offset];
+  Lanes* v = &state.reduced_momentum.compliant[batch.offset];
+  with_nodes(model, batch, [&](const auto& nodes) {
+    const RigidMotion rigid(batch, nodes, q, v);
+    Lanes twice{};  // their kinetic energy
+    for (int i = 0; i < batch.slots; ++i) {
+      const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
+      twice += nodes.unit_mass[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
+    }
+    twice = sum_over_body(batch, twice * batch.density * batch.weight);
+    const Lanes wanted = settled_share * owed / max(twice, broadcast(1e-300));
+    const Lanes taken = max(min(wanted, broadcast(most_settled)), broadcast(-most_settled));
+    for (int i = 0; i < batch.slots; ++i) {
+      const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
+      const Lanes there = taken * (nodes.unit_mass[i] * nodes.inverse_unit_mass[i]);  // 0 in padding
+      v[2 * i] -= there * shaking.x(), v[2 * i + 1] -= there * shaking.y();
+    }
+  });
+}
+
+/// What the mean of the forces of contact on a body's outline does in a step, J/m.
+double contact_work(const Model& model, int body, const Trial& before, const State& after) {
+  const OutlineField &old_place = before.outlines.position, &place = after.outlines.position,
+                     &old_force = before.contact_force, &force = after.contact_force;
+  Lanes twice{};
+  for (int i = model.outline_offset[body], end = model.outline_end(body); i < end; i += lane_count) {
+    const Lanes work = (load(&old_force.x[i]) + load(&force.x[i])) * (load(&place.x[i]) - load(&old_place.x[i])) +
+                       (load(&old_force.y[i]) + load(&force.y[i])) * (load(&place.y[i]) - load(&old_place.y[i]));
+    twice += select(first_lanes(end - i), work, Lanes{});
+  }
+  return 0.5 * sum(twice);
+}
+
+}  // namespace
+
+BodyDebts::BodyDebts(const Model& model) : model_(model) {
+  if (!model.scene.keeps_energy_debts() || !model.scene.gravity_history.empty()) return;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.batch < 0 || !keeps_debts(model, static_cast<int>(b))) continue;
+    repays_.resize(model.batches.size());
+    if (model.batches[body.batch].layout == Layout::spread)
+      repays_[body.batch] = broadcast(1);
+    else
+      repays_[body.batch][body.lane] = 1;
+  }
+}
+
+void BodyDebts::book(const Trial& before, State& state) const {
+  if (state.books.work.empty()) return;
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    if (model_.bodies[b].batch >= 0) state.books.work[b] += contact_work(model_, b, before, state);
+  });
+}
+
+/// In motion, strained, and in height, of each body of a batch, J/m.
+Lanes BodyDebts::energy(const State& state, int b, double dt) const {
+  const Batch& batch = model_.batches[b];
+  return sum_over_body(batch, shadow_kinetic_energy(model_, batch, state, dt) +
+                                  strain_energy(model_, batch, motion_of(batch, state.position, state.memory)) -
+                                  gravity_moment(model_, batch, model_.scene.gravity, state.position));
+}
+
+Lanes BodyDebts::owed(const State& state, int b, double dt) const {
+  const Batch& batch = model_.batches[b];
+  const int* bodies = &model_.groups[batch.group].bodies[batch.first];
+  Lanes work = broadcast(state.books.work[bodies[0]]);  // of a spread body in all lanes
+  for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.books.work[bodies[lane]];
+  return energy(state, b, dt) - state.books.opening[b] - work;
+}
+
+void BodyDebts::settle(State& state, double dt) const {
+  if (state.steps % settling_period != 0) return;
+  if (state.books.opening.empty()) {
+    state.books.work.resize(model_.bodies.size());
+    state.books.opening.resize(model_.batches.size());
+    return for_each_batch(model_, [&](int b) { state.books.opening[b] = energy(state, b, dt); });
+  }
+  for_each_batch(model_, [&](int b) {
+    if (sum(repays_[b]) > 0) scale_vibrations(model_, model_.batches[b], repays_[b] * owed(state, b, dt), state);
+  });
+}
+
+}  // namespace pliant
