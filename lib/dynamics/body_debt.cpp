@@ -13,9 +13,8 @@ namespace {
 
 bool keeps_debts(const Model& model, int body) {
   const Batch& batch = model.batches[model.bodies[body].batch];
-  const MaterialLaw law = model.groups[batch.group].law;
   const auto on_body = [&](const auto& condition) { return condition.body == body; };
-  return law != MaterialLaw::linear_elastic && law != MaterialLaw::neo_hookean_maxwell &&
+  return model.groups[batch.group].law != MaterialLaw::neo_hookean_maxwell &&
          batch.viscosity[model.bodies[body].lane] == 0 && !has_drag(model, model.bodies[body]) &&
          std::ranges::none_of(model.pressures, on_body) && std::ranges::none_of(model.supports, on_body);
 }

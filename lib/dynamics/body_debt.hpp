@@ -24,8 +24,7 @@ constexpr double most_settled = 1e-6 * settling_period;
 class BodyDebts {
  public:
   explicit BodyDebts(const Model& model);
-  /// Whether some body has debts: compliant, without damping, memory, loads or supports, of a law that is not linear,
-  /// where contacts repay.
+  /// Whether some body has debts: compliant, without damping, memory, loads or supports, where contacts repay.
   bool are_kept() const { return !repays_.empty(); }
 
   /// Books what contacts did in an accepted step; `before`: what the state was then.
