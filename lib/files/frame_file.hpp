@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec2.hpp"
 #include "files/text_files.hpp"
 
 namespace pliant {
@@ -26,6 +27,11 @@ struct Grid {
   int cell_size = 3;
   int cell_count = 0;  ///< of a topology's cells: set by whoever takes it
 };
+
+/// Adds both components to the values of a field, or to positions.
+inline void append(const Vec2& v, std::vector<float>& values) {
+  for (const double component : {v.x(), v.y()}) values.push_back(static_cast<float>(component));
+}
 
 /// A grid with what is written once.
 struct GridTopology : Grid {

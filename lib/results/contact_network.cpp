@@ -20,10 +20,6 @@ struct PairSums {
   Vec2 point() const { return weight > 0 ? Vec2(point_by_force / weight) : Vec2(point_by_length / length); }
 };
 
-void append(const Vec2& v, std::vector<float>& values) {
-  for (const double x : {v.x(), v.y()}) values.push_back(static_cast<float>(x));
-}
-
 }  // namespace
 
 FrameTable contact_network(const Snapshot& snapshot) {

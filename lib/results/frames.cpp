@@ -37,10 +37,6 @@ void add_cell(GridTopology& grid, const Body& body, std::size_t index, const std
   grid.constant_fields[1].values.push_back(static_cast<float>(index));
 }
 
-void append(const Vec2& point, std::vector<float>& values) {
-  for (double x : {point.x(), point.y()}) values.push_back(static_cast<float>(x));
-}
-
 }  // namespace
 
 FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening)
