@@ -107,7 +107,7 @@ Lanes gravity_moment(const Model& model, const Batch& batch, int first, int last
 }  // namespace
 
 Lanes gravity_moment(const Model& model, const Batch& batch, const Vec2& g, const Dofs& position) {
-  if (g.x() == 0 && g.y() == 0) return {};
+  if (g.x() == 0 && g.y() == 0) return Lanes{};
   return gravity_moment(model, batch, 0, batch.slots, g, position);
 }
 
