@@ -121,7 +121,9 @@ BodyDebts::BodyDebts(const Model& model) : model_(model) {
 void BodyDebts::book(const Trial& before, State& state) const {
   if (state.books.work.empty()) return;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
-    if (model_.bodies[b].batch >= 0) state.books.work[b] += contact_work(model_, b, before, state);
+    const Body& body = model_.bodies[b];
+    if (body.batch >= 0 && repays_[body.batch][body.lane] > 0)
+      state.books.work[b] += contact_work(model_, b, before, state);
   });
 }
 

@@ -10,15 +10,15 @@ namespace pliant {
 constexpr int settling_period = 200;
 /// Of a debt, what a settlement takes back or gives: what is owed flickers with the forces, so ten make a mean.
 constexpr double settled_share = 0.1;
-/// Of velocities, most that a settlement changes: a millionth a step. What is made in bodies that ring is a tenth of
-/// that (verify/undamped); what is owed beyond waits, as by bodies that all but stand still.
+/// Of velocities, most that a settlement changes: a millionth a step. Bodies that ring need a tenth of that
+/// (verify/undamped). What is owed beyond waits: by bodies that all but stand still, and by ones that bounce for good.
 constexpr double most_settled = 1e-6 * settling_period;
 
 /// Undamped compliant bodies that keep their energy (docs/method.md 6). In equal steps of velocity Verlet
 /// K - dt^2 sum F^2/(8 m) grows by the work of the mean of the forces at a step's ends. The work of all of them makes
-/// up for what energies store but for terms that come back; that of contacts alone, which repay what they make or lose
-/// (contact/energy_debt.hpp), leaves those that stresses would have given back to them, and bodies that ring heat; so
-/// they do where steps change. What a body has beyond its start and what contacts and gravity did to it is its debt,
+/// up for what energies store but for terms of the moment. Contacts repay what they make or lose
+/// (contact/energy_debt.hpp), and so leave what stresses would have given back to them: bodies that ring heat. So they
+/// do where steps change. What a body has beyond its start and what contacts and gravity did to it is its debt,
 /// J/m. It repays by velocities: those relative to its rigid motion are scaled by a little, which leaves momentum and
 /// angular momentum as they are.
 class BodyDebts {

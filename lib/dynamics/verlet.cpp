@@ -222,6 +222,7 @@ void Verlet::finish(const State& state, StepReport& report) {
   if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
+/// The trial has become what the state was before the step.
 void Verlet::accepted(State& state, const StepReport& report) {
   if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(state, report.dt);
   if (state.steps % bound_period == 0)

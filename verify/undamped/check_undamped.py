@@ -109,8 +109,8 @@ def test_energy(recipe: str) -> None:
     steps, errors = run_of(recipe).summary["steps"], energy(recipe)
     CASE.check(Label.EXACT, f"{recipe}: {STEPS} steps and more", float(steps >= STEPS), 1, 0, "what is asked for")
     CASE.check(Label.EXACT, f"{recipe}: energy over that of the start - 1, largest", np.abs(errors).max(), 0,
-               1e-2 + kept_by_verlet(recipe).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: discs that "
-               "ring have forces")
+               1e-2 + kept_by_verlet(recipe).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: "
+               "discs that ring have forces")
     CASE.check(Label.EXACT, f"{recipe}: forces and moments of contacts and stresses, what does not cancel",
                run_of(recipe).summary["momentum_error"], 0, 1e-12, "promised")
 
