@@ -48,28 +48,37 @@ struct RigidMotion {
   }
 };
 
-/// K - dt^2 sum F^2/(8 m) of each body of a batch, J/m; of a spread one, lanes add up to it.
-Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const State& state, double dt) {
-  const Lanes *y = &state.reduced_momentum.compliant[batch.offset], *f = &state.force.compliant[batch.offset];
+/// Of each body of a batch after a step, K - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, J/m; of a
+/// spread one, lanes add up to it.
+Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial& before, const State& state,
+                            double dt) {
+  const Lanes *y = &state.reduced_momentum.compliant[batch.offset], *f = &state.force.compliant[batch.offset],
+              *old_f = &before.force.compliant[batch.offset], *q = &state.position.compliant[batch.offset],
+              *old_q = &before.position.compliant[batch.offset];
   const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
-  thread_local std::vector<Lanes> impulse, scratch;  // their memory is found once
-  impulse.resize(size), scratch.resize(size);
+  thread_local std::vector<Lanes> impulse, less, scratch;  // their memory is found once
+  impulse.resize(size), less.resize(size), scratch.resize(size);
   return with_nodes(model, batch, [&](const auto& nodes) {
-    for (std::size_t i = 0; i < size; ++i)
-      impulse[i] = 0.5 * dt * f[i] * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density);
-    const auto twice = [&](const Lanes* momentum) {
-      const Lanes* velocity = momentum;
-      if (model.corrected_mass) correct_velocity(model, batch, momentum, scratch.data()), velocity = scratch.data();
+    Lanes change{};
+    for (std::size_t i = 0; i < size; ++i) {
+      const Lanes half_step = 0.5 * dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density);
+      impulse[i] = half_step * f[i];
+      less[i] = half_step * (f[i] - 2.0 / 3 * old_f[i]);
+      change += (q[i] - old_q[i]) * (f[i] - old_f[i]);
+    }
+    const auto product = [&](const Lanes* a, const Lanes* b) {  // of reduced momenta, by the mass
+      if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();
       Lanes total{};
-      for (std::size_t i = 0; i < size; ++i) total += nodes.unit_mass[i / 2] * (momentum[i] * velocity[i]);
+      for (std::size_t i = 0; i < size; ++i) total += nodes.unit_mass[i / 2] * (a[i] * b[i]);
       return total;
     };
-    return 0.5 * batch.density * batch.weight * (twice(y) - twice(impulse.data()));
+    const Lanes twice = product(y, y) - product(impulse.data(), less.data());
+    return batch.weight * (0.5 * batch.density * twice - 1.0 / 12 * change);
   });
 }
 
 /// Takes from the vibrations of a batch's bodies their share of what is owed, J/m.
-void scale_vibrations(const Model& model, const Batch& batch, const Lanes& owed, State& state) {
+void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State& state) {
   const Lanes* q = &state.position.compliant[batch.offset];
   Lanes* v = &state.reduced_momentum.compliant[batch.offset];
   with_nodes(model, batch, [&](const auto& nodes) {
@@ -80,6 +89,7 @@ void scale_vibrations(const Model& model, const Batch& batch, const Lanes& owed,
       twice += nodes.unit_mass[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
     }
     twice = sum_over_body(batch, twice * batch.density * batch.weight);
+    owed = select(abs(owed) < 0.5 * most_owed * twice, owed, Lanes{});
     const Lanes wanted = settled_share * owed / max(twice, broadcast(1e-300));
     const Lanes taken = max(min(wanted, broadcast(most_settled)), broadcast(-most_settled));
     for (int i = 0; i < batch.slots; ++i) {
@@ -128,30 +138,31 @@ void BodyDebts::book(const Trial& before, State& state) const {
 }
 
 /// In motion, strained, and in height, of each body of a batch, J/m.
-Lanes BodyDebts::energy(const State& state, int b, double dt) const {
+Lanes BodyDebts::energy(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
-  return sum_over_body(batch, shadow_kinetic_energy(model_, batch, state, dt) +
+  return sum_over_body(batch, shadow_kinetic_energy(model_, batch, before, state, dt) +
                                   strain_energy(model_, batch, motion_of(batch, state.position, state.memory)) -
                                   gravity_moment(model_, batch, model_.scene.gravity, state.position));
 }
 
-Lanes BodyDebts::owed(const State& state, int b, double dt) const {
+Lanes BodyDebts::owed(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   const int* bodies = &model_.groups[batch.group].bodies[batch.first];
   Lanes work = broadcast(state.books.work[bodies[0]]);  // of a spread body in all lanes
   for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.books.work[bodies[lane]];
-  return energy(state, b, dt) - state.books.opening[b] - work;
+  return energy(before, state, b, dt) - state.books.opening[b] - work;
 }
 
-void BodyDebts::settle(State& state, double dt) const {
+void BodyDebts::settle(const Trial& before, State& state, double dt) const {
   if (state.steps % settling_period != 0) return;
   if (state.books.opening.empty()) {
     state.books.work.resize(model_.bodies.size());
     state.books.opening.resize(model_.batches.size());
-    return for_each_batch(model_, [&](int b) { state.books.opening[b] = energy(state, b, dt); });
+    return for_each_batch(model_, [&](int b) { state.books.opening[b] = energy(before, state, b, dt); });
   }
   for_each_batch(model_, [&](int b) {
-    if (sum(repays_[b]) > 0) scale_vibrations(model_, model_.batches[b], repays_[b] * owed(state, b, dt), state);
+    if (sum(repays_[b]) > 0)
+      scale_vibrations(model_, model_.batches[b], repays_[b] * owed(before, state, b, dt), state);
   });
 }
 

@@ -10,17 +10,18 @@ namespace pliant {
 constexpr int settling_period = 200;
 /// Of a debt, what a settlement takes back or gives: what is owed flickers with the forces, so ten make a mean.
 constexpr double settled_share = 0.1;
-/// Of velocities, most that a settlement changes: a millionth a step. Bodies that ring need a tenth of that
-/// (verify/undamped). What is owed beyond waits: by bodies that all but stand still, and by ones that bounce for good.
-constexpr double most_settled = 1e-6 * settling_period;
+/// Of velocities, most that a settlement changes: 1e-5 a step. What is made in bodies that ring is a hundredth of that
+/// (verify/undamped), in a disc that bounces a tenth or so.
+constexpr double most_settled = 1e-5 * settling_period;
+/// Over the kinetic energy of vibrations: beyond, a debt waits, lest a loud past shake what all but stands still.
+constexpr double most_owed = 1;
 
-/// Undamped compliant bodies that keep their energy (docs/method.md 6). In equal steps of velocity Verlet
-/// K - dt^2 sum F^2/(8 m) grows by the work of the mean of the forces at a step's ends. The work of all of them makes
-/// up for what energies store but for terms of the moment. Contacts repay what they make or lose
-/// (contact/energy_debt.hpp), and so leave what stresses would have given back to them: bodies that ring heat. So they
-/// do where steps change. What a body has beyond its start and what contacts and gravity did to it is its debt,
-/// J/m. It repays by velocities: those relative to its rigid motion are scaled by a little, which leaves momentum and
-/// angular momentum as they are.
+/// Undamped compliant bodies that keep their energy (docs/method.md 6). Equal steps of velocity Verlet, for themselves,
+/// keep K + U - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, dx and dF of a step, but for third powers
+/// of the step; where forces are linear, to rounding. Contacts repay what they make or lose (contact/energy_debt.hpp),
+/// and so leave what stresses would have given back to them: bodies that ring heat; so they do where steps change. What
+/// a body has beyond its start and what contacts and gravity did to it is its debt, J/m. It repays by velocities: those
+/// relative to its rigid motion are scaled by a little, which leaves momentum and angular momentum as they are.
 class BodyDebts {
  public:
   explicit BodyDebts(const Model& model);
@@ -31,12 +32,12 @@ class BodyDebts {
   void book(const Trial& before, State& state) const;
   /// Scales velocities, every settling_period steps; dt: of the step that led here. The first time opens the books:
   /// steps are short before.
-  void settle(State& state, double dt) const;
-  /// Of the bodies of a batch, while books are open, J/m.
-  Lanes owed(const State& state, int batch, double dt) const;
+  void settle(const Trial& before, State& state, double dt) const;
+  /// Of the bodies of a batch after a step, while books are open, J/m.
+  Lanes owed(const Trial& before, const State& state, int batch, double dt) const;
 
  private:
-  Lanes energy(const State& state, int batch, double dt) const;
+  Lanes energy(const Trial& before, const State& state, int batch, double dt) const;
 
   const Model& model_;
   std::vector<Lanes> repays_;  ///< [batches] 1, or 0 for bodies that keep no debts and padding; empty: none does

@@ -224,7 +224,7 @@ void Verlet::finish(const State& state, StepReport& report) {
 
 /// The trial has become what the state was before the step.
 void Verlet::accepted(State& state, const StepReport& report) {
-  if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(state, report.dt);
+  if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(trial_, state, report.dt);
   if (state.steps % bound_period == 0)
     forces_.phases().apart(Phase::bound, [&] { bound_.update_internal(state.position, state.memory); });
 }

@@ -118,7 +118,8 @@ def test_energy(recipe: str) -> None:
 @pytest.mark.skipif(not FULL, reason="the first hundred time units, in which discs begin to ring, are a tenth of the run")
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_no_drift(recipe: str) -> None:
-    errors = energy(recipe) - kept_by_verlet(recipe)
+    # K + U - dt^2 sum F^2/24m - sum dx dF/12, and -dx dF is dt^2 F^2/m in the mean over vibrations
+    errors = energy(recipe) + kept_by_verlet(recipe) / 3
     halves = [Mean(block_means(half, BLOCK)) for half in (errors[1 : SAMPLES // 2 + 1], errors[SAMPLES // 2 + 1 :])]
     CASE.check(Label.EXACT, f"{recipe}: what Verlet keeps, mean of the second half less that of the first",
                halves[1].value - halves[0].value, 0, halves[0].error + halves[1].error,
