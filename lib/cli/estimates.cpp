@@ -202,9 +202,11 @@ OutputSize output_size(const Model& model, double steps) {
 }
 
 double least_steps(const Scene& scene, double time, double largest_dt) {
-  double period = scene.frames.period > 0 ? scene.frames.period : time;
-  for (const Probe& probe : scene.probes) period = std::min(period, probe.period);
-  period = std::min(period, time);
+  double period = time;
+  if (scene.time.stop_at_outputs) {
+    if (scene.frames.period > 0) period = std::min(period, scene.frames.period);
+    for (const Probe& probe : scene.probes) period = std::min(period, probe.period);
+  }
   return time > 0 ? time / period * std::ceil(period / largest_dt) : 0;
 }
 

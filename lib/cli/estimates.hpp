@@ -47,7 +47,7 @@ std::int64_t output_count(double period, double end);
 double frame_bytes(const Model& model);
 OutputSize output_size(const Model& model, double steps);
 
-/// Least number of steps over `time`, none longer than `largest_dt`, that meet the outputs of the scene's periods.
+/// Least number of steps over `time`, none longer than `largest_dt`, that stop where the scene's outputs ask for it.
 double least_steps(const Scene& scene, double time, double largest_dt);
 
 }  // namespace pliant

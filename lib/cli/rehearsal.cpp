@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "results/probes/probes.hpp"
 
@@ -54,16 +55,23 @@ Rehearsal rehearse(Simulation& simulation) {
   const std::int64_t before = state.evaluations;
   double seconds = 0, grown_time = 0;
   std::int64_t grown = 0;
-  while (state.time < scene.time.end && seconds < longest_seconds) {
-    const double until = next_output(scene, state.time);
-    simulation.step(until);
-    if (state.time == until) samples.take_due(simulation);
+  double next = next_output(scene, state.time);
+  bool finished = false;
+  const Observer outputs{[&] { return next; },
+                         [&] {
+                           samples.take_due(simulation);
+                           next = next_output(scene, state.time);
+                           finished = state.time >= scene.time.end;
+                           return !finished;
+                         }};
+  while (!finished && seconds < longest_seconds) {
+    simulation.step(scene.time.stop_at_outputs ? next : std::numeric_limits<double>::infinity(), &outputs);
     if (grown == 0 && state.evaluations >= growth) grown = state.evaluations, grown_time = state.time;
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
   Rehearsal result;
   result.time = state.time;
-  result.finished = state.time >= scene.time.end;
+  result.finished = finished;
   result.evaluations = state.evaluations;
   result.rejections = state.rejections;
   result.seconds_per_evaluation = seconds / static_cast<double>(std::max<std::int64_t>(state.evaluations - before, 1));

@@ -14,7 +14,7 @@ struct Rehearsal {
   double next_dt = 0;  ///< s
 };
 
-/// Steps for at most a second, to the same outputs as a run, and samples the probes; nothing is written.
+/// Steps for at most a second, with the same outputs as a run, and samples the probes; nothing is written.
 Rehearsal rehearse(Simulation& simulation);
 
 }  // namespace pliant

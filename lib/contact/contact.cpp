@@ -70,7 +70,6 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
 }
 
 void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
-  if (laws_.era(clock.time) != laws_.era(refreshed_.time)) history.evaluation = 0;  // of other laws
   warn_of_missed_contacts(outlines.position);
   watch_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
@@ -113,6 +112,7 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
 bool ContactSystem::take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                       const RunClock& clock) {
   accept(history);
+  if (laws_.era(clock.time) != laws_.era(refreshed_.time)) last_.number = 0;  // of other laws
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !watch_.update(outlines.position, trial);
@@ -181,7 +181,6 @@ void ContactSystem::make_room(Evaluated& evaluated) const {
   evaluated.number = 0;
 }
 
-/// A trial whose history is that of the state now was accepted.
 void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
@@ -207,17 +206,17 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, c
 
 /// Forces of a patch after a step in which it repays some of what it owes, and what it owes then.
 PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
-                                  ContactHistory& to) {
+                                  ContactHistory& to, PatchForces& forces) {
   to.owed[patch] = from.owed[patch];
   // What a dashpot takes depends on the step: what it seems to owe, it does not.
-  if (is_damped(view.patch.law)) return compute_patch(view, nullptr, from, to, trial_.forces);
+  if (is_damped(view.patch.law)) return compute_patch(view, nullptr, from, to, forces);
   const PatchTotals& before = last_.totals[patch];
   // Parts of a body that touches itself are others after a search.
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
   const PatchStep way{known ? &step->position : nullptr, &last_.forces, from.owed[patch] - before.pending,
                       known ? before.recent_ways : 0,    most_repaid_,  step != nullptr};
-  PatchTotals now = compute_patch(view, &way, from, to, trial_.forces);
+  PatchTotals now = compute_patch(view, &way, from, to, forces);
   now.recent_ways = now.ways;
   if (!known) return now;
   now.recent_ways = std::max(now.ways, before.ways);
@@ -230,13 +229,13 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                   OutlineField& force, const StepStart* step) {
   table_.follow(from, to);  // also in what no patch writes: states are compared by their bits
-  if (keeps_debts()) {
+  to.evaluation = from.evaluation;
+  if (keeps_debts() && step) {
     accept(from);
-    trial_.number = step ? ++evaluations_ : 0;
+    trial_.number = ++to.evaluation;
     trial_.refreshes = refreshes_;
-    to.evaluation = step ? trial_.number : from.evaluation;
   }
-  Evaluated& now = keeps_debts() ? trial_ : last_;
+  Evaluated& now = place_of(step);
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
@@ -246,7 +245,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     if (view.patch.is_empty())
       totals = {};
     else if (keeps_debts())
-      totals = settle(view, p, step, from, to);
+      totals = settle(view, p, step, from, to, now.forces);
     else
       totals = compute_patch(view, nullptr, from, to, now.forces);
   });

@@ -70,6 +70,9 @@ class ContactSystem {
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
                      const StepStart* step = nullptr);
 
+  /// A trial whose history is that of the state now was accepted.
+  void accept(const ContactHistory& history);
+
   /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of
   /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
@@ -101,8 +104,7 @@ class ContactSystem {
     visitor("refreshes", refreshes_);
     visitor("pairs_searched", pairs_searched_);
     if (!keeps_debts()) return;
-    if (trial_.number > 0) std::swap(last_, trial_), trial_.number = 0;  // between steps it has been accepted
-    visitor("last", last_), visitor("evaluations", evaluations_);
+    visitor("last", last_);
   }
   void loaded() {
     table_.set_laws([&](const Patch& p) { return laws_.between(p.first, p.second, refreshed_.time); });
@@ -118,10 +120,16 @@ class ContactSystem {
   std::vector<Patch> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
-  void accept(const ContactHistory& history);
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
+  /// Of what an evaluation leaves behind.
+  Evaluated& place_of(const StepStart* step) {
+    if (!keeps_debts()) return last_;
+    if (step) return trial_;
+    make_room(audited_);
+    return audited_;
+  }
   PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
-                     ContactHistory& to);
+                     ContactHistory& to, PatchForces& forces);
   void add_self_patches(std::vector<Patch>& all);
   void refuse_self_overlap() const;
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
@@ -132,10 +140,10 @@ class ContactSystem {
   ContactLaws laws_;
   double skin_;
   PairWatch watch_;
-  PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
-  double most_repaid_;      ///< see energy_debt.hpp
-  Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what has not been accepted
-  std::int64_t evaluations_ = 0;
+  PatchTable table_;    ///< in the order of the pairs, unless bodies touch themselves
+  double most_repaid_;  ///< see energy_debt.hpp
+  /// What accepted steps left behind and, where debts are kept, what has not been accepted, and of no step.
+  Evaluated last_, trial_, audited_;
   std::vector<PatchTotals> block_totals_;  ///< scratch
   Outlines found_at_;                      ///< of each body, where some candidates of its were found last
   std::vector<int> found_;                 ///< see found()

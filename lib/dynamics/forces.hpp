@@ -54,6 +54,9 @@ class Forces {
   Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
                       const Afterwards& afterwards = {});
 
+  /// What the last trial left behind belongs to this state, if that was it.
+  void accept(const State& state) { contact_.accept(state.memory.contact); }
+
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 

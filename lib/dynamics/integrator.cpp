@@ -52,6 +52,15 @@ Evaluation find_forces(Forces& forces, State& state) {
   return found;
 }
 
+void swap_motion(State& state, Trial& trial) {
+  std::swap(state.position, trial.position);
+  std::swap(state.reduced_momentum, trial.reduced_momentum);
+  std::swap(state.force, trial.force);
+  std::swap(state.memory, trial.memory);
+  std::swap(state.outlines, trial.outlines);
+  std::swap(state.contact_force, trial.contact_force);
+}
+
 void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report) {
   const double end_time = trial.time;
   // Of velocities only those of rigid bodies count here: reduced momenta are no others.
@@ -62,12 +71,7 @@ void take_over(const Model& model, State& state, Trial& trial, double next_dt, c
   state.gravity_work += gravity_work(model, before, after);
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
   state.damped += report.damping_work;
-  std::swap(state.position, trial.position);
-  std::swap(state.reduced_momentum, trial.reduced_momentum);
-  std::swap(state.force, trial.force);
-  std::swap(state.memory, trial.memory);
-  std::swap(state.outlines, trial.outlines);
-  std::swap(state.contact_force, trial.contact_force);
+  swap_motion(state, trial);
   state.time = end_time;
   state.next_dt = next_dt;
   ++state.steps;

@@ -27,15 +27,16 @@ Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
     integrator_ = std::make_unique<StepDoubling>(forces_, state_);
 }
 
-StepReport Simulation::step(double until) {
+StepReport Simulation::step(double until, const Observer* observer) {
   phases().begin_step(state_.steps);
   const auto& times = model_.switch_times;
   const auto next = std::upper_bound(times.begin(), times.end(), state_.time);
   if (next != times.end()) until = std::min(until, *next);
-  const StepReport report =
-      std::visit([&](auto& integrator) { return take_step(*integrator, forces_, state_, until); }, integrator_);
-  statistics_.add(report, state_.time);
+  const StepReport report = std::visit(
+      [&](auto& integrator) { return take_step(*integrator, forces_, state_, until, observer); }, integrator_);
+  if (report.dt > 0) statistics_.add(report, state_.time);
   phases().end_step();
+  if (report.dt > 0 && observer && observer->looks_at(state_.time)) observer->look();
   return report;
 }
 

@@ -17,8 +17,9 @@ class Simulation {
  public:
   explicit Simulation(const Model& model);
 
-  /// One accepted step, ending at `until` at the latest.
-  StepReport step(double until);
+  /// One accepted step, ending at `until` at the latest. An observer sees this simulation at the times it asks for; if
+  /// it has seen enough on the way no step is taken, and the report's has no length.
+  StepReport step(double until, const Observer* observer = nullptr);
   Audit audit() { return auditor_->audit(state_); }
   double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }
   double balance_error(const Energies& energy) const { return auditor_->balance_error(energy); }
@@ -37,6 +38,7 @@ class Simulation {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("state", state_);
+    forces_.accept(state_);
     visitor("forces", forces_);
     visitor("auditor", *auditor_);
     visitor("statistics", statistics_);

@@ -47,9 +47,8 @@ struct BodyBooks {
   }
 };
 
-/// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
-/// checkpoint cannot forget a part.
-struct State {
+/// Of a state, what is no array.
+struct StateNumbers {
   double time = 0;     ///< s
   double next_dt = 0;  ///< what the controller proposes, s
   /// verlet: error over dt^3, the largest of this span of steps and of the one before, 1/s3
@@ -60,6 +59,11 @@ struct State {
   double damped = 0;         ///< of that, by forces that depend on velocities, J/m
   double damping_power = 0;  ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
+};
+
+/// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
+/// checkpoint cannot forget a part.
+struct State : StateNumbers {
   Dofs position;          ///< m
   Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
   Dofs force;             ///< N/m

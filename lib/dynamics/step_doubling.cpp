@@ -79,7 +79,7 @@ double StepDoubling::first_dt() const { return first_share * wave_time_; }
 
 Proposal StepDoubling::propose(const State& state, double next_dt, double until) const {
   const double remaining = until - state.time;
-  if (next_dt >= remaining) return {remaining, until, next_dt, wave_time_, "output"};
+  if (next_dt >= remaining) return {remaining, until, next_dt, wave_time_, "until"};
   return {next_dt, state.time + next_dt, next_dt, wave_time_, "error"};
 }
 
@@ -87,7 +87,7 @@ Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepRe
   const TimeSettings& settings = model_.scene.time;
   const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_change;
   const double next_dt = proposal.dt * std::clamp(factor, least_change, largest_change);
-  if (!(report.error <= settings.alpha * settings.target)) return {false, next_dt};
+  if (!stands(report)) return {false, next_dt};
   return {true, proposal.wish > proposal.dt ? std::max(next_dt, proposal.wish) : next_dt};
 }
 
@@ -103,13 +103,13 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
   find_start_force(state, half);
   half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
-  const bool hold = show(state, first, report).hold;
+  const bool hold = show(state, first, proposal, report).hold;
   if (!evaluate(first, {state.memory, half}, half_memory_, report) || !hold) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
-  if (!(report.error <= model_.scene.time.alpha * model_.scene.time.target)) return Halves::done;
-  if (show(state, second, report).found_anew) return Halves::voided;
+  if (!stands(report)) return Halves::done;
+  if (show(state, second, proposal, report).found_anew) return Halves::voided;
   if (!evaluate(second, {half_memory_, half}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
@@ -130,11 +130,12 @@ Motion StepDoubling::motion(const Instant& at) const {
 }
 
 /// The trial's outlines, and candidates that hold for them. `at`: the time of the loads.
-Forces::Candidates StepDoubling::show(State& state, const Instant& at, StepReport& report) {
+Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
   forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion(at), trial_.outlines);
+  if (proposal.is_look) return {};
   return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
 }
 

@@ -19,6 +19,10 @@ class StepDoubling {
   double first_dt() const;
   Proposal propose(const State& state, double next_dt, double until) const;
   void attempt(State& state, const Proposal& proposal, StepReport& report);
+  /// Whether the error of an attempt is one to live with.
+  bool stands(const StepReport& report) const {
+    return report.error <= model_.scene.time.alpha * model_.scene.time.target;
+  }
   Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State&, const StepReport&) {}
   void accepted(const State&, const StepReport&) {}
@@ -36,7 +40,7 @@ class StepDoubling {
   Halves try_halves(State& state, const Proposal& proposal, StepReport& report);
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
-  Forces::Candidates show(State& state, const Instant& at, StepReport& report);
+  Forces::Candidates show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);
   bool evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);

@@ -24,7 +24,7 @@ constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in d
 /// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So
 /// the largest error counts, of this span of steps and the one before: of many of their periods.
 constexpr int span = 64;
-/// Steps shorter than this part of what was wished for are not remembered. Of equal steps to an output none is.
+/// Steps shorter than this part of what was wished for are not remembered. Of equal steps to a stop none is.
 constexpr double least_share = 0.5;
 
 double controller_factor(double error, double tolerance) {
@@ -52,14 +52,14 @@ Verlet::Verlet(Forces& forces, const State& state)
 
 double Verlet::first_dt() const { return first_step * std::min(largest_dt(), model_.scene.time.end); }
 
-/// Equal steps up to the next output, or point of a history: a short one before each would jolt the fastest vibrations
-/// time and again.
+/// Equal steps up to the next stop, such as a point of a history: a short one before each would jolt the fastest
+/// vibrations time and again.
 Proposal Verlet::propose(const State& state, double next_dt, double until) const {
   const double largest = std::min(largest_dt(), model_.scene.time.end), wish = std::min(next_dt, largest);
   const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
   const double dt = std::isfinite(steps) ? remaining / steps : wish;
   return {dt, steps > 1 ? state.time + dt : until, wish, largest,
-          steps == 1          ? "output"
+          steps == 1          ? "until"
           : next_dt < largest ? "error"
                               : "stability"};
 }
@@ -70,7 +70,8 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   const Motion motion{trial_.position, end_velocity_, proposal.end_time, true};
   forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion, trial_.outlines);
-  const Forces::Candidates candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
+  Forces::Candidates candidates;
+  if (!proposal.is_look) candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
   const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
@@ -84,9 +85,9 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
 
 Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
   const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, wish = proposal.wish;
-  if (!(report.error <= 2 * tolerance)) return {false, dt * controller_factor(report.error, tolerance)};
+  if (!stands(report)) return {false, dt * controller_factor(report.error, tolerance)};
   if (state.steps % span == 0) state.jerk_before = std::exchange(state.jerk, 0);
-  // Of the whole step: one cut short to meet an output does not slow the run down, nor does what it saw of a load that
+  // Of the whole step: one cut short to meet a stop does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
   if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
   const double jerk = std::max(state.jerk, state.jerk_before);

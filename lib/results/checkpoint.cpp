@@ -55,12 +55,12 @@ void visit_run(Visitor&& visitor, Simulation& simulation, Recorder& recorder) {
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
-                      Recorder& recorder) {
+                      Recorder& recorder, double time) {
   recorder.sync();
   const State& state = simulation.state();
   const Scene& scene = simulation.model().scene;
   const nlohmann::ordered_json header = {{"scene", scene.name},
-                                         {"time", state.time},
+                                         {"time", time},
                                          {"end", scene.time.end},
                                          {"steps", state.steps},
                                          {"wall_seconds", recorder.figures.wall_seconds},
@@ -72,6 +72,7 @@ void write_checkpoint(const std::filesystem::path& folder, const std::string& sc
   SaveLeaf save(file);
   visit_run(Walk(save), simulation, recorder);
   file.commit();
+  recorder.figures.checkpoint_time = time;
 }
 
 Checkpoint::Checkpoint(const std::filesystem::path& folder)

@@ -8,9 +8,9 @@
 namespace pliant {
 
 /// checkpoint.bin of an output folder: everything that a run needs to go on, and the scene and build that it belongs
-/// to. Writing one changes no bit of the run.
+/// to. Writing one changes no bit of the run. `time`: up to which there are results, s.
 void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
-                      Recorder& recorder);
+                      Recorder& recorder, double time);
 
 /// A checkpoint that was read and is not used yet.
 class Checkpoint {
@@ -20,7 +20,7 @@ class Checkpoint {
 
   const std::string& scene_text() const { return scene_text_; }
   const std::string& scene_name() const { return scene_name_; }
-  double time() const { return time_; }
+  double time() const { return time_; }  ///< up to which there are results, s
   /// Warns of a checkpoint of another build, whose next bits may differ.
   void warn_of_other_build() const;
   /// Puts everything into a simulation of the same scene and a recorder that resumes its folder; files are cut back to

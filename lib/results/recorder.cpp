@@ -14,7 +14,7 @@ Recorder::Recorder(const Model& model, const std::filesystem::path& folder, bool
       steps_(folder, opening),
       progress_(quiet) {}
 
-double Recorder::next_output(double end) const { return std::min({end, probes_.next_time(), frames_.next_time()}); }
+double Recorder::next_output() const { return std::min(probes_.next_time(), frames_.next_time()); }
 
 void Recorder::record_outputs(Simulation& simulation) {
   probes_.record_due(simulation);
@@ -42,10 +42,12 @@ void Recorder::sync() {
   steps_.sync();
 }
 
-void Recorder::write_summary(Simulation& simulation, const std::string& status) {
+std::string Recorder::summary(Simulation& simulation, const std::string& status) {
   flush();
-  write_file_atomically(folder_ / "summary.json", summary_json(simulation, figures, status));
+  return summary_json(simulation, figures, status);
 }
+
+void Recorder::write_summary(const std::string& text) const { write_file_atomically(folder_ / "summary.json", text); }
 
 void Recorder::loaded() {
   seconds_before_ = figures.wall_seconds;

@@ -18,15 +18,17 @@ class Recorder {
   Recorder(const Model& model, const std::filesystem::path& folder, bool quiet, Opening opening);
 
   void begin(const Simulation& simulation) { progress_.begin(simulation); }
-  double next_output(double end) const;
-  void record_outputs(Simulation& simulation);
+  double next_output() const;                   ///< s
+  void record_outputs(Simulation& simulation);  ///< those that are due
   /// A frame of now, if there are frames, whether due or not: a run that goes on from a checkpoint cuts it off.
   void record_last_frame(Simulation& simulation) { frames_.record_last(simulation); }
   void record_step(Simulation& simulation, const StepReport& report);
   /// All rows are on the disk, and the figures are those of now.
   void sync();
   /// summary.json of now. `status` as in summary_json.
-  void write_summary(Simulation& simulation, const std::string& status);
+  std::string summary(Simulation& simulation, const std::string& status);
+  void write_summary(const std::string& text) const;
+  void write_summary(Simulation& simulation, const std::string& status) { write_summary(summary(simulation, status)); }
   void finish_progress() const { progress_.finish(); }
 
   RunFigures figures;

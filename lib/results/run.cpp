@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,6 +34,31 @@ fs::path failure_file(const fs::path& folder) { return folder / "failure.json"; 
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Such as "contact 41 %, internal 39 %": what takes most comes first, without what takes less than half a percent.
+std::string shares(const PhaseTimes::Seconds& seconds) {
+  const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  std::vector<std::pair<double, const char*>> phases;
+  for (std::size_t p = 0; p < seconds.size(); ++p)
+    if (seconds[p] >= 0.005 * all) phases.emplace_back(100 * seconds[p] / all, phase_names[p]);
+  std::sort(phases.begin(), phases.end(), std::greater<>());
+  std::vector<std::string> texts;
+  for (const auto& [percent, name] : phases) texts.push_back(fmt::format("{} {:.0f} %", name, percent));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// What is said of a run that has come to its end.
+std::string last_line(Simulation& simulation, const RunFigures& figures, const RunOptions& options) {
+  const State& state = simulation.state();
+  const Audit audit = simulation.audit();
+  return fmt::format(
+      "{}: t = {:.6g} s in {:.1f} s, {} steps, {} rejected, {} evaluations ({:.0f}/s), energy balance {:.2e}, momentum "
+      "{:.1e}; time: {}\n",
+      options.out.string(), state.time, figures.wall_seconds, state.steps, state.rejections, state.evaluations,
+      static_cast<double>(state.evaluations) / figures.wall_seconds, simulation.balance_error(audit.energy),
+      std::max(audit.momentum_error, figures.worst_momentum_error),
+      shares(simulation.phases().seconds(figures.process_seconds)));
+}
+
 /// A run under way: its simulation, its outputs and its checkpoints.
 struct Run {
   const RunOptions& options;
@@ -39,14 +66,29 @@ struct Run {
   Simulation& simulation;
   Recorder& recorder;
   Clock::time_point last_checkpoint = Clock::now();
+  std::string end_summary = {}, end_line = {};  ///< once the end was seen
 
   void write_checkpoint(const std::string& status) {
     simulation.phases().apart(Phase::output, [&] {
-      pliant::write_checkpoint(options.out, scene_text, simulation, recorder);
-      recorder.figures.checkpoint_time = simulation.state().time;
+      pliant::write_checkpoint(options.out, scene_text, simulation, recorder, simulation.state().time);
       recorder.write_summary(simulation, status);
     });
     last_checkpoint = Clock::now();
+  }
+
+  bool has_ended() const { return !end_summary.empty(); }
+  /// At the end, where the state is one to look at: to a later end the run goes on from before it, as if it were none.
+  void see_end() {
+    recorder.finish_progress();
+    const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
+    end_summary = recorder.summary(simulation, "finished");
+    recorder.figures.checkpoint_time = before;
+    end_line = last_line(simulation, recorder.figures, options);
+    warn_of_balance(simulation, simulation.audit().energy);
+  }
+  void write_end() {
+    pliant::write_checkpoint(options.out, scene_text, simulation, recorder, simulation.model().scene.time.end);
+    recorder.write_summary(end_summary);
   }
 
   bool checkpoint_due() const {
@@ -69,22 +111,26 @@ void advance(Run& run) {
   const double end = simulation.model().scene.time.end;
   run.recorder.begin(simulation);
   simulation.phases() = {};
-  const auto record_outputs = [&] {
-    simulation.phases().apart(Phase::output, [&] { run.recorder.record_outputs(simulation); });
-  };
-  record_outputs();
-  run.recorder.write_summary(simulation, "running");
-  while (simulation.state().time < end) {
-    const double next = run.recorder.next_output(end);
-    const StepReport report = simulation.step(next);
-    if (simulation.state().time >= next * (1 - 1e-12)) record_outputs();  // a product may be its time but for rounding
-    run.recorder.record_step(simulation, report);
-    if (simulation.state().time < end) stop_if_asked(run);
+  const Observer outputs{[&] { return std::min(end, run.recorder.next_output()); },
+                         [&] {
+                           simulation.phases().apart(Phase::output, [&] {
+                             run.recorder.record_outputs(simulation);
+                             if (simulation.state().time >= end) run.see_end();
+                           });
+                           return !run.has_ended();
+                         }};
+  if (outputs.look()) run.recorder.write_summary(simulation, "running");
+  const bool stops = simulation.model().scene.time.stop_at_outputs;
+  while (!run.has_ended()) {
+    const double until = stops ? outputs.next_time() : std::numeric_limits<double>::infinity();
+    const StepReport report = simulation.step(until, &outputs);
+    if (report.dt > 0) run.recorder.record_step(simulation, report);
+    if (run.has_ended()) break;
+    stop_if_asked(run);
     if (run.checkpoint_due()) run.write_checkpoint("running");
   }
-  run.write_checkpoint("finished");
+  run.write_end();
   run.recorder.finish_progress();
-  warn_of_balance(simulation, simulation.audit().energy);
 }
 
 /// A failed run's last words: its summary, what there is to go on from, and what there is to understand of a failed
@@ -106,30 +152,6 @@ std::string last_words(Run& run, const Error& error) {
                      time < 0 ? "no checkpoint yet" : fmt::format("last good checkpoint: t = {:.6g} s", time));
 }
 
-/// Such as "contact 41 %, internal 39 %": what takes most comes first, without what takes less than half a percent.
-std::string shares(const PhaseTimes::Seconds& seconds) {
-  const double all = std::accumulate(seconds.begin(), seconds.end(), 0.0);
-  std::vector<std::pair<double, const char*>> phases;
-  for (std::size_t p = 0; p < seconds.size(); ++p)
-    if (seconds[p] >= 0.005 * all) phases.emplace_back(100 * seconds[p] / all, phase_names[p]);
-  std::sort(phases.begin(), phases.end(), std::greater<>());
-  std::vector<std::string> texts;
-  for (const auto& [percent, name] : phases) texts.push_back(fmt::format("{} {:.0f} %", name, percent));
-  return fmt::format("{}", fmt::join(texts, ", "));
-}
-
-void print_summary(Simulation& simulation, const RunFigures& figures, const RunOptions& options) {
-  const State& state = simulation.state();
-  const Audit audit = simulation.audit();
-  fmt::print(
-      "{}: t = {:.6g} s in {:.1f} s, {} steps, {} rejected, {} evaluations ({:.0f}/s), energy balance {:.2e}, momentum "
-      "{:.1e}; time: {}\n",
-      options.out.string(), state.time, figures.wall_seconds, state.steps, state.rejections, state.evaluations,
-      static_cast<double>(state.evaluations) / figures.wall_seconds, simulation.balance_error(audit.energy),
-      std::max(audit.momentum_error, figures.worst_momentum_error),
-      shares(simulation.phases().seconds(figures.process_seconds)));
-}
-
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
   const Model model = build_model(scene);
@@ -147,12 +169,12 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   files.write(options.out);
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
-  if (checkpoint) recorder.figures.checkpoint_time = simulation.state().time;
+  if (checkpoint) recorder.figures.checkpoint_time = checkpoint->time();
   fs::remove(failure_file(options.out));
   if (!options.quiet)
     fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s{}\n", scene.name, model.bodies.size(),
                model.node_count(), model.dof_count(), recorder.figures.preparation_seconds,
-               checkpoint ? fmt::format(", going on from t = {:.6g} s", simulation.state().time) : "");
+               checkpoint ? fmt::format(", going on from t = {:.6g} s", checkpoint->time()) : "");
   Run run{options, files.text(), simulation, recorder};
   try {
     advance(run);
@@ -161,7 +183,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   } catch (const OutputError& error) {
     throw OutputError(last_words(run, error));
   }
-  if (!options.quiet) print_summary(simulation, recorder.figures, options);
+  if (!options.quiet) fmt::print("{}", run.end_line);
 }
 
 nlohmann::json summary_in(const fs::path& folder) {

@@ -128,6 +128,7 @@ constexpr std::string_view keys[] = {
     "solid_fraction",
     "spacing",
     "stiffness",
+    "stop_at_outputs",
     "strength",
     "support",
     "target",

@@ -31,6 +31,7 @@ TimeSettings read_time(TableReader table) {
   table.required("end", time.end, Quantity{"s", positive});
   table.optional("integrator", time.integrator,
                  Choice<Integrator>{{{"verlet", Integrator::verlet}, {"step-doubling", Integrator::step_doubling}}});
+  table.optional("stop_at_outputs", time.stop_at_outputs, Flag{});
   if (time.integrator == Integrator::verlet) {
     table.optional("tolerance", time.tolerance, Quantity{"1", share});
     table.optional("safety", time.safety, Quantity{"1", share});

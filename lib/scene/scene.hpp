@@ -259,6 +259,8 @@ struct TimeSettings {
   double alpha = 2;         ///< step-doubling: reject above alpha x target
   double beta = 0.2;        ///< step-doubling: controller exponent
   double safety = 0.8;      ///< verlet: share of the stability bound
+  /// Whether steps end at outputs; else these look at shorter steps of their own, and change nothing.
+  bool stop_at_outputs = false;
 };
 
 struct DiscretisationSettings {

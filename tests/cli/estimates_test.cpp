@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "cli/rehearsal.hpp"
 #include "support/scenes.hpp"
@@ -61,11 +62,13 @@ TEST(OutputCount, HasTheLastOneInSpiteOfRounding) {
   EXPECT_EQ(output_count(0, 10), 0);
 }
 
-TEST(LeastSteps, MeetTheOutputs) {
+TEST(LeastSteps, MeetTheOutputsIfTheyStopThere) {
   Scene scene = testing::bare_scene();
   // EXACT
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 34);
   scene.frames.period = 1;
+  EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 34);
+  scene.time.stop_at_outputs = true;
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 40);
   scene.probes.push_back(energy_probe(0.5));
   EXPECT_DOUBLE_EQ(least_steps(scene, 10, 0.3), 40);
@@ -147,20 +150,26 @@ TEST(Rehearsal, CountsWhatARunCounts) {
   scene.time.end = 0.5;
   scene.frames.period = 0.05;
   scene.probes.push_back(energy_probe(0.03));
-  const Model model = build_model(scene);
-  Simulation rehearsed(model);
-  const Rehearsal first = rehearse(rehearsed);
-  ASSERT_TRUE(first.finished);
-  // EXACT: the same steps as a run, which stops at the union of both periods.
-  Simulation run(model);
-  std::vector<double> outputs;
-  for (int i = 1; i <= 10; ++i) outputs.push_back(0.05 * i);
-  for (int i = 1; i <= 16; ++i) outputs.push_back(0.03 * i);
-  std::sort(outputs.begin(), outputs.end());
-  for (double output : outputs)
-    while (run.state().time < output * (1 - 1e-12)) run.step(output);
-  EXPECT_EQ(first.evaluations, run.state().evaluations);
-  EXPECT_GT(first.seconds_per_evaluation, 0);
+  for (const bool stops : {false, true}) {
+    scene.time.stop_at_outputs = stops;
+    const Model model = build_model(scene);
+    Simulation rehearsed(model);
+    const Rehearsal first = rehearse(rehearsed);
+    ASSERT_TRUE(first.finished);
+    // EXACT: the same steps as a run, which stops at the union of both periods or before the end.
+    Simulation run(model);
+    std::vector<double> outputs;
+    for (int i = 1; i <= 10; ++i) outputs.push_back(0.05 * i);
+    for (int i = 1; i <= 16; ++i) outputs.push_back(0.03 * i);
+    std::sort(outputs.begin(), outputs.end());
+    for (double output : outputs)
+      while (stops && run.state().time < output * (1 - 1e-12)) run.step(output);
+    const Observer end{[] { return 0.5; }, [] { return false; }};
+    while (!stops && run.step(std::numeric_limits<double>::infinity(), &end).dt > 0);
+    EXPECT_EQ(rehearsed.state().steps, run.state().steps);
+    EXPECT_EQ(first.evaluations, run.state().evaluations);
+    EXPECT_GT(first.seconds_per_evaluation, 0);
+  }
 }
 
 }  // namespace

@@ -82,7 +82,8 @@ def test_remains_of_a_run_are_enough(half) -> None:
     for name in ["summary.json", "frames.h5", "checkpoint.bin"]:
         (half.folder / "out" / name).unlink()
     lines = info(half, "out")
-    assert lines["status"].startswith("killed") and lines["frames"] == "none" and lines["time"] == "10 ns"
+    assert lines["status"].startswith("killed") and lines["frames"] == "none"
+    assert lines["time"] == f"{1e9 * half.table('out/steps.csv').time[-1]:.3g} ns"
 
 
 @pytest.mark.parametrize("make", [lambda folder: None, lambda folder: folder.mkdir(),

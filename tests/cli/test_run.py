@@ -75,10 +75,13 @@ def test_frames_read_back(finished) -> None:  # EXACT
     assert (finished.folder / "out/frames.xdmf").is_file()
 
 
-def test_until_ends_the_run(desk) -> None:  # EXACT: steps end on output times
-    desk.write(TWO_DISCS)
+@pytest.mark.parametrize("stops", ["false", "true"])
+def test_until_ends_the_run(desk, stops) -> None:  # EXACT
+    desk.write(TWO_DISCS.replace("[time]", f"[time]\nstop_at_outputs = {stops}"))
     assert desk.run("--out", "out", "--until", "3 ns", "--quiet").returncode == 0
-    assert desk.table("out/steps.csv").time[-1] == pytest.approx(3e-9, rel=1e-12)
+    end, last = desk.summary("out")["time"], desk.table("out/steps.csv").time[-1]
+    assert end == pytest.approx(3e-9, rel=1e-15)
+    assert last == end if stops == "true" else 2.9e-9 < last < end
 
 
 @pytest.mark.parametrize("program, options, folder", [

@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <map>
 
@@ -163,6 +164,48 @@ TEST_P(Restart, same_bits_from_any_step_with_any_number_of_threads) {
       EXPECT_EQ(resumed.balance_error(resumed.audit().energy), whole.balance_error(whole.audit().energy));
     }
   }
+}
+
+/// Outputs are looks of an observer.
+TEST_P(Restart, looks_on_the_way_leave_the_motion_as_it_is_and_see_a_step_that_ends_there) {
+  const Model scene_model = model();
+  Simulation whole(scene_model), watched(scene_model), cut(scene_model);
+  testing::Random random(std::get<0>(GetParam()) + 11);
+  std::string before;
+  double next = 1e300;  // the first step is too short to be passed by
+  int looks = 0;
+  const Observer observer{[&] { return next; },
+                          [&] {
+                            const State& seen = watched.state();
+                            EXPECT_EQ(seen.time, next);
+                            watched.audit();
+                            if (++looks % 20 == 0) {
+                              LoadLeaf load(before);
+                              Walk{load}("simulation", cut);
+                              while (cut.state().time < next) cut.step(next);
+                              const State& there = cut.state();
+                              EXPECT_EQ(seen.steps + 1, there.steps) << "in one step, which does not count";
+                              EXPECT_EQ(seen.dissipated, there.dissipated);
+                              EXPECT_EQ(seen.external_work, there.external_work);
+                              for (const auto part : {&State::position, &State::reduced_momentum, &State::force}) {
+                                EXPECT_EQ((seen.*part).rigid, (there.*part).rigid);
+                                EXPECT_EQ(std::memcmp((seen.*part).compliant.data(), (there.*part).compliant.data(),
+                                                      (there.*part).compliant.size() * sizeof(Lanes)),
+                                          0);
+                              }
+                            }
+                            next += random.uniform(0.1, 1.5) * watched.state().next_dt;
+                            return true;
+                          }};
+  for (long step = 0; step <= last_step; ++step) {
+    before = saved(watched);
+    if (step > 0 && !(next > watched.state().time && next < 1e300))
+      next = watched.state().time + 0.3 * watched.state().next_dt;
+    whole.step(1000), watched.step(1000, &observer);
+    ASSERT_EQ(state_hash(watched.state()), state_hash(whole.state())) << "looking changed the run at step " << step;
+  }
+  EXPECT_GT(looks, last_step / 2);
+  EXPECT_EQ(watched.audit().energy.mechanical(), whole.audit().energy.mechanical());
 }
 
 /// The scenes show what restarts may lose.

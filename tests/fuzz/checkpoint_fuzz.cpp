@@ -53,7 +53,7 @@ struct Left {
     std::filesystem::create_directories(folder);
     Simulation simulation(model);
     Recorder recorder(model, folder, true, Opening::create);
-    write_checkpoint(folder, scene_text, simulation, recorder);
+    write_checkpoint(folder, scene_text, simulation, recorder, simulation.state().time);
     const CheckpointText written = read_checkpoint_file(folder / "checkpoint.bin");
     header = written.header();
     if (const char* seeds = std::getenv("PLIANT_FUZZ_SEEDS")) {

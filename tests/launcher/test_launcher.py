@@ -230,7 +230,7 @@ def test_signals_reach_a_run_once(launcher: Launcher, stop: signal.Signals) -> N
     """Also when the terminal sends SIGINT to the launcher's whole process group."""
     write_script(launcher.root / "build/release/pliant_engine",
                  'for s in INT TERM; do trap "echo $s >>$LOG.signals; stop=yes" $s; done; echo ready >"$LOG.ready"; '
-                 'for i in $(seq 100); do sleep 0.05; [ -z "$stop" ] || { sleep 0.2; exit 130; }; done')
+                 'for ((i = 0; i < 100; ++i)); do sleep 0.05; [ -z "$stop" ] || { sleep 0.2; exit 130; }; done')
     run = launcher.start("run", "a.toml", process_group=0)
     while not Path(f"{launcher.log}.ready").exists():
         time.sleep(0.02)
