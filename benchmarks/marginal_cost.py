@@ -30,6 +30,7 @@ MISSING = 2
 PLAIN = """
 [time]
 end = "0.04 us"
+stop_at_outputs = true
 tolerance = 1e-2
 
 [domain]
@@ -163,7 +164,7 @@ def count(engine: Path, scene: str, folder: Path) -> Count:
     file = folder / "scene.toml"
     file.write_text(scene)
     command = [str(engine), "run", str(file), "--out", str(folder / "out"), "--threads", "1", "--quiet"]
-    counted = callgrind.count(command, "pliant::Simulation::step(double)", folder)
+    counted = callgrind.count(command, "pliant::Simulation::step(double, pliant::Observer const*)", folder)
     summary = json.loads((folder / "out/summary.json").read_text())
     steps = (folder / "out/steps.csv").read_text().splitlines()
     contacts = [float(row.rsplit(",", 1)[1]) for row in steps[1:]]

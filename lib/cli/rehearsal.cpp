@@ -66,6 +66,7 @@ Rehearsal rehearse(Simulation& simulation) {
                          }};
   while (!finished && seconds < longest_seconds) {
     simulation.step(scene.time.stop_at_outputs ? next : std::numeric_limits<double>::infinity(), &outputs);
+    if (!finished && outputs.looks_at(state.time)) outputs.look();
     if (grown == 0 && state.evaluations >= growth) grown = state.evaluations, grown_time = state.time;
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }

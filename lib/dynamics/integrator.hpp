@@ -42,6 +42,7 @@ struct Observer {
   std::function<double()> next_time;  ///< of the next look, s
   /// At the state, which stands at that time. False if the step is not to be taken: enough has been seen.
   std::function<bool()> look;
+  /// Where a state stands, which is for who takes the steps.
   bool looks_at(double time) const { return next_time() == time; }
   /// On the way to another time: up to there but for rounding, which would be left over for the next step.
   bool looks_before(double time) const { return next_time() <= time * (1 + 1e-12) && !looks_at(time); }

@@ -36,7 +36,6 @@ StepReport Simulation::step(double until, const Observer* observer) {
       [&](auto& integrator) { return take_step(*integrator, forces_, state_, until, observer); }, integrator_);
   if (report.dt > 0) statistics_.add(report, state_.time);
   phases().end_step();
-  if (report.dt > 0 && observer && observer->looks_at(state_.time)) observer->look();
   return report;
 }
 

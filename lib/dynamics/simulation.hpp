@@ -17,8 +17,8 @@ class Simulation {
  public:
   explicit Simulation(const Model& model);
 
-  /// One accepted step, ending at `until` at the latest. An observer sees this simulation at the times it asks for; if
-  /// it has seen enough on the way no step is taken, and the report's has no length.
+  /// One accepted step, ending at `until` at the latest. An observer sees what it passes by; if it has seen enough
+  /// then, no step is taken, and the report's has no length.
   StepReport step(double until, const Observer* observer = nullptr);
   Audit audit() { return auditor_->audit(state_); }
   double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }

@@ -124,6 +124,7 @@ void advance(Run& run) {
   while (!run.has_ended()) {
     const double until = stops ? outputs.next_time() : std::numeric_limits<double>::infinity();
     const StepReport report = simulation.step(until, &outputs);
+    if (report.dt > 0 && outputs.looks_at(simulation.state().time)) outputs.look();
     if (report.dt > 0) run.recorder.record_step(simulation, report);
     if (run.has_ended()) break;
     stop_if_asked(run);
