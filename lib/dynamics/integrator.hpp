@@ -13,7 +13,7 @@ struct Proposal {
   double wish = 0;               ///< dt but for the time at which the step must end, s
   double largest_dt = 0;         ///< what limits dt when no error does, s
   const char* governed_by = "";  ///< what limits dt: "error", "stability", "until"
-  bool is_look = false;          ///< within an attempt: its candidates hold
+  bool is_look = false;          ///< a shorter step for an observer: it takes the candidates as they are
 };
 
 /// What is made of a trial.

@@ -118,7 +118,8 @@ def test_energy(recipe: str) -> None:
 @pytest.mark.skipif(not FULL, reason="the first hundred time units, in which discs begin to ring, are a tenth of the run")
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_no_drift(recipe: str) -> None:
-    # K + U - dt^2 sum F^2/24m - sum dx dF/12, and -dx dF is dt^2 F^2/m in the mean over vibrations
+    # K + U - dt^2 sum F^2/8m + (dt^2 sum F F_before/m - sum dx dF)/12: over slow vibrations either of the last is
+    # dt^2 F^2/m in the mean
     errors = energy(recipe) + kept_by_verlet(recipe) / 3
     halves = [Mean(block_means(half, BLOCK)) for half in (errors[1 : SAMPLES // 2 + 1], errors[SAMPLES // 2 + 1 :])]
     CASE.check(Label.EXACT, f"{recipe}: what Verlet keeps, mean of the second half less that of the first",
