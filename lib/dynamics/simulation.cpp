@@ -6,6 +6,7 @@
 #include "bodies/place_outlines.hpp"
 #include "contact/deepest_node.hpp"
 #include "dynamics/failure.hpp"
+#include "dynamics/take_step.hpp"
 
 namespace pliant {
 

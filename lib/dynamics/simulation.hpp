@@ -5,6 +5,7 @@
 
 #include "contact/initial_overlap.hpp"
 #include "dynamics/energy.hpp"
+#include "dynamics/observer.hpp"
 #include "dynamics/state.hpp"
 #include "dynamics/step_doubling.hpp"
 #include "dynamics/step_statistics.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "dynamics/integrator.hpp"
+#include "dynamics/trial.hpp"
 
 namespace pliant {
 

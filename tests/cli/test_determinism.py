@@ -58,8 +58,8 @@ def test_same_bits_for_any_number_of_threads(desk: Desk, engine: Path, name: str
 
 @pytest.mark.parametrize("name", SCENES)
 def test_same_bits_whatever_is_put_out(desk: Desk, name: str) -> None:
-    """EXACT, with outputs of unrelated periods, some four a step: paths between the ends of steps may go further than
-    these, and ask for other candidates."""
+    """EXACT, with outputs of unrelated periods, some four a step. That they take candidates as they are is shown in
+    tests/dynamics/observer_test.cpp."""
     text = SCENES[name]()
     end = next(line for line in text.splitlines() if line.startswith("end = ")).removeprefix("end = ").strip('"')
     number, unit = (*end.split(), "s")[:2]

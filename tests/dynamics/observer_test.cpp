@@ -4,6 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "dynamics/step_doubling.hpp"
 #include "dynamics/verlet.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
@@ -76,6 +77,45 @@ TEST(Observers, get_a_step_of_their_own_where_a_look_fails) {
   EXPECT_EQ(bench.state.time, scheme.time) << "EXACT";
   EXPECT_EQ(scheme.attempts, 2);
   EXPECT_EQ(bench.state.rejections, rejections) << "EXACT: no error asked for it";
+}
+
+/// A grain that is turned twice around within one step, beside another: where a look finds it, the candidates for
+/// contact do not hold, and where the step ends they do.
+template <class Scheme>
+void look_where_candidates_do_not_hold(Integrator integrator) {
+  Scene scene = empty_scene(100);
+  scene.time.integrator = integrator;
+  scene.shapes = {box_shape("block", 1, 0.5, 0.1)};
+  scene.grains = {grains("turned", "block", BodyKind::rigid, {{0, 0}}),
+                  grains("held", "block", BodyKind::rigid, {{1.14, 0}})};
+  BoundaryCondition turned, held;
+  turned.grains = "turned", held.grains = "held";
+  turned.x = turned.y = held.x = held.y = held.angle = {Drive::Mode::velocity, constant(0)};
+  turned.angle = {Drive::Mode::velocity, constant(2 * M_PI)};
+  scene.boundary = {turned, held};
+  const double duration = 2, time = 0.6;
+  int looks = 0;
+  const Observer observer{[&] { return looks == 0 ? time : 1e300; }, [&] { return ++looks > 0; }};
+  for (const Observer* watching : {static_cast<const Observer*>(nullptr), &observer}) {
+    Bench bench(scene);
+    bench.state.next_dt = duration;
+    Scheme scheme(bench.forces, bench.state);
+    const long before = bench.forces.contact().refreshes();
+    EXPECT_EQ(take_step(scheme, bench.forces, bench.state, duration, watching).dt, duration) << "EXACT";
+    EXPECT_EQ(bench.forces.contact().refreshes(), before) << "EXACT: they are taken as they are";
+  }
+  EXPECT_EQ(looks, 1);
+  Bench bench(scene);
+  bench.state.next_dt = duration;
+  Scheme scheme(bench.forces, bench.state);
+  const long before = bench.forces.contact().refreshes();
+  take_step(scheme, bench.forces, bench.state, time);
+  EXPECT_GT(bench.forces.contact().refreshes(), before) << "a step that ends there finds them anew";
+}
+
+TEST(Observers, take_candidates_as_they_are) {
+  look_where_candidates_do_not_hold<Verlet>(Integrator::verlet);
+  look_where_candidates_do_not_hold<StepDoubling>(Integrator::step_doubling);
 }
 
 TEST(Observers, that_cannot_go_on_leave_the_state_as_it_was) {

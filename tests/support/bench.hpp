@@ -5,7 +5,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
-#include "dynamics/integrator.hpp"
+#include "dynamics/take_step.hpp"
 
 namespace pliant::dynamics_tests {
 

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "dynamics/failure.hpp"
+#include "dynamics/observer.hpp"
+
+namespace pliant {
+
+/// One accepted step that ends at `until` at the latest, of whatever scheme: it proposes, attempts, judges and
+/// finishes. An observer, if any, sees what the step passes by, and the step is the same, or is not taken: then its
+/// report has no length.
+template <class Scheme>
+StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until, const Observer* observer = nullptr) {
+  double next_dt = state.next_dt > 0 ? state.next_dt : scheme.first_dt();
+  StepReport report;
+  for (;;) {
+    const Proposal proposal = scheme.propose(state, next_dt, until);
+    report.dt = proposal.dt;
+    report.governed_by = proposal.governed_by;
+    scheme.attempt(state, proposal, report);
+    if (scheme.stands(report)) {
+      const Shown shown = show_on_the_way(scheme, forces, state, proposal, observer);
+      if (shown == Shown::enough) return {};
+      if (shown == Shown::failed) {
+        until = observer->next_time();  // by a step of its own, which may be rejected
+        continue;
+      }
+    }
+    const Verdict verdict = scheme.judge(state, proposal, report);
+    next_dt = verdict.next_dt;
+    if (verdict.accepted) break;
+    ++report.rejections;
+    check_time_step({report, scheme.trial(), next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
+  }
+  forces.warn_of_depth(report.evaluation, scheme.trial().time);
+  scheme.finish(state, report);
+  take_over(forces.model(), state, scheme.trial(), next_dt, report);
+  scheme.accepted(state, report);
+  return report;
+}
+
+}  // namespace pliant
