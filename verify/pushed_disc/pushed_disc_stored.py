@@ -52,7 +52,8 @@ class Stored:
     def errors(self) -> Forces:
         """Relative: the change from half as fine a mesh, the largest of what sticks and of what slips, as at a single
         push it may be small by accident, and that from load steps twice as long, of first order."""
-        coarse, fine = self.of(self.meshes[0]), self.forces
+        half = next(key for key in self.meshes if 2 * key[0] == self.meshes[-1][0])
+        coarse, fine = self.of(half), self.forces
         rings, rows, steps = self.meshes[0]
         found = []
         for name in ("along", "across"):
