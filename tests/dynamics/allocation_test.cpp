@@ -14,19 +14,27 @@ namespace {
 
 std::atomic<long> allocations{0};  // only counts: no result depends on it
 
-void* allocate(std::size_t bytes, std::size_t alignment) {
+/// Null where there is none.
+void* find_room(std::size_t bytes, std::size_t alignment) noexcept {
   allocations.fetch_add(1, std::memory_order_relaxed);
   const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, whole == 0 ? alignment : whole)) return memory;
+  return std::aligned_alloc(alignment, whole == 0 ? alignment : whole);
+}
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (void* memory = find_room(bytes, alignment)) return memory;
   throw std::bad_alloc();
 }
 
 }  // namespace
 
-// Of the whole program: the counter is looked at here alone.
+// Of the whole program: the counter is looked at here alone. Room for sorting is asked for without exceptions.
 void* operator new(std::size_t bytes) { return allocate(bytes, alignof(std::max_align_t)); }
 void* operator new(std::size_t bytes, std::align_val_t alignment) {
   return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  return find_room(bytes, alignof(std::max_align_t));
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }

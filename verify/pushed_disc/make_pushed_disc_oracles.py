@@ -1,5 +1,5 @@
 """Writes oracles/: /usr/bin/python3 verify/pushed_disc/make_pushed_disc_oracles.py. Or those of neo-hookean,
-melody, calculix, as named. Half an hour each on a busy machine.
+melody, calculix, as named. Half an hour each on a busy machine, neo-hookean an hour and a half.
 
 A stiff disc pushed along a soft block with Coulomb friction, by GetFEM and CalculiX: forces on meshes and in load steps
 of several sizes, and surfaces.
@@ -30,6 +30,7 @@ STUCK = [0.0, 0.1, 0.2, 0.3]  # pushes at which all of the contact, or a part of
 SLIDING = np.linspace(0.4, 1.2, 33)  # all of it slips
 # Rings of the disc, rows of squares in the block, load steps for 0.1 R on the way along.
 MESHES = [(8, 10), (12, 15), (16, 20)]
+FINER = {"neo-hookean": [(24, 30)], "melody": []}
 STEPS = [2, 4, 8]
 DRAWN = (0.3, 1.2)  # pushes of the stored surfaces, of the finest mesh
 COLUMNS = "rings,rows,steps,push,along,across"
@@ -130,7 +131,7 @@ def main(made: list[str]) -> None:
 def write_getfem(law: str) -> None:
     rows, found = [], None
     pushes = [*STUCK, *(float(push) for push in SLIDING)]
-    for rings, squares in MESHES:
+    for rings, squares in [*MESHES, *FINER[law]]:
         for steps in STEPS if (rings, squares) == MESHES[0] else STEPS[-1:]:
             with_slip = steps == STEPS[-1]  # what slips does not depend on the way
             found = by_getfem(rings, squares, steps, pushes if with_slip else STUCK, law)
@@ -142,7 +143,7 @@ def write_getfem(law: str) -> None:
     if law == LAWS[0]:
         write("pushed_disc_surfaces", ",".join(f"{axis}_{push:g}" for push in DRAWN for axis in "xy"),
               np.column_stack([found.surfaces[push] for push in DRAWN]),
-              f"The block's top by push, {MESHES[-1][0]} rings and {MESHES[-1][1]} rows.")
+              "The block's top by push, {} rings and {} rows.".format(*[*MESHES, *FINER[law]][-1]))
 
 
 def write_calculix() -> None:

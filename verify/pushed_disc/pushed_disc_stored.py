@@ -50,16 +50,16 @@ class Stored:
         return self.of(self.meshes[-1])
 
     def errors(self) -> Forces:
-        """Relative: the change from half as fine a mesh, the largest of what sticks and of what slips, as at a single
-        push it may be small by accident, and that from load steps twice as long, of first order."""
-        half = next(key for key in self.meshes if 2 * key[0] == self.meshes[-1][0])
-        coarse, fine = self.of(half), self.forces
+        """Relative: the largest change from meshes half as fine and finer, of what sticks and of what slips, as from a
+        single one or at a single push it may be small by accident; and that from load steps twice as long, of first
+        order."""
+        coarser = [self.of(key) for key in self.meshes[:-1] if 2 * key[0] >= self.meshes[-1][0]]
         rings, rows, steps = self.meshes[0]
         found = []
         for name in ("along", "across"):
-            last = getattr(fine, name)
+            last = getattr(self.forces, name)
             first = 1 if name == "along" else 0  # there is next to no force along before the push
-            change = by_group(np.abs(getattr(coarse, name) / last - 1), first)
+            change = by_group(np.abs([getattr(other, name) / last - 1 for other in coarser]).max(axis=0), first)
             column = 1 if name == "along" else 2
             long, short = (self.samples[rings, rows, n][:len(STUCK), column] for n in (steps // 2, steps))
             change[:len(STUCK)] += np.abs(long / short - 1)[first:].max()
