@@ -24,6 +24,7 @@ read_preset() {  # sets preset, units, scenes and rest
 set_sanitizer_defaults() {
   local symbolizer=/usr/lib/llvm-19/bin/llvm-symbolizer
   export TSAN_OPTIONS=${TSAN_OPTIONS-ignore_noninstrumented_modules=1:external_symbolizer_path=$symbolizer}
+  export LSAN_OPTIONS=${LSAN_OPTIONS-suppressions=$root/tests/lsan.supp:print_suppressions=0}
 }
 
 build_only() {

@@ -10,6 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from scipy.stats import t as students_t
 
 from foreign.stored import distances
 from make_pushed_disc_oracles import (CALCULIX_MESHES, DEPTH, DRAWN, FRICTION, LAWS, LONG, LONGEST, MESHES, SHORT,
@@ -31,6 +32,13 @@ SLIPS = np.arange(len(PLACES)) >= len(STUCK)
 # Of the change by half the rate, that to none. At rests: of first order or higher. In slip: drag is of first order,
 # but what snaps after each tooth sets in late by rate^(2/3), as whatever passes a fold slowly.
 FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
+CONFIDENCE = 0.95
+
+
+def error_of_mean(values: np.ndarray, freedoms: int) -> np.ndarray:
+    """[places] by Student's factor, of a mean over meshes, [meshes x places]; their spread has so many freedoms."""
+    factor = students_t.ppf((1 + CONFIDENCE) / 2, freedoms)
+    return factor * values.std(axis=0, ddof=1) / np.sqrt(len(values))
 
 
 class Study:
@@ -58,8 +66,8 @@ class Study:
         return STIFF / (STIFF - 1) * np.array([self._of(harder) / self._of(usual) - 1 for usual, harder in pairs])
 
     def _size(self, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: twice
-        that of a mean over meshes, and of the order in the rate."""
+        """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: that of
+        a mean over meshes, of which the spread is the largest of all places, and of the order in the rate."""
         ways = Push(size, law=self.law).ways(2)
         usual, slower = (np.array([self._of(replace(push, pause=push.pause * slow)) for push in ways])
                          for slow in (1.0, SLOW))
@@ -68,8 +76,8 @@ class Study:
         stuck = np.concatenate([usual[:, ~SLIPS], [getattr(result.forces, self.name) for result in more]])
         force = np.concatenate([stuck.mean(axis=0), usual[:, SLIPS].mean(axis=0)]) + FACTOR * late
         still = usual + FACTOR * (slower - usual)
-        means = np.concatenate([2 * stuck.std(axis=0, ddof=1) / np.sqrt(len(stuck)),
-                                2 * still[:, SLIPS].std(axis=0, ddof=1) / np.sqrt(len(still))])
+        means = np.concatenate([error_of_mean(stuck, len(stuck) - 1),
+                                error_of_mean(still[:, SLIPS], (len(still) - 1) * len(WINDOWS))])
         return force, by_group(means, self.first) + by_group(FACTOR_ERROR * np.abs(late), self.first)
 
     def errors(self) -> np.ndarray:
