@@ -4,9 +4,9 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
 #include <map>
+#include <span>
 
 #include "core/archive.hpp"
 #include "support/random.hpp"
@@ -189,9 +189,8 @@ TEST_P(Restart, looks_on_the_way_leave_the_motion_as_it_is_and_see_a_step_that_e
                               EXPECT_EQ(seen.external_work, there.external_work);
                               for (const auto part : {&State::position, &State::reduced_momentum, &State::force}) {
                                 EXPECT_EQ((seen.*part).rigid, (there.*part).rigid);
-                                EXPECT_EQ(std::memcmp((seen.*part).compliant.data(), (there.*part).compliant.data(),
-                                                      (there.*part).compliant.size() * sizeof(Lanes)),
-                                          0);
+                                EXPECT_TRUE(std::ranges::equal(std::as_bytes(std::span((seen.*part).compliant)),
+                                                               std::as_bytes(std::span((there.*part).compliant))));
                               }
                             }
                             next += random.uniform(0.1, 1.5) * watched.state().next_dt;
