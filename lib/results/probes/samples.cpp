@@ -16,6 +16,7 @@ double Samples::column(std::size_t c, Reduction reduction) const {
   double least = std::numeric_limits<double>::infinity(), largest = -least;
   for (std::size_t i = 0; i < weight_.size(); ++i) {
     const double value = values_[i * columns_ + c];
+    if (std::isnan(value)) return value;  // whatever is asked for, and not to be compared
     weighted += weight_[i] * value;
     weights += weight_[i];
     sum += value;
@@ -23,7 +24,7 @@ double Samples::column(std::size_t c, Reduction reduction) const {
     largest = value > largest ? value : largest;
   }
   if (reduction == Reduction::sum) return sum;
-  if (weight_.empty() || std::isnan(sum)) return std::numeric_limits<double>::quiet_NaN();
+  if (weight_.empty()) return std::numeric_limits<double>::quiet_NaN();
   return reduction == Reduction::mean ? weighted / weights : reduction == Reduction::min ? least : largest;
 }
 
