@@ -68,7 +68,9 @@ run_tests() {
   set_sanitizer_defaults
   local counts="$root/build/$preset/tests.xml"
   rm -f "$counts"
-  say "testing build/$preset"
+  local part
+  part=$(sed -n 's/^PLIANT_TEST_PART:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
+  case $part in '' | 0/1) say "testing build/$preset" ;; *) say "testing build/$preset: of the unit tests part $part" ;; esac
   ctest --test-dir "$root/build/$preset" -j "$(nproc)" --output-on-failure --no-tests=error \
     --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
   local code=${PIPESTATUS[0]}
@@ -179,7 +181,7 @@ docs() {
 }
 
 fuzz() {
-  ready test fuzz
+  ready test
   prepare fuzz pliant_fuzzers
   exec "$python" -B "$root/tests/fuzz/fuzz.py" "$@"
 }
