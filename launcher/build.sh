@@ -18,11 +18,13 @@ show_log_and_fail() {  # log, what failed
 
 configure() {  # preset, target that is left out without its packages, if any: looked for again once they are installed
   local log="$root/build/$1/configure.log" ninja="$root/build/$1/build.ninja"
-  local part=${PLIANT_TEST_PART:+-DPLIANT_TEST_PART=$PLIANT_TEST_PART}  # of the unit tests, see tests/CMakeLists.txt
+  # Of the unit tests, see tests/CMakeLists.txt.
+  local part=${PLIANT_TEST_PART:+-DPLIANT_TEST_PART=$PLIANT_TEST_PART}
   [ -n "$part" ] || [ ! -f "$ninja" ] || { [ -n "${2-}" ] && ! grep -q "^build $2:" "$ninja"; } || return 0
   mkdir -p "$root/build/$1"
   say "configuring build/$1"
-  (cd "$root" && cmake --preset "$1" ${part:+"$part"}) >"$log" 2>&1 </dev/null 9>&- || show_log_and_fail "$log" "configuring"
+  (cd "$root" && cmake --preset "$1" ${part:+"$part"}) >"$log" 2>&1 </dev/null 9>&- ||
+    show_log_and_fail "$log" "configuring"
 }
 
 announce_build() {  # directory, stamp of the last build: a line before what may take minutes, none before an instant

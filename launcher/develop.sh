@@ -70,7 +70,8 @@ run_tests() {
   rm -f "$counts"
   local part
   part=$(sed -n 's/^PLIANT_TEST_PART:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
-  case $part in '' | 0/1) say "testing build/$preset" ;; *) say "testing build/$preset: of the unit tests part $part" ;; esac
+  [ "${part:-0/1}" = 0/1 ] || say "of the unit tests part $part alone"
+  say "testing build/$preset"
   ctest --test-dir "$root/build/$preset" -j "$(nproc)" --output-on-failure --no-tests=error \
     --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
   local code=${PIPESTATUS[0]}

@@ -107,7 +107,8 @@ def kept_by_verlet(recipe: str) -> np.ndarray:
 @pytest.mark.parametrize("recipe", RECIPES)
 def test_energy(recipe: str) -> None:
     steps, errors = run_of(recipe).summary["steps"], energy(recipe)
-    CASE.check(Label.EXACT, f"{recipe}: {STEPS[recipe]} steps and more", float(steps >= STEPS[recipe]), 1, 0, "what is asked for")
+    CASE.check(Label.EXACT, f"{recipe}: {STEPS[recipe]} steps and more", float(steps >= STEPS[recipe]), 1, 0,
+               "what is asked for")
     CASE.check(Label.EXACT, f"{recipe}: energy over that of the start - 1, largest", np.abs(errors).max(), 0,
                1e-2 + kept_by_verlet(recipe).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: "
                "discs that ring have forces")
