@@ -74,8 +74,8 @@ def test_what_finds_one_is_named(check: list[str], tests: list[str], killer: str
     monkeypatch.setattr(mutate, "SOURCE", tmp_path)
     monkeypatch.setattr(mutate, "build", lambda: built.append(source.read_text()))
     monkeypatch.setattr(mutate, "run_cases", lambda cases, name, *options: check)
-    monkeypatch.setattr(mutate, "red_tests", lambda program, folder: tests)
-    verdict = judge(Mutation("m", "what", "a.hpp", "two", "three", ["case"]), Sound(["case"], ["A.is_red_anyway"]))
+    monkeypatch.setattr(mutate, "red_tests", lambda program, folder, longest: tests if longest == 63 else [])
+    verdict = judge(Mutation("m", "what", "a.hpp", "two", "three", ["case"]), Sound(["case"], ["A.is_red_anyway"], 1.0))
     assert (verdict.killed, verdict.killer) == (bool(killer), killer)
     assert built == ["one three"]
     assert source.read_text() == "one two", "as it was"

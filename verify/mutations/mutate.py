@@ -148,10 +148,12 @@ class Sound:
 
     cases: list[str]
     red_tests: list[str]
+    seconds: float  # of the unit tests
 
     def unit_tests(self, name: str) -> list[str]:
         """Those that find a mutation."""
-        return [test for test in red_tests(BUILD / "pliant_tests", SCRATCH / "results" / name) if test not in self.red_tests]
+        red = red_tests(BUILD / "pliant_tests", SCRATCH / "results" / name, 3 * self.seconds + 60)
+        return [test for test in red if test not in self.red_tests]
 
 
 def judge(mutation: Mutation, sound: Sound) -> Verdict:
@@ -189,13 +191,15 @@ def write_down(verdicts: list[Verdict], names: list[str]) -> None:
 def look_for_sound(mutations: list[Mutation]) -> Sound:
     cases = sorted({case for mutation in mutations for case in mutation.cases} | set(fast_cases()))
     print(f"the copy without mutations: the unit tests and {len(cases)} cases", flush=True)
+    start = time.monotonic()
     tests = red_tests(BUILD / "pliant_tests", SCRATCH / "results/none")
+    seconds = time.monotonic() - start
     for test in tests:
         print(f"  unit test {test} is red without a mutation: left out", flush=True)
     red = {line.split(":")[0] for line in run_cases(cases, "none")}
     for case in sorted(red):
         print(f"  {case} is red without a mutation: left out", flush=True)
-    return Sound([case for case in cases if case not in red], tests)
+    return Sound([case for case in cases if case not in red], tests, seconds)
 
 
 def chosen(mutations: list[Mutation], names: list[str]) -> list[Mutation]:

@@ -10,15 +10,16 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-LONGEST = 1200  # s, of all tests; a mutant may keep one of them from coming to an end
+LONGEST = 1200  # s, of all tests
 
 
-def red_tests(program: Path, folder: Path) -> list[str]:
-    """Names of the tests that fail, crash or do not end. They run in one process a core, each with its share; a crash ends its own share."""
+def red_tests(program: Path, folder: Path, longest: float = LONGEST) -> list[str]:
+    """Names of the tests that fail, crash or, as a mutant may keep one of them from coming to an end, are not over after
+    so many seconds. They run in one process a core, each with its share; a crash ends its own share."""
     folder.mkdir(parents=True, exist_ok=True)
     shards = os.cpu_count() or 1
     processes = [start(program, folder, shard, shards) for shard in range(shards)]
-    last = time.monotonic() + LONGEST
+    last = time.monotonic() + longest
     for process in processes:
         with suppress(subprocess.TimeoutExpired):
             process.wait(max(0.0, last - time.monotonic()))
