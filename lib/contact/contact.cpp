@@ -230,12 +230,12 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
                                   OutlineField& force, const StepStart* step) {
   table_.follow(from, to);  // also in what no patch writes: states are compared by their bits
   to.evaluation = from.evaluation;
-  if (keeps_debts() && step) {
+  if (keeps_debts()) {
     accept(from);
-    trial_.number = ++to.evaluation;
+    trial_.number = step ? ++to.evaluation : 0;
     trial_.refreshes = refreshes_;
   }
-  Evaluated& now = place_of(step);
+  Evaluated& now = keeps_debts() ? trial_ : last_;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {

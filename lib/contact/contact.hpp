@@ -66,7 +66,7 @@ class ContactSystem {
                         const OutlineField* trial = nullptr);
 
   /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
-  /// was, so that contacts may repay what they owe. Without it, as for an audit, all stands still.
+  /// was, so that contacts may repay what they owe. Without it, as at the start, all stands still.
   PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
                      const StepStart* step = nullptr);
 
@@ -121,13 +121,6 @@ class ContactSystem {
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
-  /// Of what an evaluation leaves behind.
-  Evaluated& place_of(const StepStart* step) {
-    if (!keeps_debts()) return last_;
-    if (step) return trial_;
-    make_room(audited_);
-    return audited_;
-  }
   PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
                      ContactHistory& to, PatchForces& forces);
   void add_self_patches(std::vector<Patch>& all);
@@ -140,10 +133,9 @@ class ContactSystem {
   ContactLaws laws_;
   double skin_;
   PairWatch watch_;
-  PatchTable table_;    ///< in the order of the pairs, unless bodies touch themselves
-  double most_repaid_;  ///< see energy_debt.hpp
-  /// What accepted steps left behind and, where debts are kept, what has not been accepted, and of no step.
-  Evaluated last_, trial_, audited_;
+  PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
+  double most_repaid_;      ///< see energy_debt.hpp
+  Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what is not accepted
   std::vector<PatchTotals> block_totals_;  ///< scratch
   Outlines found_at_;                      ///< of each body, where some candidates of its were found last
   std::vector<int> found_;                 ///< see found()

@@ -28,7 +28,7 @@ constexpr double most_given_back = 10;
 /// still owe waits for their next touch.
 constexpr double least_repaid = 1e-12;
 
-/// Of a patch, the step that led to an evaluation, if any did: an audit's finds again what was repaid.
+/// Of a patch, the step that led to an evaluation, if any did: another finds again what was repaid.
 struct PatchStep {
   const OutlineField* before;        ///< outlines at its start; null: not known
   const PatchForces* forces_before;  ///< then

@@ -25,7 +25,8 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0;
 }  // namespace
 
 double kinetic_energy(const Model& model, const Dofs& velocity) {
-  const Dofs moving = material_velocity(model, velocity);
+  Dofs scratch;
+  const Dofs& moving = material_velocity(model, velocity, scratch);
   double total = ordered_sum(static_cast<int>(model.regions.size()), [&](int r) {
     const Region& region = model.regions[r];
     const Batch& batch = model.batches[region.batch];
@@ -45,20 +46,20 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
   return total;
 }
 
-Auditor::Auditor(Forces& forces, const State& start) : forces_(forces) {
+Auditor::Auditor(const Model& model, const State& start) : model_(model) {
   gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
 }
 
 /// 0 with a history: its work is booked step by step.
 double Auditor::constant_gravity_moment(const Dofs& position) const {
-  const Scene& scene = forces_.model().scene;
-  return scene.gravity_history.empty() ? gravity_moment(forces_.model(), scene.gravity, position) : 0;
+  const Scene& scene = model_.scene;
+  return scene.gravity_history.empty() ? gravity_moment(model_, scene.gravity, position) : 0;
 }
 
 void Auditor::warn_of_strain(const State& state) {
   if (warned_of_strain_) return;
-  const double strain = largest_small_strain(forces_.model(), state.position);
+  const double strain = largest_small_strain(model_, state.position);
   if (strain <= small_strain) return;
   warned_of_strain_ = true;
   spdlog::warn(
@@ -68,26 +69,18 @@ void Auditor::warn_of_strain(const State& state) {
 }
 
 Audit Auditor::audit(const State& state) {
-  const Model& model = forces_.model();
   warn_of_strain(state);
   Audit result;
-  // The same forces once more: the memory stands still at an accepted state, so nothing slips. They are let go of:
-  // audits are rare, and each of these is as large as a state.
-  Dofs force = zero_dofs(model), velocity;
-  OutlineField contact_force;
-  Memory memory;
-  const Evaluation evaluation =
-      forces_.evaluate({state.position, material_velocity(model, state.reduced_momentum, velocity), state.time},
-                       state.outlines, {state.memory}, {force, contact_force, memory});
-  result.contacts = evaluation.contact.contacts;
-  result.energy.contact = evaluation.contact.stored;
-  result.energy.kinetic = kinetic_energy(model, state.reduced_momentum);
-  std::vector<double> strain(model.batches.size());
-  for_each_batch(model, [&](int b) {
-    strain[b] = sum(strain_energy(model, model.batches[b], motion_of(model.batches[b], state.position, state.memory)));
+  result.contacts = static_cast<int>(state.contacts);
+  result.energy.contact = state.contact_energy;
+  result.energy.kinetic = kinetic_energy(model_, state.reduced_momentum);
+  std::vector<double> strain(model_.batches.size());
+  for_each_batch(model_, [&](int b) {
+    strain[b] =
+        sum(strain_energy(model_, model_.batches[b], motion_of(model_.batches[b], state.position, state.memory)));
   });
   result.energy.strain = ordered_sum(static_cast<int>(strain.size()), [&](int b) { return strain[b]; });
-  result.energy.boundary = support_energy(model, state.outlines.position, {state.time});
+  result.energy.boundary = support_energy(model_, state.outlines.position, {state.time});
   result.energy.dissipated = state.dissipated;
   result.energy.external_work =
       state.external_work + state.gravity_work + constant_gravity_moment(state.position) - gravity_start_;
@@ -108,11 +101,10 @@ double Auditor::balance_error(const Energies& energy) const {
 /// a force's lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a
 /// period.
 double Auditor::contact_imbalance(const State& state) const {
-  const Model& model = forces_.model();
   const OutlineField &at = state.outlines.position, &force = state.contact_force;
   double fx = 0, fy = 0, moment = 0, magnitude = 0, lever = 0;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    for (int i = model.outline_offset[b]; i < model.outline_offset[b] + model.outline_of(static_cast<int>(b)).count;
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+    for (int i = model_.outline_offset[b]; i < model_.outline_offset[b] + model_.outline_of(static_cast<int>(b)).count;
          ++i) {
       fx += force.x[i], fy += force.y[i];
       moment += at.x[i] * force.y[i] - at.y[i] * force.x[i];
@@ -120,18 +112,17 @@ double Auditor::contact_imbalance(const State& state) const {
       lever += std::abs(at.x[i] * force.y[i]) + std::abs(at.y[i] * force.x[i]);
     }
   const double linear = ratio(std::hypot(fx, fy), magnitude);
-  return model.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
+  return model_.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
 }
 
 double Auditor::internal_imbalance(const State& state) const {
-  const Model& model = forces_.model();
-  std::vector<double> imbalance(model.batches.size());
-  for_each_batch(model, [&](int b) {
-    const Batch& batch = model.batches[b];
+  std::vector<double> imbalance(model_.batches.size());
+  for_each_batch(model_, [&](int b) {
+    const Batch& batch = model_.batches[b];
     const std::size_t slots = static_cast<std::size_t>(batch.slots);
     std::vector<Lanes> f(2 * slots, Lanes{});
     const Lanes* q = &state.position.compliant[batch.offset];
-    add_internal_forces(model, batch, motion_of(batch, state.position, state.memory), f.data());
+    add_internal_forces(model_, batch, motion_of(batch, state.position, state.memory), f.data());
     Lanes fx{}, fy{}, moment{}, magnitude = broadcast(1e-300), lever = broadcast(1e-300);
     for (std::size_t i = 0; i < slots; ++i) {
       fx += f[2 * i], fy += f[2 * i + 1];
@@ -141,7 +132,7 @@ double Auditor::internal_imbalance(const State& state) const {
     }
     for (Lanes* total : {&fx, &fy, &moment, &magnitude, &lever}) *total = sum_over_body(batch, *total);
     // Rounding of an unloaded grain is not an imbalance: forces count relative to the elastic scale of the grain.
-    const Body& body = model.bodies[model.groups[batch.group].bodies[batch.first]];
+    const Body& body = model_.bodies[model_.groups[batch.group].bodies[batch.first]];
     const double size = std::sqrt(body.area) / body.scale;
     const Lanes floor = batch.mu * (1e-3 * size);
     const Lanes linear = max(abs(fx), abs(fy)) / max(magnitude, floor);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/forces.hpp"
+#include "bodies/model.hpp"
 #include "dynamics/state.hpp"
 
 namespace pliant {
@@ -30,7 +30,7 @@ struct Audit {
 class Auditor {
  public:
   /// `start` must hold forces of its own positions, as after the first evaluation.
-  Auditor(Forces& forces, const State& start);
+  Auditor(const Model& model, const State& start);
   Audit audit(const State& state);
 
   /// Mechanical energy that neither the start nor work nor dissipation accounts for, J/m; negative when some is lost.
@@ -51,7 +51,7 @@ class Auditor {
   double internal_imbalance(const State& state) const;
   double contact_imbalance(const State& state) const;
 
-  Forces& forces_;
+  const Model& model_;
   double gravity_start_ = 0;
   double energy_start_ = 0;
   bool warned_of_strain_ = false;

@@ -14,13 +14,21 @@ namespace pliant {
 
 namespace {
 
+/// Of the evaluation that gave a state its forces.
+void book_forces(const Evaluation& found, State& state) {
+  state.damping_power = found.damping_power;
+  state.contact_energy = found.contact.stored;
+  state.contacts = found.contact.contacts;
+}
+
 /// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of
 /// the springs that come or go.
 void pass_switch(const Model& model, State& state) {
   const Instant before{state.time, true}, after{state.time};
   state.external_work +=
       support_energy(model, state.outlines.position, after) - support_energy(model, state.outlines.position, before);
-  const Dofs velocity = material_velocity(model, state.reduced_momentum);
+  Dofs scratch;
+  const Dofs& velocity = material_velocity(model, state.reduced_momentum, scratch);
   state.damping_power +=
       add_load_change(model, {state.position, velocity, state.time, true}, state.outlines, after, state.force);
 }
@@ -34,7 +42,8 @@ Trial::Trial(const Model& model)
       contact_force(model.outline_offset.back()) {}
 
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
-  const Dofs velocity = material_velocity(forces.model(), state.reduced_momentum);
+  Dofs scratch;
+  const Dofs& velocity = material_velocity(forces.model(), state.reduced_momentum, scratch);
   const Motion motion{state.position, velocity, state.time};
   show_outlines(forces.model(), motion, state.outlines);
   forces.ensure_candidates(state, state.outlines.position, state.time);
@@ -48,7 +57,7 @@ Evaluation find_forces(Forces& forces, State& state) {
   std::swap(state.contact_force, trial.contact_force);
   std::swap(state.memory, trial.memory);
   add_drag(forces.model(), {state.time}, state.reduced_momentum, state.force);
-  state.damping_power = found.damping_power;
+  book_forces(found, state);
   return found;
 }
 
@@ -77,7 +86,7 @@ void take_over(const Model& model, State& state, Trial& trial, double next_dt, c
   ++state.steps;
   state.rejections += report.rejections;
   state.evaluations += report.evaluations;
-  state.damping_power = report.evaluation.damping_power;
+  book_forces(report.evaluation, state);
   if (std::binary_search(model.switch_times.begin(), model.switch_times.end(), end_time)) pass_switch(model, state);
 }
 

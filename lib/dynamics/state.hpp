@@ -53,11 +53,13 @@ struct StateNumbers {
   double next_dt = 0;  ///< what the controller proposes, s
   /// verlet: error over dt^3, the largest of this span of steps and of the one before, 1/s3
   double jerk = 0, jerk_before = 0;
-  double external_work = 0;  ///< of loads and imposed motions, J/m
-  double gravity_work = 0;   ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
-  double dissipated = 0;     ///< by contact laws and by damping, J/m
-  double damped = 0;         ///< of that, by forces that depend on velocities, J/m
-  double damping_power = 0;  ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
+  double external_work = 0;   ///< of loads and imposed motions, J/m
+  double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
+  double dissipated = 0;      ///< by contact laws and by damping, J/m
+  double damped = 0;          ///< of that, by forces that depend on velocities, J/m
+  double damping_power = 0;   ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
+  double contact_energy = 0;  ///< stored in contacts, J/m; with `contact_force`
+  std::int64_t contacts = 0;  ///< nodes in touch
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
 };
 
@@ -69,7 +71,7 @@ struct State : StateNumbers {
   Dofs force;             ///< N/m
   Memory memory;
   BodyBooks books;
-  // They go with the positions, and are no part of the motion:
+  // They go with the positions, and are no part of the motion, nor are contact_energy and contacts:
   Outlines outlines;           ///< with the velocities that dashpots saw
   OutlineField contact_force;  ///< on outline nodes, N/m
 
@@ -79,6 +81,8 @@ struct State : StateNumbers {
     visit_motion(visitor);
     visitor("outlines", outlines);
     visitor("contact_force", contact_force);
+    visitor("contact_energy", contact_energy);
+    visitor("contacts", contacts);
   }
   template <class Visitor>
   void visit_motion(Visitor&& visitor) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -49,7 +50,7 @@ std::vector<Lanes> start_directions(const Model& model) {
       set_node(offsets, static_cast<std::size_t>(i), own[i], start);
   }
   fill_padding(model, start);
-  return start.compliant;
+  return std::move(start.compliant);
 }
 
 /// Finite-difference step of each body in a batch, in its units.

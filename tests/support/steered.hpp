@@ -19,7 +19,7 @@ struct Steered {
   std::unique_ptr<Verlet> verlet;
   std::unique_ptr<StepDoubling> step_doubling;
 
-  explicit Steered(Model model) : bench(std::move(model)), auditor(bench.forces, bench.state) {
+  explicit Steered(Model model) : bench(std::move(model)), auditor(bench.model, bench.state) {
     if (bench.model.scene.time.integrator == Integrator::verlet)
       verlet = std::make_unique<Verlet>(bench.forces, bench.state);
     else
