@@ -3,92 +3,19 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
 #include <type_traits>
 
 #include "contact/encounter.hpp"
 #include "contact/energy_debt.hpp"
 #include "contact/facing.hpp"
 #include "contact/patch_queries.hpp"
+#include "contact/reactions.hpp"
 
 namespace pliant {
 namespace {
 
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
-
-/// Zeros in whole lanes.
-void clear(LinedNumbers& numbers, std::size_t count) {
-  if (numbers.size() < count) numbers.resize(count);
-  for (std::size_t i = 0; i < count; i += lane_count) store(&numbers[i], Lanes{});
-}
-
-/// Reactions on the master's segments: x and y on their first nodes and on their second, side by side.
-class Reactions {
- public:
-  void clear(int rows) {
-    rows_ = rows;
-    pliant::clear(entries_, static_cast<std::size_t>(padded(4 * (rows + 2))));
-  }
-
-  /// Of forces that are 0 where nothing touches. The couple balances the moment of a shear that acts at the gap's
-  /// distance, and makes the force the exact conjugate of the slip.
-  void add(const Projection& p, Lanes fx, Lanes fy, Lanes couple) {
-    const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
-    double reaction[lane_count][4];
-    put_side_by_side(-fx - bx, -fy - by, bx, by, reaction);
-    std::int64_t row[lane_count];
-    const LaneBits rows = __builtin_convertvector(max(p.row, Lanes{}), LaneBits);
-    std::memcpy(row, &rows, sizeof row);
-    double* first = entries_.data() + 4;
-    for (int lane = 0; lane < lane_count; ++lane) {
-      double* at = first + 4 * row[lane];
-      Four sum, more;
-      std::memcpy(&sum, at, sizeof sum);
-      std::memcpy(&more, reaction[lane], sizeof more);
-      sum += more;
-      std::memcpy(at, &sum, sizeof sum);
-    }
-  }
-
-  /// To nodes, from the window's first on.
-  void add_to(double* x, double* y) const {
-    const double* first = entries_.data() + 4;
-    for (int row = 0; row <= rows_; ++row, first += 4) {
-      Two of_row, of_last;
-      std::memcpy(&of_row, first, sizeof of_row), std::memcpy(&of_last, first - 2, sizeof of_last);
-      const Two sum = of_row + of_last;
-      x[row] += sum[0], y[row] += sum[1];
-    }
-  }
-
- private:
-  using Two = double __attribute__((vector_size(16)));
-  using Four = double __attribute__((vector_size(32)));
-
-  /// to[lane] = {a, b, c, d} of the lane.
-  static void put_side_by_side(Lanes a, Lanes b, Lanes c, Lanes d, double (&to)[lane_count][4]) {
-    const Lanes even[2] = {__builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
-                           __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14)},
-                odd[2] = {__builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
-                          __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15)};
-    const auto put = [&](const Lanes(&of)[2], int lane) {
-      const Lanes near = __builtin_shufflevector(of[0], of[1], 0, 1, 8, 9, 2, 3, 10, 11),
-                  far = __builtin_shufflevector(of[0], of[1], 4, 5, 12, 13, 6, 7, 14, 15);
-      const auto quarter = [](Lanes from, int half, double* out) {
-        std::memcpy(out, reinterpret_cast<const char*>(&from) + 32 * half, 32);
-      };
-      quarter(near, 0, to[lane]), quarter(near, 1, to[lane + 2]);
-      quarter(far, 0, to[lane + 4]), quarter(far, 1, to[lane + 6]);
-    };
-    put(even, 0), put(odd, 1);
-  }
-
-  int rows_ = 0;
-  LinedNumbers entries_;  ///< [rows and one before][4]
-};
 
 /// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
 /// length.
@@ -156,17 +83,39 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
+/// Forces of nodes on both bodies, from pressure and shear on their weights, m. The tangent goes with the normal, also
+/// where that is radial.
+void add_forces(const Pass& pass, int i, const Projection& p, Lanes weight, Lanes pressure, Lanes shear,
+                Reactions& reactions, PatchForces& forces) {
+  const Lanes fx = weight * (pressure * p.normal_x - shear * p.normal_y);
+  const Lanes fy = weight * (pressure * p.normal_y + shear * p.normal_x);
+  const Lanes couple = weight * shear * p.gap * p.inverse_length;
+  reactions.add(p, fx, fy, couple);
+  add(&forces.x[pass.slave_force + i], fx);
+  add(&forces.y[pass.slave_force + i], fy);
+}
+
 /// Where pairs repay nothing.
 struct NoRepayment {};
 
+/// What the passes of a patch go on from and add to.
+template <class Repaid>
+struct Accounts {
+  const ContactHistory& from;
+  ContactHistory& to;
+  Repaid& repaid;
+  PatchForces& forces;
+  LaneTotals totals = {};
+};
+
 template <class Law, class Repaid>
-void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const ContactHistory& from,
-                  ContactHistory& to, Repaid& repaid, PatchForces& forces, LaneTotals& totals) {
+void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accounts<Repaid>& accounts) {
+  constexpr bool repays = !std::is_same_v<Repaid, NoRepayment>;
+  auto& [from, to, repaid, forces, totals] = accounts;
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
   reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
-  constexpr bool repays = !std::is_same_v<Repaid, NoRepayment>;
   const double outward = law.reach + view.skin;  // places before the touch, and what is repaid after it
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
@@ -208,16 +157,9 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, const
       pressure = select(touching, remembers<Law> ? c.pressure + more : c.pressure, more);
       shear = select(touching, shear, Lanes{});
     }
-    const Lanes weight = select(acting, half_length, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
-    // The tangent goes with the normal, also where that is radial.
-    const Lanes fx = weight * (pressure * p.normal_x - shear * p.normal_y);
-    const Lanes fy = weight * (pressure * p.normal_y + shear * p.normal_x);
-    const Lanes couple = weight * shear * p.gap * p.inverse_length;
-    reactions.add(p, fx, fy, couple);
-    add(&forces.x[pass.slave_force + i], fx);
-    add(&forces.y[pass.slave_force + i], fy);
+    add_forces(pass, i, p, select(acting, half_length, Lanes{}), pressure, shear, reactions, forces);
     if (facing.varying != 0) [[unlikely]]
       add_length_forces(pass, facing, bits(touching), i, c.energy, forces);
     totals.contacts += std::popcount(bits(touching));
@@ -235,9 +177,7 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
 
 /// Both passes of a patch, whose sides' forces begin at `begin`. What a law does not need is neither kept nor added up.
 template <class Law, class Repaid>
-PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactHistory& from, ContactHistory& to,
-                           Repaid& repaid, const int (&begin)[2], PatchForces& forces) {
-  LaneTotals totals;
+PatchTotals compute_passes(const Law& law, const PatchView& view, const int (&begin)[2], Accounts<Repaid> accounts) {
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
@@ -249,8 +189,9 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ContactH
       pass.damping = damping, pass.elapsed = view.elapsed;
     }
     fill_window(view, 1 - slave_side);
-    compute_pass(law, pass, view, from, to, repaid, forces, totals);
+    compute_pass(law, pass, view, accounts);
   }
+  const LaneTotals& totals = accounts.totals;
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
   return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
@@ -270,10 +211,10 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   const auto passes = [&](const auto& law) {
     if (!step) {
       NoRepayment none;
-      return compute_passes(law, view, from, to, none, begin, near);
+      return compute_passes(law, view, begin, Accounts<NoRepayment>{from, to, none, near});
     }
     Repayment repaid(*step, law.normal_stiffness);
-    PatchTotals totals = compute_passes(law, view, from, to, repaid, begin, near);
+    PatchTotals totals = compute_passes(law, view, begin, Accounts<Repayment>{from, to, repaid, near});
     totals.ways = repaid.ways(), totals.pending = repaid.pending();
     return totals;
   };
