@@ -78,6 +78,9 @@ class Faces {
     return way * (point - start(window_[end.corner])).dot(tangent(s)) > tie * s.length;
   }
 
+  /// Whether the first node of a row, or the last row's end, is a corner.
+  bool is_corner(int row) const { return shape_.has_corners() && shape_.corner[window_.number(row)]; }
+
   double sight() const { return sight_; }
   double height(const SlaveNode& node, int row) const {
     return (node.at - start(window_[row])).dot(outward_of(tangent(window_[row])));
@@ -92,7 +95,7 @@ class Faces {
     const int n = window_.count();
     return n == window_.outline_count() && shape_.turn_shift == 0 ? (row + n) % n : row;
   }
-  bool ends_at_corner(int row, int way) const { return shape_.corner[window_.number(way < 0 ? row : row + 1)]; }
+  bool ends_at_corner(int row, int way) const { return is_corner(way < 0 ? row : row + 1); }
 
   /// Where on the face that begins beyond a corner, with this row, the node stands; -1: not beside it, or too far off.
   int beside(const SlaveNode& node, int row, int way, double outward) const {

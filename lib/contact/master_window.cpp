@@ -36,6 +36,7 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
   // Of the segment before the first, the tangent is of use: for the bisector at the first node.
   const int before = segments.begin - 1 - turn_of(segments.begin - 1, shape.count) * shape.count;
   const Segments last(outline_x + before, outline_y + before);
+  before_ = last.length[0];
   Lanes last_tx = broadcast(last.tangent_x[0]), last_ty = broadcast(last.tangent_y[0]),
         longest = broadcast(last.length[0]);
   for (int w = 0; w < rows; w += lane_count) {

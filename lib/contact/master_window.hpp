@@ -46,8 +46,9 @@ class MasterWindow {
   /// of the nodes.
   double origin_x() const { return column(x)[0]; }
   double origin_y() const { return column(y)[0]; }
-  double longest() const { return longest_; }  ///< segment, m
-  double depth() const { return depth_; }      ///< of the contact box below each segment, m
+  double longest() const { return longest_; }                                                   ///< segment, m
+  double length_before(int row) const { return row == 0 ? before_ : column(length)[row - 1]; }  ///< the row's, m
+  double depth() const { return depth_; }  ///< of the contact box below each segment, m
   int outline_count() const { return outline_count_; }
   /// Number of a row's segment in its outline, in [0, outline_count()).
   int number(int row) const {
@@ -63,6 +64,7 @@ class MasterWindow {
  private:
   int count_ = 0, outline_count_ = 0, first_number_ = 0;
   double longest_ = 0, depth_ = 0;
+  double before_ = 0;           ///< length of the segment before the first
   std::size_t stride_ = 0;      ///< Lanes in a column
   std::vector<Lanes> entries_;  ///< [columns][stride]
 };

@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <array>
-#include <limits>
 
-#include "contact/faces.hpp"
+#include "contact/varying_length.hpp"
 
 namespace pliant {
 namespace {
@@ -21,115 +19,6 @@ constexpr double takeover = 0.1;
 /// Of the same: so deep corners of the slave no longer touch the face that they go along with when the flank is nearer;
 /// half of it they do in full. So corners that lie on each other but for little touch both at any offset.
 constexpr double shallow = 0.005;
-
-/// A number that depends on the seven nodes.
-struct Varying {
-  double value = 0;
-  std::array<Vec2, Facing::nodes> gradient = none;
-
-  static inline const std::array<Vec2, Facing::nodes> none = [] {
-    std::array<Vec2, Facing::nodes> zero;
-    zero.fill(Vec2(0, 0));
-    return zero;
-  }();
-
-  Varying& add(double factor, const Varying& other) {
-    value += factor * other.value;
-    for (int i = 0; i < Facing::nodes; ++i) gradient[i] += factor * other.gradient[i];
-    return *this;
-  }
-};
-
-/// One slave node beside one segment of the master, at a foot there. What is measured from the foot does not jump where
-/// the foot goes from one segment to the next.
-struct Beside {
-  const SlaveNode& node;
-  const MasterSegment segment;
-  Vec2 t = tangent(segment), n = outward_of(t);
-  double along = (node.at - start(segment)).dot(t), height = (node.at - start(segment)).dot(n);
-  double clamped = std::clamp(along, 0.0, segment.length);
-  Vec2 foot = start(segment) + clamped * t;
-
-  static Facing::Node neighbour(int side) { return side == 0 ? Facing::before : Facing::after; }
-  static Facing::Node corner(int way) { return way < 0 ? Facing::corner_back : Facing::corner_on; }
-
-  /// Adds what a turn of the segment's tangent does to a number that changes by `rate` with it.
-  void turn_tangent(double rate, Varying& v) const {
-    v.gradient[Facing::segment_end] += rate / segment.length * n;
-    v.gradient[Facing::segment_start] -= rate / segment.length * n;
-  }
-  /// Adds what a move of the foot does to a number whose gradient by the foot's place is g.
-  void move_foot(const Vec2& g, Varying& v) const {
-    if (along <= 0) {
-      v.gradient[Facing::segment_start] += g;
-    } else if (along >= segment.length) {
-      v.gradient[Facing::segment_end] += g;
-    } else {
-      const double gt = g.dot(t);
-      v.gradient[Facing::itself] += gt * t;
-      v.gradient[Facing::segment_start] += g - gt * t;
-      turn_tangent(along * g.dot(n) + height * gt, v);
-    }
-  }
-
-  /// From the foot to the corner on a way, over the part in that direction of the segment to one of the node's
-  /// neighbours; infinite where that leads away.
-  Varying steps_to(const Vec2& place, int way, int side) const {
-    const Vec2 chord = place - foot, edge = node.neighbour[side] - node.at;
-    const double part = edge.dot(chord);
-    if (chord.squaredNorm() == 0) return {};
-    if (part <= 0) return {std::numeric_limits<double>::infinity()};
-    Varying v{chord.squaredNorm() / part};
-    const Vec2 by_chord = (2 * chord - v.value * edge) / part, by_edge = -v.value / part * chord;
-    v.gradient[neighbour(side)] = by_edge;
-    v.gradient[Facing::itself] = -by_edge;
-    v.gradient[corner(way)] = by_chord;
-    move_foot(-by_chord, v);
-    return v;
-  }
-  /// From the foot to the corner on a way, m.
-  Varying distance(const Vec2& place, int way) const {
-    const Vec2 chord = place - foot;
-    Varying v{chord.norm()};
-    if (v.value == 0) return v;
-    v.gradient[corner(way)] = chord / v.value;
-    move_foot(-chord / v.value, v);
-    return v;
-  }
-  /// Of the node below the face, m.
-  Varying depth() const {
-    const Vec2 from = node.at - foot;
-    Varying v{from.norm()};
-    if (v.value == 0) return v;
-    v.gradient[Facing::itself] = from / v.value;
-    move_foot(-from / v.value, v);
-    return v;
-  }
-  Varying opposition(int side) const {
-    Varying v{node.opposition(side, t)};
-    const Vec2& u = node.direction[side];
-    const Vec2 turn = -outward_of(u).dot(t) / node.present[side] * outward_of(u);
-    v.gradient[neighbour(side)] = side == 0 ? Vec2(-turn) : turn;
-    v.gradient[Facing::itself] = side == 0 ? turn : Vec2(-turn);
-    turn_tangent(-u.dot(n), v);
-    return v;
-  }
-  /// Cosine between the normal of the node, by the line between its neighbours, turned round, and that of the face from
-  /// the foot to the corner on a way.
-  Varying opposition_towards(const Vec2& place, int way) const {
-    const Vec2 chord = place - foot, span = node.neighbour[1] - node.neighbour[0];
-    const double length = chord.norm(), width = span.norm();
-    if (length == 0) return {};
-    const Vec2 to = way / length * chord, u = span / width;
-    Varying v{-u.dot(to)};
-    const Vec2 by_span = (u.dot(to) * u - to) / width, by_chord = way / length * (u.dot(to) * to - u);
-    v.gradient[Facing::after] = by_span;
-    v.gradient[Facing::before] = -by_span;
-    v.gradient[corner(way)] = by_chord;
-    move_foot(-by_chord, v);
-    return v;
-  }
-};
 
 /// 0 up to 0, 1 from 1 on, with slope 0 at both.
 Varying smooth_step(Varying u) {
@@ -207,9 +96,9 @@ Varying length_of_side(const Beside& at, const Faces& faces, int row, int side, 
 }
 
 /// The lesser opposing segment of a corner counts by this factor.
-Varying factor_of_lesser(const Beside& at, int side, NodeLength& whole) {
+Varying factor_of_lesser(const OutlineDirection& master, int side, NodeLength& whole) {
   Varying behind;
-  behind.add(1 / lesser, at.opposition(1 - side)).add(-1 / lesser, at.opposition(side));
+  behind.add(1 / lesser, master.opposition(1 - side)).add(-1 / lesser, master.opposition(side));
   whole.varies |= behind.value > 0 && behind.value < 1;
   return scaled(-1, smooth_step(behind), 1);
 }
@@ -255,7 +144,7 @@ NodeLength node_length(const SlaveNode& node, const MasterWindow& window, const 
   Varying total;
   for (int side = 0; side < 2; ++side) {
     const Varying length = length_of_side(at, faces, row, side, whole);
-    total.add(1, node.corner ? product(factor_of_lesser(at, side, whole), length) : length);
+    total.add(1, node.corner ? product(factor_of_lesser({at, window, faces, row}, side, whole), length) : length);
   }
   if (!node.corner) total = product(opposed_part(at, faces, row, kind, whole), total);
   if (node.corner && kind != RowKind::nearest) {

@@ -22,6 +22,12 @@ struct Arc {
   Arc with_neighbours() const { return count == 0 ? *this : Arc{begin - 1, count + 2}; }
 };
 
+/// The shortest arc with both.
+inline Arc hull(const Arc& a, const Arc& b) {
+  const int begin = a.begin < b.begin ? a.begin : b.begin, end = a.end() > b.end() ? a.end() : b.end();
+  return {begin, end - begin};
+}
+
 /// Two bodies, or a body and its own periodic image, that come close, and the parts of their outlines that may touch
 /// before they are searched again. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
 /// and segments far from them along the outline, as those of the second.
@@ -54,11 +60,11 @@ struct Patch {
 
   /// Outline nodes that this patch puts forces on.
   Arc forces(int side) const {
-    const Arc &s = segments[side], n = corners ? nodes[side].with_neighbours() : nodes[side];
-    if (s.count == 0) return n;
-    if (n.count == 0) return {s.begin, s.count + 1};
-    const int begin = n.begin < s.begin ? n.begin : s.begin, end = n.end() > s.end() + 1 ? n.end() : s.end() + 1;
-    return {begin, end - begin};
+    const Arc n = nodes[side], s{segments[side].begin, segments[side].count == 0 ? 0 : segments[side].count + 1},
+              all = n.count == 0   ? s
+                    : s.count == 0 ? n
+                                   : hull(n, s);
+    return corners ? all.with_neighbours() : all;
   }
 };
 

@@ -30,6 +30,8 @@ void add_length_forces(const Pass& pass, const Facing& facing, unsigned touching
                                    slave + 1,
                                    master,
                                    master + 1,
+                                   master - 1,
+                                   master + 2,
                                    pass.master_force + std::max(0, corner[0]),
                                    pass.master_force + std::max(0, corner[1])};
     for (int node = 0; node < Facing::nodes; ++node) {

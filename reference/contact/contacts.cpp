@@ -186,7 +186,7 @@ struct Contacts::Implementation {
     memory.slip = response.slip;
     memory.damage = response.damage;
     memory.opening = response.opening;
-    const Jet<14> length = whole.value * 0.5;  // one of two passes
+    const auto length = whole.value * 0.5;  // one of two passes
     result.stored += length.value * response.stored;
     result.dissipated += length.value * response.dissipated;
     ContactElement element = make_element(on.outline, at, motion, response, length.value);
@@ -199,6 +199,8 @@ struct Contacts::Implementation {
                                     slave.index(encounter.node + 1),
                                     element.node[1],
                                     element.node[2],
+                                    on.outline.index(segment - 1),
+                                    on.outline.index(segment + 2),
                                     on.outline.index(whole.corner[0]),
                                     on.outline.index(whole.corner[1])};
     }
@@ -228,9 +230,11 @@ struct Contacts::Implementation {
   }
 
   /// Of the energy length x stored; the element's forces are length x what they are a unit of it.
-  static LengthElement make_length_element(const Jet<14>& length, double stored, const ContactElement& element) {
-    constexpr int own[6] = {2, 3, 6, 7, 8, 9};  // places of the element's coordinates among the fourteen
-    Eigen::Matrix<double, 14, 1> of_unit_length = Eigen::Matrix<double, 14, 1>::Zero();
+  static LengthElement make_length_element(const Jet<LengthElement::size>& length, double stored,
+                                           const ContactElement& element) {
+    constexpr int own[6] = {2, 3, 6, 7, 8, 9};  // places of the element's coordinates among the length's
+    Eigen::Matrix<double, LengthElement::size, 1> of_unit_length;
+    of_unit_length.setZero();
     if (length.value > 0)
       for (int i = 0; i < 6; ++i) of_unit_length[own[i]] = element.force[i] / length.value;
     LengthElement result;
@@ -258,7 +262,8 @@ Points forces_on_nodes(const ContactResult& result, std::size_t nodes) {
   for (const ContactElement& element : result.elements)
     for (int i = 0; i < 3; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
   for (const LengthElement& element : result.lengths)
-    for (int i = 0; i < 7; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
+    for (int i = 0; i < LengthElement::size / 2; ++i)
+      forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
   return forces;
 }
 

@@ -50,12 +50,13 @@ struct ContactElement {
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
-/// What the energy of a contact adds where the length that its node stands for changes with the places of seven nodes:
-/// see NodeLength.
+/// What the energy of a contact adds where the length that its node stands for changes with the places of nodes: see
+/// NodeLength.
 struct LengthElement {
-  std::array<int, 7> node;                ///< in the list of all outline nodes
-  Eigen::Matrix<double, 14, 1> force;     ///< residual, N/m
-  Eigen::Matrix<double, 14, 14> tangent;  ///< of `force` and, by the length, of the contact's own forces
+  static constexpr int size = 18;
+  std::array<int, size / 2> node;             ///< in the list of all outline nodes
+  Eigen::Matrix<double, size, 1> force;       ///< residual, N/m
+  Eigen::Matrix<double, size, size> tangent;  ///< of `force` and, by the length, of the contact's own forces
 };
 
 struct ContactResult {

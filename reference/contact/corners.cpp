@@ -7,14 +7,17 @@
 namespace pliant::reference {
 namespace {
 
-using Length = Jet<14>;
+using Length = Jet<2 * NodeLength::nodes>;
 struct Arrow {
   Length x, y;
 };
+Arrow operator+(const Arrow& a, const Arrow& b) { return {a.x + b.x, a.y + b.y}; }
 Arrow operator-(const Arrow& a, const Arrow& b) { return {a.x - b.x, a.y - b.y}; }
+Arrow operator*(const Length& factor, const Arrow& a) { return {factor * a.x, factor * a.y}; }
 Arrow operator*(const Arrow& a, double factor) { return {a.x * factor, a.y * factor}; }
 Length dot(const Arrow& a, const Arrow& b) { return a.x * b.x + a.y * b.y; }
 Length norm(const Arrow& a) { return sqrt(dot(a, a)); }
+Arrow unit(const Arrow& a) { return 1 / norm(a) * a; }
 
 constexpr double square = 0.95;    ///< cosine of the angle by which opposed normals may differ, squarely
 constexpr double oblique = 0.81;   ///< likewise: from which on a node does not oppose a face at all
@@ -94,7 +97,7 @@ class Stand {
         segment_(segment),
         node_(node),
         own_{arrow(node.before, 0), arrow(node.at, 1), arrow(node.after, 2)} {
-    const Arrow first = arrow(master.outline.node(segment), 3), second = arrow(master.outline.node(segment + 1), 4);
+    const Arrow first = on_master(0), second = on_master(1);
     chord_ = second - first;
     const Length squared = dot(chord_, chord_), part = dot(own_[1] - first, chord_) / squared;
     if (part.value <= 0)
@@ -121,6 +124,27 @@ class Stand {
  private:
   static Arrow arrow(const Vec2& place, int number) { return {{place.x(), 2 * number}, {place.y(), 2 * number + 1}}; }
 
+  /// The segment's first node (0) and second (1), or the next before (-1) and after them (2).
+  Arrow on_master(int number) const {
+    constexpr int place[4] = {5, 3, 4, 6};
+    return arrow(master_.outline.node(segment_ + number), place[number + 1]);
+  }
+  /// Which way the outline leads where the node stands: on either bisector as the two segments there do in the mean,
+  /// but at a corner as this one, and in between by the node's ways from both. So it does not jump from one segment to
+  /// the next.
+  Arrow outline_direction() const {
+    const auto at_end = [&](int end) {
+      if (master_.corners.at(segment_ + end)) return 2 * unit(chord_);
+      return unit(chord_) + (end == 0 ? unit(on_master(0) - on_master(-1)) : unit(on_master(2) - on_master(1)));
+    };
+    const Arrow first = at_end(0), second = at_end(1);
+    const Length from_first = dot(own_[1] - on_master(0), first), to_second = dot(on_master(1) - own_[1], second);
+    if (from_first.value <= 0 && to_second.value <= 0) return first + second;
+    if (from_first.value <= 0) return first;
+    if (to_second.value <= 0) return second;
+    return to_second * first + from_first * second;
+  }
+
   Arrow edge(int neighbour) const { return neighbour == 0 ? own_[0] - own_[1] : own_[1] - own_[2]; }
   /// Between the turned normal of the node's segment towards that neighbour and the normal of a face along `to`.
   Length cosine(int neighbour, const Arrow& to) const {
@@ -130,7 +154,7 @@ class Stand {
   Arrow to_corner(int end, int way) {
     const int number = way < 0 ? 0 : 1;
     result_.corner[number] = end;
-    return arrow(master_.outline.node(end), 5 + number) - foot_;
+    return arrow(master_.outline.node(end), 7 + number) - foot_;
   }
   static Length safe_norm(const Arrow& a) { return a.x.value == 0 && a.y.value == 0 ? Length(0) : norm(a); }
   /// 1 up to half of the limit, 0 from the limit on.
@@ -139,8 +163,10 @@ class Stand {
   /// What the segment towards a neighbour stands for.
   Length side(int neighbour) {
     const double full = neighbour == 0 ? node_.length_before : node_.length_after;
-    if (node_.corner)
-      return 0.5 * full * (1 - ramp(cosine(2 - neighbour, chord_) - cosine(neighbour, chord_), 0, lesser));
+    if (node_.corner) {
+      const Arrow on = outline_direction();
+      return 0.5 * full * (1 - ramp(cosine(2 - neighbour, on) - cosine(neighbour, on), 0, lesser));
+    }
     const Arrow onward = neighbour == 0 ? edge(0) : edge(2) * -1;
     const int way = dot(onward, chord_).value < 0 ? -1 : 1;
     const auto end = face_end(master_, segment_, node_, way, 2 * norm(onward).value);

@@ -49,11 +49,12 @@ struct Face {
   double sight = 0;  ///< how far along a face its corner counts: the lesser of both outlines' longest segments, m
 };
 
-/// Length of contact that a node stands for, by the coordinates of seven nodes: its neighbour before, itself, its
-/// neighbour after, the segment's two, and the corners before and after it that are less than two of the slave's
-/// segments away.
+/// Length of contact that a node stands for, by the coordinates of nine nodes: its neighbour before, itself, its
+/// neighbour after, the segment's two, the master's next before and after these, and the corners before and after it
+/// that are less than two of the slave's segments away.
 struct NodeLength {
-  Jet<14> value;  ///< m
+  static constexpr int nodes = 9;
+  Jet<2 * nodes> value;  ///< m
   int corner[2]{
       0, 0};  ///< nodes of the master, counted on as its segments are; any where the length does not depend on it
 };
