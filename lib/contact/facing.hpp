@@ -19,8 +19,9 @@ namespace pliant {
 /// Each of a node's two segments stands for half its length, but for the last two nodes before the end of the master's
 /// face, at a corner: they share out what of the face lies there (node_length.cpp), the last one the less the nearer it
 /// comes. At a corner of the slave, the segment that opposes the master less than the other counts less, down to
-/// nothing; in this the master's direction is not that of the segment, which would jump from one to the next. So two flat faces touch over the length that they share, wherever their nodes are. The energy of a contact
-/// is its length times that of its law, and its forces are the gradient of both.
+/// nothing; in this the master's direction is not that of the segment, which would jump from one to the next
+/// (varying_length.hpp). So two flat faces touch over the length that they share, wherever their nodes are. The energy
+/// of a contact is its length times that of its law, and its forces are the gradient of both.
 struct Facing {
   /// What a length depends on: the slave's node with its neighbours, the two nodes of the master's segment and the next
   /// ones either way, and the corners at the ends of its face.

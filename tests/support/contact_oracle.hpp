@@ -227,14 +227,16 @@ class ContactOracle {
     const int n = rig_.count(slave), m = rig_.count(master);
     const auto within = [](int i, int count) { return ((i % count) + count) % count; };
     const auto& [length, corner] = point.contact_length;
-    Vec2* const on[7] = {&result.force[slave][within(k - 1, n)],
-                         &result.force[slave][k],
-                         &result.force[slave][within(k + 1, n)],
-                         &result.force[master][within(point.segment, m)],
-                         &result.force[master][within(point.segment + 1, m)],
-                         &result.force[master][within(corner[0], m)],
-                         &result.force[master][within(corner[1], m)]};
-    for (int i = 0; i < 7; ++i) {
+    Vec2* const on[] = {&result.force[slave][within(k - 1, n)],
+                        &result.force[slave][k],
+                        &result.force[slave][within(k + 1, n)],
+                        &result.force[master][within(point.segment, m)],
+                        &result.force[master][within(point.segment + 1, m)],
+                        &result.force[master][within(point.segment - 1, m)],
+                        &result.force[master][within(point.segment + 2, m)],
+                        &result.force[master][within(corner[0], m)],
+                        &result.force[master][within(corner[1], m)]};
+    for (int i = 0; i < reference::NodeLength::nodes; ++i) {
       const Vec2 force = -0.5 * energy * length.gradient.segment<2>(2 * i);
       *on[i] += force;
       result.by_length[i < 3 ? slave : master] += force;
