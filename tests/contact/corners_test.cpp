@@ -214,9 +214,10 @@ TEST(Corners, PassANotchWithoutJumps) {
     for (int k = 0; k <= steps; ++k) {
       rig.evaluate();
       const double now = rig.totals.stored, pull = rig.force(1).dot(way / steps), aside = stored_by_first(rig);
-      if (k > 0 && std::max(now, stored) < 2 * unit)
+      if (k > 0 && std::max(now, stored) < 2 * unit) {
         EXPECT_NEAR(now - stored, -(work + pull) / 2, way.norm() / steps / deep * unit + std::abs(aside - by_notch))
             << sample << ": " << k;
+      }
       touched += now > 0.1 * unit;
       stored = now, work = pull, by_notch = aside;
       rig.move(1, way / steps);
