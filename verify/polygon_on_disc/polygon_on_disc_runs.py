@@ -49,9 +49,8 @@ class Press:
         return f"{self.law}_{self.first}_{self.size}_{way}_{self.stiffness:g}_{self.pause:g}"
 
     def ways(self) -> list[Press]:
-        """With other discs and hexagons. A node of the disc just on the hexagon's corner would never come to rest."""
-        facets = (True,) if self.first == "corner" else (True, False)
-        return [replace(self, facet=facet, odd=odd) for facet in facets for odd in (False, True)]
+        """With other discs and hexagons."""
+        return [replace(self, facet=facet, odd=odd) for facet in (True, False) for odd in (False, True)]
 
     def scene(self, case: Case) -> str:
         discs, disc_nodes, hexagons, hexagon_nodes = SIZES[self.size]
