@@ -85,16 +85,17 @@ Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, 
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
-/// Forces of nodes on both bodies, from pressure and shear on their weights, m. The tangent goes with the normal, also
-/// where that is radial.
-void add_forces(const Pass& pass, int i, const Projection& p, Lanes weight, Lanes pressure, Lanes shear,
-                Reactions& reactions, PatchForces& forces) {
-  const Lanes fx = weight * (pressure * p.normal_x - shear * p.normal_y);
-  const Lanes fy = weight * (pressure * p.normal_y + shear * p.normal_x);
+/// On slave nodes, N/m. The couple is that of shears that act at the gap's distance from the master, over its segment's
+/// length.
+struct Force {
+  Lanes x, y, couple;
+};
+
+/// The tangent goes with the normal, also where that is radial.
+Force force_on(const Projection& p, Lanes weight, Lanes pressure, Lanes shear) {
   const Lanes couple = weight * shear * p.gap * p.inverse_length;
-  reactions.add(p, fx, fy, couple);
-  add(&forces.x[pass.slave_force + i], fx);
-  add(&forces.y[pass.slave_force + i], fy);
+  return {weight * (pressure * p.normal_x - shear * p.normal_y), weight * (pressure * p.normal_y + shear * p.normal_x),
+          couple};
 }
 
 /// Where pairs repay nothing.
@@ -161,7 +162,9 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accou
     }
     totals.stored += select(touching, half_length * c.energy, Lanes{});
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
-    add_forces(pass, i, p, select(acting, half_length, Lanes{}), pressure, shear, reactions, forces);
+    const Force force = force_on(p, select(acting, half_length, Lanes{}), pressure, shear);
+    reactions.add(p, force.x, force.y, force.couple);
+    add(&forces.x[pass.slave_force + i], force.x), add(&forces.y[pass.slave_force + i], force.y);
     if (facing.varying != 0) [[unlikely]]
       add_length_forces(pass, facing, bits(touching), i, c.energy, forces);
     totals.contacts += std::popcount(bits(touching));

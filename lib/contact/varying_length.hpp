@@ -122,19 +122,18 @@ struct Beside {
 class OutlineDirection {
  public:
   OutlineDirection(const Beside& at, const MasterWindow& window, const Faces& faces, int row) : at_(at) {
-    const Vec2 start_at = start(at.segment), end_at = start(window[row + 1]);
-    const auto normal = [&](int of_row) {
-      const MasterSegment s = window[of_row];
-      return faces.is_corner(of_row) ? Vec2(2 * at.t) : Vec2(s.bisector_x, s.bisector_y);
-    };
-    const Vec2 a = normal(row), b = normal(row + 1), from_start = at.node.at - start_at, to_end = end_at - at.node.at;
-    ends_[0] = {a, from_start, faces.is_corner(row) ? at.t : Vec2(a - at.t), window.length_before(row)};
-    ends_[1] = {b, to_end, faces.is_corner(row + 1) ? at.t : Vec2(b - at.t), window[row + 1].length};
-    corner_[0] = faces.is_corner(row), corner_[1] = faces.is_corner(row + 1);
-    way_[0] = std::max(0.0, a.dot(from_start)), way_[1] = std::max(0.0, b.dot(to_end));
+    const Vec2 offset[2] = {at.node.at - start(at.segment), start(window[row + 1]) - at.node.at};
+    const double length[2] = {window.length_before(row), window[row + 1].length};
+    for (int end = 0; end < 2; ++end) {
+      const MasterSegment s = window[row + end];
+      const bool corner = faces.is_corner(row + end);
+      const Vec2 normal = corner ? Vec2(2 * at.t) : Vec2(s.bisector_x, s.bisector_y);
+      ends_[end] = {corner, normal, offset[end], normal - at.t, length[end]};
+      way_[end] = std::max(0.0, normal.dot(offset[end]));
+    }
     const double whole = way_[0] + way_[1];
     share_ = whole > 0 ? way_[0] / whole : 0.5;
-    direction_ = (1 - share_) * a + share_ * b;
+    direction_ = (1 - share_) * ends_[0].normal + share_ * ends_[1].normal;
   }
 
   /// Cosine between the normal of the node's segment on a side, turned round, and that of this direction.
@@ -151,10 +150,11 @@ class OutlineDirection {
 
  private:
   struct End {
-    Vec2 normal;   ///< of the bisector: the sum of both tangents
-    Vec2 offset;   ///< from the row's start to the node, or from the node to the row's end
-    Vec2 tangent;  ///< of the segment beyond
-    double length;
+    bool corner;    ///< the face ends there, and the outline's direction is the segment's
+    Vec2 normal;    ///< of the bisector: the sum of both segments' tangents
+    Vec2 offset;    ///< from the row's start to the node, or from the node to the row's end, m
+    Vec2 tangent;   ///< of the segment beyond
+    double length;  ///< of the same, m
   };
 
   /// Adds what a change of the direction does to a number with this gradient by it.
@@ -167,8 +167,8 @@ class OutlineDirection {
       const double sign = end == 0 ? 1 : -1;
       v.gradient[Facing::itself] += sign * rate[end] * ends_[end].normal;
       v.gradient[end == 0 ? Facing::segment_start : Facing::segment_end] -= sign * rate[end] * ends_[end].normal;
-      at_.turn_tangent((corner_[end] ? 2 : 1) * by_normal.dot(at_.n), v);
-      if (corner_[end]) continue;
+      at_.turn_tangent((ends_[end].corner ? 2 : 1) * by_normal.dot(at_.n), v);
+      if (ends_[end].corner) continue;
       const Vec2 n = outward_of(ends_[end].tangent), turned = by_normal.dot(n) / ends_[end].length * n;
       v.gradient[end == 0 ? Facing::segment_start : Facing::segment_on] += turned;
       v.gradient[end == 0 ? Facing::segment_back : Facing::segment_end] -= turned;
@@ -176,8 +176,7 @@ class OutlineDirection {
   }
 
   const Beside& at_;
-  End ends_[2];  ///< of the row's start and of its end
-  bool corner_[2];
+  End ends_[2];    ///< of the row's start and of its end
   double way_[2];  ///< of the node from the bisectors, times their normals' lengths, m
   double share_;   ///< of the way through the wedge
   Vec2 direction_;
