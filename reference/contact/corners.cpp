@@ -14,7 +14,6 @@ struct Arrow {
 Arrow operator+(const Arrow& a, const Arrow& b) { return {a.x + b.x, a.y + b.y}; }
 Arrow operator-(const Arrow& a, const Arrow& b) { return {a.x - b.x, a.y - b.y}; }
 Arrow operator*(const Length& factor, const Arrow& a) { return {factor * a.x, factor * a.y}; }
-Arrow operator*(const Arrow& a, double factor) { return {a.x * factor, a.y * factor}; }
 Length dot(const Arrow& a, const Arrow& b) { return a.x * b.x + a.y * b.y; }
 Length norm(const Arrow& a) { return sqrt(dot(a, a)); }
 Arrow unit(const Arrow& a) { return 1 / norm(a) * a; }
@@ -167,7 +166,7 @@ class Stand {
       const Arrow on = outline_direction();
       return 0.5 * full * (1 - ramp(cosine(2 - neighbour, on) - cosine(neighbour, on), 0, lesser));
     }
-    const Arrow onward = neighbour == 0 ? edge(0) : edge(2) * -1;
+    const Arrow onward = neighbour == 0 ? edge(0) : -1 * edge(2);
     const int way = dot(onward, chord_).value < 0 ? -1 : 1;
     const auto end = face_end(master_, segment_, node_, way, 2 * norm(onward).value);
     if (!end) return 0.5 * full;
