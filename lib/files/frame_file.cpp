@@ -26,71 +26,130 @@ void require_size(const std::filesystem::path& file, const std::string& what, st
                   file.string(), what, found, expected));
 }
 
-void check_field(const std::filesystem::path& file, const Grid& grid, const Field& field) {
-  const std::size_t entries =
-      static_cast<std::size_t>(field.centre == Field::Centre::point ? grid.points : grid.cell_count);
-  if (field.components < 1 || field.components > 3) {
-    throw OutputError(fmt::format("{}: '{}/{}' has {} components; allowed are 1 to 3", file.string(), grid.name,
-                                  field.name, field.components));
-  }
-  require_size(file, grid.name + "/" + field.name, field.values.size(),
-               entries * static_cast<std::size_t>(field.components));
+std::size_t entries_of(const Grid& grid, const Field& field) {
+  return static_cast<std::size_t>(field.centre == Field::Centre::point ? grid.points : grid.cells);
 }
 
-void check_grid(const std::filesystem::path& file, GridTopology& grid) {
-  if (grid.cell_size != 2 && grid.cell_size != 3) {
-    throw OutputError(fmt::format("{}: grid '{}' has cells of {} points; allowed are 2 (segments) and 3 (triangles)",
-                                  file.string(), grid.name, grid.cell_size));
+void check_field(const std::filesystem::path& file, const Grid& grid, const Field& field) {
+  if (field.components >= 1 && field.components <= 3) return;
+  throw OutputError(fmt::format("{}: '{}/{}' has {} components; allowed are 1 to 3", file.string(), grid.name,
+                                field.name, field.components));
+}
+
+/// Throws unless every grid can be written.
+std::vector<Grid> checked(const std::filesystem::path& file, std::vector<Grid> grids) {
+  for (const Grid& grid : grids) {
+    if (grid.cell_size != 2 && grid.cell_size != 3) {
+      throw OutputError(fmt::format("{}: grid '{}' has cells of {} points; allowed are 2 (segments) and 3 (triangles)",
+                                    file.string(), grid.name, grid.cell_size));
+    }
+    for (const Field& field : grid.constant_fields) check_field(file, grid, field);
+    for (const Field& field : grid.fields) check_field(file, grid, field);
   }
-  grid.cell_count = static_cast<int>(grid.cells.size()) / grid.cell_size;
-  require_size(file, grid.name + "/cells", grid.cells.size(),
-               static_cast<std::size_t>(grid.cell_count) * static_cast<std::size_t>(grid.cell_size));
-  for (const int point : grid.cells) {
+  return grids;
+}
+
+/// [entries x 2] to [entries x 3] with zeros; anything else as it is.
+std::vector<float> stored_values(const std::vector<float>& values, int components) {
+  if (components != 2) return values;
+  std::vector<float> stored(values.size() / 2 * 3, 0.0F);
+  for (std::size_t i = 0; i < values.size() / 2; ++i) {
+    stored[3 * i] = values[2 * i];
+    stored[3 * i + 1] = values[2 * i + 1];
+  }
+  return stored;
+}
+
+/// An array of a grid while its parts come in.
+class GridArray {
+ public:
+  GridArray(std::filesystem::path file, std::string name, Hdf5Array array, std::size_t expected)
+      : file_(std::move(file)), name_(std::move(name)), array_(std::move(array)), expected_(expected) {}
+
+  /// `components`: of the values, which are written as stored_values().
+  void append(const std::vector<float>& values, int components = 1) {
+    count(values.size());
+    array_.append(stored_values(values, components));
+  }
+  void append(const std::vector<int>& values) {
+    count(values.size());
+    array_.append(values);
+  }
+  void end() const { require_size(file_, name_, found_, expected_); }
+
+ private:
+  void count(std::size_t more) {
+    found_ += more;
+    if (found_ > expected_) end();
+  }
+
+  std::filesystem::path file_;
+  std::string name_;
+  Hdf5Array array_;
+  std::size_t found_ = 0, expected_;
+};
+
+/// The arrays of some fields of a grid.
+class FieldArrays {
+ public:
+  FieldArrays(const std::filesystem::path& file, Hdf5Group& group, const Grid& grid, const std::vector<Field>& fields)
+      : what_(fmt::format("{}: grid '{}'", file.string(), grid.name)), fields_(fields) {
+    for (const Field& field : fields) {
+      const std::size_t entries = entries_of(grid, field);
+      arrays_.emplace_back(file, grid.name + "/" + field.name,
+                           group.new_floats(field.name, entries, stored_components(field)),
+                           entries * static_cast<std::size_t>(field.components));
+    }
+  }
+  void append(const std::vector<std::vector<float>>& values) {
+    if (values.size() != fields_.size())
+      throw OutputError(fmt::format("{}: {} fields were given; expected are {}", what_, values.size(), fields_.size()));
+    for (std::size_t f = 0; f < fields_.size(); ++f) arrays_[f].append(values[f], fields_[f].components);
+  }
+  void end() const {
+    for (const GridArray& array : arrays_) array.end();
+  }
+
+ private:
+  std::string what_;
+  const std::vector<Field>& fields_;
+  std::vector<GridArray> arrays_;
+};
+
+void check_cells(const std::filesystem::path& file, const Grid& grid, const std::vector<int>& cells) {
+  for (const int point : cells) {
     if (point >= 0 && point < grid.points) continue;
     throw OutputError(fmt::format("{}: grid '{}' has a cell with point {}; allowed are 0 to {}", file.string(),
                                   grid.name, point, grid.points - 1));
   }
-  for (const Field& field : grid.constant_fields) check_field(file, grid, field);
 }
 
-/// Throws unless every grid can be written.
-std::vector<GridTopology> checked(const std::filesystem::path& file, std::vector<GridTopology> grids) {
-  for (GridTopology& grid : grids) check_grid(file, grid);
-  return grids;
-}
-
-void check_frame(const std::filesystem::path& file, const Grid& grid, const GridFrame& frame) {
-  require_size(file, grid.name + "/position", frame.positions.size(), 2 * static_cast<std::size_t>(grid.points));
-  for (const Field& field : frame.fields) check_field(file, grid, field);
-}
-
-/// [entries x 2] to [entries x 3] with zeros; anything else as it is.
-std::vector<float> stored_values(const Field& field) {
-  if (field.components != 2) return field.values;
-  std::vector<float> values(field.values.size() / 2 * 3, 0.0F);
-  for (std::size_t i = 0; i < field.values.size() / 2; ++i) {
-    values[3 * i] = field.values[2 * i];
-    values[3 * i + 1] = field.values[2 * i + 1];
-  }
-  return values;
-}
-
-void write_field(Hdf5Group& group, const Field& field) {
-  group.write(field.name, stored_values(field), stored_components(field));
-}
-
-void write_topology(Hdf5File& file, const GridTopology& grid) {
+void write_topology(const std::filesystem::path& path, Hdf5File& file, const Grid& grid,
+                    const Parts<GridTopology>& parts) {
   Hdf5Group group = file.new_group(expected_frames);
-  group.write("cells", grid.cells, grid.cell_size);
-  for (const Field& field : grid.constant_fields) write_field(group, field);
+  {
+    const std::size_t count = static_cast<std::size_t>(grid.cells);
+    GridArray cells(path, grid.name + "/cells", group.new_integers("cells", count, grid.cell_size),
+                    count * static_cast<std::size_t>(grid.cell_size));
+    FieldArrays fields(path, group, grid, grid.constant_fields);
+    parts([&](const GridTopology& part) {
+      check_cells(path, grid, part.cells);
+      cells.append(part.cells), fields.append(part.values);
+    });
+    cells.end(), fields.end();
+  }
   file.publish(group, "/" + grid.name);
 }
 
-Hdf5Group write_frame(Hdf5File& file, double time, const GridFrame& frame) {
+Hdf5Group write_frame(const std::filesystem::path& path, Hdf5File& file, double time, const Grid& grid,
+                      const Parts<GridFrame>& parts) {
   Hdf5Group group = file.new_group();
   group.write_attribute("time", time);
-  group.write("position", frame.positions, 2);
-  for (const Field& field : frame.fields) write_field(group, field);
+  const std::size_t points = static_cast<std::size_t>(grid.points);
+  GridArray positions(path, grid.name + "/position", group.new_floats("position", points, 2), 2 * points);
+  FieldArrays fields(path, group, grid, grid.fields);
+  parts([&](const GridFrame& part) { positions.append(part.positions), fields.append(part.values); });
+  positions.end(), fields.end();
   return group;
 }
 
@@ -113,13 +172,14 @@ void check_table(const std::filesystem::path& file, const std::string& name, con
 }
 
 /// What a frame may add to the file at most, should nothing compress.
-std::uintmax_t frame_bytes(const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables) {
+std::uintmax_t frame_bytes(const std::vector<Grid>& grids, const std::vector<FrameTable>& tables) {
   std::uintmax_t values = 0;
   for (const FrameTable& table : tables)
     for (const FrameTable::Column& column : table.columns) values += column.values.size();
-  for (const GridFrame& frame : frames) {
-    values += frame.positions.size();
-    for (const Field& field : frame.fields) values += field.values.size() * 3 / 2;
+  for (const Grid& grid : grids) {
+    values += 2 * static_cast<std::uintmax_t>(grid.points);
+    for (const Field& field : grid.fields)
+      values += entries_of(grid, field) * static_cast<std::uintmax_t>(stored_components(field));
   }
   return values * sizeof(float) * 21 / 20 + overhead_bytes;
 }
@@ -133,17 +193,17 @@ struct FrameFile::Implementation {
   XdmfDocument document;
   int count = 0;
 
-  /// Topologies are let go of: they may be as large as all the rest of a run.
-  Implementation(const std::filesystem::path& folder, const std::vector<GridTopology>& topologies, Opening opening,
+  Implementation(const std::filesystem::path& folder, std::vector<Grid> all,
+                 const std::vector<Parts<GridTopology>>& topologies, Opening opening,
                  std::vector<std::string> table_names)
       : heavy(folder / "frames.h5"),
         light(folder / "frames.xdmf"),
-        grids(topologies.begin(), topologies.end()),
+        grids(checked(heavy, std::move(all))),
         tables(std::move(table_names)),
-        document(heavy, topologies) {
+        document(heavy, grids) {
     if (opening == Opening::resume) return;
     Hdf5File file(heavy, Hdf5File::Mode::create);
-    for (const GridTopology& grid : topologies) write_topology(file, grid);
+    for (std::size_t g = 0; g < grids.size(); ++g) write_topology(heavy, file, grids[g], topologies.at(g));
     for (const std::string& table : tables) file.publish(file.new_group(expected_frames), "/" + table);
     file.write_empty_list("/times");
     file.close();
@@ -152,11 +212,11 @@ struct FrameFile::Implementation {
 
   /// Opened and closed for each frame: between frames both files are complete, whatever ends the run. A frame is
   /// published when it is in the file, group by group, and its time listed last: it counts when it is whole.
-  void append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) {
+  void append(double time, const std::vector<Parts<GridFrame>>& frames, const std::vector<FrameTable>& rows) {
     check(frames, rows);
-    reserve_disk_space(heavy, frame_bytes(frames, rows));
+    reserve_disk_space(heavy, frame_bytes(grids, rows));
     write(time, frames, rows);
-    document.add(count, time, grids, frames);
+    document.add(count, time, grids);
     write_file_atomically(light, document.text());
     ++count;
   }
@@ -169,11 +229,12 @@ struct FrameFile::Implementation {
     return all;
   }
 
-  void write(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) const {
+  void write(double time, const std::vector<Parts<GridFrame>>& frames, const std::vector<FrameTable>& rows) const {
     Hdf5File file(heavy, Hdf5File::Mode::append);
     std::vector<Hdf5Group> groups;
     groups.reserve(frames.size() + rows.size());
-    for (const GridFrame& frame : frames) groups.push_back(write_frame(file, time, frame));
+    for (std::size_t g = 0; g < grids.size(); ++g)
+      groups.push_back(write_frame(heavy, file, time, grids[g], frames[g]));
     for (const FrameTable& table : rows) groups.push_back(write_table(file, time, table));
     file.flush();
     for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -203,25 +264,26 @@ struct FrameFile::Implementation {
     write_file_atomically(light, document.text());
   }
 
-  void check(const std::vector<GridFrame>& frames, const std::vector<FrameTable>& rows) const {
+  void check(const std::vector<Parts<GridFrame>>& frames, const std::vector<FrameTable>& rows) const {
     if (frames.size() != grids.size() || rows.size() != tables.size()) {
       throw OutputError(
           fmt::format("{}: a frame of {} grids and {} tables was given, the file has {} and {}; give one for each",
                       heavy.string(), frames.size(), rows.size(), grids.size(), tables.size()));
     }
-    for (std::size_t g = 0; g < grids.size(); ++g) check_frame(heavy, grids[g], frames[g]);
     for (std::size_t t = 0; t < tables.size(); ++t) check_table(heavy, tables[t], rows[t]);
   }
 };
 
-FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening,
+FrameFile::FrameFile(const std::filesystem::path& folder, std::vector<Grid> grids,
+                     const std::vector<Parts<GridTopology>>& topologies, Opening opening,
                      std::vector<std::string> tables)
-    : implementation_(std::make_unique<Implementation>(folder, checked(folder / "frames.h5", std::move(grids)), opening,
-                                                       std::move(tables))) {}
+    : implementation_(
+          std::make_unique<Implementation>(folder, std::move(grids), topologies, opening, std::move(tables))) {}
 
 FrameFile::~FrameFile() = default;
 
-void FrameFile::append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables) {
+void FrameFile::append(double time, const std::vector<Parts<GridFrame>>& frames,
+                       const std::vector<FrameTable>& tables) {
   implementation_->append(time, frames, tables);
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/vec2.hpp"
@@ -16,8 +18,7 @@ namespace pliant {
 struct Field {
   std::string name;
   enum class Centre { point, cell } centre = Centre::point;
-  int components = 1;         ///< 1 scalar, 2 vector (written with a zero third component for ParaView)
-  std::vector<float> values;  ///< [points or cells x components]
+  int components = 1;  ///< 1 scalar, 2 vector (written with a zero third component for ParaView)
 };
 
 /// What a grid is. `cell_size` 3: triangles, 2: line segments.
@@ -25,7 +26,9 @@ struct Grid {
   std::string name;  ///< "bodies", "outlines"
   int points = 0;
   int cell_size = 3;
-  int cell_count = 0;  ///< of a topology's cells: set by whoever takes it
+  int cells = 0;
+  std::vector<Field> constant_fields;  ///< written once: kind, body
+  std::vector<Field> fields;           ///< in every frame
 };
 
 /// Adds both components to the values of a field, or to positions.
@@ -33,17 +36,27 @@ inline void append(const Vec2& v, std::vector<float>& values) {
   for (const double component : {v.x(), v.y()}) values.push_back(static_cast<float>(component));
 }
 
-/// A grid with what is written once.
-struct GridTopology : Grid {
-  std::vector<int> cells;              ///< [cells x cell_size]
-  std::vector<Field> constant_fields;  ///< written once: kind, body
+/// Of a part of a grid, what is written once.
+struct GridTopology {
+  std::vector<int> cells;                  ///< [cells x cell_size]
+  std::vector<std::vector<float>> values;  ///< [constant fields][points or cells x components]
 };
 
-/// What changes from frame to frame.
+/// Of a part of a grid, what changes from frame to frame.
 struct GridFrame {
-  std::vector<float> positions;  ///< [points x 2], m
-  std::vector<Field> fields;
+  std::vector<float> positions;            ///< [points x 2], m
+  std::vector<std::vector<float>> values;  ///< [fields][points or cells x components]
 };
+
+/// Hands over a grid's parts, one after the other: the whole of one may be as large as all the rest of a run.
+template <class Part>
+using Parts = std::function<void(const std::function<void(const Part&)>& take)>;
+
+/// All of a grid.
+template <class Part>
+Parts<Part> whole(Part part) {
+  return [part = std::move(part)](const std::function<void(const Part&)>& take) { take(part); };
+}
 
 /// Columns of one length, which may be another in every frame.
 struct FrameTable {
@@ -62,11 +75,13 @@ struct FrameTable {
 /// OutputError.
 class FrameFile {
  public:
-  FrameFile(const std::filesystem::path& folder, std::vector<GridTopology> grids, Opening opening = Opening::create,
+  /// Topologies, one a grid, are asked for where the file is made.
+  FrameFile(const std::filesystem::path& folder, std::vector<Grid> grids,
+            const std::vector<Parts<GridTopology>>& topologies, Opening opening = Opening::create,
             std::vector<std::string> tables = {});
   ~FrameFile();
-  /// One GridFrame a grid and one FrameTable a table, in the order of the constructor.
-  void append(double time, const std::vector<GridFrame>& frames, const std::vector<FrameTable>& tables = {});
+  /// One frame a grid and one FrameTable a table, in the order of the constructor.
+  void append(double time, const std::vector<Parts<GridFrame>>& frames, const std::vector<FrameTable>& tables = {});
   int count() const;
 
   template <class Visitor>

@@ -96,12 +96,16 @@ Hdf5Handle::Hdf5Handle(Hdf5Handle&& other) noexcept
 
 Hdf5Group::Hdf5Group(std::filesystem::path file, Hdf5Handle group) : path_(std::move(file)), group_(std::move(group)) {}
 
-void Hdf5Group::write(const std::string& name, const std::vector<float>& values, int columns) {
-  write_array(name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, values.data(), values.size(), columns);
+Hdf5Array Hdf5Group::new_floats(const std::string& name, std::size_t rows, int columns) {
+  return new_array(name, H5T_IEEE_F32LE, rows, columns);
 }
 
-void Hdf5Group::write(const std::string& name, const std::vector<int>& values, int columns) {
-  write_array(name, H5T_STD_I32LE, H5T_NATIVE_INT, values.data(), values.size(), columns);
+Hdf5Array Hdf5Group::new_integers(const std::string& name, std::size_t rows, int columns) {
+  return new_array(name, H5T_STD_I32LE, rows, columns);
+}
+
+void Hdf5Group::write(const std::string& name, const std::vector<float>& values, int columns) {
+  new_floats(name, values.size() / static_cast<std::size_t>(columns), columns).append(values);
 }
 
 void Hdf5Group::write_attribute(const std::string& name, double value) {
@@ -111,16 +115,37 @@ void Hdf5Group::write_attribute(const std::string& name, double value) {
   checked(H5Awrite(attribute.id(), H5T_NATIVE_DOUBLE, &value), path_, name);
 }
 
-void Hdf5Group::write_array(const std::string& name, hid_t file_type, hid_t memory_type, const void* values,
-                            std::size_t size, int columns) {
-  const std::array<hsize_t, 2> shape = {size / static_cast<std::size_t>(columns), static_cast<hsize_t>(columns)};
+Hdf5Array Hdf5Group::new_array(const std::string& name, hid_t file_type, std::size_t rows, int columns) {
+  const std::array<hsize_t, 2> shape = {rows, static_cast<hsize_t>(columns)};
   const int rank = columns > 1 ? 2 : 1;
   const Hdf5Handle space(checked(H5Screate_simple(rank, shape.data(), nullptr), path_, name), H5Sclose);
   const Hdf5Handle creation = compressed_creation(shape, rank);
   const hid_t created =
       H5Dcreate2(group_.id(), name.c_str(), file_type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT);
-  const Hdf5Handle set(checked(created, path_, name), H5Dclose);
-  if (size > 0) checked(H5Dwrite(set.id(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), path_, name);
+  return {path_, name, Hdf5Handle(checked(created, path_, name), H5Dclose), columns};
+}
+
+Hdf5Array::Hdf5Array(std::filesystem::path file, std::string name, Hdf5Handle set, int columns)
+    : path_(std::move(file)),
+      name_(std::move(name)),
+      set_(std::move(set)),
+      columns_(static_cast<std::size_t>(columns)) {}
+
+void Hdf5Array::append(const std::vector<float>& values) {
+  append_values(H5T_NATIVE_FLOAT, values.data(), values.size());
+}
+
+void Hdf5Array::append(const std::vector<int>& values) { append_values(H5T_NATIVE_INT, values.data(), values.size()); }
+
+void Hdf5Array::append_values(hid_t memory_type, const void* values, std::size_t size) {
+  if (size == 0) return;
+  const std::array<hsize_t, 2> begin = {rows_, 0}, count = {size / columns_, columns_};
+  const Hdf5Handle memory(checked(H5Screate_simple(columns_ > 1 ? 2 : 1, count.data(), nullptr), path_, name_),
+                          H5Sclose),
+      space(checked(H5Dget_space(set_.id()), path_, name_), H5Sclose);
+  checked(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, begin.data(), nullptr, count.data(), nullptr), path_, name_);
+  checked(H5Dwrite(set_.id(), memory_type, memory.id(), space.id(), H5P_DEFAULT, values), path_, name_);
+  rows_ += size / columns_;
 }
 
 Hdf5File::Hdf5File(const std::filesystem::path& file, Mode mode) : path_(file) {

@@ -23,19 +23,38 @@ class Hdf5Handle {
   herr_t (*release_)(hid_t);
 };
 
+/// A row-major array, compressed, that is filled part by part.
+class Hdf5Array {
+ public:
+  /// The rows that follow, whole ones.
+  void append(const std::vector<float>& values);
+  void append(const std::vector<int>& values);
+
+ private:
+  friend class Hdf5Group;
+  Hdf5Array(std::filesystem::path file, std::string name, Hdf5Handle set, int columns);
+  void append_values(hid_t memory_type, const void* values, std::size_t size);
+
+  std::filesystem::path path_;
+  std::string name_;
+  Hdf5Handle set_;
+  std::size_t columns_, rows_ = 0;  ///< rows: so far
+};
+
 /// A group being filled, unseen in its file until it is published.
 class Hdf5Group {
  public:
   Hdf5Group(std::filesystem::path file, Hdf5Handle group);
-  /// A row-major array [rows x columns], compressed; one column gives a one-dimensional dataset.
+  /// An array [rows x columns] of floats or integers; one column gives a one-dimensional dataset.
+  Hdf5Array new_floats(const std::string& name, std::size_t rows, int columns);
+  Hdf5Array new_integers(const std::string& name, std::size_t rows, int columns);
+  /// All at once.
   void write(const std::string& name, const std::vector<float>& values, int columns);
-  void write(const std::string& name, const std::vector<int>& values, int columns);
   void write_attribute(const std::string& name, double value);
 
  private:
   friend class Hdf5File;
-  void write_array(const std::string& name, hid_t file_type, hid_t memory_type, const void* values, std::size_t size,
-                   int columns);
+  Hdf5Array new_array(const std::string& name, hid_t file_type, std::size_t rows, int columns);
 
   std::filesystem::path path_;
   Hdf5Handle group_;

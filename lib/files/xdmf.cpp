@@ -16,13 +16,13 @@ int stored_components(const Field& field) { return field.components == 2 ? 3 : f
 
 std::string frame_group(const std::string& grid, int index) { return fmt::format("/{}/{:06}", grid, index); }
 
-XdmfDocument::XdmfDocument(const std::filesystem::path& heavy, const std::vector<GridTopology>& grids)
+XdmfDocument::XdmfDocument(const std::filesystem::path& heavy, const std::vector<Grid>& grids)
     : heavy_(heavy.filename().string()) {
-  for (const GridTopology& grid : grids) {
+  for (const Grid& grid : grids) {
     const std::string folder = "/" + grid.name;
     std::string constant =
         fmt::format("        <Topology {} NumberOfElements=\"{}\">\n{}        </Topology>\n", topology_type(grid),
-                    grid.cell_count, item(folder + "/cells", "Int", grid.cell_count, grid.cell_size));
+                    grid.cells, item(folder + "/cells", "Int", grid.cells, grid.cell_size));
     for (const Field& field : grid.constant_fields) constant += attribute(field, folder, grid);
     names_.push_back(grid.name);
     constants_.push_back(std::move(constant));
@@ -30,7 +30,7 @@ XdmfDocument::XdmfDocument(const std::filesystem::path& heavy, const std::vector
   }
 }
 
-void XdmfDocument::add(int index, double time, const std::vector<Grid>& grids, const std::vector<GridFrame>& frames) {
+void XdmfDocument::add(int index, double time, const std::vector<Grid>& grids) {
   for (std::size_t g = 0; g < grids.size(); ++g) {
     const std::string folder = frame_group(grids[g].name, index);
     std::string& text = frames_[g];
@@ -38,7 +38,7 @@ void XdmfDocument::add(int index, double time, const std::vector<Grid>& grids, c
                         grids[g].name, time, constants_[g]);
     text += fmt::format("        <Geometry GeometryType=\"XY\">\n{}        </Geometry>\n",
                         item(folder + "/position", "Float", grids[g].points, 2));
-    for (const Field& field : frames[g].fields) text += attribute(field, folder, grids[g]);
+    for (const Field& field : grids[g].fields) text += attribute(field, folder, grids[g]);
     text += "      </Grid>\n";
   }
 }
@@ -57,7 +57,7 @@ std::string XdmfDocument::attribute(const Field& field, const std::string& folde
   const int components = stored_components(field);
   return fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n{}        </Attribute>\n",
                      field.name, components == 1 ? "Scalar" : "Vector", at_points ? "Node" : "Cell",
-                     item(folder + "/" + field.name, "Float", at_points ? grid.points : grid.cell_count, components));
+                     item(folder + "/" + field.name, "Float", at_points ? grid.points : grid.cells, components));
 }
 
 std::string XdmfDocument::item(const std::string& path, const char* type, int rows, int columns) const {

@@ -13,9 +13,9 @@ namespace pliant {
 class XdmfDocument {
  public:
   /// `heavy` is the name of the HDF5 file, relative to the XDMF file.
-  XdmfDocument(const std::filesystem::path& heavy, const std::vector<GridTopology>& grids);
-  /// Adds frame `index` of all grids; `frames` are told apart by names and shapes alone.
-  void add(int index, double time, const std::vector<Grid>& grids, const std::vector<GridFrame>& frames);
+  XdmfDocument(const std::filesystem::path& heavy, const std::vector<Grid>& grids);
+  /// Adds frame `index` of all grids.
+  void add(int index, double time, const std::vector<Grid>& grids);
   std::string text() const;
   /// [grids] what it says of the frames so far.
   std::vector<std::string>& frames() { return frames_; }

@@ -36,10 +36,13 @@ class FrameRecorder {
 
   void choose_fields();
   const FieldMesh& mesh_of(const Body& body) const;
-  GridTopology bodies_grid() const;
-  GridTopology outlines_grid() const;
-  GridFrame bodies_frame(const Snapshot& snapshot) const;
-  GridFrame outlines_frame(const Snapshot& snapshot) const;
+  int segments_of(const Body& body) const;
+  Grid bodies_grid() const;
+  Grid outlines_grid() const;
+  Parts<GridTopology> bodies_topology() const;
+  Parts<GridTopology> outlines_topology() const;
+  Parts<GridFrame> bodies_frame(const Snapshot& snapshot) const;
+  Parts<GridFrame> outlines_frame(const Snapshot& snapshot) const;
 
   const Model& model_;
   double period_;

@@ -9,11 +9,14 @@
 namespace pliant::reference {
 namespace {
 
-Field empty_field(const FrameField& field) {
-  return {field.name,
-          field.centre == FrameField::Centre::point ? Field::Centre::point : Field::Centre::cell,
-          field.components,
-          {}};
+std::vector<Field> described(const std::vector<std::string>& names) {
+  std::vector<Field> result;
+  for (const std::string& name : names) {
+    const FrameField& field = frame_field(name);
+    const auto centre = field.centre == FrameField::Centre::point ? Field::Centre::point : Field::Centre::cell;
+    result.push_back({name, centre, field.components});
+  }
+  return result;
 }
 
 void append(const Points& points, std::vector<float>& values) {
@@ -88,18 +91,29 @@ std::vector<double> contact_pressures(const View& view) {
 
 float kind_of(const Body& body) { return body.placed.wall ? 2 : body.compliant() ? 0 : 1; }
 
-GridTopology empty_grid(const char* name, int cell_size) {
-  return {{name, 0, cell_size}, {}, {{"kind", Field::Centre::cell, 1, {}}, {"body", Field::Centre::cell, 1, {}}}};
-}
-
-template <class Nodes>
-void add_cell(GridTopology& grid, const Body& body, std::size_t number, const Nodes& nodes) {
-  for (const int node : nodes) grid.cells.push_back(grid.points + node);
-  grid.constant_fields[0].values.push_back(kind_of(body));
-  grid.constant_fields[1].values.push_back(static_cast<float>(number));
-}
-
 }  // namespace
+
+/// Grows body by body.
+struct FrameOutput::NewGrid {
+  Grid grid;
+  GridTopology topology{{}, {{}, {}}};
+
+  NewGrid(const char* name, int cell_size, const std::vector<std::string>& fields)
+      : grid{name,
+             0,
+             cell_size,
+             0,
+             {{"kind", Field::Centre::cell, 1}, {"body", Field::Centre::cell, 1}},
+             described(fields)} {}
+
+  template <class Nodes>
+  void add_cell(const Body& body, std::size_t number, const Nodes& nodes) {
+    for (const int node : nodes) topology.cells.push_back(grid.points + node);
+    topology.values[0].push_back(kind_of(body));
+    topology.values[1].push_back(static_cast<float>(number));
+    ++grid.cells;
+  }
+};
 
 FrameOutput::FrameOutput(const Bodies& bodies, const std::filesystem::path& folder)
     : bodies_(bodies), period_(bodies.scene().frames.period) {
@@ -115,7 +129,9 @@ FrameOutput::FrameOutput(const Bodies& bodies, const std::filesystem::path& fold
     else
       left_out_.push_back(name);
   }
-  file_ = std::make_unique<FrameFile>(folder, std::vector<GridTopology>{bodies_grid(), outlines_grid()});
+  const NewGrid grains = bodies_grid(), outlines = outlines_grid();
+  file_ = std::make_unique<FrameFile>(folder, std::vector{grains.grid, outlines.grid},
+                                      std::vector{whole(grains.topology), whole(outlines.topology)});
 }
 
 const FieldMesh& FrameOutput::mesh_of(std::size_t body) const {
@@ -123,25 +139,25 @@ const FieldMesh& FrameOutput::mesh_of(std::size_t body) const {
   return b.compliant() ? bodies_.space_of(b).mesh : meshes_[body];
 }
 
-GridTopology FrameOutput::bodies_grid() const {
-  GridTopology grid = empty_grid("bodies", 3);
+FrameOutput::NewGrid FrameOutput::bodies_grid() const {
+  NewGrid result("bodies", 3, body_fields_);
   for (std::size_t b = 0; b < bodies_.all().size(); ++b) {
     if (bodies_.all()[b].placed.wall) continue;
-    for (const Triangle& triangle : mesh_of(b).triangles) add_cell(grid, bodies_.all()[b], b, triangle);
-    grid.points += static_cast<int>(mesh_of(b).nodes.size());
+    for (const Triangle& triangle : mesh_of(b).triangles) result.add_cell(bodies_.all()[b], b, triangle);
+    result.grid.points += static_cast<int>(mesh_of(b).nodes.size());
   }
-  return grid;
+  return result;
 }
 
-GridTopology FrameOutput::outlines_grid() const {
-  GridTopology grid = empty_grid("outlines", 2);
+FrameOutput::NewGrid FrameOutput::outlines_grid() const {
+  NewGrid result("outlines", 2, outline_fields_);
   for (std::size_t b = 0; b < bodies_.all().size(); ++b) {
     const Body& body = bodies_.all()[b];
     const int count = static_cast<int>(body.outline.size()), segments = count - (body.placed.wall ? 1 : 0);
-    for (int i = 0; i < segments; ++i) add_cell(grid, body, b, std::array<int, 2>{i, (i + 1) % count});
-    grid.points += count;
+    for (int i = 0; i < segments; ++i) result.add_cell(body, b, std::array<int, 2>{i, (i + 1) % count});
+    result.grid.points += count;
   }
-  return grid;
+  return result;
 }
 
 double FrameOutput::next_time() const {
@@ -150,14 +166,13 @@ double FrameOutput::next_time() const {
 
 void FrameOutput::record_due(const View& view) {
   if (!file_ || view.run().motion().time < next_time() * (1 - 1e-12)) return;
-  GridFrame grains, outlines;
-  for (const std::string& name : body_fields_) grains.fields.push_back(empty_field(frame_field(name)));
+  GridFrame grains{{}, std::vector<std::vector<float>>(body_fields_.size())}, outlines;
   for (std::size_t b = 0; b < bodies_.all().size(); ++b) {
     const Body& body = bodies_.all()[b];
     if (body.placed.wall) continue;
     append(view.positions_of(body), grains.positions);
     for (std::size_t f = 0; f < body_fields_.size(); ++f) {
-      std::vector<float>& values = grains.fields[f].values;
+      std::vector<float>& values = grains.values[f];
       if (const auto node = node_fields().find(body_fields_[f]); node != node_fields().end()) {
         append(node->second(view, body), values);
         continue;
@@ -168,12 +183,11 @@ void FrameOutput::record_due(const View& view) {
     }
   }
   append(bodies_.outline_positions(view.positions()), outlines.positions);
-  for (const std::string& name : outline_fields_) {
-    outlines.fields.push_back(empty_field(frame_field(name)));
-    for (const double value : contact_pressures(view))
-      outlines.fields.back().values.push_back(static_cast<float>(value));
+  for (std::size_t f = 0; f < outline_fields_.size(); ++f) {  // contact_pressure, if anything
+    const std::vector<double> pressures = contact_pressures(view);
+    outlines.values.emplace_back(pressures.begin(), pressures.end());
   }
-  file_->append(view.run().motion().time, {grains, outlines});
+  file_->append(view.run().motion().time, {whole(grains), whole(outlines)});
   ++count_;
 }
 

@@ -20,8 +20,9 @@ class FrameOutput {
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
-  GridTopology bodies_grid() const;
-  GridTopology outlines_grid() const;
+  struct NewGrid;
+  NewGrid bodies_grid() const;
+  NewGrid outlines_grid() const;
   const FieldMesh& mesh_of(std::size_t body) const;
 
   const Bodies& bodies_;

@@ -4,11 +4,13 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <random>
 #include <thread>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "files/hdf5_file.hpp"
@@ -20,31 +22,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Field field(const std::string& name, Field::Centre centre, int components, std::vector<float> values) {
-  return {name, centre, components, std::move(values)};
-}
-
 /// Two triangles over four points, and two segments over three points.
-std::vector<GridTopology> small_grids() {
-  return {{{"bodies", 4, 3}, {0, 1, 2, 0, 2, 3}, {field("kind", Field::Centre::cell, 1, {0, 1})}},
-          {{"outlines", 3, 2}, {0, 1, 1, 2}, {field("body", Field::Centre::cell, 1, {7, 8})}}};
+std::vector<Grid> small_grids() {
+  return {{"bodies",
+           4,
+           3,
+           2,
+           {{"kind", Field::Centre::cell, 1}},
+           {{"velocity", Field::Centre::point, 2}, {"von_mises", Field::Centre::cell, 1}}},
+          {"outlines", 3, 2, 2, {{"body", Field::Centre::cell, 1}}, {{"contact_pressure", Field::Centre::point, 1}}}};
 }
 
-std::vector<GridFrame> small_frame(float shift) {
-  return {{{0, 0, 1, 0, 1, 1, 0, 1 + shift},
-           {field("velocity", Field::Centre::point, 2, {1, 2, 3, 4, 5, 6, 7, 8 + shift}),
-            field("von_mises", Field::Centre::cell, 1, {1e6F, 2e6F})}},
-          {{0, 0, 1, 0, 2, shift}, {field("contact_pressure", Field::Centre::point, 1, {0, 1, 2})}}};
+std::vector<Parts<GridTopology>> small_topologies() {
+  return {whole(GridTopology{{0, 1, 2, 0, 2, 3}, {{0, 1}}}), whole(GridTopology{{0, 1, 1, 2}, {{7, 8}}})};
+}
+
+using Frame = std::vector<Parts<GridFrame>>;
+
+Frame small_frame(float shift) {
+  return {whole(GridFrame{{0, 0, 1, 0, 1, 1, 0, 1 + shift}, {{1, 2, 3, 4, 5, 6, 7, 8 + shift}, {1e6F, 2e6F}}}),
+          whole(GridFrame{{0, 0, 1, 0, 2, shift}, {{0, 1, 2}}})};
 }
 
 /// A grid that a megabyte of incompressible numbers makes large.
-std::vector<GridTopology> large_grids(int points) { return {{{"bodies", points, 3}, {0, 1, 2}, {}}}; }
+std::vector<Grid> large_grids(int points) { return {{"bodies", points, 3, 1, {}, {}}}; }
 
-std::vector<GridFrame> noise(int points) {
+std::vector<Parts<GridTopology>> one_triangle() { return {whole(GridTopology{{0, 1, 2}, {}})}; }
+
+std::vector<float> noise(int points) {
   std::mt19937 generator(1);
-  GridFrame frame;
-  for (int i = 0; i < 2 * points; ++i) frame.positions.push_back(static_cast<float>(generator()));
-  return {frame};
+  std::vector<float> positions;
+  for (int i = 0; i < 2 * points; ++i) positions.push_back(static_cast<float>(generator()));
+  return positions;
 }
 
 class FrameFiles : public testing::TemporaryFolder {
@@ -68,7 +77,7 @@ class FrameFiles : public testing::TemporaryFolder {
 };
 
 TEST_F(FrameFiles, ArraysReadBack) {
-  FrameFile file(folder_, small_grids());
+  FrameFile file(folder_, small_grids(), small_topologies());
   file.append(0.5, small_frame(0));
   file.append(1.5, small_frame(0.25));
   EXPECT_EQ(file.count(), 2);
@@ -82,7 +91,7 @@ TEST_F(FrameFiles, ArraysReadBack) {
 
 TEST_F(FrameFiles, IndependentReaderResolvesTheXdmfAfterEveryFrame) {
   if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-h5py here";
-  FrameFile file(folder_, small_grids());
+  FrameFile file(folder_, small_grids(), small_topologies());
   EXPECT_EQ(check_xdmf(), 0);
   for (int i = 0; i < 3; ++i) {
     file.append(i, small_frame(0));
@@ -92,7 +101,7 @@ TEST_F(FrameFiles, IndependentReaderResolvesTheXdmfAfterEveryFrame) {
 
 TEST_F(FrameFiles, IndependentReaderSeesAWrongShape) {
   if (std::system("/usr/bin/python3 -c 'import h5py' 2>/dev/null") != 0) GTEST_SKIP() << "no python3-h5py here";
-  FrameFile(folder_, small_grids()).append(0, small_frame(0));
+  FrameFile(folder_, small_grids(), small_topologies()).append(0, small_frame(0));
   std::string text = read(folder_ / "frames.xdmf");
   text.replace(text.find("\"4 2\""), 5, "\"5 2\"");
   std::ofstream(folder_ / "frames.xdmf") << text;
@@ -100,7 +109,7 @@ TEST_F(FrameFiles, IndependentReaderSeesAWrongShape) {
 }
 
 TEST_F(FrameFiles, TablesHaveOtherLengthsInEveryFrame) {
-  FrameFile file(folder_, small_grids(), Opening::create, {"contacts"});
+  FrameFile file(folder_, small_grids(), small_topologies(), Opening::create, {"contacts"});
   file.append(0, small_frame(0), {{"contacts", {{"force", 2, {1, 2, 3, 4}}, {"length", 1, {5, 6}}}}});
   file.append(1, small_frame(0), {{"contacts", {{"force", 2, {}}, {"length", 1, {}}}}});
   EXPECT_EQ(read_array("/contacts/000000/force"), (std::vector<double>{1, 2, 3, 4}));
@@ -115,14 +124,15 @@ TEST_F(FrameFiles, TablesHaveOtherLengthsInEveryFrame) {
 }
 
 TEST_F(FrameFiles, EmptyGridsAreFine) {
-  FrameFile file(folder_, {{{"bodies", 0, 3}, {}, {field("kind", Field::Centre::cell, 1, {})}}});
-  file.append(0, {GridFrame{}});
+  const Grid empty{"bodies", 0, 3, 0, {{"kind", Field::Centre::cell, 1}}, {}};
+  FrameFile file(folder_, {empty}, {whole(GridTopology{{}, {{}}})});
+  file.append(0, {whole(GridFrame{})});
   EXPECT_TRUE(read_array("/bodies/000000/position").empty());
 }
 
 TEST_F(FrameFiles, SameFramesGiveTheSameBytes) {
   const auto bytes = [this] {
-    FrameFile(folder_, small_grids()).append(1, small_frame(0));
+    FrameFile(folder_, small_grids(), small_topologies()).append(1, small_frame(0));
     return read(folder_ / "frames.h5");
   };
   const std::string first = bytes();
@@ -130,31 +140,83 @@ TEST_F(FrameFiles, SameFramesGiveTheSameBytes) {
   EXPECT_TRUE(first == bytes());
 }
 
-TEST_F(FrameFiles, WrongShapesAreRefusedBeforeAnythingIsWritten) {
-  FrameFile file(folder_, small_grids());
-  const std::string before = read(folder_ / "frames.h5");
-  std::vector<GridFrame> frames = small_frame(0);
-  frames[0].fields[1].values.pop_back();
-  const std::string message = testing::message_of<OutputError>([&] { file.append(0, frames); });
-  EXPECT_NE(message.find("frames.h5"), std::string::npos);
-  EXPECT_NE(message.find("bodies/von_mises"), std::string::npos);
-  EXPECT_THROW(file.append(0, {}), OutputError);
-  EXPECT_TRUE(before == read(folder_ / "frames.h5"));
+/// Longer than a chunk of HDF5, cut anywhere.
+TEST_F(FrameFiles, PartsFollowEachOther) {
+  const int points = 200000, cells = 70000;
+  std::vector<int> nodes(3 * cells);
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = static_cast<int>((7 * i) % points);
+  const std::vector<float> positions = noise(points), values(positions.begin(), positions.begin() + cells);
+  const auto part = [](const auto& all, int size, int first, int end) {
+    return std::remove_cvref_t<decltype(all)>(all.begin() + size * first, all.begin() + size * end);
+  };
+  const Grid grid{"bodies",
+                  points,
+                  3,
+                  cells,
+                  {{"kind", Field::Centre::cell, 1}},
+                  {{"velocity", Field::Centre::point, 2}, {"jacobian", Field::Centre::cell, 1}}};
+  const auto topology = [&](const std::function<void(const GridTopology&)>& take) {
+    for (const auto& [first, end] : {std::pair(0, 1), {1, 66000}, {66000, 66000}, {66000, cells}})
+      take({part(nodes, 3, first, end), {part(values, 1, first, end)}});
+  };
+  const auto frame = [&](const std::function<void(const GridFrame&)>& take) {
+    take({part(positions, 2, 0, 150000), {part(positions, 2, 0, 3), part(values, 1, 0, cells)}});
+    take({part(positions, 2, 150000, points), {part(positions, 2, 3, points), {}}});
+  };
+  FrameFile(folder_, {grid}, {topology}).append(0, {frame});
+  const auto same = [&](const std::string& name, const auto& wanted) {
+    EXPECT_TRUE(std::ranges::equal(read_array(name), wanted)) << name;
+  };
+  same("/bodies/cells", nodes), same("/bodies/kind", values);
+  same("/bodies/000000/position", positions), same("/bodies/000000/jacobian", values);
+  const std::vector<double> velocity = read_array("/bodies/000000/velocity");
+  ASSERT_EQ(velocity.size(), 3U * points);
+  for (std::size_t i = 0; i < points; ++i) {
+    ASSERT_EQ(velocity[3 * i], positions[2 * i]);
+    ASSERT_EQ(velocity[3 * i + 1], positions[2 * i + 1]);
+    ASSERT_EQ(velocity[3 * i + 2], 0);
+  }
+}
 
-  std::vector<GridTopology> grids = small_grids();
-  grids[1].cells[0] = 3;
-  EXPECT_NE(testing::message_of<OutputError>([&] { FrameFile(folder_, grids); }).find("'outlines'"), std::string::npos);
+TEST_F(FrameFiles, WrongShapesAreRefused) {
+  FrameFile file(folder_, small_grids(), small_topologies());
+  const auto refuses = [&](const std::vector<float>& positions, const std::vector<std::vector<float>>& values,
+                           const std::string& said) {
+    const Frame frame = {whole(GridFrame{positions, values}), small_frame(0)[1]};
+    const std::string message = testing::message_of<OutputError>([&] { file.append(0, frame); });
+    EXPECT_NE(message.find("frames.h5"), std::string::npos) << message;
+    EXPECT_NE(message.find(said), std::string::npos) << message;
+  };
+  const std::vector<float> eight(8), two(2);
+  refuses(eight, {eight, {1}}, "'bodies/von_mises' has 1 values");
+  refuses(eight, {eight, {1, 2, 3}}, "'bodies/von_mises' has 3 values");
+  refuses({1, 2}, {eight, two}, "'bodies/position' has 2 values");
+  refuses(eight, {eight}, "1 fields");
+  EXPECT_THROW(file.append(0, {}), OutputError);
+  EXPECT_TRUE(read_array("/times").empty());
+  file.append(0, small_frame(0));
+  EXPECT_EQ(read_array("/bodies/000000/position"), (std::vector<double>{0, 0, 1, 0, 1, 1, 0, 1}));
+  EXPECT_EQ(check_xdmf(), 0);
+
+  std::vector<Parts<GridTopology>> topologies = small_topologies();
+  topologies[1] = whole(GridTopology{{3, 1, 1, 2}, {{7, 8}}});
+  const auto make = [&] { FrameFile(folder_, small_grids(), topologies); };
+  EXPECT_NE(testing::message_of<OutputError>(make).find("'outlines'"), std::string::npos);
+  std::vector<Grid> grids = small_grids();
   grids[1].cell_size = 0;
-  EXPECT_THROW(FrameFile(folder_, grids), OutputError);
+  EXPECT_THROW(FrameFile(folder_, grids, small_topologies()), OutputError);
+  grids = small_grids();
+  grids[0].fields[0].components = 4;
+  EXPECT_THROW(FrameFile(folder_, grids, small_topologies()), OutputError);
 }
 
 TEST_F(FrameFiles, MissingFolderIsNamed) {
-  const auto make = [this] { FrameFile(folder_ / "none", small_grids()); };
+  const auto make = [this] { FrameFile(folder_ / "none", small_grids(), small_topologies()); };
   EXPECT_NE(testing::message_of<OutputError>(make).find("none/frames.h5"), std::string::npos);
 }
 
 TEST_F(FrameFiles, AReaderDoesNotStopTheRun) {
-  FrameFile file(folder_, small_grids());
+  FrameFile file(folder_, small_grids(), small_topologies());
   const pid_t reader = testing::forked();
   if (reader == 0) {  // holds the file open, locked as readers do, until it is killed
     H5Fopen((folder_ / "frames.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -170,12 +232,13 @@ TEST_F(FrameFiles, AReaderDoesNotStopTheRun) {
 /// In a process of its own: a file size limit stands for a full disk.
 int append_beyond_a_limit(const fs::path& folder, int points) {
   ::signal(SIGXFSZ, SIG_IGN);
-  FrameFile file(folder, large_grids(points));
-  file.append(0, noise(points));
+  FrameFile file(folder, large_grids(points), one_triangle());
+  const Frame frame = {whole(GridFrame{noise(points), {}})};
+  file.append(0, frame);
   const rlimit limit = {fs::file_size(folder / "frames.h5") + 100000, RLIM_INFINITY};
   ::setrlimit(RLIMIT_FSIZE, &limit);
   try {
-    file.append(1, noise(points));
+    file.append(1, frame);
   } catch (const OutputError& error) {
     return std::string(error.what()).find("frames.h5") != std::string::npos ? 0 : 1;
   }
@@ -193,7 +256,7 @@ TEST_F(FrameFiles, AFullDiskIsAnErrorAndEarlierFramesStay) {
   EXPECT_EQ(read_array("/times"), std::vector<double>{0});
   const std::vector<double> positions = read_array("/bodies/000000/position");
   ASSERT_EQ(positions.size(), 2U * points);
-  EXPECT_EQ(positions.back(), noise(points)[0].positions.back());
+  EXPECT_EQ(positions.back(), noise(points).back());
 }
 
 /// The same limit, met by HDF5 itself.
@@ -204,7 +267,7 @@ int write_beyond_a_limit(const fs::path& file) {
   ::setrlimit(RLIMIT_FSIZE, &limit);
   try {
     Hdf5File heavy(file, Hdf5File::Mode::append);
-    heavy.new_group().write("noise", noise(100000)[0].positions, 2);
+    heavy.new_group().write("noise", noise(100000), 2);
     heavy.close();
   } catch (const OutputError& error) {
     return std::string(error.what()).find("File too large") != std::string::npos ? 0 : 1;

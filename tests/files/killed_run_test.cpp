@@ -44,10 +44,15 @@ namespace {
 
 constexpr int points = 30, frames = 4;
 
-GridFrame frame(int index) {
-  return {std::vector<float>(2 * points, static_cast<float>(index)),
-          {{"velocity", Field::Centre::point, 2, std::vector<float>(2 * points, static_cast<float>(-index))}}};
+std::vector<float> positions(int index) { return std::vector<float>(2 * points, static_cast<float>(index)); }
+
+/// Of both grids.
+std::vector<Parts<GridFrame>> frame(int index) {
+  const Parts<GridFrame> parts = whole(GridFrame{positions(index), {positions(-index)}});
+  return {parts, parts};
 }
+
+Parts<GridTopology> one_cell(const std::vector<int>& nodes) { return whole(GridTopology{nodes, {}}); }
 
 class KilledRun : public testing::TemporaryFolder {
  protected:
@@ -56,10 +61,12 @@ class KilledRun : public testing::TemporaryFolder {
   bool run_until(int last) const {
     const pid_t writer = testing::forked();
     if (writer == 0) {
-      FrameFile file(folder_, {{{"bodies", points, 3}, {0, 1, 2}, {}}, {{"outlines", points, 2}, {0, 1}, {}}});
-      file.append(0, {frame(0), frame(0)});
+      const std::vector<Field> fields = {{"velocity", Field::Centre::point, 2}};
+      FrameFile file(folder_, {{"bodies", points, 3, 1, {}, fields}, {"outlines", points, 2, 1, {}, fields}},
+                     {one_cell({0, 1, 2}), one_cell({0, 1})});
+      file.append(0, frame(0));
       writes_left = last;
-      for (int i = 1; i < frames; ++i) file.append(i, {frame(i), frame(i)});
+      for (int i = 1; i < frames; ++i) file.append(i, frame(i));
       ::_exit(0);
     }
     int status = 0;
@@ -81,7 +88,7 @@ class KilledRun : public testing::TemporaryFolder {
 
   static void check_frame(hid_t file, const std::string& grid, int index) {
     const std::string group = fmt::format("/{}/{:06}", grid, index);
-    EXPECT_EQ(read_array(file, group + "/position"), frame(index).positions) << group;
+    EXPECT_EQ(read_array(file, group + "/position"), positions(index)) << group;
     EXPECT_EQ(read_array(file, group + "/velocity").size(), 3U * points) << group;
   }
 
