@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections import Counter
 from pathlib import Path
 
@@ -13,7 +14,7 @@ sys.path.insert(0, str(ROOT / "verify/mutations"))
 
 import mutate
 from mutate import Mutation, Sound, judge, read_mutations, red_lines
-from unit_tests import in_short, unfinished
+from unit_tests import in_short, red_tests, unfinished
 
 MUTATIONS = read_mutations()
 
@@ -63,6 +64,20 @@ a warning[       OK ] A.speaks (2 ms)
     assert in_short(list("abcdef")) == "a, b, c, d and 2 more"
 
 
+def test_a_test_that_hangs_is_not_waited_for_once_others_are_red(tmp_path: Path) -> None:
+    program = tmp_path / "tests"
+    program.write_text("""#!/bin/sh
+echo '[ RUN      ] A.fails'
+echo '[  FAILED  ] A.fails (1 ms)'
+echo '[ RUN      ] A.hangs'
+sleep 300
+""")
+    program.chmod(0o755)
+    start = time.monotonic()
+    assert set(red_tests(program, tmp_path / "out", longest=300, usual=0.5)) == {"A.fails", "A.hangs"}
+    assert time.monotonic() - start < 150
+
+
 @pytest.mark.parametrize(("check", "tests", "killer"), [
     (["case: a check\tits value"], ["A.b", "A.is_red_anyway"], "case: a check; unit tests A.b"),
     ([], ["A.b"], "unit tests A.b"), ([], ["A.is_red_anyway"], "")])
@@ -74,7 +89,7 @@ def test_what_finds_one_is_named(check: list[str], tests: list[str], killer: str
     monkeypatch.setattr(mutate, "SOURCE", tmp_path)
     monkeypatch.setattr(mutate, "build", lambda: built.append(source.read_text()))
     monkeypatch.setattr(mutate, "run_cases", lambda cases, name, *options: check)
-    monkeypatch.setattr(mutate, "red_tests", lambda program, folder, longest: tests if longest == 63 else [])
+    monkeypatch.setattr(mutate, "red_tests", lambda program, folder, longest, usual: tests if (longest, usual) == (63, 63) else [])
     verdict = judge(Mutation("m", "what", "a.hpp", "two", "three", ["case"]), Sound(["case"], ["A.is_red_anyway"], 1.0))
     assert (verdict.killed, verdict.killer) == (bool(killer), killer)
     assert built == ["one three"]

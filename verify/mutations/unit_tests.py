@@ -13,16 +13,20 @@ from pathlib import Path
 LONGEST = 1200  # s, of all tests
 
 
-def red_tests(program: Path, folder: Path, longest: float = LONGEST) -> list[str]:
+def red_tests(program: Path, folder: Path, longest: float = LONGEST, usual: float = LONGEST) -> list[str]:
     """Names of the tests that fail, crash or, as a mutant may keep one of them from coming to an end, are not over after
-    so many seconds. They run in one process a core, each with its share; a crash ends its own share."""
+    so many seconds; after `usual` ones, when some are red already, no others are waited for. They run in one process a
+    core, each with its share; a crash ends its own share."""
     folder.mkdir(parents=True, exist_ok=True)
     shards = os.cpu_count() or 1
     processes = [start(program, folder, shard, shards) for shard in range(shards)]
-    last = time.monotonic() + longest
+    begin = time.monotonic()
+    while any(process.poll() is None for process in processes):
+        elapsed = time.monotonic() - begin
+        if elapsed > longest or (elapsed > usual and any(failed(folder, shard) for shard in range(shards))):
+            break
+        time.sleep(0.2)
     for process in processes:
-        with suppress(subprocess.TimeoutExpired):
-            process.wait(max(0.0, last - time.monotonic()))
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
@@ -42,6 +46,10 @@ def start(program: Path, folder: Path, shard: int, shards: int) -> subprocess.Po
     with output(folder, shard).open("w") as file:
         return subprocess.Popen([str(program), "--gtest_color=no"], cwd=folder, env=environment, stdout=file,
                                 stderr=subprocess.STDOUT, start_new_session=True)
+
+
+def failed(folder: Path, shard: int) -> bool:
+    return "[  FAILED  ]" in output(folder, shard).read_text(errors="replace")
 
 
 def begun(said: str) -> list[str]:
