@@ -112,6 +112,18 @@ double compliant_step(std::vector<Body>& bodies, double dt) {
   return largest;
 }
 
+void predict(std::vector<Body>& bodies, double dt) {
+#pragma omp parallel for
+  for (std::size_t b = 0; b < bodies.size(); ++b) predict(bodies[b], dt);
+}
+
+double finish(std::vector<Body>& bodies, double dt) {
+  double largest = 0;
+#pragma omp parallel for reduction(max : largest)
+  for (std::size_t b = 0; b < bodies.size(); ++b) largest = std::max(largest, finish(bodies[b], dt));
+  return largest;
+}
+
 double update(std::vector<Body>& bodies, double dt) {
   double largest = 0;
 #pragma omp parallel for reduction(max : largest)

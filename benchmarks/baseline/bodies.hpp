@@ -69,5 +69,7 @@ void internal_forces(std::vector<Body>& bodies);
 /// A whole step of bodies that touch nothing: prediction, outlines, gathering, internal forces, velocities.
 double compliant_step(std::vector<Body>& bodies, double dt);
 double update(std::vector<Body>& bodies, double dt);
+void predict(std::vector<Body>& bodies, double dt);
+double finish(std::vector<Body>& bodies, double dt);
 
 }  // namespace pliant::baseline

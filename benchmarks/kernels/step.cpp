@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "benchmarks/kernels/meter.hpp"
+#include "benchmarks/kernels/plain_scene.hpp"
 #include "benchmarks/kernels/scenes.hpp"
 #include "benchmarks/kernels/work.hpp"
 
@@ -58,6 +59,22 @@ void evaluation(benchmark::State& state) {
 }
 BENCHMARK(evaluation)->Apply(one_and_two_threads);
 
+void evaluate(PlainScene& plain) {
+  baseline::place_outlines(plain.bodies);
+  plain.contact.forces(plain.bodies);
+  baseline::gather_outline_forces(plain.bodies);
+  baseline::internal_forces(plain.bodies);
+}
+
+void plain_evaluation(benchmark::State& state) {
+  const ContactScene& scene = third_body_with(ContactLawKind::cohesive);
+  PlainScene plain(scene);
+  const Threads threads(state);
+  for (auto _ : state) evaluate(plain);
+  count_lists(state, plain, scene);
+}
+BENCHMARK(plain_evaluation)->Name("baseline/evaluation")->Apply(one_and_two_threads);
+
 void step(benchmark::State& state) {
   Simulation& simulation = third_body();
   const Threads threads(state);
@@ -65,6 +82,21 @@ void step(benchmark::State& state) {
   report(state, "grain", grains(simulation), evaluation_of(simulation) + work::update(simulation.model()));
 }
 BENCHMARK(step)->Apply(one_and_two_threads);
+
+/// Steps of a fixed size, as plain codes take them: no bound, no new candidates. Rigid bodies stay where they are.
+void plain_step(benchmark::State& state) {
+  const ContactScene& scene = third_body_with(ContactLawKind::cohesive);
+  PlainScene plain(scene);
+  const double dt = 0.5 * third_body().largest_dt();
+  const Threads threads(state);
+  for (auto _ : state) {
+    baseline::predict(plain.bodies, dt);
+    evaluate(plain);
+    benchmark::DoNotOptimize(baseline::finish(plain.bodies, dt));
+  }
+  count_lists(state, plain, scene);
+}
+BENCHMARK(plain_step)->Name("baseline/step")->Apply(one_and_two_threads);
 
 }  // namespace
 }  // namespace pliant::kernels
