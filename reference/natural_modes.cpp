@@ -1,6 +1,7 @@
 #include "reference/natural_modes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <Eigen/Eigenvalues>
@@ -31,7 +32,8 @@ Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix ki
   const Eigen::MatrixXd tangent(forces.evaluate(start, true).tangent);
   const Eigen::MatrixXd mass(bodies.mass(kind).block(body.first_dof, body.first_dof, body.dofs, body.dofs));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(tangent, mass, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  // One by one: eight at once Eigen makes what is not a number of 0, and then 0 of it.
+  return solver.eigenvalues().unaryExpr([](double square) { return std::sqrt(std::max(square, 0.0)); });
 }
 
 void write_modes(const Scene& scene, MassMatrix kind, const std::filesystem::path& file) {

@@ -12,4 +12,16 @@ inline void trap_floating_point_errors() {
 #endif
 }
 
+/// While it lives, nothing is trapped: for input, which may hold any number and is checked.
+class Untrapped {
+ public:
+  Untrapped() { std::feholdexcept(&before_); }
+  ~Untrapped() { std::fesetenv(&before_); }
+  Untrapped(const Untrapped&) = delete;
+  Untrapped& operator=(const Untrapped&) = delete;
+
+ private:
+  std::fenv_t before_;
+};
+
 }  // namespace pliant

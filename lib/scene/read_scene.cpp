@@ -2,6 +2,7 @@
 #include <set>
 
 #include "core/errors.hpp"
+#include "core/floating_point_traps.hpp"
 #include "scene/read_tables.hpp"
 #include "scene/text_file.hpp"
 
@@ -65,6 +66,7 @@ void read_outputs(TableReader& root, Scene& scene) {
 Scene read_scene(const fs::path& file) { return read_scene(file, nullptr); }
 
 Scene read_scene(const fs::path& file, SceneSchema* schema) {
+  const Untrapped untrapped;
   const std::string file_name = file.string();
   const toml::table document = parse(read_text_file(file, "a scene file (.toml)"), file_name);
   TableReader root(document, "the scene", file_name, schema, top_pattern);

@@ -124,6 +124,11 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, d
   Eigen::VectorXd stress(F.size());
   std::vector<Eigen::Matrix4d> stiffness;
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
+    const double J = jacobian(entries_at(F, g));
+    if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
+  }
+  if (!(state.least_jacobian > 0)) return state;  // there is no energy
+  for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
     state.energy += weight_[g] * energy.value;
     Eigen::Vector4d P = energy.gradient;
@@ -131,8 +136,6 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, d
     if (has_branch()) add_branch(g, entries_at(F, g), elapsed, P, by_F, state);
     stress.segment<4>(4 * g) = weight_[g] * P;
     if (tangent) stiffness.push_back(weight_[g] * by_F);
-    const double J = jacobian(entries_at(F, g));
-    if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
   }
   state.residual = gradient_.transpose() * stress;
   if (tangent) state.tangent = at_nodes(stiffness);

@@ -1,12 +1,13 @@
-"""Three scenes of cases/ run to their ends, or for a while, on two threads: with sanitizers in the engine, these look on."""
+"""Four scenes of cases/ run to their ends, or for a while, on two threads: with sanitizers in the engine, these look on."""
 
 from __future__ import annotations
 
 import pytest
 from conftest import ROOT
 
-# Seconds or less in a fast build, minutes with a sanitizer: compliant, rigid and walls; memory; a body's own contact.
-CASES = {"fatigue_cluster": "6 ns", "self_contact": "2 ms", "servo_wall": "5 ns"}
+# Seconds or less in a fast build, minutes with a sanitizer: compliant, rigid and walls; memory; a body's own contact;
+# dashpots.
+CASES = {"fatigue_cluster": "6 ns", "self_contact": "2 ms", "servo_wall": "5 ns", "restitution": "0.3 s"}
 
 
 @pytest.mark.parametrize("name, until", CASES.items())

@@ -186,6 +186,15 @@ Scene hexagonal_discs(double pitch, int columns, int rows, int sides) {
   return scene;
 }
 
+TEST(PackingProbes, coordination_without_contacts_has_no_mean_of_those_held) {
+  const Model model = build_model(hexagonal_discs(1.5, 2, 2, 48));
+  Simulation simulation(model);
+  const std::vector<double> coordination = measured(simulation, probe_of("coordination", "all"));
+  EXPECT_EQ(coordination[0], 0) << "EXACT";
+  EXPECT_TRUE(std::isnan(coordination[1])) << "EXACT";
+  EXPECT_EQ(coordination[2], 1) << "EXACT: all rattle";
+}
+
 TEST(PackingProbes, coordination_of_a_hexagonal_packing) {
   const Model model = build_model(hexagonal_discs(0.98, 6, 5, 96));
   Simulation simulation(model);

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "core/floating_point_traps.hpp"
 #include "scene/names.hpp"
 #include "scene/polygon_rules.hpp"
 
@@ -37,6 +38,7 @@ TEST(Units, ConvertToSi) {
 }
 
 TEST(Units, RejectWhatTheyCannotMean) {
+  const Untrapped untrapped;
   // EXACT: each message names what is wrong.
   const auto rejects = [](const char* text, const char* unit, const char* why) {
     try {
@@ -91,6 +93,7 @@ TEST(Names, NearestOnlyWhenItResembles) {
 }
 
 TEST(PolygonRules, FindDefects) {
+  const Untrapped untrapped;
   // EXACT
   EXPECT_EQ(polygon_defect({{0, 0}, {1, 0}, {1, 1}, {0, 1}}).text, "");
   EXPECT_EQ(polygon_defect({{0, 0}, {2, 0}, {2, 2}, {1, 0.5}, {0, 2}}).text, "");

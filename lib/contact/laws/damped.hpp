@@ -30,7 +30,8 @@ struct Damped : Law {
   /// would make a matter of chance.
   Lanes share(Lanes gap, Lanes rate, double step) const {
     const Lanes speed = pull ? abs(rate) : -rate, way = speed * step;
-    const Lanes steps = select((gap < 0.0) & (-gap < 2 * way), -gap / way, broadcast(2));
+    const LaneBits arrives = (gap < 0.0) & (-gap < 2 * way);
+    const Lanes steps = select(arrives, -gap / select(arrives, way, broadcast(1)), broadcast(2));
     return min(1.5 * steps, 2 - 0.5 * steps);
   }
 };

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "results/probes/probe_functions.hpp"
 #include "results/probes/regions.hpp"
 
@@ -20,6 +22,9 @@ Samples solid_fraction(const Snapshot& snapshot, const Selection& selection) {
 
 /// A rattler touches less than two bodies; contacts with rattlers count for the others (Thornton 2000, doi
 /// 10.1680/geot.2000.50.1.43).
+/// Not a number where nothing counts.
+double mean(double sum, double count) { return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN(); }
+
 Samples coordination(const Snapshot& snapshot, const Selection& selection) {
   double contacts = 0, held_contacts = 0, held = 0;
   for (int b : selection.bodies) {
@@ -29,7 +34,7 @@ Samples coordination(const Snapshot& snapshot, const Selection& selection) {
   }
   const auto bodies = static_cast<double>(selection.bodies.size());
   Samples samples(3);
-  samples.add(1, {contacts / bodies, held_contacts / held, 1 - held / bodies});
+  samples.add(1, {mean(contacts, bodies), mean(held_contacts, held), 1 - mean(held, bodies)});
   return samples;
 }
 
