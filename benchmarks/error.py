@@ -1,6 +1,6 @@
 """Speed against error: what each choice of discretisation, scheme, step and stiffness costs for the error that it leaves.
 
-    ./pliant bench error                         all scenes: some ten minutes; results/bench/error.html, .json and .png
+    ./pliant bench error                         all scenes: an hour, most of it the paper's scheme in the third body; results/bench/error.html, .json and .png
     ./pliant bench error --only oscillation impact
     ./pliant bench error --sizes 168 340         fewer nodes
     ./pliant bench error --keep                  writes what ./pliant check foretells too, and prints what it changes

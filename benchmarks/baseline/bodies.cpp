@@ -112,6 +112,12 @@ double compliant_step(std::vector<Body>& bodies, double dt) {
   return largest;
 }
 
+void clear_forces(std::vector<Body>& bodies) {
+#pragma omp parallel for
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (Node& node : bodies[b].nodes) node.fx = node.fy = 0;
+}
+
 void predict(std::vector<Body>& bodies, double dt) {
 #pragma omp parallel for
   for (std::size_t b = 0; b < bodies.size(); ++b) predict(bodies[b], dt);

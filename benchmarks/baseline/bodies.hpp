@@ -69,6 +69,7 @@ void internal_forces(std::vector<Body>& bodies);
 /// A whole step of bodies that touch nothing: prediction, outlines, gathering, internal forces, velocities.
 double compliant_step(std::vector<Body>& bodies, double dt);
 double update(std::vector<Body>& bodies, double dt);
+void clear_forces(std::vector<Body>& bodies);
 void predict(std::vector<Body>& bodies, double dt);
 double finish(std::vector<Body>& bodies, double dt);
 

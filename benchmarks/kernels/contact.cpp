@@ -36,7 +36,7 @@ void plain_contact_forces(benchmark::State& state, ContactLawKind law) {
   PlainScene plain(scene);
   const Threads threads(state);
   for (auto _ : state) plain.contact.forces(plain.bodies);
-  count_lists(state, plain, scene);
+  count_lists(state, plain, "record", records(scene.contact));
 }
 BENCHMARK_CAPTURE(plain_contact_forces, frictionless, frictionless)
     ->Name("baseline/contact/frictionless")
@@ -86,7 +86,7 @@ void plain_contact_from_dofs(benchmark::State& state, ContactLawKind law) {
     plain.contact.forces(plain.bodies);
     baseline::gather_outline_forces(plain.bodies);
   }
-  count_lists(state, plain, scene);
+  count_lists(state, plain, "record", records(scene.contact));
 }
 BENCHMARK_CAPTURE(plain_contact_from_dofs, mohr_coulomb, mohr_coulomb)
     ->Name("baseline/contact/mohr-coulomb_and_outlines")
@@ -118,7 +118,7 @@ void plain_find_candidates(benchmark::State& state) {
   PlainScene plain(scene);
   const Threads threads(state);
   for (auto _ : state) plain.contact.find_candidates(plain.bodies);
-  count_lists(state, plain, scene);
+  count_lists(state, plain, "pair", static_cast<double>(scene.contact.patches().size()));
 }
 BENCHMARK(plain_find_candidates)->Name("baseline/candidates/find")->Apply(one_and_two_threads);
 

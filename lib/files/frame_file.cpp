@@ -69,6 +69,9 @@ class GridArray {
   /// `components`: of the values, which are written as stored_values().
   void append(const std::vector<float>& values, int components = 1) {
     count(values.size());
+    if (values.size() % static_cast<std::size_t>(components) != 0)
+      throw OutputError(fmt::format("{}: {} values of '{}' were given; it has {} components", file_.string(),
+                                    values.size(), name_, components));
     array_.append(stored_values(values, components));
   }
   void append(const std::vector<int>& values) {

@@ -139,6 +139,9 @@ void Hdf5Array::append(const std::vector<int>& values) { append_values(H5T_NATIV
 
 void Hdf5Array::append_values(hid_t memory_type, const void* values, std::size_t size) {
   if (size == 0) return;
+  if (size % columns_ != 0)
+    throw OutputError(
+        fmt::format("{}: {} values of '{}' were given; its rows have {}", path_.string(), size, name_, columns_));
   const std::array<hsize_t, 2> begin = {rows_, 0}, count = {size / columns_, columns_};
   const Hdf5Handle memory(checked(H5Screate_simple(columns_ > 1 ? 2 : 1, count.data(), nullptr), path_, name_),
                           H5Sclose),

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/errors.hpp"
+#include "core/floating_point_traps.hpp"
 #include "scene/text_file.hpp"
 
 namespace pliant {
@@ -72,6 +73,7 @@ double convert(const std::string& from_text, const std::string& to_text, double 
 }  // namespace
 
 double parse_quantity(const std::string& text, const std::string& unit) {
+  const Untrapped untrapped;
   const std::string quantity(trimmed(text));
   const char* begin = quantity.data() + (quantity.starts_with('+') ? 1 : 0);
   const char* end = quantity.data() + quantity.size();

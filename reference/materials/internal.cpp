@@ -125,9 +125,9 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, d
   std::vector<Eigen::Matrix4d> stiffness;
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     const double J = jacobian(entries_at(F, g));
-    if (g == 0 || !(J >= state.least_jacobian)) state.least_jacobian = J, state.least_point = int(g);
+    if (g == 0 || J < state.least_jacobian || std::isnan(J)) state.least_jacobian = J, state.least_point = int(g);
   }
-  if (!(state.least_jacobian > 0)) return state;  // there is no energy
+  if (!(state.least_jacobian > 0)) return state;  // no law has an energy there, but `linear_elastic`
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
     state.energy += weight_[g] * energy.value;

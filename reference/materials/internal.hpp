@@ -15,7 +15,7 @@ struct BranchPoint {
   Symmetric<double> viscous, goal;
 };
 
-/// Internal forces of one body at one state. Not numbers where some J <= 0, but for `linear_elastic`.
+/// Internal forces of one body at one state. Where some J <= 0 it has that alone.
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
   Eigen::VectorXd residual;             ///< [2 nodes], minus the forces, N/m

@@ -192,6 +192,13 @@ TEST_F(FrameFiles, WrongShapesAreRefused) {
   refuses(eight, {eight, {1, 2, 3}}, "'bodies/von_mises' has 3 values");
   refuses({1, 2}, {eight, two}, "'bodies/position' has 2 values");
   refuses(eight, {eight}, "1 fields");
+  const auto in_pieces = [&](const std::function<void(const GridFrame&)>& take) {
+    take({eight, {{1, 2, 3}, two}});
+    take({{}, {{4, 5, 6, 7, 8}, {}}});
+  };
+  EXPECT_NE(
+      testing::message_of<OutputError>([&] { file.append(0, {in_pieces, small_frame(0)[1]}); }).find("components"),
+      std::string::npos);
   EXPECT_THROW(file.append(0, {}), OutputError);
   EXPECT_TRUE(read_array("/times").empty());
   file.append(0, small_frame(0));

@@ -38,7 +38,6 @@ TEST(Units, ConvertToSi) {
 }
 
 TEST(Units, RejectWhatTheyCannotMean) {
-  const Untrapped untrapped;
   // EXACT: each message names what is wrong.
   const auto rejects = [](const char* text, const char* unit, const char* why) {
     try {

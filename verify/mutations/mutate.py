@@ -153,7 +153,7 @@ class Sound:
     def unit_tests(self, name: str) -> list[str]:
         """Those that find a mutation."""
         longest = 3 * self.seconds + 60
-        usual = longest if self.red_tests else self.seconds  # what is red anyway would be taken for a finding
+        usual = longest if self.red_tests else 1.5 * self.seconds + 30  # what is red anyway would be taken for a finding
         red = red_tests(BUILD / "pliant_tests", SCRATCH / "results" / name, longest, usual)
         return [test for test in red if test not in self.red_tests]
 

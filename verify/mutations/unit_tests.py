@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 import time
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
@@ -19,21 +20,42 @@ def red_tests(program: Path, folder: Path, longest: float = LONGEST, usual: floa
     core, each with its share; a crash ends its own share."""
     folder.mkdir(parents=True, exist_ok=True)
     shards = os.cpu_count() or 1
-    processes = [start(program, folder, shard, shards) for shard in range(shards)]
+    running = {shard: start(program, folder, shard, shards) for shard in range(shards)}
     begin = time.monotonic()
-    while any(process.poll() is None for process in processes):
-        elapsed = time.monotonic() - begin
-        if elapsed > longest or (elapsed > usual and any(failed(folder, shard) for shard in range(shards))):
+    while running and time.monotonic() - begin < longest:
+        for shard in [shard for shard, process in running.items() if process.poll() is not None]:
+            end(running.pop(shard))
+        if time.monotonic() - begin > usual and red_so_far(folder, shards, running):
             break
         time.sleep(0.2)
-    for process in processes:
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-    said = [output(folder, shard).read_text(errors="replace") for shard in range(shards)]
+    red = red_so_far(folder, shards, running)
+    for process in running.values():
+        end(process)
+    said = [text_of(folder, shard) for shard in range(shards)]
     if not any(begun(text) for text in said):
         raise RuntimeError(f"no unit test ran:\n{said[0][-4000:]}")
-    return [name for text in said for name in unfinished(text)]
+    # Those at work when others were red already are not to blame.
+    return red or [name for text in said for name in unfinished(text)]
+
+
+def red_so_far(folder: Path, shards: int, running: Iterable[int]) -> list[str]:
+    """But for those that are at work."""
+    red = []
+    for shard in range(shards):
+        said = text_of(folder, shard)
+        at_work = begun(said)[-1:] if shard in running else []
+        red += [name for name in unfinished(said) if name not in at_work]
+    return red
+
+
+def end(process: subprocess.Popen) -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def text_of(folder: Path, shard: int) -> str:
+    return output(folder, shard).read_text(errors="replace")
 
 
 def output(folder: Path, shard: int) -> Path:
@@ -46,10 +68,6 @@ def start(program: Path, folder: Path, shard: int, shards: int) -> subprocess.Po
     with output(folder, shard).open("w") as file:
         return subprocess.Popen([str(program), "--gtest_color=no"], cwd=folder, env=environment, stdout=file,
                                 stderr=subprocess.STDOUT, start_new_session=True)
-
-
-def failed(folder: Path, shard: int) -> bool:
-    return "[  FAILED  ]" in output(folder, shard).read_text(errors="replace")
 
 
 def begun(said: str) -> list[str]:

@@ -20,11 +20,11 @@ Samples solid_fraction(const Snapshot& snapshot, const Selection& selection) {
   return samples;
 }
 
-/// A rattler touches less than two bodies; contacts with rattlers count for the others (Thornton 2000, doi
-/// 10.1680/geot.2000.50.1.43).
 /// Not a number where nothing counts.
 double mean(double sum, double count) { return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN(); }
 
+/// A rattler touches less than two bodies; contacts with rattlers count for the others (Thornton 2000, doi
+/// 10.1680/geot.2000.50.1.43).
 Samples coordination(const Snapshot& snapshot, const Selection& selection) {
   double contacts = 0, held_contacts = 0, held = 0;
   for (int b : selection.bodies) {
