@@ -53,10 +53,8 @@ std::vector<Grid> checked(const std::filesystem::path& file, std::vector<Grid> g
 std::vector<float> stored_values(const std::vector<float>& values, int components) {
   if (components != 2) return values;
   std::vector<float> stored(values.size() / 2 * 3, 0.0F);
-  for (std::size_t i = 0; i < values.size() / 2; ++i) {
-    stored[3 * i] = values[2 * i];
-    stored[3 * i + 1] = values[2 * i + 1];
-  }
+  for (std::size_t i = 0; i < values.size() / 2; ++i)
+    stored[3 * i] = values[2 * i], stored[3 * i + 1] = values[2 * i + 1];
   return stored;
 }
 
