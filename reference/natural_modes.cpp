@@ -32,7 +32,7 @@ Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix ki
   const Eigen::MatrixXd tangent(forces.evaluate(start, true).tangent);
   const Eigen::MatrixXd mass(bodies.mass(kind).block(body.first_dof, body.first_dof, body.dofs, body.dofs));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(tangent, mass, Eigen::EigenvaluesOnly);
-  // One by one: eight at once Eigen makes what is not a number of 0, and then 0 of it.
+  // One by one: Eigen's root of eight numbers takes 0 times infinity on the way to that of 0, which is trapped.
   return solver.eigenvalues().unaryExpr([](double square) { return std::sqrt(std::max(square, 0.0)); });
 }
 

@@ -28,7 +28,7 @@ constexpr int span = 64;
 constexpr double least_share = 0.5;
 
 double controller_factor(double error, double tolerance) {
-  if (error <= 1e-3 * tolerance) return largest_factor;
+  if (error <= 1e-3 * tolerance) return largest_factor;  // by far; the ratio may overflow
   return std::clamp(std::pow(tolerance / error, exponent), least_factor, largest_factor);
 }
 

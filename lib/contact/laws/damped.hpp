@@ -31,6 +31,7 @@ struct Damped : Law {
   Lanes share(Lanes gap, Lanes rate, double step) const {
     const Lanes speed = pull ? abs(rate) : -rate, way = speed * step;
     const LaneBits arrives = (gap < 0.0) & (-gap < 2 * way);
+    // Elsewhere the way may be 0.
     const Lanes steps = select(arrives, -gap / select(arrives, way, broadcast(1)), broadcast(2));
     return min(1.5 * steps, 2 - 0.5 * steps);
   }
