@@ -47,10 +47,6 @@ struct PatchStep {
   }
 };
 
-/// What the mean of the forces on a side, these and those before, does in a step, J/m.
-double work_of_side(const PatchView& view, const PatchStep& step, int side, const double* force_x,
-                    const double* force_y);
-
 /// The forces of a patch that was searched or laid out anew go with its nodes to where they stand now.
 void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to);
 

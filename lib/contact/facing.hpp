@@ -90,7 +90,7 @@ template <class Visit>
 void for_each_eight(const PatchView& view, Visit&& visit) {
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(view, slave_side, view.patch.entry);
+    const Pass pass = make_pass(view, slave_side, runs_in_table(view.patch));
     fill_window(view, 1 - slave_side);
     for (int i = 0; i < pass.nodes.count; i += lane_count) visit(pass, slave_side, i);
   }

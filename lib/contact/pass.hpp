@@ -37,9 +37,21 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
           load(pass.tributary_length + node)};
 }
 
-/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round. `force`: where each side's
-/// buffer begins.
-inline Pass make_pass(const PatchView& view, int slave_side, const int (&force)[2]) {
+/// Nodes of one side that get forces, and where those of the first of them stand.
+struct ForceRun {
+  Arc nodes;
+  int begin;
+};
+struct ForceRuns {
+  ForceRun of[2];  ///< [sides]
+};
+/// In the buffers of all patches.
+inline ForceRuns runs_in_table(const Patch& patch) {
+  return {{{patch.forces(0), patch.entry[0]}, {patch.forces(1), patch.entry[1]}}};
+}
+
+/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
+inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& runs) {
   const Model& model = view.model;
   const Patch& patch = view.patch;
   const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
@@ -51,8 +63,8 @@ inline Pass make_pass(const PatchView& view, int slave_side, const int (&force)[
           patch.nodes[slave_side],
           view.shift(slave_side),
           patch.record[slave_side],
-          force[slave_side] + patch.nodes[slave_side].begin - patch.forces(slave_side).begin,
-          force[master_side] + patch.segments[master_side].begin - patch.forces(master_side).begin,
+          runs.of[slave_side].begin + patch.nodes[slave_side].begin - runs.of[slave_side].nodes.begin,
+          runs.of[master_side].begin + patch.segments[master_side].begin - runs.of[master_side].nodes.begin,
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
           patch.corners};

@@ -180,15 +180,15 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
-/// Both passes of a patch, whose sides' forces begin at `begin`. What a law does not need is neither kept nor added up.
+/// Both passes of a patch. What a law does not need is neither kept nor added up.
 template <class Law, class Repaid>
-PatchTotals compute_passes(const Law& law, const PatchView& view, const int (&begin)[2], Accounts<Repaid> accounts) {
+PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRuns& runs, Accounts<Repaid> accounts) {
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.patch.nodes[slave_side].count == 0) continue;
-    Pass pass = make_pass(view, slave_side, begin);
+    Pass pass = make_pass(view, slave_side, runs);
     if constexpr (has_dashpot<Law>) {
       look_up_velocities(view, slave_side, pass);
       pass.damping = damping, pass.elapsed = view.elapsed;
@@ -202,6 +202,29 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const int (&be
   return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
 }
 
+/// Puts the forces on one side's nodes where they belong, whole lanes of them, 0 beyond the last. Returns what the mean
+/// of these and those before does in the step, J/m.
+double put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
+               PatchForces& forces) {
+  const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
+            offset = view.model.outline_offset[body];
+  const bool asks_work = step && step->before;
+  int node = run.nodes.begin;
+  Lanes twice{};
+  for (int i = 0; i < run.nodes.count; i += lane_count, node += lane_count) {
+    const Lanes x = load(&near.x[run.begin + i]), y = load(&near.y[run.begin + i]);
+    store(&forces.x[entry + i], x), store(&forces.y[entry + i], y);
+    if (!asks_work) continue;
+    node -= turn_of(node, n) * n;
+    const OutlineField &now = view.outlines.position, &before = *step->before;
+    const PatchForces& old = *step->forces_before;
+    const int at = offset + node;
+    const Lanes way_x = load(&now.x[at]) - load(&before.x[at]), way_y = load(&now.y[at]) - load(&before.y[at]);
+    twice += (x + load(&old.x[entry + i])) * way_x + (y + load(&old.y[entry + i])) * way_y;
+  }
+  return 0.5 * sum(twice);
+}
+
 }  // namespace
 
 PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const ContactHistory& from, ContactHistory& to,
@@ -209,30 +232,24 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   // Both passes add to both sides: near at hand, and what comes of it goes out once.
   thread_local PatchForces near;
   const Patch& patch = view.patch;
-  const int count[2] = {patch.forces(0).count, patch.forces(1).count}, begin[2] = {0, padded(count[0]) + lane_count};
-  const std::size_t size = static_cast<std::size_t>(begin[1] + padded(count[1]) + lane_count);
+  ForceRuns runs = runs_in_table(patch);
+  runs.of[0].begin = 0, runs.of[1].begin = padded(runs.of[0].nodes.count) + lane_count;
+  const std::size_t size = static_cast<std::size_t>(runs.of[1].begin + padded(runs.of[1].nodes.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
   const auto passes = [&](const auto& law) {
     if (!step) {
       NoRepayment none;
-      return compute_passes(law, view, begin, Accounts<NoRepayment>{from, to, none, near});
+      return compute_passes(law, view, runs, Accounts<NoRepayment>{from, to, none, near});
     }
     Repayment repaid(*step, law.normal_stiffness);
-    PatchTotals totals = compute_passes(law, view, begin, Accounts<Repayment>{from, to, repaid, near});
+    PatchTotals totals = compute_passes(law, view, runs, Accounts<Repayment>{from, to, repaid, near});
     totals.ways = repaid.ways(), totals.pending = repaid.pending();
     return totals;
   };
   PatchTotals totals = std::visit(passes, patch.law);
-  for (int side = 0; side < 2; ++side) {
-    double *now_x = &near.x[begin[side]], *now_y = &near.y[begin[side]];
-    if (step && step->before) totals.work += work_of_side(view, *step, side, now_x, now_y);
-    double *x = &forces.x[patch.entry[side]], *y = &forces.y[patch.entry[side]];
-    for (int i = 0; i < count[side]; i += lane_count) {
-      store(x + i, load(now_x + i));
-      store(y + i, load(now_y + i));
-    }
-  }
+  // The last pass added to the first side's nodes one by one: these would be waited for.
+  for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs.of[side], near, forces);
   return totals;
 }
 

@@ -86,7 +86,7 @@ void add_beside(const Projection& p, int lane, double skin, double stiffness, Ca
 void add_pass_stiffness(const PatchView& view, int slave_side, const double (&factor)[2],
                         std::vector<double>& entries) {
   const double stiffness = stiffness_of(view.patch.law), outward = reach_of(view.patch.law) + view.skin;
-  const Pass pass = make_pass(view, slave_side, view.patch.entry);
+  const Pass pass = make_pass(view, slave_side, runs_in_table(view.patch));
   fill_window(view, 1 - slave_side);
   thread_local Carried carried;
   carried.clear(view.window.count() + 1);

@@ -1,19 +1,21 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace pliant {
 
 /// What numbers that are asked for are wanted for.
 enum class Access { read, write };
 
-/// Asks for numbers before they are looked at, by whole lanes: those that begin within a line end in the next.
+/// Asks for the lines of the cache that numbers stand in, looked at by whole lanes, before they are.
 template <Access access = Access::read>
 void prefetch_run(const double* numbers, int count) {
-  constexpr int per_line = 8, writes = access == Access::write;
-  if (count == 0) return;
-  for (int i = 0; i < count; i += per_line) __builtin_prefetch(numbers + i, writes);
-  __builtin_prefetch(numbers + (count + per_line - 1) / per_line * per_line - 1, writes);
+  constexpr std::uintptr_t line = 64;
+  const auto first = reinterpret_cast<std::uintptr_t>(numbers),
+             end = first + (sizeof(double) * static_cast<unsigned>(count) + line - 1) / line * line;
+  for (std::uintptr_t at = first / line * line; at < end; at += line)
+    __builtin_prefetch(reinterpret_cast<const void*>(at), access == Access::write);
 }
 
 /// Of a field's x and y, from one on.
