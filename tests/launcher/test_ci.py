@@ -27,11 +27,11 @@ def test_ci_counts_all_tests_and_fails_with_one(launcher: Launcher, commits: int
     result = subprocess.run([launcher.root / ".ci/run"], env=environment, capture_output=True, text=True)
     assert result.returncode == 1
     assert launcher.log.read_text().splitlines() == [
-        "lint", "test -LE ^case$", "bench gate", *IN_TURN[commits].values(), "test --preset debug --scenes",
+        "lint", "test -LE ^case$", "bench gate", "bench planted", *IN_TURN[commits].values(), "test --preset debug --scenes",
         r"PLIANT_BUILDS=debug counting gcc test -R ^cli\.determinism$ -V", "verify"]
     lines = result.stdout.splitlines()
     assert lines[-1] == "16 passed, 1 failed, 2 skipped, 2 known to fail"
-    stages = ["lint", "test", "gate", *IN_TURN[commits], "debug", "determinism", "verify", "all"]
+    stages = ["lint", "test", "gate", "planted", *IN_TURN[commits], "debug", "determinism", "verify", "all"]
     told = lines[-1 - len(stages):-1]
     assert [line.split()[1] for line in told] == stages
     assert [line.rsplit(" ", 1)[1] for line in told[:-1]] == ["green", "red", *["green"] * (len(stages) - 3)]

@@ -1,0 +1,127 @@
+"""Whether what guards speed finds what is planted: 3 % more instructions in a kernel, an allocation in a step.
+
+    ./pliant bench planted
+
+Each goes into a copy of one file, which is compiled as its build was and linked in front of the library that has the
+sound one.
+
+Exit codes: 0 all are found and nothing without them; 1 not; 2 could not be asked.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import gate
+from gate import SLOWER, Values
+from marginal_cost import ROOT
+
+FOUND, NOT_FOUND, NOT_ASKED = 0, 1, 2
+SHARE = 0.03  # of a kernel's instructions
+
+
+@dataclass
+class Place:
+    """Where a statement is planted: behind a text that stands once in a file."""
+
+    file: str
+    behind: str
+
+    def planted(self, statement: str) -> str:
+        text = (ROOT / self.file).read_text()
+        if text.count(self.behind) != 1:
+            raise RuntimeError(f"'{self.behind}' stands {text.count(self.behind)} times in {self.file}, not once")
+        return text.replace(self.behind, f"{self.behind}\n  {statement}")
+
+
+CONTACT = Place("lib/contact/contact.cpp", "OutlineField& force, const StepStart* step) {")
+STEP = Place("lib/dynamics/verlet.cpp",
+             "void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report) {")
+
+
+def run(command: list[str], folder: Path) -> str:
+    result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise RuntimeError(f"{' '.join(command)[:200]} ...: {(result.stderr or result.stdout)[-2000:]}")
+    return result.stdout
+
+
+def compiled(build: Path, place: Place, statement: str, scratch: Path) -> Path:
+    """The file with the statement, as an object."""
+    source, planted = scratch / Path(place.file).name, scratch / "planted.o"
+    source.write_text(place.planted(statement))
+    entries = json.loads((build / "compile_commands.json").read_text())
+    sound = next(entry for entry in entries if Path(entry["file"]) == ROOT / place.file)
+    words = [str(source) if word == sound["file"] else word for word in shlex.split(sound["command"])]
+    words[words.index("-o") + 1] = str(planted)
+    run(words, Path(sound["directory"]))
+    return planted
+
+
+def linked(build: Path, program: str, planted: Path, scratch: Path) -> Path:
+    """The program with an object in front of all others: what libraries have of the same is not looked at."""
+    link = run(["ninja", "-t", "commands", program], build).splitlines()[-1].split(" && ")[1]
+    words = shlex.split(link)
+    at = words.index("-o")
+    run([*words[:at], str(planted), "-o", str(scratch / program), *words[at + 2:]], build)
+    return scratch / program
+
+
+def slower_kernel_is_found(scratch: Path) -> bool:
+    kernel, build = "contact_forces", ROOT / "build" / gate.PRESET
+    sound = gate.count_all(build, [kernel], scratch / "sound")
+    more = round(SHARE * sound[kernel].instructions)
+    statement = f'asm volatile(".rept {more}\\n\\tnop\\n\\t.endr");'
+    linked(build, "pliant_counted_kernels", compiled(build, CONTACT, statement, scratch), scratch)
+    values = scratch / "instructions.json"
+    Values(gate.build_of(build / "pliant_counted_kernels"), sound).write(values)
+    asked = ["--only", kernel, "--values", str(values), "--programs"]
+    return gate.main([*asked, str(build)]) == gate.QUIET and gate.main([*asked, str(scratch)]) == SLOWER
+
+
+def allocation_is_found(scratch: Path) -> bool:
+    build = ROOT / "build/release"
+    planted = linked(build, "pliant_tests", compiled(build, STEP, "::operator delete(::operator new(64));", scratch),
+                     scratch)
+
+    def are_red(program: Path) -> bool:
+        test = subprocess.run([program, "--gtest_filter=Allocation.*", "--gtest_brief=1"], cwd=build,
+                              capture_output=True, text=True)
+        print(test.stdout, end="")
+        if test.returncode not in (0, 1):
+            raise RuntimeError(f"{program.name} ended with exit code {test.returncode}: {test.stderr[-1000:]}")
+        return test.returncode == 1
+
+    return not are_red(build / "pliant_tests") and are_red(planted)
+
+
+PLANTS = {"3 % more instructions in the contact forces": slower_kernel_is_found,
+          "an allocation in each step": allocation_is_found}
+
+
+def main(arguments: list[str]) -> int:
+    argparse.ArgumentParser(prog="./pliant bench planted", description=__doc__.splitlines()[0]).parse_args(arguments)
+    found = []
+    for what, is_found in PLANTS.items():
+        try:
+            with tempfile.TemporaryDirectory() as scratch:
+                (Path(scratch) / "sound").mkdir()
+                found.append(is_found(Path(scratch)))
+        except (OSError, RuntimeError, StopIteration, subprocess.CalledProcessError) as error:
+            print(f"planted: {what}: could not be asked: {error}", file=sys.stderr)
+            return NOT_ASKED
+        print(f"planted: {what}: {'found' if found[-1] else 'NOT FOUND'}", flush=True)
+    return FOUND if all(found) else NOT_FOUND
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
