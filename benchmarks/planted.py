@@ -2,10 +2,10 @@
 
     ./pliant bench planted
 
-Each goes into a copy of one file, which is compiled as its build was and linked in front of the library that has the
-sound one.
+Each goes into a copy of one file, which is compiled as its build was and linked before the library that has the sound
+one.
 
-Exit codes: 0 all are found and nothing without them; 1 not; 2 could not be asked.
+Exit codes: 0 all are found; 1 one is not; 2 could not be asked, or something is found without them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import gate
-from gate import SLOWER, Values
+from gate import QUIET, SLOWER, Values
 from marginal_cost import ROOT
 
 FOUND, NOT_FOUND, NOT_ASKED = 0, 1, 2
@@ -60,19 +60,29 @@ def compiled(build: Path, place: Place, statement: str, scratch: Path) -> Path:
     source, planted = scratch / Path(place.file).name, scratch / "planted.o"
     source.write_text(place.planted(statement))
     entries = json.loads((build / "compile_commands.json").read_text())
-    sound = next(entry for entry in entries if Path(entry["file"]) == ROOT / place.file)
+    sound = next((entry for entry in entries if Path(entry["file"]) == ROOT / place.file), None)
+    if sound is None:
+        raise RuntimeError(f"{build} does not compile {place.file} by itself: g++ takes several files at once; clang++-19 is needed")
     words = [str(source) if word == sound["file"] else word for word in shlex.split(sound["command"])]
     words[words.index("-o") + 1] = str(planted)
     run(words, Path(sound["directory"]))
     return planted
 
 
+def link_command(line: str, program: str, planted: Path, to: Path) -> list[str]:
+    """Of ninja's line that links a program, the same with one more object, before the libraries: what these have of it
+    is not looked at."""
+    for part in line.split(" && "):
+        words = shlex.split(part)
+        if "-o" in words and words[words.index("-o") + 1:][:1] == [program]:
+            at = words.index("-o")
+            return [*words[:at], str(planted), "-o", str(to), *words[at + 2:]]
+    raise RuntimeError(f"no command that links {program}: {line[:200]}")
+
+
 def linked(build: Path, program: str, planted: Path, scratch: Path) -> Path:
-    """The program with an object in front of all others: what libraries have of the same is not looked at."""
-    link = run(["ninja", "-t", "commands", program], build).splitlines()[-1].split(" && ")[1]
-    words = shlex.split(link)
-    at = words.index("-o")
-    run([*words[:at], str(planted), "-o", str(scratch / program), *words[at + 2:]], build)
+    line = run(["ninja", "-t", "commands", program], build).splitlines()[-1]
+    run(link_command(line, program, planted, scratch / program), build)
     return scratch / program
 
 
@@ -85,7 +95,13 @@ def slower_kernel_is_found(scratch: Path) -> bool:
     values = scratch / "instructions.json"
     Values(gate.build_of(build / "pliant_counted_kernels"), sound).write(values)
     asked = ["--only", kernel, "--values", str(values), "--programs"]
-    return gate.main([*asked, str(build)]) == gate.QUIET and gate.main([*asked, str(scratch)]) == SLOWER
+    if gate.main([*asked, str(build)]) != QUIET:
+        raise RuntimeError(f"{kernel} is slower than itself")
+    print("planted: this must fail:", flush=True)
+    code = gate.main([*asked, str(scratch)])
+    if code not in (QUIET, SLOWER):
+        raise RuntimeError("the gate does not judge")
+    return code == SLOWER
 
 
 def allocation_is_found(scratch: Path) -> bool:
@@ -93,15 +109,18 @@ def allocation_is_found(scratch: Path) -> bool:
     planted = linked(build, "pliant_tests", compiled(build, STEP, "::operator delete(::operator new(64));", scratch),
                      scratch)
 
-    def are_red(program: Path) -> bool:
-        test = subprocess.run([program, "--gtest_filter=Allocation.*", "--gtest_brief=1"], cwd=build,
+    def is_red(program: Path) -> bool:
+        test = subprocess.run([program, "--gtest_filter=Allocation.there_is_none_in_a_step"], cwd=build,
                               capture_output=True, text=True)
-        print(test.stdout, end="")
-        if test.returncode not in (0, 1):
-            raise RuntimeError(f"{program.name} ended with exit code {test.returncode}: {test.stderr[-1000:]}")
+        print(test.stdout, end="", flush=True)
+        if test.returncode not in (0, 1) or "1 test from" not in test.stdout:
+            raise RuntimeError(f"{program.name} did not run its test, exit code {test.returncode}: {test.stderr[-1000:]}")
         return test.returncode == 1
 
-    return not are_red(build / "pliant_tests") and are_red(planted)
+    if is_red(build / "pliant_tests"):
+        raise RuntimeError("the test fails without it")
+    print("planted: this must fail:", flush=True)
+    return is_red(planted)
 
 
 PLANTS = {"3 % more instructions in the contact forces": slower_kernel_is_found,
@@ -116,7 +135,7 @@ def main(arguments: list[str]) -> int:
             with tempfile.TemporaryDirectory() as scratch:
                 (Path(scratch) / "sound").mkdir()
                 found.append(is_found(Path(scratch)))
-        except (OSError, RuntimeError, StopIteration, subprocess.CalledProcessError) as error:
+        except (OSError, RuntimeError, LookupError, ValueError, subprocess.CalledProcessError) as error:
             print(f"planted: {what}: could not be asked: {error}", file=sys.stderr)
             return NOT_ASKED
         print(f"planted: {what}: {'found' if found[-1] else 'NOT FOUND'}", flush=True)

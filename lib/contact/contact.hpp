@@ -24,7 +24,7 @@ struct RunClock {
 
 /// Where a step began.
 struct StepStart {
-  const OutlineField& position;  ///< of outlines
+  const OutlineField& position;  ///< of outlines, with their copies
   double elapsed;                ///< since then, s
 };
 

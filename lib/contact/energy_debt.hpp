@@ -30,7 +30,7 @@ constexpr double least_repaid = 1e-12;
 
 /// Of a patch, the step that led to an evaluation, if any did: another finds again what was repaid.
 struct PatchStep {
-  const OutlineField* before;        ///< outlines at its start; null: not known
+  const OutlineField* before;        ///< outlines at its start, with their copies; null: not known
   const PatchForces* forces_before;  ///< then
   /// J/m, then, less PatchTotals::pending: a pressure acts in two steps, half in each.
   double debt;

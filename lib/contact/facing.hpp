@@ -88,9 +88,10 @@ inline Facing face(const Pass& pass, const MasterWindow& window, const SlaveNode
 /// Calls visit(pass, slave side, i) for each eight slave nodes, from position i on, with the master's window filled.
 template <class Visit>
 void for_each_eight(const PatchView& view, Visit&& visit) {
+  const ForceRuns runs = runs_in_table(view.patch);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.patch.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(view, slave_side, runs_in_table(view.patch));
+    const Pass pass = make_pass(view, slave_side, runs);
     fill_window(view, 1 - slave_side);
     for (int i = 0; i < pass.nodes.count; i += lane_count) visit(pass, slave_side, i);
   }

@@ -37,15 +37,15 @@ inline SlaveNodes load_slaves(const Pass& pass, int i) {
           load(pass.tributary_length + node)};
 }
 
-/// Nodes of one side that get forces, and where those of the first of them stand.
+/// Nodes of one side that get forces; `begin`: the first one's entry in a buffer.
 struct ForceRun {
-  Arc nodes;
+  Arc arc;
   int begin;
 };
 struct ForceRuns {
   ForceRun of[2];  ///< [sides]
 };
-/// In the buffers of all patches.
+/// As they stand in the buffers of all patches.
 inline ForceRuns runs_in_table(const Patch& patch) {
   return {{{patch.forces(0), patch.entry[0]}, {patch.forces(1), patch.entry[1]}}};
 }
@@ -63,8 +63,8 @@ inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& ru
           patch.nodes[slave_side],
           view.shift(slave_side),
           patch.record[slave_side],
-          runs.of[slave_side].begin + patch.nodes[slave_side].begin - runs.of[slave_side].nodes.begin,
-          runs.of[master_side].begin + patch.segments[master_side].begin - runs.of[master_side].nodes.begin,
+          runs.of[slave_side].begin + patch.nodes[slave_side].begin - runs.of[slave_side].arc.begin,
+          runs.of[master_side].begin + patch.segments[master_side].begin - runs.of[master_side].arc.begin,
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
           patch.corners};

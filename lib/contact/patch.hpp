@@ -113,7 +113,8 @@ struct PatchTotals {
   }
 };
 
-/// Where the forces of all patches go: each arc has its own stretch, gathered later by its body in a fixed order.
+/// Where the forces of all patches go: each arc has its own stretch, in whole lanes, 0 beyond its last node, gathered
+/// later by its body in a fixed order.
 struct PatchForces {
   LinedNumbers x, y;  ///< N/m
 

@@ -202,16 +202,16 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRun
   return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
 }
 
-/// Puts the forces on one side's nodes where they belong, whole lanes of them, 0 beyond the last. Returns what the mean
-/// of these and those before does in the step, J/m.
+/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. Returns the work of
+/// the mean of these forces and those before in the step, J/m; 0 where nobody asks.
 double put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
                PatchForces& forces) {
   const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
             offset = view.model.outline_offset[body];
   const bool asks_work = step && step->before;
-  int node = run.nodes.begin;
+  int node = run.arc.begin;
   Lanes twice{};
-  for (int i = 0; i < run.nodes.count; i += lane_count, node += lane_count) {
+  for (int i = 0; i < run.arc.count; i += lane_count, node += lane_count) {
     const Lanes x = load(&near.x[run.begin + i]), y = load(&near.y[run.begin + i]);
     store(&forces.x[entry + i], x), store(&forces.y[entry + i], y);
     if (!asks_work) continue;
@@ -233,8 +233,8 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   thread_local PatchForces near;
   const Patch& patch = view.patch;
   ForceRuns runs = runs_in_table(patch);
-  runs.of[0].begin = 0, runs.of[1].begin = padded(runs.of[0].nodes.count) + lane_count;
-  const std::size_t size = static_cast<std::size_t>(runs.of[1].begin + padded(runs.of[1].nodes.count) + lane_count);
+  runs.of[0].begin = 0, runs.of[1].begin = padded(runs.of[0].arc.count) + lane_count;
+  const std::size_t size = static_cast<std::size_t>(runs.of[1].begin + padded(runs.of[1].arc.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
   const auto passes = [&](const auto& law) {
@@ -248,7 +248,7 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
     return totals;
   };
   PatchTotals totals = std::visit(passes, patch.law);
-  // The last pass added to the first side's nodes one by one: these would be waited for.
+  // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes last.
   for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs.of[side], near, forces);
   return totals;
 }

@@ -8,9 +8,10 @@ namespace pliant {
 /// What numbers that are asked for are wanted for.
 enum class Access { read, write };
 
-/// Asks for the lines of the cache that numbers stand in, looked at by whole lanes, before they are.
+/// Asks ahead for all lines of the cache that a run of numbers takes, rounded up to whole lanes.
 template <Access access = Access::read>
 void prefetch_run(const double* numbers, int count) {
+  if (count == 0) return;
   constexpr std::uintptr_t line = 64;
   const auto first = reinterpret_cast<std::uintptr_t>(numbers),
              end = first + (sizeof(double) * static_cast<unsigned>(count) + line - 1) / line * line;

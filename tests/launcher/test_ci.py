@@ -11,7 +11,7 @@ from conftest import ROOT, Launcher, write_script
 SCENES = {"gcc": "test --preset gcc --scenes"}
 UNITS = [{"gcc": f"PLIANT_TEST_PART={half}/2 test --preset gcc --units"} for half in (0, 1)]
 IN_TURN = {0: SCENES | {"fuzz": "fuzz --seconds 30", "memory": "test --preset fuzz --scenes",
-                               "races": "test --preset tsan --scenes"},
+                        "races": "test --preset tsan --scenes"},
            1: UNITS[0], 3: UNITS[1],
            6: SCENES | {"memory": "PLIANT_TEST_PART=1/4 test --preset fuzz --units"}}  # by the number of commits
 
