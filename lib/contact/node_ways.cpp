@@ -14,17 +14,29 @@ namespace {
 /// Outline nodes up to which ways are kept node by node.
 constexpr int small_outline = 512;
 
+/// A box that grows by eight points at once.
+class GrowingBox {
+ public:
+  void add(Lanes x, Lanes y) {
+    x_min_ = min(x_min_, x), x_max_ = max(x_max_, x);
+    y_min_ = min(y_min_, y), y_max_ = max(y_max_, y);
+  }
+  Box box() const { return {-largest(-x_min_), largest(x_max_), -largest(-y_min_), largest(y_max_)}; }
+
+ private:
+  Lanes x_min_ = broadcast(1e300), x_max_ = -x_min_, y_min_ = x_min_, y_max_ = x_max_;
+};
+
 /// Of the ways of an outline's nodes, eight at once from node i on. The last lanes may reach into the cyclic copies,
 /// which move as their originals.
 template <class Ways>
 Box box_of(int count, Ways&& ways) {
-  Lanes x_min = broadcast(1e300), x_max = -x_min, y_min = x_min, y_max = x_max;
+  GrowingBox result;
   for (int i = 0; i < count; i += lane_count) {
     const auto [dx, dy] = ways(i);
-    x_min = min(x_min, dx), x_max = max(x_max, dx);
-    y_min = min(y_min, dy), y_max = max(y_max, dy);
+    result.add(dx, dy);
   }
-  return {-largest(-x_min), largest(x_max), -largest(-y_min), largest(y_max)};
+  return result.box();
 }
 
 using Floats = float __attribute__((vector_size(4 * lane_count)));
@@ -61,6 +73,17 @@ bool is_known(const Box& box) { return box.x_min > 0.5 * unknown.x_min; }
 Box box_of_ways(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
   return box_of(model.outline_of(body).count,
                 [&](int i) { return ways_at(now, reference, model.outline_offset[body] + i); });
+}
+
+MotionBoxes motion_boxes(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
+  GrowingBox ways, place;
+  const int begin = model.outline_offset[body], end = model.outline_end(body);
+  for (int i = begin; i < end; i += lane_count) {
+    const Lanes x = load(&now.x[i]), y = load(&now.y[i]);
+    ways.add(x - load(&reference.x[i]), y - load(&reference.y[i]));
+    place.add(x, y);
+  }
+  return {ways.box(), place.box()};
 }
 
 double change_of_shape(const Box& ways) { return std::max(ways.x_max - ways.x_min, ways.y_max - ways.y_min); }

@@ -15,6 +15,11 @@ struct WaysSoFar {
 
 /// Of the ways from a body's outline nodes in a reference to where they are now.
 Box box_of_ways(const Model& model, int body, const OutlineField& now, const OutlineField& reference);
+/// That, and the box of the nodes where they are; of a wall its y alone: copies of nodes are looked at too.
+struct MotionBoxes {
+  Box ways, place;
+};
+MotionBoxes motion_boxes(const Model& model, int body, const OutlineField& now, const OutlineField& reference);
 /// How far nodes of a body have moved against each other, m.
 double change_of_shape(const Box& ways);
 /// Bound on the relative way of any two nodes of two bodies, m.

@@ -63,8 +63,9 @@ void PairWatch::loaded() {
 /// it left out. A wall lies in wait along all x, whatever its own way in x.
 double PairWatch::measure(const OutlineField& now) {
   const std::array<double, 4> out = parallel_max<4>(count_of_bodies(), -endless, [&](int b) {
-    motion_[b] = box_of_ways(model_, b, now, reference_);
-    const Box &then = swept_at_[b], box = bounding_box(model_, now, b);
+    const auto [ways, box] = motion_boxes(model_, b, now, reference_);
+    const Box& then = swept_at_[b];
+    motion_[b] = ways;
     const bool wall = model_.bodies[b].wall;
     return std::array{wall ? -endless : then.x_min - box.x_min, wall ? -endless : box.x_max - then.x_max,
                       then.y_min - box.y_min, box.y_max - then.y_max};

@@ -248,7 +248,8 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
     return totals;
   };
   PatchTotals totals = std::visit(passes, patch.law);
-  // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes last.
+  // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
+  // last.
   for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs.of[side], near, forces);
   return totals;
 }

@@ -83,8 +83,8 @@ Scene crowded_floor(const ContactRule& rule) {
   return scene;
 }
 
-/// INDEPENDENT: what all pairs owe grows by what the mean of all nodes' forces at the ends of a step does, less what the
-/// contacts' energies lose. But for rounding: the floor's nodes beyond its seam stand a period off.
+/// INDEPENDENT: what all pairs owe grows by what the mean of all nodes' forces at the ends of a step does, less what
+/// the contacts' energies lose. But for rounding: the floor's nodes beyond its seam stand a period off.
 void expect_debts_to_be_work(const ContactRule& rule) {
   const Model model = build_model(crowded_floor(rule));
   Simulation simulation(model);
