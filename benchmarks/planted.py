@@ -88,7 +88,7 @@ def linked(build: Path, program: str, planted: Path, scratch: Path) -> Path:
 
 def slower_kernel_is_found(scratch: Path) -> bool:
     kernel, build = "contact_forces", ROOT / "build" / gate.PRESET
-    sound = gate.count_all(build, [kernel], scratch / "sound")
+    sound = gate.count_all(build, [kernel], scratch)
     more = round(SHARE * sound[kernel].instructions)
     statement = f'asm volatile(".rept {more}\\n\\tnop\\n\\t.endr");'
     linked(build, "pliant_counted_kernels", compiled(build, CONTACT, statement, scratch), scratch)
@@ -133,7 +133,6 @@ def main(arguments: list[str]) -> int:
     for what, is_found in PLANTS.items():
         try:
             with tempfile.TemporaryDirectory() as scratch:
-                (Path(scratch) / "sound").mkdir()
                 found.append(is_found(Path(scratch)))
         except (OSError, RuntimeError, LookupError, ValueError, subprocess.CalledProcessError) as error:
             print(f"planted: {what}: could not be asked: {error}", file=sys.stderr)

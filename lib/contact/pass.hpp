@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "contact/master_window.hpp"
 #include "contact/patch.hpp"
 
@@ -42,9 +44,7 @@ struct ForceRun {
   Arc arc;
   int begin;
 };
-struct ForceRuns {
-  ForceRun of[2];  ///< [sides]
-};
+using ForceRuns = std::array<ForceRun, 2>;  ///< [sides]
 /// As they stand in the buffers of all patches.
 inline ForceRuns runs_in_table(const Patch& patch) {
   return {{{patch.forces(0), patch.entry[0]}, {patch.forces(1), patch.entry[1]}}};
@@ -63,8 +63,8 @@ inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& ru
           patch.nodes[slave_side],
           view.shift(slave_side),
           patch.record[slave_side],
-          runs.of[slave_side].begin + patch.nodes[slave_side].begin - runs.of[slave_side].arc.begin,
-          runs.of[master_side].begin + patch.segments[master_side].begin - runs.of[master_side].arc.begin,
+          runs[slave_side].begin + patch.nodes[slave_side].begin - runs[slave_side].arc.begin,
+          runs[master_side].begin + patch.segments[master_side].begin - runs[master_side].arc.begin,
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
           patch.corners};

@@ -233,8 +233,8 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   thread_local PatchForces near;
   const Patch& patch = view.patch;
   ForceRuns runs = runs_in_table(patch);
-  runs.of[0].begin = 0, runs.of[1].begin = padded(runs.of[0].arc.count) + lane_count;
-  const std::size_t size = static_cast<std::size_t>(runs.of[1].begin + padded(runs.of[1].arc.count) + lane_count);
+  runs[0].begin = 0, runs[1].begin = padded(runs[0].arc.count) + lane_count;
+  const std::size_t size = static_cast<std::size_t>(runs[1].begin + padded(runs[1].arc.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
   const auto passes = [&](const auto& law) {
@@ -250,7 +250,7 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   PatchTotals totals = std::visit(passes, patch.law);
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
   // last.
-  for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs.of[side], near, forces);
+  for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs[side], near, forces);
   return totals;
 }
 
