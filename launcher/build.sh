@@ -47,7 +47,7 @@ build() {  # preset, target, target of which the preset must know
 prepare() {  # preset, target, target of which the preset must know
   lock
   ensure_packages
-  case $1 in tsan | fuzz) install_needed "$1" ;; esac
+  case $1 in tsan | fuzz | lint) install_needed test ;; esac
   build "$1" "$2" "${3-}"
   unlock
 }

@@ -60,7 +60,7 @@ run_tests() {
     target=pliant_engine rest+=(-R '^cli\.cases_run$')
     ready test
   else
-    ready test verify study slurm page view browser movie docs
+    ready test verify study movie
   fi
   prepare "$preset" "$target" pliant_tests
   # Tests run side by side: their threads must neither be bound to the same cores nor wait actively.
@@ -109,7 +109,7 @@ verify() {
     return
   fi
   read_verify_options "$@"
-  prepare_verification ${full:+foreign}
+  prepare_verification
   trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
   PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
     -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1
@@ -118,8 +118,8 @@ verify() {
   exit "$code"
 }
 
-prepare_verification() {  # further groups of packages
-  ready test verify "$@"
+prepare_verification() {
+  ready test verify
   prepare release pliant_engine
   prepare release pliant_reference_solver
   prepare release pliant_agreement pliant_agreement
@@ -129,7 +129,7 @@ bench() {
   case ${1-} in
     '' | kernels | --benchmark*)
       [ "${1-}" != kernels ] || shift
-      ready bench
+      ready test
       prepare release pliant_bench pliant_bench
       set_run_defaults
       exec "$root/build/release/pliant_bench" "$@"
@@ -139,34 +139,33 @@ bench() {
       exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
       ;;
     error)
-      ready error
       prepare release pliant_engine
       prepare release pliant_reference_solver
       exec "$python" -B "$root/benchmarks/error.py" "${@:2}"
       ;;
     gate)
-      ready counting
+      ready test
       prepare counting pliant_engine
       prepare counting pliant_counted_kernels pliant_counted_kernels
       exec "$python" -B "$root/benchmarks/gate.py" "${@:2}"
       ;;
     planted)
-      ready counting test
+      ready test
       prepare counting pliant_counted_kernels pliant_counted_kernels
       prepare release pliant_tests pliant_tests
       exec "$python" -B "$root/benchmarks/planted.py" "${@:2}"
       ;;
     ab)
-      ready ab
+      ready
       set_run_defaults
       exec "$python" -B "$root/benchmarks/ab.py" "${@:2}"
       ;;
     page)
-      ready page
+      ready
       exec "$python" -B "$root/benchmarks/page.py" "${@:2}"
       ;;
     --instructions)
-      ready counting
+      ready test
       prepare counting pliant_engine
       exec "$python" "$root/benchmarks/marginal_cost.py" "${@:2}"
       ;;
@@ -183,18 +182,16 @@ bench() {
 }
 
 docs() {
-  ready docs
+  ready
   exec "$python" -B "$root/scripts/docs.py" "$@"
 }
 
 fuzz() {
-  ready test
   prepare fuzz pliant_fuzzers
   exec "$python" -B "$root/tests/fuzz/fuzz.py" "$@"
 }
 
 lint() {
-  ready lint
   prepare lint build_info
   local targets=("$root"/build/lint/CMakeFiles/pliant_{triangulation,scene,lib,engine,reference,reference_solver}.dir)
   local files=("$@")
@@ -207,6 +204,6 @@ lint() {
 }
 
 format() {
-  ready
+  ready test
   "$root/tests/structure/format.sh" --write
 }

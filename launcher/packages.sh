@@ -52,9 +52,9 @@ install_needed() {  # group: stops when it cannot be installed
   fail "could not install: ${missing[*]}. Full log: $root/build/packages.log"
 }
 
-install_wanted() {  # group: installed whole, or left out when another package would have to go; whether it is there
+install_wanted() {  # packages: installed together, or left out when another one would have to go; whether they are there
   local missing
-  mapfile -t missing < <(packages_of "$1" | only_missing)
+  mapfile -t missing < <(printf '%s\n' "$@" | only_missing)
   [ ${#missing[@]} -gt 0 ] || return 0
   say "installing, if possible: ${missing[*]}"
   update_lists_once
@@ -63,21 +63,23 @@ install_wanted() {  # group: installed whole, or left out when another package w
   return 1
 }
 
-unpack() {  # group, folder below build/: its packages' files, without installing them
-  local folder="$root/build/$2" part="$root/build/$2.part" names
+unpack() {  # folder below build/, packages: their files, without installing them
+  local folder="$root/build/$1" part="$root/build/$1.part"
   [ ! -d "$folder" ] || return 0
-  mapfile -t names < <(packages_of "$1")
   rm -rf "$part"
   mkdir -p "$part"
-  say "unpacking them in build/$2 instead"
-  (cd "$part" && apt-get download "${names[@]}" &&
+  say "unpacking them in build/$1 instead"
+  (cd "$part" && apt-get download "${@:2}" &&
     for file in *.deb; do dpkg -x "$file" . || exit 1; done && rm ./*.deb) \
     >>"$root/build/packages.log" 2>&1 </dev/null 9>&- && mv "$part" "$folder"
 }
 
 # clang with its OpenMP, which cmake/compiler.cmake then finds.
 install_fast_compiler() {
-  install_wanted fast && { install_wanted openmp || unpack openmp openmp; } && return 0
+  local compiler openmp
+  mapfile -t compiler < <(packages_of fast | grep -v '^libomp')
+  mapfile -t openmp < <(packages_of fast | grep '^libomp')
+  install_wanted "${compiler[@]}" && { install_wanted "${openmp[@]}" || unpack openmp "${openmp[@]}"; } && return 0
   say "g++ builds instead of clang-19: forces take 1.9 times as long"
 }
 
@@ -86,6 +88,5 @@ ensure_packages() {
   cmp -s "$root/packages.txt" "$stamp" && return 0
   install_needed required
   install_fast_compiler
-  install_wanted style
   cp "$root/packages.txt" "$stamp"
 }

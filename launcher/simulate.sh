@@ -1,5 +1,7 @@
 # Commands that simulate, and that look at what came out.
 
+PICTURES_FAILED=5  # exit code of a run that is whole while a picture of it could not be drawn
+
 # Threads wait actively: waking a sleeping team costs 12 to 25 us a step. They are not bound: a second OpenMP runtime,
 # which a linear algebra library brings along, would bind the first thread and leave the engine one core. Memory comes
 # in large pages where the system has them: contact looks at places all over it.
@@ -53,6 +55,13 @@ forward_signals_to() {
   return "$code"
 }
 
+# The run's exit code stays that of the engine: a picture that fails has one of its own (docs/results.md).
+pictures_failed() {  # folder
+  echo "pliant: the run is complete and its results are whole: $1. Only a picture failed, as said above (exit code" \
+    "$PICTURES_FAILED). ./pliant plot $1 draws them again; --no-plot draws none" >&2
+  exit "$PICTURES_FAILED"
+}
+
 run_and_draw() {  # program, its arguments, --no-plot (ours): it tells its folder (lib/files/output_folder.hpp)
   local program=$1 argument plot=yes arguments=() told folder code=0
   shift
@@ -70,7 +79,7 @@ run_and_draw() {  # program, its arguments, --no-plot (ours): it tells its folde
   folder=$(<"$told")
   rm -f "$told"
   [ "$code" = 0 ] || exit "$code"
-  [ -z "$plot" ] || [ -z "$folder" ] || draw "$folder"
+  [ -z "$plot" ] || [ -z "$folder" ] || draw "$folder" || pictures_failed "$folder"
 }
 
 run() {
@@ -97,7 +106,7 @@ plot() {
 }
 
 movie() {
-  ready movie
+  need "" movie
   exec "$python" "$root/scripts/movie.py" "$@"
 }
 
@@ -107,7 +116,7 @@ shape-functions() {
 }
 
 view() {
-  ready view
+  need ""
   exec "$python" "$root/scripts/view.py" "$@"
 }
 
@@ -128,7 +137,7 @@ compare() {
 
 study() {
   need pliant_engine study
-  PYTHONPATH=$root/python exec "$python" -B -m pliant.study "$@"
+  exec "$python" -B -m pliant.study "$@"
 }
 
 schema() {

@@ -21,11 +21,14 @@ Nothing here computes mechanics: that is the engine's.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from pliant.engine import BadScene, RunFailed, run
 from pliant.frames import BadFolder, Contacts, Frames, Grid
 from pliant.results import Column, Run, Table, read_run
-from pliant.scene import Scene
+
+if TYPE_CHECKING:
+    from pliant.scene import Scene
 
 __all__ = ["BadFolder", "BadScene", "Column", "Contacts", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
 
@@ -33,3 +36,12 @@ __all__ = ["BadFolder", "BadScene", "Column", "Contacts", "Frames", "Grid", "Run
 def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.open
     """What a run wrote into a folder. BadFolder: it is none."""
     return read_run(Path(folder))
+
+
+def __getattr__(name: str) -> Any:
+    """Scene imports tomlkit, which reading results does without."""
+    if name == "Scene":
+        from pliant.scene import Scene
+
+        return Scene
+    raise AttributeError(f"module 'pliant' has no attribute '{name}'")

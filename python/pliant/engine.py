@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from pliant.results import Run, read_json, read_run
 if TYPE_CHECKING:
     from pliant.scene import Scene
 
-ROOT = Path(__file__).resolve().parents[2]
+BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"
 BAD_INPUT = 2  # exit code of what is wrong before a run begins
 ENGINE_SETTINGS = {"OMP_WAIT_POLICY": "passive", "OMP_PROC_BIND": "false"}  # runs side by side must not wait actively
 
@@ -29,8 +30,11 @@ class RunFailed(Exception):
 
 
 def engine() -> Path:
-    """The program that ./pliant builds, or what PLIANT_ENGINE names."""
-    path = Path(os.environ.get("PLIANT_ENGINE", ROOT / "build/release/pliant_engine"))
+    """What PLIANT_ENGINE names; else the program that ./pliant builds in the checkout; else the one that is installed."""
+    named = os.environ.get("PLIANT_ENGINE")
+    path = Path(named or BUILT)
+    if not named and not path.exists():
+        path = Path(shutil.which(path.name) or path)
     if not path.exists():
         raise FileNotFoundError(f"{path}: there is no engine; ./pliant build makes it, or PLIANT_ENGINE names one")
     return path

@@ -31,6 +31,16 @@ def test_pictures_go_where_the_program_says(launcher: Launcher, command: str, pr
     assert "plot" not in launcher(command, *arguments, TELLS="").stdout, "nothing was written"
 
 
+@pytest.mark.parametrize("quiet", [[], ["--quiet"]], ids=["loud", "quiet"])
+def test_a_picture_that_fails_is_told_apart_from_the_run(launcher: Launcher, quiet: list[str]) -> None:
+    (launcher.root / "scripts/plot.py").write_text("import no_such_module\n")
+    result = launcher("run", "a.toml", *quiet)
+    assert result.returncode == 5
+    assert "the run is complete and its results are whole: its folder" in result.stderr and "no_such_module" in result.stderr
+    assert launcher("run", "a.toml", ENGINE_EXIT="3").returncode == 3, "the engine's own code"
+    assert launcher("plot", "its folder").returncode == 1, "no run"
+
+
 def test_no_plot_is_the_launchers_own(launcher: Launcher) -> None:
     result = launcher("run", "a.toml", "--no-plot")
     assert result.stdout.startswith("[run][a.toml] ")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -30,6 +31,30 @@ def test_a_changed_scene_keeps_all_else(scene: Scene) -> None:
     old, new = TWO_DISCS.read_text().splitlines(), scene.text().splitlines()
     assert [(a, b) for a, b in zip(old, new, strict=True) if a != b] == [('end = "10 ns"', 'end = "1 ns"'),
                                                                          ("nodes = 168", "nodes = 40")]
+
+
+def test_reading_results_needs_h5py_and_numpy_alone() -> None:
+    """EXACT: every other package is kept from being imported; a scene then says which one it lacks."""
+    code = """
+import importlib.abc, sys
+class Refuses(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in {"tomlkit", "scipy", "matplotlib", "jinja2", "markdown", "snakemake"}:
+            raise ModuleNotFoundError(f"refused: {name}", name=name)
+sys.meta_path.insert(0, Refuses())
+import pliant, pliant.network, pliant.coarse
+try:
+    pliant.open(".")
+except pliant.BadFolder:
+    print("read")
+try:
+    pliant.Scene
+except ModuleNotFoundError as error:
+    print(error.name)
+"""
+    result = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True,
+                            env={**os.environ, "PYTHONPATH": str(ROOT / "python")})
+    assert (result.returncode, result.stdout) == (0, "read\ntomlkit\n"), result.stderr
 
 
 def test_members_by_number_and_by_name(scene: Scene) -> None:

@@ -1,0 +1,48 @@
+# `cmake --install build --prefix P`: the programs, the launcher's commands that need no compiler, the Python package,
+# cases and man pages, where GNU's and Debian's conventions want them. The launcher finds all of it from where it stands.
+include(GNUInstallDirs)
+set(INSTALLED_COMMANDS run reference check modes plot movie view shape-functions export info compare study schema)
+set(data ${CMAKE_INSTALL_DATADIR}/pliant)
+
+install(TARGETS pliant_engine pliant_reference_solver RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(PLIANT_CLANG_OPENMP AND "${OpenMP_omp_LIBRARY}" STREQUAL "${PLIANT_CLANG_OPENMP}")
+  # Of the compiler, not of the system, which may have another version under the same name.
+  install(FILES ${PLIANT_CLANG_OPENMP} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pliant RENAME libomp.so.5)
+  set_target_properties(pliant_engine pliant_reference_solver PROPERTIES
+    INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/pliant")
+endif()
+install(PROGRAMS pliant DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES launcher/simulate.sh DESTINATION ${data}/launcher)
+foreach(command pliant ${INSTALLED_COMMANDS})
+  install(FILES launcher/help/${command}.txt DESTINATION ${data}/launcher/help)
+  string(REPLACE "-" "_" script ${command})
+  if(EXISTS ${CMAKE_SOURCE_DIR}/scripts/${script}.py)
+    install(FILES scripts/${script}.py DESTINATION ${data}/scripts)
+  endif()
+endforeach()
+install(DIRECTORY scripts/plots scripts/viewing DESTINATION ${data}/scripts PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY cases DESTINATION ${data})
+install(DIRECTORY docs/keys DESTINATION ${data}/docs)
+install(DIRECTORY python/pliant DESTINATION lib/python3/dist-packages PATTERN __pycache__ EXCLUDE)
+install(FILES README.md CITATION.cff docs/changelog.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(CODE "set(DATA \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${data}\")
+  set(VERSION ${PROJECT_VERSION})")
+install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/installed_texts.cmake)
+
+# Man pages are the help texts.
+find_program(HELP2MAN help2man)
+mark_as_advanced(HELP2MAN)
+if(HELP2MAN)
+  foreach(command pliant ${INSTALLED_COMMANDS})
+    set(page pliant-${command}.1)
+    if(command STREQUAL pliant)
+      set(page pliant.1)
+    endif()
+    set(text ${CMAKE_SOURCE_DIR}/launcher/help/${command}.txt)
+    add_custom_command(OUTPUT man/${page} DEPENDS ${text} cmake/man_page.sh VERBATIM
+      COMMAND ${CMAKE_SOURCE_DIR}/cmake/man_page.sh ${HELP2MAN} ${text} ${PROJECT_VERSION} man/${page})
+    list(APPEND MAN_PAGES ${CMAKE_BINARY_DIR}/man/${page})
+  endforeach()
+  add_custom_target(man ALL DEPENDS ${MAN_PAGES})
+  install(FILES ${MAN_PAGES} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+endif()

@@ -1,0 +1,10 @@
+# Run by `cmake --install`: in the texts under DATA the launcher is `pliant`, not `./pliant`; VERSION stands in a file.
+file(GLOB_RECURSE texts ${DATA}/*.txt ${DATA}/*.py ${DATA}/*.sh ${DATA}/*.toml)
+foreach(file ${texts})
+  file(READ ${file} text)
+  string(REPLACE "./pliant " "pliant " changed "${text}")
+  if(NOT changed STREQUAL text)
+    file(WRITE ${file} "${changed}")
+  endif()
+endforeach()
+file(WRITE ${DATA}/version "${VERSION}\n")
