@@ -19,11 +19,11 @@ show_log_and_fail() {  # log, what failed
 configure() {  # preset, target that is left out without its packages, if any: looked for again once they are installed
   local log="$root/build/$1/configure.log" ninja="$root/build/$1/build.ninja"
   # Of the unit tests, see tests/CMakeLists.txt.
-  local part=${PLIANT_TEST_PART:+-DPLIANT_TEST_PART=$PLIANT_TEST_PART}
-  [ -n "$part" ] || [ ! -f "$ninja" ] || { [ -n "${2-}" ] && ! grep -q "^build $2:" "$ninja"; } || return 0
+  local folders=${PLIANT_TEST_FOLDERS:+-DPLIANT_TEST_FOLDERS=$PLIANT_TEST_FOLDERS}
+  [ -n "$folders" ] || [ ! -f "$ninja" ] || { [ -n "${2-}" ] && ! grep -q "^build $2:" "$ninja"; } || return 0
   mkdir -p "$root/build/$1"
   say "configuring build/$1"
-  (cd "$root" && cmake --preset "$1" ${part:+"$part"}) >"$log" 2>&1 </dev/null 9>&- ||
+  (cd "$root" && cmake --preset "$1" ${folders:+"$folders"}) >"$log" 2>&1 </dev/null 9>&- ||
     show_log_and_fail "$log" "configuring"
 }
 

@@ -68,9 +68,9 @@ run_tests() {
   set_sanitizer_defaults
   local counts="$root/build/$preset/tests.xml"
   rm -f "$counts"
-  local part
-  part=$(sed -n 's/^PLIANT_TEST_PART:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
-  [ "${part:-0/1}" = 0/1 ] || say "of the unit tests part $part alone"
+  local folders
+  folders=$(sed -n 's/^PLIANT_TEST_FOLDERS:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
+  [ "${folders:-.*}" = '.*' ] || say "of the unit tests those of $folders alone"
   say "testing build/$preset"
   ctest --test-dir "$root/build/$preset" -j "$(nproc)" --output-on-failure --no-tests=error \
     --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
@@ -79,10 +79,11 @@ run_tests() {
   return "$code"
 }
 
-read_verify_options() {  # sets full and folders
+read_verify_options() {  # sets preset, full and folders
   full='' folders=()
-  local argument
-  for argument in "$@"; do
+  local argument units scenes rest
+  read_preset "$@"
+  for argument in ${rest[@]+"${rest[@]}"}; do
     case $argument in
       --full) full=1; continue ;;
       --mutate)
@@ -102,14 +103,16 @@ read_verify_options() {  # sets full and folders
 }
 
 verify() {
-  local full folders code=0 interrupted=''
+  local preset full folders code=0 interrupted=''
   if [ "${1-}" = --mutate ]; then
-    prepare_verification
+    prepare_verification release
     "$python" -B "$root/verify/mutations/mutate.py" "${@:2}" </dev/null || exit $?
     return
   fi
   read_verify_options "$@"
-  prepare_verification
+  prepare_verification "$preset"
+  local build=$root/build/$preset
+  export PLIANT_ENGINE=${PLIANT_ENGINE-$build/pliant_engine} PLIANT_REFERENCE=${PLIANT_REFERENCE-$build/pliant_reference_solver}
   trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
   PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
     -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1
@@ -118,11 +121,11 @@ verify() {
   exit "$code"
 }
 
-prepare_verification() {
+prepare_verification() {  # preset
   ready test verify
-  prepare release pliant_engine
-  prepare release pliant_reference_solver
-  prepare release pliant_agreement pliant_agreement
+  prepare "$1" pliant_engine
+  prepare "$1" pliant_reference_solver
+  prepare "$1" pliant_agreement pliant_agreement
 }
 
 bench() {

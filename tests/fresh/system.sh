@@ -17,11 +17,11 @@ make_system() {  # folder, further packages (,name...): Debian's smallest set of
 }
 
 # Runs a command in the system, with processes and mounts of its own, which go when it ends. A folder of this machine
-# that is shared has the same path inside. Variables that begin with PLIANT_ or are named in SHARED_VARIABLES go along.
+# that is shared has the same path inside. Variables of Pliant, of tests and of OpenBLAS go along.
 inside() {  # system, folder inside, folder that is shared or nothing, command, arguments...
   local system=$1 at=$2 shared=$3 variable kept=()
   shift 3
-  for variable in http_proxy https_proxy CI PYTEST_ADDOPTS $(compgen -e PLIANT_); do
+  for variable in http_proxy https_proxy CI PYTEST_ADDOPTS $(compgen -e | grep -E "^(PLIANT|OPENBLAS)_"); do
     [ -z "${!variable+set}" ] || kept+=("$variable=${!variable}")
   done
   [ -z "$shared" ] || mkdir -p "$system$shared"
