@@ -12,13 +12,13 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 SMALLEST = 2000  # bytes of a file that shows something
-LEAST_DRAWN = 0.01  # share of pixels that are not of the commonest colour: frame and letters alone take some 0.005
+LEAST_COLOURED = 5e-4  # share of pixels: bodies and curves have colours, frames and letters are grey
 
 
-def drawn(pixels: np.ndarray) -> float:
-    """Share of the pixels [rows x columns x colours] that are not of the commonest colour."""
-    colours, counts = np.unique(pixels[..., :3].reshape(-1, 3), axis=0, return_counts=True)
-    return 1 - counts.max() / counts.sum() if len(colours) > 1 else 0.0
+def coloured(pixels: np.ndarray) -> float:
+    """Share of the pixels [rows x columns x colours] that are not grey."""
+    colours = pixels[..., :3].astype(float) / (255 if pixels.dtype == np.uint8 else 1)
+    return float((np.ptp(colours, axis=-1) > 0.1).mean())
 
 
 def fault(file: Path) -> str:
@@ -26,8 +26,8 @@ def fault(file: Path) -> str:
         return "is not there"
     if file.stat().st_size < SMALLEST:
         return f"has {file.stat().st_size} bytes"
-    if file.suffix in (".png", ".gif") and (share := drawn(plt.imread(file))) < LEAST_DRAWN:
-        return f"is blank: {100 * share:.2f} % of it are drawn on"
+    if file.suffix in (".png", ".gif") and (share := coloured(plt.imread(file))) < LEAST_COLOURED:
+        return f"is blank: {100 * share:.2f} % of it have a colour"
     return ""
 
 
