@@ -112,7 +112,8 @@ verify() {
   read_verify_options "$@"
   prepare_verification "$preset"
   local build=$root/build/$preset
-  export PLIANT_ENGINE=${PLIANT_ENGINE-$build/pliant_engine} PLIANT_REFERENCE=${PLIANT_REFERENCE-$build/pliant_reference_solver}
+  export PLIANT_ENGINE=${PLIANT_ENGINE-$build/pliant_engine}
+  export PLIANT_REFERENCE=${PLIANT_REFERENCE-$build/pliant_reference_solver}
   trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
   PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
     -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1

@@ -52,7 +52,7 @@ install_needed() {  # group: stops when it cannot be installed
   fail "could not install: ${missing[*]}. Full log: $root/build/packages.log"
 }
 
-install_wanted() {  # packages: installed together, or left out when another one would have to go; whether they are there
+install_wanted() {  # packages: installed together, or left out where another one would have to go; whether they are
   local missing
   mapfile -t missing < <(printf '%s\n' "$@" | only_missing)
   [ ${#missing[@]} -gt 0 ] || return 0
