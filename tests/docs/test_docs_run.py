@@ -18,7 +18,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 from pages.blocks import BadPage, blocks
 from pages.practice import Practice, Wrong, compare
 
-PAGES = [ROOT / "README.md", ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 LARGEST_PICTURE = 125_000  # bytes
 COMMAND = re.compile(r"`(\./pliant [^`]*)`")
 

@@ -14,6 +14,7 @@ make_system() {  # folder, further packages (,name...): Debian's smallest set of
   }
   apt-config dump | grep -iE '^Acquire::[a-z:]*proxy' >"$1/etc/apt/apt.conf.d/99proxy"
   cp -L /etc/resolv.conf /etc/hosts "$1/etc/"
+  echo force-unsafe-io >"$1/etc/dpkg/dpkg.cfg.d/scratch"  # nothing of it outlives a power cut
 }
 
 # Runs a command in the system, with processes and mounts of its own, which go when it ends. A folder of this machine

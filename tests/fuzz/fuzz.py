@@ -14,6 +14,7 @@ import os
 import re
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -134,15 +135,19 @@ def main(arguments: list[str] | None = None) -> int:
     if unknown or options.seconds < 1:
         parser.error(f"no target '{unknown[0]}'; there are: {', '.join(TARGETS)}" if unknown else "--seconds: at least 1")
     findings = 0
-    for target in options.targets:
+
+    def outcome_of(target: str) -> Outcome:
+        return run(options.programs / f"{target}_fuzz", target, options.seconds, options.out)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:  # one target a core; each waits for its own process
         try:
-            outcome = run(options.programs / f"{target}_fuzz", target, options.seconds, options.out)
+            for outcome in pool.map(outcome_of, options.targets):
+                findings += len(outcome.findings)
+                print(f"{outcome.target:14} {outcome.runs:>10} runs, {outcome.coverage:>6} edges, "
+                      f"{', '.join(map(str, outcome.findings)) or 'nothing found'}", flush=True)
         except (OSError, RuntimeError) as error:
             print(f"error: {error}", file=sys.stderr)
             return 2
-        findings += len(outcome.findings)
-        print(f"{target:14} {outcome.runs:>10} runs, {outcome.coverage:>6} edges, "
-              f"{', '.join(map(str, outcome.findings)) or 'nothing found'}", flush=True)
     return 1 if findings else 0
 
 
