@@ -154,7 +154,7 @@ def test_lag(mesh: tuple[int, int]) -> None:
                "pairs of points at an increment's start; a next term of the lag's square, with the longest one's lag")
 
 
-@pytest.mark.skipif(not FULL, reason="14 runs; two_bodies and polygon_on_disc compare this law each time")
+@pytest.mark.skipif(not FULL, reason="14 runs; two_bodies compares this law each time")
 @pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
 def test_force_melody(melody: Callable[[str], Study], name: str, i: int) -> None:
     known, calculix, k = melody(name), read_calculix(), list(KINDS).index(name)
