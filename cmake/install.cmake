@@ -1,17 +1,17 @@
 # `cmake --install build --prefix P`: the programs, the launcher's commands that need no compiler, the Python package,
-# cases and man pages, where GNU's and Debian's conventions want them. The launcher finds all of it from where it stands.
-include(GNUInstallDirs)
+# cases and man pages, where conventions want them. The launcher finds all of it from where it stands, so the folders
+# below the prefix are fixed.
 set(INSTALLED_COMMANDS run reference check modes plot movie view shape-functions export info compare study schema)
-set(data ${CMAKE_INSTALL_DATADIR}/pliant)
+set(data share/pliant)
 
-install(TARGETS pliant_engine pliant_reference_solver RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS pliant_engine pliant_reference_solver RUNTIME DESTINATION bin)
 if(PLIANT_CLANG_OPENMP AND "${OpenMP_omp_LIBRARY}" STREQUAL "${PLIANT_CLANG_OPENMP}")
-  # Of the compiler, not of the system, which may have another version under the same name.
-  install(FILES ${PLIANT_CLANG_OPENMP} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pliant RENAME libomp.so.5)
-  set_target_properties(pliant_engine pliant_reference_solver PROPERTIES
-    INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/pliant")
+  # The compiler's own: the system may have another version under the same name.
+  get_filename_component(openmp ${PLIANT_CLANG_OPENMP} REALPATH)
+  install(FILES ${openmp} DESTINATION lib/pliant RENAME libomp.so.5)
+  set_target_properties(pliant_engine pliant_reference_solver PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/pliant")
 endif()
-install(PROGRAMS pliant DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(PROGRAMS pliant DESTINATION bin)
 install(FILES launcher/simulate.sh DESTINATION ${data}/launcher)
 foreach(command pliant ${INSTALLED_COMMANDS})
   install(FILES launcher/help/${command}.txt DESTINATION ${data}/launcher/help)
@@ -21,10 +21,10 @@ foreach(command pliant ${INSTALLED_COMMANDS})
   endif()
 endforeach()
 install(DIRECTORY scripts/plots scripts/viewing DESTINATION ${data}/scripts PATTERN __pycache__ EXCLUDE)
-install(DIRECTORY cases DESTINATION ${data})
+install(DIRECTORY cases studies DESTINATION ${data})
 install(DIRECTORY docs/keys DESTINATION ${data}/docs)
 install(DIRECTORY python/pliant DESTINATION lib/python3/dist-packages PATTERN __pycache__ EXCLUDE)
-install(FILES README.md CITATION.cff docs/changelog.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE CITATION.cff DESTINATION share/doc/pliant)
 install(CODE "set(DATA \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${data}\")
   set(VERSION ${PROJECT_VERSION})")
 install(SCRIPT ${CMAKE_SOURCE_DIR}/cmake/installed_texts.cmake)
@@ -44,5 +44,5 @@ if(HELP2MAN)
     list(APPEND MAN_PAGES ${CMAKE_BINARY_DIR}/man/${page})
   endforeach()
   add_custom_target(man ALL DEPENDS ${MAN_PAGES})
-  install(FILES ${MAN_PAGES} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${MAN_PAGES} DESTINATION share/man/man1)
 endif()

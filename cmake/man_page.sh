@@ -2,8 +2,9 @@
 # A help text of the launcher as a man page: man_page.sh HELP2MAN TEXT VERSION PAGE
 set -eu
 name=$(basename "$4" .1)
-folder=$(mktemp -d)
+folder=$4.d  # beside the page: programs may not run from /tmp
 trap 'rm -rf "$folder"' EXIT
+mkdir -p "$folder"
 # help2man asks a program. Its usage is one line and begins with "Usage:".
 summary=$(sed -n "s,^  \./pliant ${name#pliant-} .*   *,,p" "$(dirname "$2")/pliant.txt")
 {
@@ -17,5 +18,4 @@ summary=$(sed -n "s,^  \./pliant ${name#pliant-} .*   *,,p" "$(dirname "$2")/pli
   echo TEXT
 } >"$folder/$name"
 chmod +x "$folder/$name"
-mkdir -p "$(dirname "$4")"
 "$1" --no-info --section 1 --name "${summary:-rigid and compliant grains in one simulation}" --output "$4" "$folder/$name"

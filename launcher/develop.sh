@@ -70,7 +70,7 @@ run_tests() {
   rm -f "$counts"
   local folders
   folders=$(sed -n 's/^PLIANT_TEST_FOLDERS:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
-  [ "${folders:-.*}" = '.*' ] || say "of the unit tests those of $folders alone"
+  [ "${folders:-.*}" = '.*' ] || say "of the unit tests those of $folders"
   say "testing build/$preset"
   ctest --test-dir "$root/build/$preset" -j "$(nproc)" --output-on-failure --no-tests=error \
     --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
@@ -83,6 +83,12 @@ read_verify_options() {  # sets preset, full and folders
   full='' folders=()
   local argument units scenes rest
   read_preset "$@"
+  if [ "$preset" != release ] && [ -n "${PLIANT_ENGINE:-}" ]; then
+    echo "pliant: verify: --preset $preset, and PLIANT_ENGINE names another engine: give one of the two" >&2
+    exit 2
+  fi
+  [ "$preset" != lint ] || rest+=("--preset lint")
+  rest+=(${units:+--units} ${scenes:+--scenes})
   for argument in ${rest[@]+"${rest[@]}"}; do
     case $argument in
       --full) full=1; continue ;;
@@ -112,8 +118,9 @@ verify() {
   read_verify_options "$@"
   prepare_verification "$preset"
   local build=$root/build/$preset
-  export PLIANT_ENGINE=${PLIANT_ENGINE-$build/pliant_engine}
-  export PLIANT_REFERENCE=${PLIANT_REFERENCE-$build/pliant_reference_solver}
+  export PLIANT_ENGINE=${PLIANT_ENGINE:-$build/pliant_engine}
+  export PLIANT_REFERENCE=${PLIANT_REFERENCE:-$build/pliant_reference_solver}
+  set_sanitizer_defaults
   trap 'interrupted=1' INT  # pytest's own code for it is also that of a file which does not load
   PLIANT_VERIFY_FULL=$full OMP_WAIT_POLICY=passive "$python" -B -m pytest -c "$root/verify/pytest.ini" \
     -n "$(nproc)" --dist loadfile "${folders[@]}" </dev/null || code=1

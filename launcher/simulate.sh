@@ -32,7 +32,7 @@ need() {  # program or nothing, groups of packages
 }
 
 draw() {  # folder, or the options of plot.py
-  say "drawing $1"
+  say "drawing ${1-}"
   if [ -n "$quiet" ]; then
     "$python" "$root/scripts/plot.py" "$@" >/dev/null
   else
@@ -58,7 +58,7 @@ forward_signals_to() {
 # The run's exit code stays that of the engine: a picture that fails has one of its own (docs/results.md).
 pictures_failed() {  # folder
   echo "pliant: the run is complete and its results are whole: $1. Only a picture failed, as said above (exit code" \
-    "$PICTURES_FAILED). ./pliant plot $1 draws them again; --no-plot draws none" >&2
+    "$PICTURES_FAILED). ./pliant plot ${1@Q} draws them again; --no-plot draws none" >&2
   exit "$PICTURES_FAILED"
 }
 

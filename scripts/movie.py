@@ -207,7 +207,7 @@ def main(arguments: list[str]) -> int:
         return BAD_INPUT
     except (OSError, EncoderFailed) as error:
         if isinstance(error, FileNotFoundError) and error.filename == "ffmpeg":
-            print("error: ffmpeg is not there; ./pliant movie installs it", file=sys.stderr)
+            print("error: ffmpeg is not there: install Debian's package ffmpeg", file=sys.stderr)
             return SETTING_UP_FAILED
         reason = error.strerror if isinstance(error, OSError) and error.strerror else error
         print(f"error: {options.out}: the film cannot be written: {reason}; check the permissions and the free disk "

@@ -38,6 +38,10 @@ def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.op
     return read_run(Path(folder))
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
 def __getattr__(name: str) -> Any:
     """Scene imports tomlkit, which reading results does without."""
     if name == "Scene":

@@ -16,7 +16,8 @@ from pliant.results import Run, read_json, read_run
 if TYPE_CHECKING:
     from pliant.scene import Scene
 
-BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"
+BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"  # in a checkout
+INSTALLED = Path(__file__).resolve().parents[4] / "bin/pliant_engine"  # as cmake/install.cmake lays it out
 BAD_INPUT = 2  # exit code of what is wrong before a run begins
 ENGINE_SETTINGS = {"OMP_WAIT_POLICY": "passive", "OMP_PROC_BIND": "false"}  # runs side by side must not wait actively
 
@@ -30,13 +31,15 @@ class RunFailed(Exception):
 
 
 def engine() -> Path:
-    """What PLIANT_ENGINE names; else the program that ./pliant builds in the checkout; else the one that is installed."""
-    named = os.environ.get("PLIANT_ENGINE")
-    path = Path(named or BUILT)
-    if not named and not path.exists():
-        path = Path(shutil.which(path.name) or path)
-    if not path.exists():
-        raise FileNotFoundError(f"{path}: there is no engine; ./pliant build makes it, or PLIANT_ENGINE names one")
+    """What PLIANT_ENGINE names; else the program that ./pliant builds in the checkout; else the one that is installed
+    beside this package, or on the PATH."""
+    if named := os.environ.get("PLIANT_ENGINE"):
+        found = [Path(named)]
+    else:
+        found = [BUILT, INSTALLED, *map(Path, filter(None, [shutil.which(BUILT.name)]))]
+    path = next((file for file in found if file.exists()), None)
+    if path is None:
+        raise FileNotFoundError(f"{found[0]}: there is no engine; ./pliant build makes it, or PLIANT_ENGINE names one")
     return path
 
 

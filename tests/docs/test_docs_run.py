@@ -19,7 +19,7 @@ from pages.blocks import BadPage, blocks
 from pages.practice import Practice, Wrong, compare
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-LARGEST_PICTURE = 125_000  # bytes
+LARGEST_PICTURE, LARGEST_FILM = 125_000, 3_000_000  # bytes
 COMMAND = re.compile(r"`(\./pliant [^`]*)`")
 
 
@@ -62,10 +62,11 @@ def test_commands_in_the_text_are_there_with_their_options(page: Path) -> None:
 
 def test_pictures_are_small_and_shown() -> None:
     shown = {(page.parent / address).resolve() for page in PAGES
-             for address in re.findall(r"\]\(([^)]*\.png)\)", page.read_text())}
-    kept = set((ROOT / "docs").rglob("*.png"))
+             for address in re.findall(r"\]\(([^)]*\.(?:png|gif))\)", page.read_text())}
+    kept = {*(ROOT / "docs").rglob("*.png"), *(ROOT / "docs").rglob("*.gif")}
     assert kept == shown
-    assert [name(file) for file in kept if file.stat().st_size > LARGEST_PICTURE] == []
+    largest = {".png": LARGEST_PICTURE, ".gif": LARGEST_FILM}
+    assert [name(file) for file in kept if file.stat().st_size > largest[file.suffix]] == []
 
 
 def page_of(folder: Path, text: str) -> Path:

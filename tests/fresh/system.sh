@@ -2,7 +2,8 @@
 
 package_sources() {  # those of this machine that are Debian's own, as files; none: mmdebstrap asks Debian's servers
   grep -qs '^VERSION_CODENAME=bookworm' /etc/os-release || return 0
-  grep -lsE 'bookworm' /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/debian.sources
+  grep -lsE '^deb .* bookworm(-updates|-security|/updates)? main|^Suites:.*bookworm' \
+    /etc/apt/sources.list /etc/apt/sources.list.d/*.list /etc/apt/sources.list.d/debian.sources
 }
 
 make_system() {  # folder, further packages (,name...): Debian's smallest set of packages
@@ -18,11 +19,11 @@ make_system() {  # folder, further packages (,name...): Debian's smallest set of
 }
 
 # Runs a command in the system, with processes and mounts of its own, which go when it ends. A folder of this machine
-# that is shared has the same path inside. Variables of Pliant, of tests and of OpenBLAS go along.
+# that is shared has the same path inside. Variables of tests and of OpenBLAS go along.
 inside() {  # system, folder inside, folder that is shared or nothing, command, arguments...
   local system=$1 at=$2 shared=$3 variable kept=()
   shift 3
-  for variable in http_proxy https_proxy CI PYTEST_ADDOPTS $(compgen -e | grep -E "^(PLIANT|OPENBLAS)_"); do
+  for variable in http_proxy https_proxy CI PYTEST_ADDOPTS $(compgen -e OPENBLAS_); do
     [ -z "${!variable+set}" ] || kept+=("$variable=${!variable}")
   done
   [ -z "$shared" ] || mkdir -p "$system$shared"

@@ -197,7 +197,7 @@ def test_every_command_has_help_with_an_example(launcher: Launcher, command: str
 
 
 @pytest.mark.parametrize("arguments", [["no_such_case"], ["--ful"], ["../verify/orders_free"], [""], ["*"], ["fem"],
-                                       ["--full", "--mutate"]])
+                                       ["--full", "--mutate"], ["--units"], ["--scenes"], ["--preset", "lint"]])
 def test_unknown_cases_of_verify_are_refused(launcher: Launcher, arguments: list[str]) -> None:
     shutil.copytree(ROOT / "verify", launcher.root / "verify")
     result = launcher("verify", *arguments)
