@@ -57,7 +57,7 @@ def test_a_scene_is_run_and_drawn(prefix: Path, tmp_path: Path, hidden) -> None:
     assert hidden(pliant, "compare", results, results).returncode == 0
     told = hidden(pliant, "info", results).stdout
     assert "pliant plot" in told and "./pliant" not in told
-    assert not list(prefix.rglob("results")), "results go to where the call came from"
+    assert not list(prefix.rglob("summary.json")), "results go to where the call came from"
 
 
 def test_python_finds_the_program(prefix: Path, hidden) -> None:
