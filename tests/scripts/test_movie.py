@@ -233,7 +233,7 @@ def stub_encoder(folder: Path, body: str) -> str:
     ("a.mp4", "cat >$out; echo cut off >&2; exit 1", "cut off"),
     ("a.mp4", "head -c 99999 >$out; kill -9 $$", "ended with -9"),
     ("a.gif", "touch $out; [[ $* != *pipe* ]] || cat >$out; [[ $* != *paletteuse* ]] || { echo big; exit 1; }", "big"),
-    ("a.mp4", None, "./pliant movie installs it")])
+    ("a.mp4", None, "install Debian's package ffmpeg")])
 def test_a_film_that_fails_leaves_the_old_one(discs: Path, tmp_path: Path, capsys: pytest.CaptureFixture,
                                               monkeypatch: pytest.MonkeyPatch, name: str, body: str | None,
                                               told: str) -> None:
