@@ -10,9 +10,9 @@ from conftest import ROOT, Launcher, write_script
 
 STAGES = {"system": "make_system", "newcomer": "tests/fresh/newcomer", "test": "pliant test", "lint": "pliant lint",
           "gate": "pliant bench gate", "planted": "pliant bench planted", "gcc": "pliant test --preset gcc --scenes",
-          "fuzz": "pliant fuzz --seconds 30", "memory": "pliant test --preset fuzz --scenes", "units": "bodies|core|files: pliant test --preset fuzz --units",
+          "fuzz": "pliant fuzz --seconds 30", "memory": "pliant test --preset fuzz --scenes", "units": "core|files: pliant test --preset fuzz --units",
           "races": "pliant test --preset tsan --scenes",
-          "determinism": r"counting gcc: pliant test -R ^cli\.determinism$ -V", "verify": "pliant verify --preset gcc"}
+          "determinism": r"counting gcc: pliant test -R ^cli\.determinism$ -V", "verify": "pliant verify --preset gcc --slow"}
 
 
 def run_ci(launcher: Launcher) -> subprocess.CompletedProcess[str]:

@@ -21,7 +21,7 @@ from pushed_disc_stored import by_group, read_calculix, read_stored, read_surfac
 from verification import FULL, Case, Label, observed_order, weights_of_limit
 
 CASE = Case(__file__, cost=8)
-SIZES = [10, 14, *([20, 28] if FULL else [])]
+SIZES = [10, 14, 20, 28]
 CHOSEN = {"neo-hookean": SIZES, "melody": SIZES[:3]}  # by law
 STIFF, SLOW = 2.0, 2.0  # times the contact stiffness; the pause
 GETFEM_STOPS = 3e-7  # Newton's residuals of 1e-9 in the fifty nodes of the disc's support, over the least force, 0.177
@@ -33,6 +33,7 @@ SLIPS = np.arange(len(PLACES)) >= len(STUCK)
 # but what snaps after each tooth sets in late by rate^(2/3), as whatever passes a fold slowly.
 FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
 CONFIDENCE = 0.95
+COARSE = "two sizes tell 1 % of N and 3 to 8 % of T that sticks, for 16 runs: only three and more are worth it"
 
 
 def error_of_mean(values: np.ndarray, freedoms: int) -> np.ndarray:
@@ -124,6 +125,7 @@ def melody() -> Callable[[str], Study]:
     return cache(lambda name: Study(name, "melody"))
 
 
+@pytest.mark.skipif(not FULL, reason=COARSE)
 @pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
 def test_force(studies: dict[str, Study], name: str, i: int) -> None:
     known = studies[name]
@@ -154,7 +156,7 @@ def test_lag(mesh: tuple[int, int]) -> None:
                "pairs of points at an increment's start; a next term of the lag's square, with the longest one's lag")
 
 
-@pytest.mark.skipif(not FULL, reason="14 runs; two_bodies compares this law each time")
+@pytest.mark.skipif(not FULL, reason=COARSE)
 @pytest.mark.parametrize("name, i", QUANTITIES, ids=[f"{name}-{i}" for name, i in QUANTITIES])
 def test_force_melody(melody: Callable[[str], Study], name: str, i: int) -> None:
     known, calculix, k = melody(name), read_calculix(), list(KINDS).index(name)
@@ -165,7 +167,7 @@ def test_force_melody(melody: Callable[[str], Study], name: str, i: int) -> None
                    f"{solver}, its meshes and load steps; saw tooth between meshes of one size, penalty, rate")
 
 
-@pytest.mark.skipif(not FULL, reason="two sizes have no order")
+@pytest.mark.skipif(not FULL, reason=COARSE)
 @pytest.mark.parametrize("name", KINDS)
 def test_order(studies: dict[str, Study], name: str) -> None:
     known = studies[name]
@@ -212,6 +214,7 @@ def test_engine_and_reference(same_nodes: list[Result], name: str) -> None:
                    " samples")
 
 
+@pytest.mark.skipif(not FULL, reason=COARSE)
 @pytest.mark.parametrize("push", DRAWN)
 def test_surface(studies: dict[str, Study], push: float) -> None:
     """A force grows at least in proportion to the depth, so an error of it is less of the depth; along, what sticks at
@@ -286,6 +289,7 @@ def draw_surfaces(axes: Axes) -> None:
     legend(axes)
 
 
+@pytest.mark.skipif(not FULL, reason=COARSE)
 def test_picture(studies: dict[str, Study]) -> None:
     figure, axes = panels(4, f"A stiff disc pushed along a soft block, friction {FRICTION:g}", across=True)
     for panel, name in zip(axes, KINDS):
