@@ -107,8 +107,9 @@ read_verify_options() {  # sets preset, full and folders
     fi
     folders+=("$root/verify/$argument")
   done
-  if [ -n "$slow" ]; then  # what tests/CMakeLists.txt does not take for a test
-    mapfile -t folders < <(grep -LE '^CASE = Case\(__file__, .*fast=True' "$root"/verify/*/check_*.py | xargs -n 1 dirname)
+  if [ -n "$slow" ] && [ ${#folders[@]} = 0 ]; then  # what tests/CMakeLists.txt does not take for a test
+    mapfile -t folders < <(grep -LE '^CASE = Case\(__file__, .*fast=True' "$root"/verify/*/check_*.py |
+      xargs -n 1 dirname)
   fi
   [ ${#folders[@]} -gt 0 ] || folders=("$root/verify")
 }
