@@ -82,7 +82,7 @@ run_tests() {
 
 read_verify_options() {  # sets preset, full and folders
   full='' folders=()
-  local argument units scenes rest slow=''
+  local argument units scenes rest speed=''
   read_preset "$@"
   if [ "$preset" != release ] && [ -n "${PLIANT_ENGINE:-}" ]; then
     echo "pliant: verify: --preset $preset, and PLIANT_ENGINE names another engine: give one of the two" >&2
@@ -93,7 +93,8 @@ read_verify_options() {  # sets preset, full and folders
   for argument in ${rest[@]+"${rest[@]}"}; do
     case $argument in
       --full) full=1; continue ;;
-      --slow) slow=1; continue ;;
+      --fast) speed=-lE; continue ;;
+      --slow) speed=-LE; continue ;;
       --mutate)
         echo "pliant: verify: --mutate comes first: ./pliant verify --mutate [MUTATION...]; see --help" >&2
         exit 2
@@ -107,8 +108,8 @@ read_verify_options() {  # sets preset, full and folders
     fi
     folders+=("$root/verify/$argument")
   done
-  if [ -n "$slow" ] && [ ${#folders[@]} = 0 ]; then  # what tests/CMakeLists.txt does not take for a test
-    mapfile -t folders < <(grep -LE '^CASE = Case\(__file__, .*fast=True' "$root"/verify/*/check_*.py |
+  if [ -n "$speed" ] && [ ${#folders[@]} = 0 ]; then  # those that tests/CMakeLists.txt takes for tests, or the others
+    mapfile -t folders < <(grep $speed '^CASE = Case\(__file__, .*fast=True' "$root"/verify/*/check_*.py |
       xargs -n 1 dirname)
   fi
   [ ${#folders[@]} -gt 0 ] || folders=("$root/verify")
