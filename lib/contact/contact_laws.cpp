@@ -107,8 +107,18 @@ void ContactLaws::find_rules(const Scene& scene) {
         throw InputError(
             fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
                         file_, first.material, second.material));
+      if (match.rule && !never_meets) check_restitution(scene, *match.rule, a.kind == BodyKind::compliant ? a : b);
       pair_rule_.push_back(match.rule ? static_cast<int>(match.rule - scene.contacts.data()) : -1);
     }
+}
+
+/// `softer`: the compliant one of two, if any.
+void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const {
+  if (softer.kind == BodyKind::rigid || rule.restitution.value_or(1) == 1) return;
+  throw InputError(
+      fmt::format("{}: {}: restitution = {} is of pairs of rigid bodies, and bodies of '{}' are compliant: they lose "
+                  "by the viscosity of their material; give rigid pairs a rule of their own",
+                  file_, pair_text(rule), *rule.restitution, scene.materials[softer.material].name));
 }
 
 /// Lengths, and stiffness with its inverse, grow with the finer of the two spacings.

@@ -13,7 +13,8 @@ namespace pliant {
 class ContactLaws {
  public:
   /// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid
-  /// bodies get three times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value.
+  /// bodies get three times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value,
+  /// and for restitution where a compliant body takes part.
   explicit ContactLaws(const Model& model);
 
   /// At a time: a body that a drive moves then counts as infinitely heavy for dashpots.
@@ -48,6 +49,7 @@ class ContactLaws {
 
   void add_body(const Model& model, const Body& body);
   void find_rules(const Scene& scene);
+  void check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const;
   void look_at_extremes();
   void find_eras(const Model& model);
   const ContactRule* rule(const Side& a, const Side& b) const {

@@ -251,6 +251,21 @@ std::string error_of(const Scene& scene) {
   return {};
 }
 
+// EXACT: a dashpot of a contact takes nothing that is worth a restitution from bodies that are soft themselves.
+TEST(LawsOfPairs, RestitutionIsOfRigidPairs) {
+  Scene scene = five_bodies();
+  scene.contacts = {mohr_coulomb(7, 0.4, 0, 0)};
+  scene.contacts[0].restitution = 0.5;
+  for (const char* part : {"between 'all' and 'all': restitution = 0.5", "'soft'", "viscosity", "a rule of their own"})
+    EXPECT_NE(error_of(scene).find(part), std::string::npos) << part << " in " << error_of(scene);
+  scene.contacts[0].restitution = 1;
+  EXPECT_EQ(error_of(scene), "") << "elastic anyway";
+  scene.contacts.push_back(scene.contacts[0]);
+  scene.contacts[1].first = scene.contacts[1].second = "hard";
+  scene.contacts[1].restitution = 0.5;
+  EXPECT_EQ(error_of(scene), "");
+}
+
 // EXACT: errors name the thing, the value and what to do.
 TEST(LawsOfPairs, RefusesWhatCannotWork) {
   Scene scene = five_bodies();

@@ -78,9 +78,10 @@ TEST_P(AllocationOfAll, there_is_none_in_a_step) {
     scene.contact.length = ContactLength::current;
     scene.contact.energy_consistent = GetParam() == Integrator::verlet;
     for (Material& material : scene.materials) material.viscosity = 0.01, material.mass_damping = 0.1;
-    scene.contacts = {mohr_coulomb(1, 0.5)};
-    scene.contacts[0].stiffness.reset();
-    scene.contacts[0].restitution = 0.5;
+    scene.contacts = {mohr_coulomb(1, 0.5), mohr_coulomb(1, 0.5)};
+    for (ContactRule& rule : scene.contacts) rule.stiffness.reset();
+    scene.contacts[1].first = scene.contacts[1].second = "hard";
+    scene.contacts[1].restitution = 0.5;
     scene.walls[1].y.damping = 0.2;
     Condition pressure;
     pressure.kind = Condition::Kind::pressure;
