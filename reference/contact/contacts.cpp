@@ -184,6 +184,7 @@ struct Contacts::Implementation {
     if (before.beside && law.shears()) motion = motion_along(on.outline, before, segment, at);
     const Response response = respond(law, before, at.gap.value, motion.by_element.value, initial);
     memory.slip = response.slip;
+    memory.friction_slip = response.friction_slip;
     memory.damage = response.damage;
     memory.opening = response.opening;
     const auto length = whole.value * 0.5;  // one of two passes

@@ -26,13 +26,14 @@ struct ContactOutline {
 
 /// What a slave node remembers of one other body, as of the last accepted state.
 struct ContactMemory {
-  bool beside = false;  ///< it stood beside the other body: then place is known
-  int segment = 0;      ///< of the other's outline
-  double xi = 0;        ///< in [0, 1] along it
-  double angle = 0;     ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
-  double slip = 0;      ///< elastic, m
-  double damage = 1;    ///< of a bond
-  double opening = 0;   ///< of a bond, m
+  bool beside = false;       ///< it stood beside the other body: then place is known
+  int segment = 0;           ///< of the other's outline
+  double xi = 0;             ///< in [0, 1] along it
+  double angle = 0;          ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
+  double slip = 0;           ///< elastic, m; of a bond: since it was made
+  double friction_slip = 0;  ///< elastic slip of a bond's broken share, m
+  double damage = 1;         ///< of a bond
+  double opening = 0;        ///< of a bond, m
 };
 
 /// One node against one segment: conservative and frictional part together.

@@ -6,9 +6,9 @@
 namespace pliant::reference {
 namespace {
 
-// ---- energies per area, by (gap, slip, damage)
+// ---- energies per area, by (gap, slip, damage, elastic slip of friction)
 
-using Energy = Jet<3>;
+using Energy = Jet<4>;
 
 Energy squared(const Energy& x) { return x * x; }
 
@@ -49,9 +49,10 @@ Energy sliding_energy(const Law& law, const Energy& gap, const Energy& slip) {
   return normal_energy(law, gap) + law.kt / 2 * squared(slip);
 }
 
-Energy bond_energy(const Law& law, const Energy& gap, const Energy& slip, const Energy& damage) {
-  const Energy opening = gap.value > 0 ? gap : Energy(0);
-  return penalty(gap, law.kn, 0) + (1 - damage) / 2 * (law.kn * squared(opening) + law.kt * squared(slip));
+/// A whole bond, and broken surfaces in the share of the damage.
+Energy bond_energy(const Law& law, const Energy& gap, const Energy& slip, const Energy& damage, const Energy& elastic) {
+  const Energy whole = law.kn / 2 * squared(gap) + law.kt / 2 * squared(slip);
+  return (1 - damage) * whole + damage * sliding_energy(law, gap, elastic);
 }
 
 // ---- how slip and damage follow from gap and motion
@@ -59,7 +60,8 @@ Energy bond_energy(const Law& law, const Energy& gap, const Energy& slip, const 
 using Variable = Jet<2>;
 
 struct Internal {
-  Variable slip = 0, damage = 1;
+  Variable slip = 0, damage = 1;  ///< of a bond
+  Variable elastic = 0;           ///< slip of what is broken
 };
 
 /// - d psi / d g. Its second derivatives are left out: nobody asks for them.
@@ -90,12 +92,11 @@ Variable shear_limit(const Law& law, const Variable& gap) {
   return 0;
 }
 
-Internal slide(const Law& law, const ContactMemory& memory, const Variable& gap, const Variable& motion) {
-  Internal now;
-  if (!law.shears()) return now;
-  const Variable trial = memory.slip + motion, largest = shear_limit(law, gap) / law.kt;
-  now.slip = trial > largest ? largest : trial < -largest ? -largest : trial;
-  return now;
+/// Elastic slip that is left of this.
+Variable slide(const Law& law, const Variable& gap, const Variable& trial) {
+  if (!law.shears()) return 0;
+  const Variable largest = shear_limit(law, gap) / law.kt;
+  return trial > largest ? largest : trial < -largest ? -largest : trial;
 }
 
 /// Damage of the largest opening and slip so far.
@@ -125,7 +126,7 @@ Internal hold(const Law& law, const ContactMemory& memory, const Variable& gap, 
       memory.damage + wear(law, law.rate, stiffness * memory.opening, stiffness * opening) +
       wear(law, law.shear_rate / law.ratio, shear_stiffness * std::abs(memory.slip), shear_stiffness * size);
   const Variable sudden = static_damage(law, opening, slip), damage = worn > sudden ? worn : sudden;
-  return {slip, damage.value < 1 ? damage : Variable(1)};
+  return {slip, damage.value < 1 ? damage : Variable(1), 0};
 }
 
 // ---- books: what the mean traction of a step does along it, less what is then stored more
@@ -134,14 +135,17 @@ double bond_loss(const Law& law, const ContactMemory& memory, double opening, do
   return (damage - memory.damage) / 2 * (law.kn * memory.opening * opening + law.kt * memory.slip * slip);
 }
 
-double sliding_loss(const Law& law, const ContactMemory& memory, double motion, double slip) {
-  return law.kt / 2 * (memory.slip + slip) * (memory.slip + motion - slip);
+/// Of the share that is broken: `damage` now, from `elastic` to another elastic slip.
+double sliding_loss(const Law& law, double old_damage, double damage, double old_slip, double slip, double motion) {
+  const double stored = damage * slip * slip - old_damage * old_slip * old_slip;
+  return law.kt / 2 * ((old_damage * old_slip + damage * slip) * motion - stored);
 }
 
-/// A bond tears. Surfaces with the residual adhesion take its place at this gap.
-double tearing_loss(const Law& law, const ContactMemory& memory, double gap, double motion) {
-  return bond_loss(law, memory, std::max(gap, 0.0), memory.slip + motion, 1) + penalty(gap, law.kn, 0).value -
-         normal_energy(law, gap).value;
+/// Residual adhesion is less than nothing, so that what damage makes of it is lost.
+double adhesion_loss(const Law& law, const ContactMemory& memory, double opening, double damage) {
+  const auto energy = [&](double gap) { return normal_energy(law, std::min(gap, law.reach)).value; };
+  const double energies = energy(memory.opening) + energy(opening);
+  return -(damage - memory.damage) / 2 * energies;
 }
 
 // ---- together
@@ -150,42 +154,48 @@ void add_tractions(const Energy& psi, const Internal& now, Response& response) {
   const Response::Gradient by_gap(1, 0);
   const auto along_the_path = [&](int row) -> Response::Gradient {
     return psi.hessian(row, 0) * by_gap + psi.hessian(row, 1) * now.slip.gradient +
-           psi.hessian(row, 2) * now.damage.gradient;
+           psi.hessian(row, 2) * now.damage.gradient + psi.hessian(row, 3) * now.elastic.gradient;
   };
   response.stored = psi.value;
   response.pressure = -psi.gradient[0];
   response.pressure_by = -along_the_path(0);
-  response.shear = psi.gradient[1];
-  response.shear_by = along_the_path(1);
+  response.shear = psi.gradient[1] + psi.gradient[3];
+  response.shear_by = along_the_path(1) + along_the_path(3);
 }
 
 }  // namespace
 
 Response respond(const Law& law, const ContactMemory& memory, double gap, double motion, bool initial) {
   const Variable g(gap, 0), m(motion, 1);
-  const Energy by_gap(gap, 0);
   const bool bonded = law.bonds() && memory.damage < 1;
-  Response response;
+  const double old_elastic = bonded ? memory.friction_slip : memory.slip;
   Internal now;
-  if (bonded) now = initial ? Internal{0, memory.damage} : hold(law, memory, g, m);
-  if (bonded && now.damage.value < 1) {
-    add_tractions(bond_energy(law, by_gap, Energy(now.slip.value, 1), Energy(now.damage.value, 2)), now, response);
-    response.opening = std::max(gap, 0.0);
-    if (!initial) response.dissipated = bond_loss(law, memory, response.opening, now.slip.value, now.damage.value);
-  } else {
-    now = bonded ? Internal{} : slide(law, memory, g, m);  // torn surfaces start without slip
-    add_tractions(sliding_energy(law, by_gap, Energy(now.slip.value, 1)), now, response);
-    response.dissipated =
-        bonded ? tearing_loss(law, memory, gap, motion) : sliding_loss(law, memory, motion, now.slip.value);
-  }
-  response.slip = now.slip.value;
+  if (bonded) now = initial ? Internal{0, memory.damage, 0} : hold(law, memory, g, m);
+  now.elastic = slide(law, g, old_elastic + m);
+  const bool holds = bonded && now.damage.value < 1;
+  const Energy by_gap(gap, 0), by_elastic(now.elastic.value, 3);
+  Response response;
+  add_tractions(holds ? bond_energy(law, by_gap, Energy(now.slip.value, 1), Energy(now.damage.value, 2), by_elastic)
+                      : sliding_energy(law, by_gap, by_elastic),
+                now, response);
+  response.slip = holds ? now.slip.value : now.elastic.value;
+  response.friction_slip = holds ? now.elastic.value : 0;
   response.damage = now.damage.value;
+  response.opening = bonded ? std::max(gap, 0.0) : 0;
+  if (initial) return response;
+  response.dissipated = sliding_loss(law, memory.damage, now.damage.value, old_elastic, now.elastic.value, motion);
+  if (bonded)
+    response.dissipated += bond_loss(law, memory, response.opening, memory.slip + motion, now.damage.value) +
+                           adhesion_loss(law, memory, response.opening, now.damage.value);
   return response;
 }
 
 double parting_loss(const Law& law, const ContactMemory& memory, std::optional<double> gap) {
-  if (memory.damage < 1) return bond_loss(law, memory, gap ? std::max(*gap, 0.0) : memory.opening, memory.slip, 1);
-  return law.kt / 2 * memory.slip * memory.slip;
+  if (memory.damage >= 1) return law.kt / 2 * memory.slip * memory.slip;
+  const double opening = gap ? std::max(*gap, 0.0) : memory.opening;
+  const double adhesion = gap ? adhesion_loss(law, memory, opening, 1) : 0;
+  return bond_loss(law, memory, opening, memory.slip, 1) +
+         law.kt / 2 * memory.damage * memory.friction_slip * memory.friction_slip + adhesion;
 }
 
 }  // namespace pliant::reference

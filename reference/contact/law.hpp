@@ -17,7 +17,7 @@ struct Law {
   double cohesion = 0;              ///< mohr-coulomb: shear limit without pressure, Pa
   double strength = 0;              ///< cohesive laws, Pa
   double shear_strength = 0;        ///< cohesive, Pa
-  double residual_strength = 0;     ///< cohesive-fatigue, once torn, Pa
+  double residual_strength = 0;     ///< cohesive-fatigue, of what is broken, Pa
   double ratio = 1;                 ///< cohesive-fatigue: normal over shear strength
   double bond_gap = 0;              ///< m
   double threshold = 0;             ///< Pa
@@ -54,7 +54,7 @@ struct Response {
   Gradient pressure_by = Gradient::Zero(), shear_by = Gradient::Zero();  ///< derivatives by gap and motion, Pa/m
   double stored = 0;                                                     ///< J/m2
   double dissipated = 0;                                                 ///< since the last accepted state, J/m2
-  double slip = 0, damage = 1, opening = 0;                              ///< to remember
+  double slip = 0, friction_slip = 0, damage = 1, opening = 0;           ///< to remember
 };
 
 /// Of a node in touch (gap < reach) that has moved by `motion` along the outline since the memory was accepted.

@@ -124,6 +124,50 @@ TEST(Fatigue, LeavesTheResidualLaw) {
   EXPECT_NEAR(path.rig.force(1).x() / length, -(0.2 / ratio + 0.3 * kn * 0.005), 1e-12);
 }
 
+// EXACT: friction acts beside a bond in the share that is broken, with one stiffness: pressed, sheared past the
+// strength, the traction is (1 - D) kt s + D min(kt s, friction p), until it tears and on; stored or dissipated.
+TEST(Fatigue, FrictionActsInTheBrokenShare) {
+  ContactRule rule = bond_rule();
+  rule.friction = 0.4;
+  const double kt = kn / (ratio * ratio), depth = 0.01, most = rule.friction * kn * depth, critical = strength / kn;
+  Path path(rule);
+  path.go({0, -depth}, 5);
+  double slip = 0;
+  for (int i = 0; i < 30; ++i) {
+    path.go({0.0015, 0}, 1);
+    slip += 0.0015;
+    const double delta = slip / ratio,
+                 damage = std::clamp(range * (delta - critical) / (delta * (range - critical)), 0.0, 1.0);
+    const double expected = (1 - damage) * kt * slip + damage * std::min(kt * slip, most);
+    EXPECT_NEAR(-path.rig.force(1).x() / length, expected, 1e-12) << slip;
+    EXPECT_NEAR(-path.rig.force(1).y() / length, -kn * depth, 1e-12);
+  }
+  EXPECT_EQ(bonded_nodes(path.rig), 0);
+  EXPECT_NEAR(path.imbalance(), 0, 1e-14);
+}
+
+// EXACT: a bond weaker than friction changes nothing of what friction bears: nowhere less than min(kt s, friction p),
+// and just kt s until both give way. Back and forth, with the pressure changing, the books stay whole.
+TEST(Fatigue, AWeakBondWeakensNothing) {
+  ContactRule rule = cohesive_fatigue(kn, 0.02, range, ratio, 0.001);
+  rule.friction = 0.5;
+  const double kt = kn / (ratio * ratio), depth = 0.01, most = rule.friction * kn * depth;
+  Path path(rule);
+  path.go({0, -depth}, 1);
+  for (double slip = 0.0005; slip < 0.02; slip += 0.0005) {
+    path.go({0.0005, 0}, 1);
+    const double borne = -path.rig.force(1).x() / length;
+    EXPECT_GE(borne, std::min(kt * slip, most) - 1e-12) << slip;
+    if (kt * slip < most) {
+      EXPECT_NEAR(borne, kt * slip, 1e-12) << slip;
+    }
+  }
+  EXPECT_GT(bonded_nodes(path.rig), 0) << "or this test says nothing of bonds";
+  for (const Vec2& by : {Vec2(-0.03, 0.004), Vec2(0.012, -0.006), Vec2(-0.004, 0.001), Vec2(0.03, 0.003)})
+    path.go(by, 20);
+  EXPECT_NEAR(path.imbalance(), 0, 1e-14);
+}
+
 // INDEPENDENT: dD = rate (p - threshold) / (strength - threshold) dp along p = (1 - D) kn g, in a million small steps.
 // The engine's are fewer, and their
 // damage counts from the next one on: RATE, half of the damage of a step.
@@ -195,7 +239,7 @@ TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
   for (const Patch& patch : rig.contact.patches()) ASSERT_TRUE(patch.is_empty());
   rig.move(1, {0, -2 + 0.0005});
   rig.step();
-  ASSERT_EQ(rig.committed.fields(), 2);
+  ASSERT_EQ(rig.committed.fields(), 3);
   EXPECT_EQ(bonded_nodes(rig), 0);
   rig.move(1, {0, 0.005});
   rig.step();

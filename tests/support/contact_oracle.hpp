@@ -68,6 +68,7 @@ class ContactOracle {
     int segment;
     double xi, angle, slip;
     double damage = 1, opening = 0, gap = 0;
+    double elastic = 0;  ///< slip of a bond's broken share
   };
 
   const OutlineShape& shape(int body) const { return rig_.model.outlines[rig_.model.bodies[body].outline]; }
@@ -195,31 +196,37 @@ class ContactOracle {
   }
 
   /// A bond that goes on to the point, or breaks there or before. What its tractions did and is not stored is
-  /// dissipated.
+  /// dissipated. Of its area the share of the damage is broken: cohesion of the residual strength, and friction.
   void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
     const auto [slave, k, master, image] = key;
     const ContactRule& rule = law_.rule;
     const double weight = weight_of(slave, k, master, point);
     const OracleBond before{rule, old.damage, old.opening, old.slip};
+    const OracleLaw left{residual_of(rule)};
+    const double kt = before.kt(), stored_before = old.damage * kt / 2 * old.elastic * old.elastic;
     if (!point) {
-      result.dissipated += weight * before.stored();
+      result.dissipated += weight * (before.stored() + stored_before);
       return;
     }
     const double gap = point->gap, opening = std::max(gap, 0.0), pressed = std::min(gap, 0.0);
-    const double slip = old.slip + (gap < *rule.range ? way(master, old, *point) : 0);
+    const double moved = gap < *rule.range ? way(master, old, *point) : 0, slip = old.slip + moved;
     const OracleBond now{rule, before.damage_at(opening, slip), opening, slip};
-    const double lost = before.work_to(now) - (now.stored() - before.stored()),
-                 squeezed = before.kn() * pressed * pressed / 2;
-    result.dissipated += weight * lost;
+    const double most = left.shear_limit(gap) / kt, elastic = std::clamp(old.elastic + moved, -most, most);
+    const double frictional = now.damage * kt * elastic, squeezed = before.kn() * pressed * pressed / 2;
+    result.dissipated += weight * (before.work_to(now) - (now.stored() - before.stored()) +
+                                   (old.damage * kt * old.elastic + frictional) / 2 * moved -
+                                   (frictional * elastic / 2 - stored_before) -
+                                   (now.damage - old.damage) / 2 * (left.energy(old.opening) + left.energy(opening)));
     const bool torn = now.damage >= 1;
-    remember(key, *point, torn ? 0 : slip, now.damage, opening);
+    remember(key, *point, torn ? elastic : slip, now.damage, opening);
+    trial_[key].elastic = torn ? 0 : elastic;
     if (gap < *rule.range) count_contact(*point, result);
     if (torn && gap >= *rule.range) return;
-    const OracleLaw left{residual_of(rule)};
-    store(slave, k, master, *point, torn ? left.energy(gap) : squeezed + now.stored(), result);
-    if (torn) result.dissipated += weight * (squeezed - left.energy(gap));
-    share_force(slave, k, master, *point, weight * (torn ? left.pressure(gap) : -before.kn() * pressed - now.tension()),
-                torn ? 0 : -weight * now.shear(), result);
+    const double adhesion = now.damage * (left.energy(gap) - squeezed);
+    store(slave, k, master, *point, squeezed + now.stored() + adhesion + frictional * elastic / 2, result);
+    const double pull = now.tension() - now.damage * (left.pressure(gap) + before.kn() * pressed);
+    share_force(slave, k, master, *point, weight * (-before.kn() * pressed - pull),
+                -weight * (now.shear() + frictional), result);
   }
 
   /// Energy a length, and the forces by the change of that length.

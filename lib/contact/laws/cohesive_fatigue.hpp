@@ -5,27 +5,31 @@
 
 namespace pliant {
 
-/// Bonds with damage D (docs/method.md 4). One potential, psi = kn min(g, 0)^2 / 2 + (1 - D) (kn max(g, 0)^2 + kt s^2)
-/// / 2, gives pressure and shear: so the shear stiffness is kn / r^2 for strengths in the ratio r. With the opening
-/// delta = sqrt(max(g, 0)^2 + (s/r)^2) the energy release rate is -dpsi/dD = kn delta^2 / 2. Along a growing opening D
-/// = g_max (delta - g_c) / (delta (g_max - g_c)) makes the traction fall in a straight line from the strength at g_c =
-/// strength / kn to zero at g_max, which takes strength g_max / 2. Above a threshold stress each growing stress p adds
-/// dD = rate (p - threshold) / (strength - threshold) dp, in shear with stresses times r. The bond has no limit of slip
-/// but its damage. Where D = 1, at any time, the cohesive law is left with the residual strength, and friction.
+/// Bonds with damage D (docs/method.md 4). Tractions and energy are 1 - D times those of a whole bond and D times those
+/// of broken surfaces (Alfano and Sacco 2006, doi 10.1002/nme.1728). A whole bond has the energy (kn g^2 + kt s^2) / 2,
+/// so the shear stiffness is kn / r^2 for strengths in the ratio r; broken surfaces have the cohesive law of the
+/// residual strength, and friction, whose elastic slip goes on from the first step. Both have one stiffness: a bond
+/// never bears less than friction alone. With the opening delta = sqrt(max(g, 0)^2 + (s/r)^2) a whole bond's tension
+/// releases kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta (g_max - g_c)) makes its traction
+/// fall in a straight line from the strength at g_c = strength / kn to zero at g_max, which takes strength g_max / 2.
+/// Above a threshold stress each growing stress p adds dD = rate (p - threshold) / (strength - threshold) dp, in shear
+/// with stresses times r. The bond itself has no limit of slip but its damage.
 struct CohesiveFatigue {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive-fatigue";
-  static constexpr Remembered remembered[] = {{"damage", 1}, {"opening", 0}};  ///< 1: no bond is left; max(g, 0), m
-  double normal_stiffness = 0;                                                 ///< kn, Pa/m
-  double shear_stiffness = 0;                                                  ///< kn / r^2, Pa/m
-  double reach = 0;                                                            ///< g_max, m; larger than strength / kn
-  double strength = 0;                                                         ///< Pa
-  double shear_ratio = 1;                                                      ///< r
-  double residual_strength = 0;                                                ///< Pa
-  double friction = 0;                                                         ///< of broken contacts
-  double threshold = 0;                                                        ///< Pa
-  double rate = 0, shear_rate = 0;                                             ///< 1/Pa
-  double bond_gap = 0;  ///< gaps up to this are bonds at the start, m
+  /// 1: no bond is left; max(g, 0), m; elastic slip of a bond's broken share, m. The slip that all laws have is that of
+  /// the bond, and once it is torn that of friction.
+  static constexpr Remembered remembered[] = {{"damage", 1}, {"opening", 0}, {"friction_slip", 0}};
+  double normal_stiffness = 0;      ///< kn, Pa/m
+  double shear_stiffness = 0;       ///< kn / r^2, Pa/m
+  double reach = 0;                 ///< g_max, m; larger than strength / kn
+  double strength = 0;              ///< Pa
+  double shear_ratio = 1;           ///< r
+  double residual_strength = 0;     ///< Pa
+  double friction = 0;              ///< of what is broken
+  double threshold = 0;             ///< Pa
+  double rate = 0, shear_rate = 0;  ///< 1/Pa
+  double bond_gap = 0;              ///< gaps up to this are bonds at the start, m
 
   using Record = pliant::Record<CohesiveFatigue>;
 
@@ -38,32 +42,28 @@ struct CohesiveFatigue {
     return traction;
   }
 
-  /// Bonds where there are some, and what is left of them elsewhere. `broken`: tractions of that.
+  /// `broken`: tractions of broken surfaces.
   Contact respond(const Encounter& at, const Traction& broken, Lanes old_slip, const Record& old, Record& now) const {
-    const Bond bond{old[0], old[1], old_slip};
-    const LaneBits bonded = bond.damage < 1.0;
-    now = {broadcast(1), select(at.beside, max(at.gap, Lanes{}), Lanes{})};
+    const LaneBits bonded = old[0] < 1.0;
+    const Lanes elastic = select(bonded, old[2], old_slip);
+    now = {broadcast(1), select(at.beside, max(at.gap, Lanes{}), Lanes{}), Lanes{}};
     Contact c{broken.pressure, {}, broken.energy, {}, {}};
-    slide(*this, broken, at.touching, old_slip, old_slip + at.moved, c);
-    if (!any(bonded)) return c;
-    Lanes damage;
-    const Contact b = stretch(at, broken, bond, old_slip + at.moved, damage);
-    now[0] = select(bonded, damage, broadcast(1));
-    return {select(bonded, b.pressure, c.pressure), select(bonded, b.shear, c.shear),
-            select(bonded, b.energy, c.energy), select(bonded, b.slip, c.slip),
-            select(bonded, b.slip_work, c.slip_work)};
+    slide(*this, broken, at.touching, elastic, elastic + at.moved, c);
+    if (any(bonded)) hold(at, {old[0], old[1], old_slip}, bonded, elastic, c, now);
+    return c;
   }
 
   Lanes set_free(Lanes old_slip, const Record& old) const {
-    const Bond bond{old[0], old[1], old_slip};
-    const Lanes sheared = (0.5 * shear_stiffness) * old_slip * old_slip;
-    return select(bond.damage < 1.0, damage_work(bond, broadcast(1), bond.opening, bond.slip), sheared);
+    const LaneBits bonded = old[0] < 1.0;
+    const Lanes elastic = select(bonded, old[2], old_slip);
+    const Lanes bond = damage_work({old[0], old[1], old_slip}, broadcast(1), old[1], old_slip);
+    return (0.5 * shear_stiffness) * old[0] * elastic * elastic + bond;
   }
 
   double start_reach() const { return bond_gap; }
   Record at_start(Lanes gap, LaneBits beside) const {
     const LaneBits near = beside & (gap <= bond_gap);
-    return {select(near, Lanes{}, broadcast(1)), select(near, max(gap, Lanes{}), Lanes{})};
+    return {select(near, Lanes{}, broadcast(1)), select(near, max(gap, Lanes{}), Lanes{}), Lanes{}};
   }
 
  private:
@@ -72,24 +72,29 @@ struct CohesiveFatigue {
     Lanes damage, opening, slip;
   };
 
-  /// Of bonds. Nodes that are no longer beside the master tear off.
-  Contact stretch(const Encounter& at, const Traction& broken, const Bond& bond, Lanes slip, Lanes& now_damaged) const {
-    const Lanes opening = select(at.beside, max(at.gap, Lanes{}), bond.opening);
-    now_damaged = select(at.beside, damage(bond, opening, slip), broadcast(1));
-    const LaneBits torn = now_damaged >= 1.0;
-    const Lanes intact = 1.0 - now_damaged, depth = min(at.gap, Lanes{});
-    const Lanes pressed = 0.5 * normal_stiffness * depth * depth;
-    Contact c;
-    c.pressure = select(torn, broken.pressure, -normal_stiffness * (depth + intact * opening));
-    c.slip = select(torn, Lanes{}, slip);
-    c.shear = -shear_stiffness * intact * c.slip;
-    c.energy =
-        select(torn, broken.energy,
-               pressed + 0.5 * intact * (normal_stiffness * opening * opening + shear_stiffness * c.slip * c.slip));
-    // A torn bond leaves the residual attraction, whose energy counts from separated surfaces.
-    const Lanes left_over = select(torn & at.beside, pressed - broken.energy, Lanes{});
-    c.slip_work = damage_work(bond, now_damaged, opening, slip) + left_over;
-    return c;
+  /// Puts the whole share of bonds beside the broken one, `c`, whose elastic slip was `elastic`. Nodes that are no
+  /// longer beside the master tear off.
+  void hold(const Encounter& at, const Bond& bond, LaneBits bonded, Lanes elastic, Contact& c, Record& now) const {
+    const Lanes opening = select(at.beside, max(at.gap, Lanes{}), bond.opening), slip = bond.slip + at.moved;
+    const Lanes damage = select(bonded & at.beside, this->damage(bond, opening, slip), broadcast(1));
+    const Lanes whole = 1.0 - damage, grown = damage - bond.damage, depth = min(at.gap, Lanes{});
+    // Work of the mean of old and new tractions in the step, less what is stored: of the whole share, of friction, of
+    // residual cohesion.
+    const Lanes slid = elastic + at.moved - c.slip;
+    c.slip_work =
+        damage_work(bond, damage, opening, slip) +
+        (0.5 * shear_stiffness) * ((bond.damage * elastic + damage * c.slip) * slid - grown * elastic * c.slip);
+    if (residual_strength > 0) {
+      const Lanes energies = (*this)(bond.opening).energy + (*this)(opening).energy;
+      c.slip_work -= select(at.beside, 0.5 * grown * energies, Lanes{});
+    }
+    c.pressure = damage * c.pressure - whole * (normal_stiffness * (depth + opening));
+    c.shear = damage * c.shear - whole * (shear_stiffness * slip);
+    c.energy = damage * c.energy +
+               whole * (0.5 * (normal_stiffness * (depth * depth + opening * opening) + shear_stiffness * slip * slip));
+    const LaneBits held = damage < 1.0;
+    now[0] = damage, now[2] = select(held, c.slip, Lanes{});
+    c.slip = select(held, slip, c.slip);
   }
 
   /// Damage after a step to another opening and slip.
