@@ -32,6 +32,8 @@ constexpr double limit_with_drag = 3.7;
 /// Of bodies in touch by dashpots, to one that is stable: these pairs repay nothing, and at the limit what a bounce
 /// leaves would hang on the two steps that it lasts (docs/defaults.md).
 constexpr double steps_with_dashpots = 2;
+/// Times as many steps.
+constexpr double worth_naming = 1.1;
 
 /// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
 /// in the list.
@@ -199,9 +201,13 @@ void TimeStepBound::update_contact(const ContactSystem& contact) {
   const std::vector<double> damping = contact.damping_ratios();
   for (const int b : changed) {
     contact_[b] = std::max(contact_floor_[b], contact_[b]);
+    if (!shortened_.empty()) shortened_[b] = 1;
     // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
-    if (const double z = 2 * damping[b]; z > 0)
-      contact_[b] *= std::pow(steps_with_dashpots * (std::sqrt(1 + z * z) + z), 2);
+    if (const double z = 2 * damping[b]; z > 0) {
+      shortened_.resize(model_.bodies.size(), 1.0);
+      shortened_[b] = steps_with_dashpots * (std::sqrt(1 + z * z) + z);
+      contact_[b] *= shortened_[b] * shortened_[b];
+    }
   }
   limit_ = limit(1);
 }
@@ -238,9 +244,18 @@ TimeStepBound::Limit TimeStepBound::limit(double contact_factor) const {
 std::string TimeStepBound::governing() const {
   const std::size_t b = limit_.body;
   const double w2 = total(b, 1), c = damping(b);
-  const std::string damped = c > 0 ? fmt::format(", damping {:.3g} /s", c) : "";
-  return fmt::format("{} (contact {:.0f} % of w^2{})", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0,
-                     damped);
+  std::string text =
+      fmt::format("{} (contact {:.0f} % of w^2", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0);
+  if (b < shortened_.size() && shortened_[b] > 1)
+    text += fmt::format(", dashpots of restitution take {:.2g} times as many steps", shortened_[b]);
+  if (c > 0) {
+    const double undamped = std::sqrt(limit_square_[b] * w2);
+    text += fmt::format(", damping {:.3g} /s", c);
+    const double rate = 2 * c + std::hypot(2 * c, undamped);
+    if (undamped > 0 && rate > worth_naming * undamped)
+      text += fmt::format(" takes {:.2g} times as many steps", rate / undamped);
+  }
+  return text + ")";
 }
 
 }  // namespace pliant

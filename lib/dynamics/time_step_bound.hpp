@@ -64,6 +64,7 @@ class TimeStepBound {
   std::vector<double> compliance_;  ///< [bodies] w^2 per unit contact stiffness
   std::vector<double> support_;     ///< [bodies] w^2 of soft supports, 1/s2
   std::vector<double> damping_;     ///< [bodies] largest rate of supports' dashpots, 1/s
+  std::vector<double> shortened_;   ///< [bodies] how many times shorter restitution makes contact's steps; empty: none
   std::vector<double> limit_square_;                ///< [bodies] largest stable w^2 dt^2 without dashpots
   std::vector<Lanes> viscous_direction_, viscous_;  ///< as direction_ and internal_, for Kelvin-Voigt: rates, 1/s
   Limit limit_;                                     ///< of all of the above, found when they change: each step asks

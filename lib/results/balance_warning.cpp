@@ -18,6 +18,8 @@ constexpr double rounding = 1e-13;
 constexpr double calm_safety = 0.4;
 /// Penetration over segment length from which on it is to blame, and that stiffer contacts should come down to.
 constexpr double deep = 0.3, shallow = 0.1;
+/// Of the energy that is gained or lost, in a single step: errors of the time integration come by and by.
+constexpr double jump_share = 0.25;
 
 /// Modulus times area of all compliant bodies, and weights and contact forces times coordinates, J/m.
 double energy_scale(const Simulation& simulation) {
@@ -82,8 +84,18 @@ std::string against_jumps(const Simulation& simulation) {
       time.safety > calm_safety ? calm_safety : time.safety / 2, time.safety);
 }
 
+/// Where a law with a reach meets corners, nodes change what they face, and with it the energy, at any step. What a
+/// corner holds goes as the square of the spacing, what comes in as the spacing.
+std::string against_corners(const StepStatistics& seen) {
+  return fmt::format(
+      "the energy of a cohesive contact jumped by {:.2g} J/m in one step at t = {:.4g} s, at a corner, as it does "
+      "at any time step (docs/limits.md): no [time] setting mends that; a smaller spacing of the outlines makes it "
+      "less",
+      std::abs(seen.jump), seen.jump_time);
+}
+
 /// The likeliest cause by what the run has met, and what to do.
-std::string diagnosis(const Simulation& simulation, double error) {
+std::string diagnosis(const Simulation& simulation, double error, double gained) {
   const StepStatistics& seen = simulation.statistics();
   const InitialOverlap& overlap = simulation.overlap();
   const Model& model = simulation.model();
@@ -91,6 +103,7 @@ std::string diagnosis(const Simulation& simulation, double error) {
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
+  if (std::abs(seen.jump) > jump_share * std::abs(gained)) return against_corners(seen);
   if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time);
   return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation);
 }
@@ -102,7 +115,7 @@ void warn_of_balance(const Simulation& simulation, const Energies& energy) {
   if (error <= largest_error || std::abs(gained) <= rounding * energy_scale(simulation)) return;
   spdlog::warn("energy balance at t = {:.6g} s: {:.2g} J/m {} without cause, {:.3g} % of what came in; {}",
                simulation.state().time, std::abs(gained), gained > 0 ? "gained" : "lost", 100 * error,
-               diagnosis(simulation, error));
+               diagnosis(simulation, error, gained));
 }
 
 }  // namespace pliant

@@ -289,3 +289,52 @@ def test_rounding_of_rigid_bodies_at_rest_is_no_imbalance(desk) -> None:  # EXAC
     said, error = told(desk, RESTING.format(end="1 us", damping=0))
     assert error > 0.01, "of energies of 5e-13 J, of a block whose weight's moment is 10 J"
     assert said == ""
+
+
+# A C whose lips are glued by cohesion: nodes at the lips' corners change what they face as it rings.
+GLUED = """\
+[time]
+end = "0.14 ms"
+safety = {safety}
+[domain]
+period = "60 mm"
+[materials.rubber]
+law = "neo-hookean"
+density = "1000 kg/m3"
+young = "1 MPa"
+poisson = 0.4
+viscosity = "1 Pa s"
+[shapes.c]
+kind = "polygon"
+points = [["5.01 mm", "8 mm"], ["5.01 mm", "10 mm"], ["10 mm", "10 mm"], ["10 mm", "0 mm"], ["0 mm", "0 mm"], ["0 mm", "10 mm"],
+          ["4.99 mm", "10 mm"], ["4.99 mm", "8 mm"], ["2 mm", "8 mm"], ["2 mm", "2 mm"], ["8 mm", "2 mm"], ["8 mm", "8 mm"]]
+spacing = "{spacing} mm"
+[[grains]]
+name = "c"
+shape = "c"
+body = "compliant"
+material = "rubber"
+packing = {{ kind = "positions", positions = [["30 mm", "30 mm"]] }}
+[contact]
+self_contact = true
+[[contacts]]
+between = "all"
+law = "cohesive"
+strength = "500 kPa"
+"""
+
+
+def test_a_corner_under_cohesion_is_told_from_steps_that_are_too_long(desk) -> None:
+    """RATE: its energy jumps in steps of whatever length; half the spacing, which the warning asks for, makes the balance
+    better by the spacing or more."""
+    errors = {}
+    for safety, spacing in ((0.2, 0.5), (0.05, 0.5), (0.05, 0.25)):
+        desk.write(GLUED.format(safety=safety, spacing=spacing))
+        result = desk.run("--out", "out", "--threads", "1", "--force")
+        assert result.returncode == 0, result.stderr
+        errors[safety, spacing] = desk.summary("out")["energy"]["balance_error"]
+        if spacing == 0.5:
+            assert "at a corner" in result.stderr and "smaller spacing" in result.stderr, result.stderr
+            assert "take [time]" not in result.stderr
+    assert errors[0.05, 0.5] > errors[0.2, 0.5] / 4, "steps of a quarter would take a sixteenth, if they were the remedy"
+    assert errors[0.05, 0.25] < 0.5 * errors[0.05, 0.5]

@@ -159,6 +159,8 @@ def test_facets_and_restitution_are_stated_where_there_are_some(desk) -> None:
     assert "29 facets tilt the normals of a smooth outline by up to 6.2 degrees" in checked(desk, TWO_DISCS)["mind"]
     bounce = BLOCK.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5")
     assert "mind" not in checked(desk, bounce)  # nothing rolls
+    steps = [checked(desk, text)["time step"] for text in (BLOCK, bounce)]
+    assert "dashpots" not in steps[0] and re.search(r"dashpots of restitution take \d", steps[1]), steps
     disc = 'kind = "disc"\ndiameter = 0.1\nnodes = 60\n'
     rolls = checked(desk, re.sub(r'kind = "polygon"\n.*\n.*\n', disc, bounce))
     assert "restitution 0.5 resists rolling" in rolls["mind"]

@@ -11,7 +11,7 @@ from conftest import ROOT, Launcher, write_script
 STAGES = {"system": "make_system", "newcomer": "tests/fresh/newcomer", "test": "pliant test -LE ^case$", "lint": "pliant lint",
           "gate": "pliant bench gate", "planted": "pliant bench planted", "gcc": "pliant test --preset gcc --scenes",
           "gcc_cases": "pliant verify --preset gcc --fast",
-          "fuzz": "pliant fuzz --seconds 30", "memory": "pliant test --preset fuzz --scenes", "units": "core|files: pliant test --preset fuzz --units",
+          "fuzz": "pliant fuzz --seconds 20", "memory": "pliant test --preset fuzz --scenes", "units": "core|files: pliant test --preset fuzz --units",
           "races": "pliant test --preset tsan --scenes",
           "determinism": r"counting gcc: pliant test -R ^cli\.determinism$ -V", "verify": "pliant verify --slow"}
 
