@@ -101,7 +101,7 @@ FilePoints read_csv_outline(const std::string& file, const std::string& text) {
       add_csv_point(reader, found, point_of(reader, fields));
     first = false;
   }
-  if (found.points.size() > 1 && found.points.back() == found.points.front()) {
+  if (repeats_first(found.points)) {
     found.points.pop_back();
     found.lines.pop_back();
   }

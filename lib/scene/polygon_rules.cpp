@@ -57,6 +57,14 @@ PolygonDefect polygon_defect(const Points& polygon) {
   return {};
 }
 
+bool repeats_first(const Points& points) {
+  constexpr double rounding = 1e-9;
+  if (points.size() < 2) return false;
+  Vec2 low = points[0], high = points[0];
+  for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return (points.back() - points.front()).norm() <= rounding * (high - low).norm();
+}
+
 double signed_area(const Points& polygon) {
   // About the first point: far from the origin, products of coordinates would cancel.
   double twice = 0;

@@ -18,6 +18,10 @@ struct PolygonDefect {
 /// O(points^2).
 PolygonDefect polygon_defect(const Points& polygon);
 
+/// Whether the last point repeats the first, as many programs write closed outlines: nearer to it than 1e-9 of the
+/// extent, as cos(2 pi) is not always 1.
+bool repeats_first(const Points& points);
+
 double signed_area(const Points& polygon);  ///< m2, positive for counter-clockwise
 
 /// Largest distance of two points, m: the width of the body in its widest orientation.

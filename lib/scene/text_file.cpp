@@ -17,6 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::string_view utf16_marks[] = {"\xFF\xFE", "\xFE\xFF"};
 
 template <class Number>
 bool parse_whole(std::string_view text, Number& number) {
@@ -38,8 +40,11 @@ std::string read_text_file(const fs::path& file, const std::string& what) {
   if (!fs::is_regular_file(status)) refuse(fmt::format("is not a regular file; name {}", what));
   if (fs::file_size(file, error) > largest) refuse(fmt::format("is larger than 256 MiB: not {}", what));
   std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream.is_open() || stream.bad()) refuse("cannot be read; check its permissions");
+  for (const std::string_view mark : utf16_marks)
+    if (text.starts_with(mark)) refuse("is UTF-16; allowed: UTF-8, save it as that");
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }
 

@@ -7,8 +7,9 @@
 
 namespace pliant {
 
-/// The text of an input file. Throws InputError when it cannot be read; `what` says what the user should name there,
-/// such as "a scene file (.toml)".
+/// The text of an input file, without the byte-order mark of UTF-8 that some programs begin files with. Throws
+/// InputError when it cannot be read or is UTF-16; `what` says what the user should name there, such as "a scene file
+/// (.toml)".
 std::string read_text_file(const std::filesystem::path& file, const std::string& what);
 
 /// The lines of an input file one after another, and errors that name the present one.

@@ -30,7 +30,7 @@ class Scene:
     @classmethod
     def read(cls, file: str | Path) -> Scene:
         """BadScene: it is not TOML; OSError: it cannot be read."""
-        return cls(Path(file).read_text(), Path(file).name, Path(file).parent)
+        return cls(Path(file).read_text("utf-8-sig"), Path(file).name, Path(file).parent)
 
     def __getitem__(self, path: str) -> Any:
         """KeyError names what there is."""

@@ -87,3 +87,14 @@ def test_a_kept_scene_can_be_run_over_itself(half) -> None:
     result = half.engine("run", "out/scene.toml", "--out", "out", "--force", "--quiet")
     assert result.returncode == 0, result.stderr
     assert_finished(half, "out")
+
+
+def test_byte_order_marks(desk) -> None:
+    """Of scene and outline: the copies have none, and the run goes on from them."""
+    desk.write("\ufeff" + SCENE)
+    (desk.folder / "shapes").mkdir()
+    (desk.folder / "shapes/wedge.csv").write_text("\ufeff" + WEDGE)
+    assert desk.run("--out", "out", "--until", "1 ms", "--quiet").returncode == 0
+    assert (desk.folder / "out/scene.toml").read_text() == SCENE.replace("shapes/wedge.csv", "outline_wedge.csv")
+    assert (desk.folder / "out/outline_wedge.csv").read_text() == WEDGE
+    assert desk.run("--out", "out", "--resume", "--quiet").returncode == 0

@@ -112,3 +112,8 @@ def test_files_that_a_scene_names_go_along(tmp_path: Path) -> None:
     (tmp_path / "below/grains.toml").write_text(text.replace("outline.csv", "../outline.csv"))
     with pytest.raises(pliant.BadScene, match="at or below"):
         Scene.read(tmp_path / "below/grains.toml").check()
+
+
+def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    (tmp_path / "marked.toml").write_text("\ufeff" + TWO_DISCS.read_text())
+    assert Scene.read(tmp_path / "marked.toml").text() == TWO_DISCS.read_text()

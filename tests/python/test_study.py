@@ -279,6 +279,15 @@ def test_studies_that_come_along_are_sound(file: Path) -> None:
     assert len({point.name for point in points}) == len(points)
 
 
+def test_byte_order_marks_are_no_text(desk: Desk) -> None:
+    """Of study and scene, as some editors write them."""
+    text = (desk.folder / "scene.toml").read_text()
+    (desk.folder / "scene.toml").write_text(f"\ufeff{text}")
+    desk.study(f"\ufeff{STUDY}")
+    assert desk.call().returncode == 0
+    assert (desk.out / "base.toml").read_text() == text
+
+
 def test_dry_run_lists_and_writes_nothing(desk: Desk) -> None:
     result = desk.call("--dry-run")
     assert result.returncode == 0 and "nodes=60,young=5.6" in result.stdout and "4 runs" in result.stdout
@@ -290,7 +299,7 @@ def test_regression_tells_what_changed(desk: Desk, monkeypatch: pytest.MonkeyPat
     regression = STUDY.replace("[[parameters]]", 'kind = "regression"\n[regression]\nbaseline = "baseline.csv"\n'
                                "tolerances = { strain = 1e-9 }\n[[parameters]]", 1)
     desk.call()
-    (desk.folder / "baseline.csv").write_text((desk.out / "table.csv").read_text())
+    (desk.folder / "baseline.csv").write_text("\ufeff" + (desk.out / "table.csv").read_text())  # as spreadsheets do
     desk.study(regression)
     assert desk.call().returncode == 0
     rows = (desk.out / "table.csv").read_text().splitlines()

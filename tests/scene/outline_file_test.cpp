@@ -58,6 +58,13 @@ void expect_square(const Points& found, double unit) {
                             [&](const Vec2& p) { return (p - unit * corner).norm() < 1e-15 * unit; }));
 }
 
+const std::string head_22 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+const std::string nodes_22 = "$Nodes\n5\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n9 1 1 0\n$EndNodes\n";
+// Four triangles around node 9, lines and a point beside them.
+const std::string elements_22 =
+    "$Elements\n6\n1 15 2 0 1 1\n2 1 2 0 1 1 2\n3 2 2 0 1 1 2 9\n4 2 2 0 1 2 3 9\n5 2 2 0 1 3 4 9\n6 2 2 0 1 4 1 9\n"
+    "$EndElements\n";
+
 // EXACT: separators, comments, a header, a closing point, either orientation; tolerance: rounding of the unit.
 TEST(OutlineFile, ColumnsInAllForms) {
   expect_square(read(".csv", "0,0\n2,0\n2,2\n0,2\n"), 1);
@@ -65,6 +72,18 @@ TEST(OutlineFile, ColumnsInAllForms) {
   expect_square(read(".csv", "x;y\r\n0;0\r\n0;2\r\n2;2\r\n2;0\r\n", "um"), 1e-6);
   expect_square(read(".txt", "  0   0\n2 0\n 2\t2 \n0 2"), 1);
   expect_square(read(".csv", "X [cm]\tY [cm]\n0\t0\n+2\t0\n2e0\t2\n0\t2\n"), 1e-2);
+}
+
+// EXACT: a byte-order mark before a point, a header or a section; the last point off the first by rounding.
+TEST(OutlineFile, MarksAndClosingPointsAreReadPast) {
+  const std::string mark = "\xEF\xBB\xBF";
+  expect_square(read(".csv", mark + "0,0\n2,0\n2,2\n0,2\n"), 1);
+  expect_square(read(".csv", mark + "x [mm],y [mm]\n0,0\n2,0\n2,2\n0,2\n"), 1e-3);
+  expect_square(read(".csv", "2,0\n2,2\n0,2\n0,0\n2,-4.9e-16\n"), 1);
+  expect_square(read(".msh", mark + head_22 + nodes_22 + elements_22), 1);
+  expect_refused(error_of(".csv", mark + "0;a\n"), "1: found \"0;a\"", "two numbers");
+  expect_refused(error_of(".csv", "0,0\n1,0\n0,1e-12\n"), "2: an outline of 2 points", "at least 3");
+  expect_refused(error_of(".csv", "2,0\n2,2\n0,2\n0,0\n2,-1e-5\n2,-4\n"), "6: edges", "cross or touch");
 }
 
 TEST(OutlineFile, BadColumnsAreRefusedWithTheirLine) {
@@ -85,13 +104,6 @@ TEST(OutlineFile, BadColumnsAreRefusedWithTheirLine) {
   for (int i = 0; i < 101; ++i) many += std::to_string(i) + "," + std::to_string(i * i) + "\n";
   expect_refused(error_of(".csv", many), "101: an outline of 101 points", "at most 100");
 }
-
-const std::string head_22 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-const std::string nodes_22 = "$Nodes\n5\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n9 1 1 0\n$EndNodes\n";
-// Four triangles around node 9, lines and a point beside them.
-const std::string elements_22 =
-    "$Elements\n6\n1 15 2 0 1 1\n2 1 2 0 1 1 2\n3 2 2 0 1 1 2 9\n4 2 2 0 1 2 3 9\n5 2 2 0 1 3 4 9\n6 2 2 0 1 4 1 9\n"
-    "$EndElements\n";
 
 // EXACT: the boundary of the elements, inner nodes and lines left out; or the chain of lines; unknown sections skipped.
 TEST(OutlineFile, GmshInBothFormats) {

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "bad_scenes.hpp"
 #include "core/errors.hpp"
 #include "scene_files.hpp"
 
@@ -167,6 +168,24 @@ TEST(ReadScene, ClockwisePolygonsAreReversed) {
             read_scene(SceneFile(good_scene).path()).shapes[1].points);
 }
 
+// EXACT: the last point may be the first, written alike, in another unit or off by rounding.
+TEST(ReadScene, PolygonsMayEndWhereTheyBegin) {
+  const std::string corners = R"([0, "1 um"]])";
+  const Points expected = read_scene(SceneFile(good_scene).path()).shapes[1].points;
+  for (const char* last : {"[0, 0]", "[\"0 mm\", \"0 mm\"]", "[1e-22, -1e-22]"}) {
+    const std::string closed = replaced(good_scene, corners, R"([0, "1 um"], )" + std::string(last) + "]");
+    EXPECT_EQ(read_scene(SceneFile(closed).path()).shapes[1].points, expected) << last;
+  }
+}
+
+// EXACT
+TEST(ReadScene, AByteOrderMarkIsNoText) {
+  const std::string mark = "\xEF\xBB\xBF";
+  EXPECT_EQ(read_scene(SceneFile(mark + good_scene).path()).title, "Good");
+  EXPECT_TRUE(scene_tests::error_of(mark + "titel = 1\n" + good_scene.substr(good_scene.find('\n')))
+                  .starts_with("1:1: unknown key 'titel'"));
+}
+
 TEST(ReadScene, RowPitchFollowsFromThePitch) {
   const std::string hexagonal = replaced(good_scene, R"(, row_pitch = "1.1 um")", "");
   EXPECT_DOUBLE_EQ(read_scene(SceneFile(hexagonal).path()).grains[0].packing.row_pitch, 2e-6 / std::sqrt(3.0));
@@ -193,6 +212,10 @@ TEST(ReadScene, FilesThatCannotBeRead) {
   };
   EXPECT_EQ(message("/no/such/scene.toml"), "/no/such/scene.toml: no such file; check the path");
   EXPECT_NE(message(::testing::TempDir()).find("is a folder"), std::string::npos);
+  for (const char* mark : {"\xff\xfe", "\xfe\xff"}) {
+    const SceneFile file(mark + std::string("t\0", 2));
+    EXPECT_EQ(message(file.path()), file.path().string() + ": is UTF-16; allowed: UTF-8, save it as that");
+  }
   const SceneFile empty("");
   EXPECT_EQ(message(empty.path()), empty.path().string() + ":1:1: the file is empty; see cases/ for examples");
   const SceneFile blank(" \n\t\r\n");
@@ -200,7 +223,7 @@ TEST(ReadScene, FilesThatCannotBeRead) {
   for (const std::string& garbage : {std::string("\x7f"
                                                  "ELF\x02\x01\x00\x00",
                                                  8),
-                                     std::string("\xff\xfe\xfd"), std::string(1000, '\0'), std::string(10000, '[')}) {
+                                     std::string("\xff\xfd"), std::string(1000, '\0'), std::string(10000, '[')}) {
     const SceneFile file(garbage);
     EXPECT_TRUE(message(file.path()).starts_with(file.path().string() + ":1:")) << message(file.path());
     EXPECT_NE(message(file.path()).find("not valid TOML"), std::string::npos);

@@ -91,7 +91,7 @@ class Folder:
 
     def lay_out(self, study: Study, points: list[Point], files: list[str]) -> None:
         """All that the steps read, renewed where it differs. `files`: those that scenes name, beside the scene."""
-        replace_if_other(self.path / "base.toml", study.scene.read_text())
+        replace_if_other(self.path / "base.toml", study.scene.read_text("utf-8-sig"))
         for name in files:
             copy_if_other(study.scene.parent / name, self.beside / name)
         for other in self.files_beside():
@@ -113,7 +113,7 @@ class Folder:
             "replicas": study.replicas.name if study.replicas else None,
             "plots": [asdict(plot) for plot in study.plots],
             "convergence": asdict(study.convergence) if study.convergence else None,
-            "regression": {"baseline": study.regression.baseline.read_text(),
+            "regression": {"baseline": study.regression.baseline.read_text("utf-8-sig"),
                            "tolerances": study.regression.tolerances} if study.regression else None,
         }
         replace_if_other(self.path / "study.json", as_text(about))

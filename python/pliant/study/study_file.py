@@ -19,7 +19,7 @@ from pliant.study.spec import (
 def read_study(file: Path) -> Study:
     """BadStudy; OSError."""
     try:
-        text = tomllib.loads(file.read_text())
+        text = tomllib.loads(file.read_text("utf-8-sig"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise BadStudy(f"{file}: {error}") from error
     top = Reader(text, str(file))
@@ -225,7 +225,7 @@ def _regression(reader: Reader | None, folder: Path) -> Regression | None:
     if not baseline.is_file():
         reader.fail(f"baseline: {baseline} is no file; the table.csv of the same study as a sweep, once trusted, is one")
     try:
-        with baseline.open(newline="") as stream:
+        with baseline.open(newline="", encoding="utf-8-sig") as stream:
             rows = list(csv.DictReader(stream))
     except (UnicodeDecodeError, csv.Error) as error:
         reader.fail(f"baseline: {baseline}: {error}")
