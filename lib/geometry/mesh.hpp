@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/vec2.hpp"
+#include "scene/polygon_rules.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
@@ -11,14 +12,6 @@ struct FieldMesh {
   int outline_count = 0;            ///< the first outline_count nodes are the outline
   std::vector<Triangle> triangles;  ///< counter-clockwise, cover the polygon
 };
-
-struct PolygonProperties {
-  double area = 0;
-  Vec2 centroid{0, 0};
-  double polar_moment = 0;  ///< integral of |x - centroid|^2 over the polygon, m4
-};
-
-PolygonProperties polygon_properties(const Points& polygon);
 
 /// Outline of a shape: a counter-clockwise closed polygon about its centroid; a disc's has the area of the circle.
 Points make_outline(const ShapeSpec& shape);

@@ -16,7 +16,8 @@ namespace {
 
 /// Shapes and sizes, each in its own random order; nothing is placed yet.
 std::vector<Placement> draw_grains(const Scene& scene, const Grains& grains) {
-  const int count = static_cast<int>(grains.packing.grain_count());
+  const Packing& packing = grains.packing;
+  const int count = static_cast<int>(packing.grain_count());
   std::vector<double> shares;
   const auto members = scene.shape_shares(grains);
   for (const auto& member : members) shares.push_back(member.second);
@@ -25,8 +26,10 @@ std::vector<Placement> draw_grains(const Scene& scene, const Grains& grains) {
   const std::vector<double> sizes = draw_sizes(grains.size, count, grains.seed);
   std::vector<Placement> placements(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
-    placements[i].shape = members[shapes[i]].first;
-    placements[i].scale = sizes[i];
+    placements[i].shape = packing.shapes.empty() ? members[shapes[i]].first : packing.shapes[i];
+    placements[i].scale = packing.scales.empty() ? sizes[i] : packing.scales[i];
+    if (!packing.diameters.empty())
+      placements[i].scale = packing.diameters[i] / equivalent_diameter(scene.shapes[placements[i].shape]);
   }
   return placements;
 }
@@ -36,7 +39,9 @@ void place_on_lattice(const Scene& scene, const Grains& grains, std::mt19937_64&
   const Points centres = packing_positions(grains.packing, scene.period);
   for (std::size_t i = 0; i < placements.size(); ++i) {
     placements[i].centre = centres[i];
-    placements[i].angle = grains.angle ? *grains.angle : 2 * std::numbers::pi * uniform_number(random);
+    placements[i].angle = !grains.packing.angles.empty() ? grains.packing.angles[i]
+                          : grains.angle                 ? *grains.angle
+                                                         : 2 * std::numbers::pi * uniform_number(random);
   }
 }
 

@@ -196,4 +196,6 @@ std::string allowed_names(std::string_view word, const std::vector<std::string>&
   return nearest.empty() ? all : fmt::format("{}; nearest: {}", all, nearest);
 }
 
+std::string default_grains_name(std::size_t number) { return number == 1 ? "grains" : fmt::format("grains{}", number); }
+
 }  // namespace pliant

@@ -22,4 +22,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
 /// `allowed: a, b, c; nearest: b` for messages (the part on the nearest only when there is one).
 std::string allowed_names(std::string_view word, const std::vector<std::string>& names);
 
+/// What the [[grains]] of that number, from 1, are called that give no name.
+std::string default_grains_name(std::size_t number);
+
 }  // namespace pliant

@@ -13,24 +13,17 @@ namespace pliant {
 
 namespace {
 
-char separator_of(std::string_view line) {
-  for (const char candidate : {',', ';', '\t'})
-    if (line.find(candidate) != std::string_view::npos) return candidate;
-  return ' ';
-}
-
 /// "x [mm]" or "x": the unit in m, 0 where there is none.
-double column_unit(const LineReader& reader, std::string_view field, char name) {
-  const auto open = field.find('['), close = field.find(']');
-  const std::string_view head = trimmed(field.substr(0, open));
-  if (head.size() != 1 || (head[0] | 0x20) != name || (open != std::string_view::npos && close + 1 != field.size()))
+double column_unit(const LineReader& reader, std::string_view field, const char* name) {
+  const ColumnName column = column_name(field);
+  if (column.name != name)
     reader.fail(
         fmt::format("found \"{}\"; allowed: two numbers, or in the first line the names of the columns, "
                     "\"x, y\" or \"x [mm], y [mm]\"",
                     reader.line()));
-  if (open == std::string_view::npos) return 0;
+  if (!column.unit) return 0;
   try {
-    return parse_quantity("1 " + std::string(field.substr(open + 1, close - open - 1)), "m");
+    return parse_quantity("1 " + *column.unit, "m");
   } catch (const UnitError& error) {
     reader.fail(fmt::format("column {}: {}; allowed: a unit of length", name, error.what()));
   }
@@ -38,7 +31,7 @@ double column_unit(const LineReader& reader, std::string_view field, char name) 
 
 double header_unit(const LineReader& reader, const std::vector<std::string_view>& fields) {
   if (fields.size() != 2) reader.fail(fmt::format("found {} columns; allowed: two, x and y", fields.size()));
-  const double x = column_unit(reader, fields[0], 'x'), y = column_unit(reader, fields[1], 'y');
+  const double x = column_unit(reader, fields[0], "x"), y = column_unit(reader, fields[1], "y");
   if (x != y) reader.fail("the columns have different units; allowed: one unit for both");
   return x;
 }
@@ -90,9 +83,8 @@ FilePoints read_csv_outline(const std::string& file, const std::string& text) {
   FilePoints found;
   bool first = true;
   while (reader.next()) {
-    const std::string_view line = trimmed(reader.line().substr(0, reader.line().find('#')));
-    if (line.empty()) continue;
-    const std::vector<std::string_view> fields = fields_of(line, separator_of(line));
+    const std::vector<std::string_view> fields = columns_of(reader.line());
+    if (fields.empty()) continue;
     double number = 0;
     const bool header = first && !parse_number(fields[0], number);
     if (header)

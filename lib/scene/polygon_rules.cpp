@@ -65,6 +65,34 @@ bool repeats_first(const Points& points) {
   return (points.back() - points.front()).norm() <= rounding * (high - low).norm();
 }
 
+PolygonProperties polygon_properties(const Points& polygon) {
+  PolygonProperties result;
+  if (polygon.size() < 3) return result;
+  // Relative to the first corner, so that a small polygon far from the origin loses no digits.
+  const Vec2 origin = polygon[0];
+  Vec2 first_moment(0, 0);
+  double second_moment = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec2 a = polygon[i] - origin, b = polygon[(i + 1) % polygon.size()] - origin;
+    const double c = cross(a, b);
+    result.area += c / 2;
+    first_moment += c / 6 * (a + b);
+    second_moment += c / 12 * (a.squaredNorm() + a.dot(b) + b.squaredNorm());
+  }
+  if (result.area == 0) return result;
+  const Vec2 offset = first_moment / result.area;
+  result.centroid = origin + offset;
+  result.polar_moment = second_moment - result.area * offset.squaredNorm();
+  return result;
+}
+
+bool is_inside(const Points& polygon, const Vec2& x) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++)
+    if (edge_is_crossed(polygon[i], polygon[j], x)) inside = !inside;
+  return inside;
+}
+
 double signed_area(const Points& polygon) {
   // About the first point: far from the origin, products of coordinates would cancel.
   double twice = 0;

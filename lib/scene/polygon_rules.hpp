@@ -22,6 +22,23 @@ PolygonDefect polygon_defect(const Points& polygon);
 /// extent, as cos(2 pi) is not always 1.
 bool repeats_first(const Points& points);
 
+struct PolygonProperties {
+  double area = 0;
+  Vec2 centroid{0, 0};
+  double polar_moment = 0;  ///< integral of |x - centroid|^2 over the polygon, m4
+};
+
+PolygonProperties polygon_properties(const Points& polygon);
+
+/// Whether x lies inside the closed polygon (even-odd rule; undecided on the outline itself).
+bool is_inside(const Points& polygon, const Vec2& x);
+
+/// Whether a ray from x in the direction of x crosses the edge from a to b.
+inline bool edge_is_crossed(const Vec2& a, const Vec2& b, const Vec2& x) {
+  if ((a.y() > x.y()) == (b.y() > x.y())) return false;
+  return x.x() < a.x() + (x.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+}
+
 double signed_area(const Points& polygon);  ///< m2, positive for counter-clockwise
 
 /// Largest distance of two points, m: the width of the body in its widest orientation.

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
+
+#include "scene/names.hpp"
 
 namespace pliant {
 namespace {
@@ -31,25 +32,50 @@ std::size_t quoted_length(const std::string& text, std::size_t begin) {
   return at + mark.size() - begin;
 }
 
+/// Collects what a scene names.
+class FileNames {
+ public:
+  explicit FileNames(const std::string& text) : text_(text) {}
+
+  /// The file of a table that has one: `name` is its copy's, without the ending.
+  void look_at(const toml::node* node, const char* what, const std::string& name) {
+    const toml::table* table = node ? node->as_table() : nullptr;
+    const toml::node* file = table ? table->get("file") : nullptr;
+    if (!file || !file->is_string()) return;
+    const std::string original = file->as_string()->get();
+    const bool gmsh = std::filesystem::path(original).extension() == ".msh";
+    files_.push_back({what, original, fmt::format("{}.{}", name, gmsh ? "msh" : "csv")});
+    copies_[index_of(text_, file->source().begin)] = files_.back().copy;
+  }
+
+  PortableScene result() const {
+    PortableScene scene{text_, files_};
+    for (auto copy = copies_.rbegin(); copy != copies_.rend(); ++copy)
+      scene.text.replace(copy->first, quoted_length(text_, copy->first), fmt::format("\"{}\"", copy->second));
+    return scene;
+  }
+
+ private:
+  const std::string& text_;
+  std::vector<FileCopy> files_;
+  std::map<std::size_t, std::string> copies_;  // by the place of the file's name
+};
+
 }  // namespace
 
 PortableScene portable_scene(const std::string& text) {
-  PortableScene result{text, {}};
+  FileNames names(text);
   const toml::table scene = toml::parse(text);
-  std::map<std::size_t, std::string> names;  // by the place of the file's name
   if (const toml::table* shapes = scene["shapes"].as_table())
-    for (const auto& [shape, node] : *shapes) {
-      const toml::table* table = node.as_table();
-      const toml::node* file = table ? table->get("file") : nullptr;
-      if (!file || !file->is_string()) continue;
-      const std::string name = file->as_string()->get();
-      const bool gmsh = std::filesystem::path(name).extension() == ".msh";
-      result.outlines.push_back({name, fmt::format("outline_{}.{}", shape.str(), gmsh ? "msh" : "csv")});
-      names[index_of(text, file->source().begin)] = result.outlines.back().copy;
+    for (const auto& [shape, node] : *shapes) names.look_at(&node, "outline", fmt::format("outline_{}", shape.str()));
+  if (const toml::array* all = scene["grains"].as_array())
+    for (std::size_t i = 0; i < all->size(); ++i) {
+      const toml::table* grains = all->get(i)->as_table();
+      if (!grains) continue;
+      const std::string name = (*grains)["name"].value_or(default_grains_name(i + 1));
+      names.look_at(grains->get("packing"), "table of grains", "packing_" + name);
     }
-  for (auto name = names.rbegin(); name != names.rend(); ++name)
-    result.text.replace(name->first, quoted_length(text, name->first), fmt::format("\"{}\"", name->second));
-  return result;
+  return names.result();
 }
 
 }  // namespace pliant

@@ -5,16 +5,17 @@
 
 namespace pliant {
 
-/// An outline file that a scene names, and what its copy beside the scene file is called.
-struct OutlineCopy {
+/// A file that a scene names, and what its copy beside the scene file is called.
+struct FileCopy {
+  std::string what;  ///< "outline" or "table of grains"
   std::string file;  ///< as the scene names it, from the folder of the scene file
-  std::string copy;  ///< "outline_SHAPE.csv" or ".msh": file names that no two shapes share
+  std::string copy;  ///< "outline_SHAPE.csv" or ".msh", "packing_GRAINS.csv": names that no two share
 };
 
-/// A scene file that finds its outlines beside it, wherever it is put.
+/// A scene file that finds beside it what it names, wherever it is put.
 struct PortableScene {
-  std::string text;  ///< as it was, but for the names of outline files
-  std::vector<OutlineCopy> outlines;
+  std::string text;  ///< as it was, but for the names of files
+  std::vector<FileCopy> files;
 };
 
 /// Of the text of a valid scene file. A portable text stays as it is.

@@ -54,7 +54,7 @@ void read_mix_order(TableReader& table, Grains& grains) {
   if (grains.mix_order == MixOrder::in_turn && fills_a_region(grains.packing)) {
     table.fail("mix_order",
                "this packing puts its grains at random places, which have no order; allowed: \"random\" here, "
-               "\"in turn\" with packings \"hexagonal\", \"grid\" and \"positions\"");
+               "\"in turn\" with packings \"hexagonal\", \"grid\", \"positions\", \"file\" and \"in place\"");
   }
 }
 
@@ -71,9 +71,9 @@ InitialVelocity read_velocity(TableReader table, const Grains& grains) {
 
 void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
   const bool sizes = grains.size.kind != SizeDistribution::Kind::list || grains.size.factors.size() > 1;
+  const bool shapes = grains.packing.shapes.empty() && scene.shape_shares(grains).size() > 1;
   const bool mixed = grains.mix.size() > 1 && grains.mix_order == MixOrder::random;
-  const bool random =
-      mixed || !grains.angle || sizes || fills_a_region(grains.packing) || scene.shape_shares(grains).size() > 1;
+  const bool random = mixed || !grains.angle || sizes || fills_a_region(grains.packing) || shapes;
   const Integer seed{0, std::numeric_limits<std::int64_t>::max()};
   if (random) table.required("seed", grains.seed, seed);
   if (!random && table.has("seed"))
@@ -84,6 +84,10 @@ void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
 
 void read_angle(TableReader& table, Grains& grains) {
   const bool given = table.optional("angle", grains.angle, QuantityOr{"random", {"rad"}});
+  if (given && !grains.packing.shapes.empty())
+    table.fail("angle", "the grains are in place as their points are; remove it");
+  if (given && !grains.packing.angles.empty())
+    table.fail("angle", "both it and the column angle of the packing's file are given; remove one");
   if (grains.packing.kind != PackingKind::fourier_voronoi) return;
   if (given) table.fail("angle", "the packing turns each grain as its cell wants it; remove it");
   grains.angle = std::nullopt;
@@ -177,12 +181,15 @@ Material read_material(TableReader table, const std::string& name) {
 Grains read_grains(TableReader table, const Scene& scene) {
   Grains grains;
   grains.where = table.place();
-  const std::size_t number = scene.grains.size() + 1;
-  grains.name = number == 1 ? "grains" : fmt::format("grains{}", number);
+  grains.name = default_grains_name(scene.grains.size() + 1);
   table.optional("name", grains.name, Identifier{});
   read_grain_shapes(table, scene, grains);
   if (table.has("size")) grains.size = read_size(table.required_table("size"));
   grains.packing = read_packing(table.required_table("packing"), scene, grains);
+  if (table.has("size") && !grains.packing.shapes.empty())
+    table.fail("size", "the grains are in place as their points are; remove it");
+  if (table.has("size") && !(grains.packing.scales.empty() && grains.packing.diameters.empty()))
+    table.fail("size", "both it and the sizes of the packing's file are given; remove one");
   grains.mix = read_mix(table, scene);
   read_mix_order(table, grains);
   read_angle(table, grains);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -139,12 +140,20 @@ BoundaryCondition read_condition(TableReader table, const Scene& scene) {
   return condition;
 }
 
-void check_angle(const TableReader& table, const Grains& grains, const Scene& scene) {
-  if (grains.angle == 0.0) return;
-  for (const MixEntry& entry : grains.mix)
-    if (scene.material(entry.material).law == MaterialLaw::linear_elastic)
-      table.fail("angle", fmt::format("the law \"linear-elastic\" of '{}' counts rotations as strains; allowed: 0",
-                                      entry.material));
+void check_angle(TableReader& table, const Grains& grains, const Scene& scene) {
+  const std::vector<double>& angles = grains.packing.angles;
+  const bool turned = std::any_of(angles.begin(), angles.end(), [](double angle) { return angle != 0; });
+  if (grains.angle == 0.0 && !turned) return;
+  for (const MixEntry& entry : grains.mix) {
+    if (scene.material(entry.material).law != MaterialLaw::linear_elastic) continue;
+    const bool given = table.has("angle");
+    table.fail(given ? "angle" : "packing",
+               fmt::format("{}the law \"linear-elastic\" of '{}' counts rotations as strains; allowed: {}",
+                           given    ? ""
+                           : turned ? "an angle in its file: "
+                                    : "it turns its grains: ",
+                           entry.material, given || turned ? "0" : "another law or packing"));
+  }
 }
 
 }  // namespace pliant

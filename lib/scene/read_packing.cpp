@@ -1,11 +1,33 @@
+#include <algorithm>
 #include <cmath>
 
+#include "scene/grain_file.hpp"
+#include "scene/polygon_rules.hpp"
 #include "scene/read_tables.hpp"
 #include "scene/sizes.hpp"
+#include "scene/text_file.hpp"
 
 namespace pliant {
 
 namespace {
+
+/// What scenes call packings.
+enum class PackingName { hexagonal, grid, positions, file, in_place, random, fourier_voronoi };
+
+PackingKind kind_of(PackingName name) {
+  switch (name) {
+    case PackingName::hexagonal:
+      return PackingKind::hexagonal;
+    case PackingName::grid:
+      return PackingKind::grid;
+    case PackingName::random:
+      return PackingKind::random;
+    case PackingName::fourier_voronoi:
+      return PackingKind::fourier_voronoi;
+    default:
+      return PackingKind::positions;
+  }
+}
 
 void read_lattice(TableReader& table, Packing& packing) {
   const Integer count{1, SceneLimits::bodies};
@@ -82,6 +104,50 @@ void read_filling(TableReader& table, const Scene& scene, const Grains& grains, 
   if (!counted) packing.count = count_for(table, scene, grains, packing);
 }
 
+/// Of grains whose sizes a file gives: none is as wide as the period, by the widest of the shapes that it may get.
+void check_sizes(const std::string& file, const GrainFile& found, const Scene& scene, const Grains& grains) {
+  double extent = 0, slenderness = 0;  // of a grain of scale 1, m; over the diameter of the circle of its area
+  for (const auto& [index, share] : scene.shape_shares(grains)) {
+    const ShapeSpec& shape = scene.shapes[static_cast<std::size_t>(index)];
+    extent = std::max(extent, extent_of(shape));
+    slenderness = std::max(slenderness, extent_of(shape) / equivalent_diameter(shape));
+  }
+  for (std::size_t i = 0; i < found.lines.size(); ++i) {
+    const double widest = found.scales.empty() ? found.diameters[i] * slenderness : found.scales[i] * extent;
+    if (widest >= *scene.period)
+      fail_at_line(file, found.lines[i],
+                   fmt::format("the extent of the grain is {:.6g} m; allowed: less than the period, {:.6g} m", widest,
+                               *scene.period));
+  }
+}
+
+void read_grains_of_file(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
+  const NamedFile file = read_named_file(table);
+  GrainFile found = read_grain_file(file.path, file.unit, SceneLimits::bodies);
+  if (scene.period && !(found.scales.empty() && found.diameters.empty()))
+    check_sizes(file.path.string(), found, scene, grains);
+  packing.positions = std::move(found.positions);
+  packing.scales = std::move(found.scales);
+  packing.diameters = std::move(found.diameters);
+  packing.angles = std::move(found.angles);
+}
+
+/// Each shape once, where its points lie.
+void read_in_place(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
+  table.optional("origin", packing.origin, Vector{"m"});
+  if (!grains.shapes.empty())
+    table.fail("kind", "each shape is there once, so that 'shapes' with their shares say nothing; give 'shape'");
+  for (const auto& [index, share] : scene.shape_shares(grains)) {
+    const ShapeSpec& shape = scene.shapes[static_cast<std::size_t>(index)];
+    if (!shape.in_place)
+      table.fail("kind", fmt::format("the shape '{}' says nowhere where it lies; allowed: with polygons, and files "
+                                     "without 'diameter'",
+                                     grains.shape));
+    packing.shapes.push_back(index);
+    packing.positions.push_back(packing.origin + polygon_properties(shape.points).centroid);
+  }
+}
+
 void read_list(TableReader& table, SizeDistribution& size) {
   table.required("factors", size.factors, List<Quantity>{{"1", positive}});
   table.required("shares", size.shares, List<Quantity>{share_of_grains, size.factors.size(), size.factors.size()});
@@ -121,15 +187,23 @@ SizeDistribution read_size(TableReader table) {
 }
 
 Packing read_packing(TableReader table, const Scene& scene, const Grains& grains) {
+  PackingName name;
+  table.required("kind", name,
+                 Choice<PackingName>{{{"hexagonal", PackingName::hexagonal},
+                                      {"grid", PackingName::grid},
+                                      {"positions", PackingName::positions},
+                                      {"file", PackingName::file},
+                                      {"in place", PackingName::in_place},
+                                      {"random", PackingName::random},
+                                      {"fourier-voronoi", PackingName::fourier_voronoi}}});
   Packing packing;
-  table.required("kind", packing.kind,
-                 Choice<PackingKind>{{{"hexagonal", PackingKind::hexagonal},
-                                      {"grid", PackingKind::grid},
-                                      {"positions", PackingKind::positions},
-                                      {"random", PackingKind::random},
-                                      {"fourier-voronoi", PackingKind::fourier_voronoi}}});
-  if (packing.kind == PackingKind::positions) {
+  packing.kind = kind_of(name);
+  if (name == PackingName::positions) {
     table.required("positions", packing.positions, List<Vector>{{"m"}, 1, SceneLimits::bodies});
+  } else if (name == PackingName::file) {
+    read_grains_of_file(table, scene, grains, packing);
+  } else if (name == PackingName::in_place) {
+    read_in_place(table, scene, grains, packing);
   } else if (packing.kind == PackingKind::random || packing.kind == PackingKind::fourier_voronoi) {
     read_filling(table, scene, grains, packing);
   } else {

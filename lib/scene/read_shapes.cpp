@@ -19,6 +19,7 @@ constexpr std::size_t most_polygon_points = 10'000;
 constexpr std::int64_t most_variants = 1000;
 
 void read_polygon(TableReader& table, ShapeSpec& shape) {
+  shape.in_place = true;
   table.required("points", shape.points, List<Vector>{{"m"}, 3, most_polygon_points});
   if (shape.points.size() > 3 && repeats_first(shape.points)) shape.points.pop_back();
   const std::string defect = polygon_defect(shape.points).text;
@@ -52,8 +53,7 @@ void read_ellipse(TableReader& table, ShapeSpec& shape) {
   shape.points = ellipse(width, height);
 }
 
-void read_unit(TableReader& table, std::string& unit) {
-  if (!table.optional("unit", unit, Text{})) return;
+void require_length_unit(TableReader& table, const std::string& unit) {
   try {
     if (parse_quantity("1 " + unit, "m") > 0) return;
   } catch (const UnitError&) {
@@ -63,14 +63,10 @@ void read_unit(TableReader& table, std::string& unit) {
 
 /// The outline's own size, or that of the circle of a given diameter.
 void read_file(TableReader& table, ShapeSpec& shape) {
-  std::string file, unit;
-  table.required("file", file, Text{});
-  read_unit(table, unit);
-  const std::filesystem::path path = std::filesystem::path(table.file()).parent_path() / file;
-  if (!std::filesystem::is_regular_file(path))
-    table.value("file").reject(fmt::format("a file; {} is none", path.string()));
-  shape.points = read_outline_file(path, unit, most_polygon_points);
-  if (table.optional("diameter", shape.diameter, Quantity{"m", positive}))
+  const NamedFile file = read_named_file(table);
+  shape.points = read_outline_file(file.path, file.unit, most_polygon_points);
+  shape.in_place = !table.optional("diameter", shape.diameter, Quantity{"m", positive});
+  if (!shape.in_place)
     shape.points = scaled_to_area(shape.points, std::numbers::pi / 4 * shape.diameter * shape.diameter);
   table.optional("outline", shape.kind,
                  Choice<ShapeKind>{{{"polygon", ShapeKind::polygon}, {"curve", ShapeKind::curve}}});
@@ -161,6 +157,17 @@ void read_nodes(TableReader& table, ShapeSpec& shape) {
 }
 
 }  // namespace
+
+NamedFile read_named_file(TableReader& table) {
+  NamedFile named;
+  std::string file;
+  table.required("file", file, Text{});
+  if (table.optional("unit", named.unit, Text{})) require_length_unit(table, named.unit);
+  named.path = std::filesystem::path(table.file()).parent_path() / file;
+  if (!std::filesystem::is_regular_file(named.path))
+    table.value("file").reject(fmt::format("a file; {} is none", named.path.string()));
+  return named;
+}
 
 double extent_of(const ShapeSpec& shape) {
   return shape.kind == ShapeKind::disc ? shape.diameter : largest_extent(shape.points);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +42,14 @@ ContactRule read_contact(TableReader table, const Scene& scene);
 /// [contact] and all [[contacts]]; every pair of bodies gets exactly one rule. After grains and walls.
 void read_contacts(TableReader& root, Scene& scene);
 
+/// A file that a scene names.
+struct NamedFile {
+  std::filesystem::path path;  ///< from the folder of the scene; it is there
+  std::string unit;            ///< of length; empty: the scene gives none
+};
+/// The keys 'file' and 'unit'.
+NamedFile read_named_file(TableReader& table);
+
 double extent_of(const ShapeSpec& shape);  ///< largest distance of two points, m
 double area_of(const ShapeSpec& shape);    ///< m2
 
@@ -49,7 +58,7 @@ inline const Quantity share_of_grains{"1", Range{.low = 0, .high = 1, .low_open 
 void check_shares(const TableReader& table, const std::string& key, double sum);
 
 /// Linear elasticity is not objective: refuses grains of such a material that start turned.
-void check_angle(const TableReader& table, const Grains& grains, const Scene& scene);
+void check_angle(TableReader& table, const Grains& grains, const Scene& scene);
 
 bool has_body(const Grains& grains, BodyKind kind);
 

@@ -65,6 +65,7 @@ struct ShapeSpec {
   std::optional<int> outline_nodes;  ///< overrides the number of outline nodes
   std::string family;                ///< what all variants of a shape are called; empty: it has none
   std::vector<double> descriptors;   ///< of a Fourier grain that each cell of a packing fits to itself; else empty
+  bool in_place = false;             ///< its points say where it lies: those of a polygon, or of a file at its own size
   std::string where{};               ///< file, line and column of its table, for messages
 };
 
@@ -85,6 +86,11 @@ struct Packing {
   double row_pitch = 0;  ///< distance of rows, m
   Vec2 origin{0, 0};     ///< centre of the first grain (column 0, row 0), m
   Points positions;      ///< kind positions: centres, m
+  // Of kind positions, [positions] each; empty: as the rest of the table says.
+  std::vector<double> scales{};     ///< sizes over that of the shape ...
+  std::vector<double> diameters{};  ///< ... or diameters of the circles of the grains' areas, m
+  std::vector<double> angles{};     ///< rad
+  std::vector<int> shapes{};        ///< indices in Scene::shapes
   // Kinds random and fourier_voronoi fill the period, or random a box, between two levels.
   double bottom = 0, top = 0;  ///< m
   double left = 0, right = 0;  ///< of the box; without a period only, m

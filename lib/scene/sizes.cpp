@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/random.hpp"
+#include "scene/polygon_rules.hpp"
 
 namespace pliant {
 
@@ -91,6 +93,10 @@ double mean_square_size(const SizeDistribution& distribution) {
 double largest_size(const SizeDistribution& distribution) {
   return distribution.kind == Kind::list ? *std::max_element(distribution.factors.begin(), distribution.factors.end())
                                          : distribution.high;
+}
+
+double equivalent_diameter(const ShapeSpec& shape) {
+  return shape.kind == ShapeKind::disc ? shape.diameter : 2 * std::sqrt(signed_area(shape.points) / std::numbers::pi);
 }
 
 }  // namespace pliant

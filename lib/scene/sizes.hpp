@@ -16,4 +16,6 @@ double mean_square_size(const SizeDistribution& distribution);
 
 double largest_size(const SizeDistribution& distribution);
 
+double equivalent_diameter(const ShapeSpec& shape);  ///< of the circle of its area, m
+
 }  // namespace pliant

@@ -81,6 +81,22 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
   return fields;
 }
 
+std::vector<std::string_view> columns_of(std::string_view line) {
+  line = trimmed(line.substr(0, line.find('#')));
+  for (const char separator : {',', ';', '\t'})
+    if (line.find(separator) != std::string_view::npos) return fields_of(line, separator);
+  return fields_of(line, ' ');
+}
+
+ColumnName column_name(std::string_view field) {
+  const auto open = field.find('[');
+  const bool bracketed = open != std::string_view::npos && field.ends_with(']');
+  ColumnName column{std::string(bracketed ? trimmed(field.substr(0, open)) : field), {}};
+  for (char& c : column.name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
+  if (bracketed) column.unit = field.substr(open + 1, field.size() - open - 2);
+  return column;
+}
+
 bool parse_number(std::string_view text, double& number) { return parse_whole(text, number) && std::isfinite(number); }
 
 bool parse_number(std::string_view text, int& number) { return parse_whole(text, number); }

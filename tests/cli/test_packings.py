@@ -106,3 +106,53 @@ def test_too_dense_a_packing(desk) -> None:
     desk.write(GRAINS.replace("solid_fraction = 0.7", "solid_fraction = 0.97"))
     (desk.folder / "wedge.csv").write_text(WEDGE)
     expect_refusal(desk, "do not come free of each other; without overlap 0.")
+
+
+BLOCKS = """
+[time]
+end = "0.2 ms"
+[materials.rubber]
+law = "neo-hookean"
+density = "1000 kg/m3"
+young = "200 kPa"
+poisson = 0.4
+[materials.stone]
+law = "rigid"
+density = "2000 kg/m3"
+[shapes.block]
+kind = "polygon"
+points = [["0 mm", "0 mm"], ["2 mm", "0 mm"], ["2 mm", "1 mm"], ["0 mm", "1 mm"]]
+spacing = "0.25 mm"
+[[grains]]
+shape = "block"
+mix = [{ body = "compliant", material = "rubber", share = 0.5 }, { body = "rigid", material = "stone", share = 0.5 }]
+mix_order = "in turn"
+packing = { kind = "file", file = "blocks.csv" }
+velocity = { uniform = ["0 m/s", "-1 m/s"] }
+[[contacts]]
+between = "all"
+law = "frictionless"
+"""
+
+
+def test_grains_from_a_file(desk) -> None:
+    desk.write(BLOCKS)
+    # Blocks of 2 mm2, the second twice as wide and high, turned and 0.1 mm deep in the first.
+    (desk.folder / "blocks.csv").write_text("x [mm], y [mm], scale, angle [deg]\n0, 0, 1, 0\n1.9, 0, 2, 90\n9, 0, 1, 5\n")
+    check = desk.engine("check", desk.scene)
+    assert check.returncode == 0, check.stderr
+    assert "compliant grains of rubber             2   0.004 kg/m" in check.stdout, check.stdout
+    assert "rigid grains of stone                  1   0.016 kg/m" in check.stdout, check.stdout
+    assert "1 pair of bodies, 'grains 0' and 'grains 1' deepest by 0.0001 m" in check.stdout, check.stdout
+    assert "move 'grains 0' and 'grains 1' apart by 0.0001" in check.stdout  # rounded up
+    assert desk.run("--out", "file").returncode == 0
+    desk.write(BLOCKS.replace('kind = "file", file = "blocks.csv"',
+                              'kind = "positions", positions = [[0, 0], ["2.1 mm", 0], ["9 mm", 0]]'))
+    assert desk.run("--out", "listed").returncode == 0
+    (desk.folder / "plain.csv").write_text("0 0\n2.1 0\n9 0\n")
+    desk.write(BLOCKS.replace("blocks.csv", "plain.csv").replace(".csv\"", ".csv\", unit = \"mm\""))
+    assert desk.run("--out", "plain").returncode == 0
+    hashes = [desk.summary(out)["state_hash"] for out in ("file", "listed", "plain")]
+    assert hashes[0] != hashes[1] == hashes[2]
+    result = desk.reference("--out", "reference", "--quiet", "--dt", "10 us")
+    assert result.returncode == 0, result.stderr

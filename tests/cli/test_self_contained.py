@@ -98,3 +98,29 @@ def test_byte_order_marks(desk) -> None:
     assert (desk.folder / "out/scene.toml").read_text() == SCENE.replace("shapes/wedge.csv", "outline_wedge.csv")
     assert (desk.folder / "out/outline_wedge.csv").read_text() == WEDGE
     assert desk.run("--out", "out", "--resume", "--quiet").returncode == 0
+
+
+LISTED = SCENE.replace("linear-elastic", "neo-hookean").replace(
+    '{ kind = "positions", positions = [[0, 0]] }', '{ kind = "file", file = "shapes/places.csv", unit = "mm" }')
+PLACES = "x, y, scale, angle [deg]\n0, 0, 1, 0\n10, 0, 1.5, 30\n"
+
+
+def test_places_of_grains_are_kept_too(desk) -> None:
+    desk.write(LISTED)
+    (desk.folder / "shapes").mkdir()
+    (desk.folder / "shapes/wedge.csv").write_text(WEDGE)
+    places = desk.folder / "shapes/places.csv"
+    places.write_text(PLACES)
+    for out, until in (("whole", "2 ms"), ("out", "1 ms")):
+        assert desk.run("--out", out, "--until", until, "--quiet").returncode == 0
+    kept = (desk.folder / "out/scene.toml").read_text()
+    assert kept == LISTED.replace("shapes/wedge.csv", "outline_wedge.csv").replace("shapes/places.csv",
+                                                                                  "packing_grains.csv")
+    assert (desk.folder / "out/packing_grains.csv").read_text() == PLACES
+    places.write_text(PLACES.replace("30", "31"))
+    result = desk.run("--out", "out", "--resume", "--quiet")
+    assert result.returncode == 2 and "places.csv: not the table of grains" in result.stderr, result.stderr
+    shutil.rmtree(desk.folder / "shapes")
+    desk.scene.unlink()
+    assert desk.engine("run", "--resume", "--out", "out", "--until", "2 ms").returncode == 0
+    assert_finished(desk, "out")

@@ -115,7 +115,7 @@ const std::vector<Bad> bad_packings{
      "kind = \"hexagonal\", columns = 10, rows = 4, pitch = \"1 um\", row_pitch = \"1.1 um\" }",
      "kind = \"random\", bottom = 0, top = 1e-5, count = 8 }\nmix_order = \"in turn\"",
      "\"in turn\"",
-     {"'mix_order'", "random places", "\"hexagonal\", \"grid\" and \"positions\""}},
+     {"'mix_order'", "random places", "\"hexagonal\", \"grid\", \"positions\", \"file\""}},
     packing("CountAndFraction", "kind = \"random\", bottom = 0, top = 1e-5, count = 3, solid_fraction = 0.5", "0.5 }",
             {"both it and 'count'"}),
     packing("NeitherCountNorFraction", "kind = \"random\", bottom = 0, top = 1e-5", "{ kind = \"random",
@@ -131,6 +131,15 @@ const std::vector<Bad> bad_packings{
             {"unknown key 'left'"}),
     packing("VoronoiWithoutFraction", "kind = \"fourier-voronoi\", bottom = 0, top = 1e-5, count = 3",
             "{ kind = \"fourier", {"missing key 'solid_fraction'"}),
+    packing("InPlaceOfADisc", "kind = \"in place\"", "\"in place\"",
+            {"'kind' in packing of [[grains]] 1", "'disc' says nowhere where it lies", "polygons"}),
+    packing("GrainFileMissing", "kind = \"file\", file = \"no_such.csv\"", "\"no_such.csv\"",
+            {"'file' in packing of [[grains]] 1", "is none"}),
+    {"InPlaceTurned",
+     "kind = \"positions\", positions = [[\"2 um\", \"8 um\"], [\"5 um\", \"8 um\"]]",
+     "kind = \"in place\"",
+     "\"45 deg\"",
+     {"'angle' in [[grains]] 2", "in place"}},
     {"VoronoiWithAngle",
      "positions\", positions = [[\"2 um\", \"8 um\"], [\"5 um\", \"8 um\"]]",
      "fourier-voronoi\", bottom = 0, top = 1e-5, solid_fraction = 0.3",
@@ -143,6 +152,21 @@ const std::vector<Bad> bad_packings{
      {"missing key 'seed'"}},
 };
 INSTANTIATE_TEST_SUITE_P(Packings, BadPacking, ::testing::ValuesIn(bad_packings), name_of);
+
+TEST(BadPackingPlaces, VoronoiCellsTurnGrains) {
+  // EXACT: no key 'angle' stands there to be named.
+  std::string text = good_scene;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("\"neo-hookean\"", "\"linear-elastic\"");
+  replace("kind = \"hexagonal\", columns = 10, rows = 4, pitch = \"1 um\", row_pitch = \"1.1 um\"",
+          "kind = \"fourier-voronoi\", bottom = 0, top = 1e-5, solid_fraction = 0.3");
+  replace("angle = \"random\"\n", "");
+  EXPECT_NE(error_of(text).find("'packing' in [[grains]] 1: it turns its grains: the law \"linear-elastic\""),
+            std::string::npos)
+      << error_of(text);
+}
 
 TEST(BadPackingPlaces, VoronoiCellsNeedAPeriod) {
   // EXACT

@@ -19,17 +19,31 @@ TEST(PortableScene, names_the_copies_of_its_outlines_and_changes_nothing_else) {
       "[shapes.a]\nkind = \"file\"\nunit = 'mm' \nfile = \"outline_a.csv\" # here\nspacing = 1\n"
       "[shapes]\nb = { kind = \"file\", title = \"\xc3\xa4\xe2\x82\xac\", file = \"outline_b.msh\", spacing = 1 }\n"
       "c = { kind = \"disc\" }\n");
-  ASSERT_EQ(scene.outlines.size(), 2U);
-  EXPECT_EQ(scene.outlines[0].file, "../some where/\"a\".csv");
-  EXPECT_EQ(scene.outlines[0].copy, "outline_a.csv");
-  EXPECT_EQ(scene.outlines[1].file, "C:\\b.msh");
+  ASSERT_EQ(scene.files.size(), 2U);
+  EXPECT_EQ(scene.files[0].file, "../some where/\"a\".csv");
+  EXPECT_EQ(scene.files[0].copy, "outline_a.csv");
+  EXPECT_EQ(scene.files[1].file, "C:\\b.msh");
   EXPECT_EQ(portable_scene(scene.text).text, scene.text) << "once more changes nothing";
+}
+
+TEST(PortableScene, names_the_copies_of_tables_of_grains) {
+  const std::string text =
+      "[[grains]]\npacking = { kind = \"positions\" }\n[[grains]]\npacking = { kind = \"file\", file = \"a.csv\" }\n"
+      "[[grains]]\nname = \"x\"\n[grains.packing]\nfile = 'b/c.dat' # there\n[shapes.s]\nfile = \"c.csv\"\n";
+  const PortableScene scene = portable_scene(text);
+  EXPECT_EQ(scene.text,
+            "[[grains]]\npacking = { kind = \"positions\" }\n[[grains]]\npacking = { kind = \"file\", file = "
+            "\"packing_grains2.csv\" }\n[[grains]]\nname = \"x\"\n[grains.packing]\nfile = \"packing_x.csv\" # there\n"
+            "[shapes.s]\nfile = \"outline_s.csv\"\n");
+  ASSERT_EQ(scene.files.size(), 3U);
+  EXPECT_EQ(scene.files[1].what, "table of grains");
+  EXPECT_EQ(scene.files[2].file, "b/c.dat");
 }
 
 TEST(PortableScene, without_outlines_is_as_it_was) {
   const std::string text = "[shapes.disc]\nkind = \"disc\"\n";
   EXPECT_EQ(portable_scene(text).text, text);
-  EXPECT_TRUE(portable_scene(text).outlines.empty());
+  EXPECT_TRUE(portable_scene(text).files.empty());
 }
 
 }  // namespace

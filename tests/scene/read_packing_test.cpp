@@ -3,6 +3,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/errors.hpp"
 #include "scene/curves.hpp"
 #include "scene/polygon_rules.hpp"
 #include "scene_files.hpp"
@@ -118,6 +119,71 @@ TEST(ReadPacking, OutlinesFromFiles) {
   const Scene scaled = changed({{disc, file + "diameter = \"1 um\"\noutline = \"curve\""}});
   EXPECT_EQ(scaled.shapes[0].kind, ShapeKind::curve);
   EXPECT_NEAR(signed_area(scaled.shapes[0].points), std::numbers::pi / 4 * 1e-12, 1e-26);
+}
+
+/// A text beside the scenes of these tests.
+struct Beside {
+  std::filesystem::path path;
+  Beside(const char* name, const std::string& text) : path(std::filesystem::path(::testing::TempDir()) / name) {
+    std::ofstream(path) << text;
+  }
+  ~Beside() { std::filesystem::remove(path); }
+};
+
+const std::string positions = "kind = \"positions\", positions = [[\"2 um\", \"8 um\"], [\"5 um\", \"8 um\"]]";
+
+TEST(ReadPacking, GrainsFromAFile) {
+  const Beside file("grains_from_a_file.csv", "x,y,scale\n1,2,0.5\n3,4,9.9\n");
+  const std::string from_file = "kind = \"file\", file = \"grains_from_a_file.csv\", unit = \"um\"";
+  const Packing packing = changed({{lattice, from_file}}).grains[0].packing;
+  EXPECT_EQ(packing.kind, PackingKind::positions);
+  EXPECT_EQ(packing.positions, (Points{Vec2(1, 2) * 1e-6, Vec2(3, 4) * 1e-6}));
+  EXPECT_EQ(packing.scales, (std::vector<double>{0.5, 9.9}));
+  EXPECT_EQ(packing.grain_count(), 2);
+  EXPECT_EQ(changed({{lattice, from_file}, {"angle = \"random\"\nseed = 7", "mix_order = \"in turn\""}}).grains.size(),
+            2U);
+}
+
+TEST(ReadPacking, FilesThatSayTooMuchAreRefused) {
+  const auto message = [](const std::vector<std::pair<std::string, std::string>>& changes) -> std::string {
+    try {
+      changed(changes);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const auto expect = [&](const std::string& found, const std::string& phrase) {
+    EXPECT_NE(found.find(phrase), std::string::npos) << found;
+  };
+  const Beside file("too_much.csv", "x [um],y [um],diameter [um],angle\n1,2,3,0\n3,4,10,0.1\n");
+  const std::string from_file = "kind = \"file\", file = \"too_much.csv\"";
+  const std::string size = "seed = 7\nsize = { distribution = \"uniform\", low = 0.5, high = 1 }";
+  expect(message({{lattice, from_file}}),
+         "too_much.csv:3: the extent of the grain is 1e-05 m; allowed: less than the period");
+  expect(message({{lattice, from_file + ", unit = \"mm\""}}), "too_much.csv:1: column x has a unit");
+  expect(message({{positions, from_file}}), "too_much.csv:3: the extent of the grain is 1.25331e-05 m");
+  const std::string wide = "period = \"10 um\"", wider = "period = \"20 um\"";
+  expect(message({{wide, wider}, {lattice, from_file}}), "'angle' in [[grains]] 1: both it and the column angle");
+  expect(message({{wide, wider}, {lattice, from_file}, {"angle = \"random\"\nseed = 7", size}}),
+         "'size' in [[grains]] 1: both it and the sizes of the packing's file");
+  expect(message({{wide, wider},
+                  {positions, from_file},
+                  {"angle = \"random\"\n", ""},
+                  {"angle = \"45 deg\"\n", ""},
+                  {"neo-hookean", "linear-elastic"}}),
+         "'packing' in [[grains]] 2: an angle in its file: the law \"linear-elastic\"");
+}
+
+TEST(ReadPacking, InPlaceIsWhereThePointsLie) {
+  const std::string corners = R"([[0, 0], ["1 um", 0], ["1 um", "1 um"], [0, "1 um"]])";
+  const std::string moved = R"([["4 um", "6 um"], ["5 um", "6 um"], ["5 um", "7 um"], ["4 um", "7 um"]])";
+  const Scene scene = changed(
+      {{positions, "kind = \"in place\", origin = [0, \"1 um\"]"}, {corners, moved}, {"angle = \"45 deg\"\n", ""}});
+  const Packing& packing = scene.grains[1].packing;
+  ASSERT_EQ(packing.positions.size(), 1U);
+  EXPECT_NEAR((packing.positions[0] - Vec2(4.5e-6, 7.5e-6)).norm(), 0, 1e-20);
+  EXPECT_EQ(packing.shapes, (std::vector<int>{1}));
 }
 
 }  // namespace
