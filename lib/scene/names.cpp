@@ -86,6 +86,7 @@ constexpr std::string_view keys[] = {
     "outline_nodes",
     "packing",
     "part",
+    "parts",
     "period",
     "pitch",
     "points",

@@ -100,16 +100,24 @@ FilePoints read_csv_outline(const std::string& file, const std::string& text) {
   return found;
 }
 
-Points read_outline_file(const std::filesystem::path& file, const std::string& unit, std::size_t most_points) {
+std::vector<Points> read_outline_file(const std::filesystem::path& file, const std::string& unit,
+                                      const std::string& parts, std::size_t most_points) {
   const std::string name = file.string();
   const std::string text = read_text_file(file, "an outline (.csv or .msh)");
-  const FilePoints found = file.extension() == ".msh" ? read_gmsh_outline(name, text) : read_csv_outline(name, text);
-  const double scale = unit_of(name, found, unit);
-  require_outline(name, found, most_points);
-  Points outline = found.points;
-  for (Vec2& p : outline) p *= scale;
-  if (signed_area(outline) < 0) std::reverse(outline.begin(), outline.end());
-  return outline;
+  const bool gmsh = file.extension() == ".msh";
+  if (!gmsh && !parts.empty()) throw InputError(fmt::format("{}: has no parts; allowed: those of a .msh file", name));
+  const std::vector<FilePoints> found =
+      gmsh ? read_gmsh_outlines(name, text, parts) : std::vector<FilePoints>{read_csv_outline(name, text)};
+  std::vector<Points> outlines;
+  for (const FilePoints& one : found) {
+    const double scale = unit_of(name, one, unit);
+    require_outline(name, one, most_points);
+    Points outline = one.points;
+    for (Vec2& p : outline) p *= scale;
+    if (signed_area(outline) < 0) std::reverse(outline.begin(), outline.end());
+    outlines.push_back(std::move(outline));
+  }
+  return outlines;
 }
 
 }  // namespace pliant

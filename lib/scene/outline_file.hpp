@@ -19,13 +19,16 @@ struct FilePoints {
 /// name them and their unit, as in "x [mm], y [mm]"; "#" begins a comment. The last point may repeat the first.
 FilePoints read_csv_outline(const std::string& file, const std::string& text);
 
-/// The outline in a gmsh file, format 2.2 or 4.1, ASCII: the boundary of its triangles and quadrangles, or, where it
-/// has none, its chain of lines. All of first order and in one plane z.
-FilePoints read_gmsh_outline(const std::string& file, const std::string& text);
+/// Outlines in a gmsh file, format 2.2 or 4.1, ASCII, of first order in one plane z: the boundary of each of its parts,
+/// which are triangles and quadrangles of one physical group that share edges, or, without any of these, chains of
+/// lines. `parts`: which, in the order of the file: the only one (empty), "all", or one or several by the name of the
+/// part or of the group; "merged": all as one body, with nodes at one place joined. Throws InputError with the line.
+std::vector<FilePoints> read_gmsh_outlines(const std::string& file, const std::string& text, const std::string& parts);
 
-/// The closed outline in a file (.msh: gmsh, else columns), counter-clockwise, m. `unit`: such as "mm", for a file that
-/// does not say its own; empty: m. Throws InputError with file and line: holes, several loops, open or crossing
-/// chains, points that coincide, fewer than three or more than `most_points`.
-Points read_outline_file(const std::filesystem::path& file, const std::string& unit, std::size_t most_points);
+/// The closed outlines in a file (.msh: gmsh, else one in columns), counter-clockwise, m. `unit`: such as "mm", for a
+/// file that does not say its own; empty: m. `parts`: as above. Throws InputError with file and line: holes, several
+/// loops in one part, open or crossing chains, points that coincide, fewer than three or more than `most_points`.
+std::vector<Points> read_outline_file(const std::filesystem::path& file, const std::string& unit,
+                                      const std::string& parts, std::size_t most_points);
 
 }  // namespace pliant

@@ -61,15 +61,34 @@ void require_length_unit(TableReader& table, const std::string& unit) {
   table.value("unit").reject("a unit of length, such as \"mm\"");
 }
 
-/// The outline's own size, or that of the circle of a given diameter.
-void read_file(TableReader& table, ShapeSpec& shape) {
+/// A family of several shapes: the n-th is called NAME.n.
+void name_member(ShapeSpec& shape, std::size_t n) {
+  shape.family = shape.name;
+  shape.name = fmt::format("{}.{}", shape.family, n);
+}
+
+/// The outlines' own size, or that of the circle of a given diameter.
+std::vector<ShapeSpec> read_file(TableReader& table, ShapeSpec shape) {
   const NamedFile file = read_named_file(table);
-  shape.points = read_outline_file(file.path, file.unit, most_polygon_points);
+  std::string parts;
+  if (table.optional("parts", parts, Text{}) && parts.empty())
+    table.value("parts").reject("\"all\", \"merged\", or the name of a part or of a physical group");
+  const std::vector<Points> outlines = read_outline_file(file.path, file.unit, parts, most_polygon_points);
   shape.in_place = !table.optional("diameter", shape.diameter, Quantity{"m", positive});
-  if (!shape.in_place)
-    shape.points = scaled_to_area(shape.points, std::numbers::pi / 4 * shape.diameter * shape.diameter);
   table.optional("outline", shape.kind,
                  Choice<ShapeKind>{{{"polygon", ShapeKind::polygon}, {"curve", ShapeKind::curve}}});
+  if (outlines.size() > static_cast<std::size_t>(most_variants))
+    table.fail("parts", fmt::format("{} parts; allowed: at most {}", outlines.size(), most_variants));
+  if (outlines.size() > 1 && !shape.in_place)
+    table.fail("diameter", fmt::format("the file gives {} parts; allowed: for a single outline", outlines.size()));
+  std::vector<ShapeSpec> shapes(outlines.size(), shape);
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    shapes[i].points = outlines[i];
+    if (!shape.in_place)
+      shapes[i].points = scaled_to_area(outlines[i], std::numbers::pi / 4 * shape.diameter * shape.diameter);
+    if (parts == "all" || shapes.size() > 1) name_member(shapes[i], i + 1);
+  }
+  return shapes;
 }
 
 /// Seeds of the variants of a Fourier grain; one that is fitted to each cell has the descriptors instead.
@@ -110,8 +129,7 @@ std::vector<ShapeSpec> make_variants(const TableReader& table, const ShapeSpec& 
                              "below 1",
                              variants.seed + static_cast<std::int64_t>(i)));
     if (!variants.named) continue;
-    shapes[i].family = shape.name;
-    shapes[i].name = fmt::format("{}.{}", shape.name, i + 1);
+    name_member(shapes[i], i + 1);
   }
   return shapes;
 }
@@ -133,7 +151,7 @@ std::vector<ShapeSpec> read_outline(TableReader& table, ShapeSpec shape) {
   if (name == ShapeName::regular) read_regular(table, shape);
   if (name == ShapeName::polygon || name == ShapeName::regular) read_rounding(table, shape);
   if (name == ShapeName::ellipse) read_ellipse(table, shape);
-  if (name == ShapeName::file) read_file(table, shape);
+  if (name == ShapeName::file) return read_file(table, shape);
   if (name != ShapeName::fourier) return {shape};
   const Variants variants = read_variants(table, shape);
   return make_variants(table, shape, variants);

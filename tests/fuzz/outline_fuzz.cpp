@@ -10,15 +10,18 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count) {
   using namespace pliant;
   fuzz::Input input(bytes, count);
-  const bool gmsh = input.byte() % 2 != 0;
+  const int choice = input.byte();
+  const bool gmsh = choice % 2 != 0;
+  const char* const parts[] = {"", "all", "merged", "1"};
   const std::filesystem::path file = fuzz::scratch_folder() / (gmsh ? "outline.msh" : "outline.csv");
   fuzz::write_text(file, input.rest());
   try {
     constexpr std::size_t most_points = 500;
-    const Points points = read_outline_file(file, "mm", most_points);
-    fuzz::require(points.size() >= 3 && points.size() <= most_points, "as many points as a polygon has");
-    const PolygonProperties polygon = polygon_properties(points);
-    fuzz::require(std::isfinite(polygon.area) && polygon.area > 0, "counter-clockwise");
+    for (const Points& points : read_outline_file(file, "mm", parts[choice / 2 % 4], most_points)) {
+      fuzz::require(points.size() >= 3 && points.size() <= most_points, "as many points as a polygon has");
+      const PolygonProperties polygon = polygon_properties(points);
+      fuzz::require(std::isfinite(polygon.area) && polygon.area > 0, "counter-clockwise");
+    }
   } catch (const InputError&) {
   }
   return 0;

@@ -103,11 +103,11 @@ def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
 
 def test_files_that_a_scene_names_go_along(tmp_path: Path) -> None:
     text = (ROOT / "docs/keys/grains.toml").read_text()
-    for name in ["outline.csv", "grains.csv"]:
+    for name in ["outline.csv", "grains.csv", "two_parts.msh"]:
         (tmp_path / name).write_text((ROOT / "docs/keys" / name).read_text())
     (tmp_path / "grains.toml").write_text(text)
     scene = Scene.read(tmp_path / "grains.toml")
-    assert scene.files() == ["grains.csv", "outline.csv"]
+    assert scene.files() == ["grains.csv", "outline.csv", "two_parts.msh"]
     assert scene.check().memory is not None
     (tmp_path / "below").mkdir()
     (tmp_path / "below/grains.toml").write_text(text.replace("outline.csv", "../outline.csv"))

@@ -1,69 +1,17 @@
-#include "scene/outline_file.hpp"
-
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <string>
-
-#include "core/errors.hpp"
-#include "scene/polygon_rules.hpp"
+#include "scene/outline_files.hpp"
 
 namespace pliant {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// An outline file in the temporary folder, removed at the end.
-struct OutlineFile {
-  fs::path path;
-  OutlineFile(const std::string& extension, const std::string& text)
-      : path(fs::path(::testing::TempDir()) /
-             (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + extension)) {
-    std::ofstream(path, std::ios::binary) << text;
-  }
-  ~OutlineFile() { fs::remove(path); }
-};
+using namespace scene_tests;
 
 Points read(const std::string& extension, const std::string& text, const std::string& unit = "") {
-  const OutlineFile file(extension, text);
-  return read_outline_file(file.path, unit, 100);
+  return read_parts(extension, text, "", unit).at(0);
 }
 
-/// What an outline file is refused with, less its folder and name: "LINE: reason".
 std::string error_of(const std::string& extension, const std::string& text, const std::string& unit = "") {
-  const OutlineFile file(extension, text);
-  try {
-    read_outline_file(file.path, unit, 100);
-  } catch (const InputError& error) {
-    const std::string message = error.what(), place = file.path.string() + ":";
-    EXPECT_TRUE(message.starts_with(place)) << message;
-    return message.substr(std::min(place.size(), message.size()));
-  }
-  return "no error";
+  return error_of_parts(extension, text, "", unit);
 }
-
-void expect_refused(const std::string& message, const std::string& start, const std::string& phrase) {
-  EXPECT_TRUE(message.starts_with(start)) << message;
-  EXPECT_NE(message.find(phrase), std::string::npos) << message;
-}
-
-const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
-
-void expect_square(const Points& found, double unit) {
-  ASSERT_EQ(found.size(), 4U);
-  EXPECT_NEAR(signed_area(found), 4 * unit * unit, 1e-15 * unit * unit);
-  for (const Vec2& corner : square)
-    EXPECT_TRUE(std::any_of(found.begin(), found.end(),
-                            [&](const Vec2& p) { return (p - unit * corner).norm() < 1e-15 * unit; }));
-}
-
-const std::string head_22 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
-const std::string nodes_22 = "$Nodes\n5\n1 0 0 0\n2 2 0 0\n3 2 2 0\n4 0 2 0\n9 1 1 0\n$EndNodes\n";
-// Four triangles around node 9, lines and a point beside them.
-const std::string elements_22 =
-    "$Elements\n6\n1 15 2 0 1 1\n2 1 2 0 1 1 2\n3 2 2 0 1 1 2 9\n4 2 2 0 1 2 3 9\n5 2 2 0 1 3 4 9\n6 2 2 0 1 4 1 9\n"
-    "$EndElements\n";
 
 // EXACT: separators, comments, a header, a closing point, either orientation; tolerance: rounding of the unit.
 TEST(OutlineFile, ColumnsInAllForms) {
@@ -143,7 +91,8 @@ TEST(OutlineFile, BadGmshIsRefusedWithItsLine) {
   expect_refused(error_of(".msh", lines("1\n1 2 0 1 2 7\n")), "14: unknown node 7", "");
   expect_refused(error_of(".msh", lines("2\n1 1 0 1 2\n2 1 0 2 3\n")), "6: node 1: 1 edges", "a closed outline");
   // Two triangles that share a corner only.
-  expect_refused(error_of(".msh", lines("2\n1 2 0 1 2 9\n2 2 0 3 4 9\n")), "10: node 9: 4 edges", "touch itself");
+  expect_refused(error_of_parts(".msh", lines("2\n1 2 0 1 2 9\n2 2 0 3 4 9\n"), "merged"), "10: node 9: 4 edges",
+                 "touch itself");
 }
 
 TEST(OutlineFile, HolesAreRefused) {
@@ -165,7 +114,8 @@ TEST(OutlineFile, HolesAreRefused) {
   }
   expect_refused(error_of(".msh", ring(1, 0) + elements + "$EndElements\n"), "10: the outline has a hole", "fill it");
   const std::string apart = "1 1 0 1 2\n1 1 0 2 3\n1 1 0 3 4\n1 1 0 4 1\n1 1 0 5 6\n1 1 0 6 7\n1 1 0 7 8\n1 1 0 8 5\n";
-  expect_refused(error_of(".msh", ring(1, 9) + apart + "$EndElements\n"), "10: a second outline", "one body a file");
+  expect_refused(error_of(".msh", ring(1, 9) + apart + "$EndElements\n"), "10: 2 parts, \"1\", \"2\"",
+                 "parts = \"all\"");
 }
 
 }  // namespace
