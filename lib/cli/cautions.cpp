@@ -15,6 +15,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr double least_excess = 1e-3;  ///< of inertia, worth a word
+constexpr double short_edge = 0.1;     ///< over the spacing: three times as many steps, worth a word
 
 bool is_smooth(const Model& model, const Body& body) {
   return !body.wall && model.scene.shapes[body.shape].kind != ShapeKind::polygon;
@@ -64,6 +65,27 @@ std::string of_inertia(double excess, bool corrected) {
                      corrected ? "" : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
 }
 
+/// The shortest edge of a compliant outline over its mean, and whose. Triangles at an edge are as flat as it is short,
+/// and the stable step goes with their height; meshfree nodes see past it.
+std::optional<std::string> of_short_edges(const Model& model) {
+  const Recipe recipe = model.scene.discretisation.recipe;
+  if (recipe != Recipe::t3 && recipe != Recipe::es_t3) return {};
+  double least = short_edge;
+  std::string shape;
+  for (const Body& body : model.bodies) {
+    if (body.kind != BodyKind::compliant) continue;
+    const OutlineShape& outline = model.outlines[body.outline];
+    const double shortest = *std::min_element(outline.segment_length.begin(), outline.segment_length.end());
+    if (shortest / outline.spacing < least)
+      least = shortest / outline.spacing, shape = model.scene.shapes[body.shape].name;
+  }
+  if (shape.empty()) return {};
+  return fmt::format(
+      "shape '{}' has an edge of {:.2g} of its spacing: triangles beside it make stable steps about as much shorter; "
+      "leave one of its ends out, or take recipe \"mls\"",
+      shape, least);
+}
+
 std::optional<double> least_restitution(const Scene& scene) {
   double least = 1;
   for (const ContactRule& rule : scene.contacts) least = std::min(least, rule.restitution.value_or(1));
@@ -80,6 +102,7 @@ std::vector<std::string> cautions(const Model& model) {
     all.push_back(of_rolling(*restitution));
   if (const double excess = largest_inertia_ratio(model) - 1; excess > least_excess)
     all.push_back(of_inertia(excess, model.corrected_mass));
+  if (const std::optional<std::string> edges = of_short_edges(model)) all.push_back(*edges);
   return all;
 }
 

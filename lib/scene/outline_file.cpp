@@ -76,6 +76,16 @@ void require_outline(const std::string& file, const FilePoints& found, std::size
                  defect.text + "; allowed: a closed outline that does not cross or touch itself");
 }
 
+FilePoints without_repeats(const FilePoints& whole) {
+  FilePoints result;
+  result.unit = whole.unit;
+  for (const std::size_t i : without_repeats(whole.points)) {
+    result.points.push_back(whole.points[i]);
+    result.lines.push_back(whole.lines[i]);
+  }
+  return result;
+}
+
 }  // namespace
 
 FilePoints read_csv_outline(const std::string& file, const std::string& text) {
@@ -93,10 +103,6 @@ FilePoints read_csv_outline(const std::string& file, const std::string& text) {
       add_csv_point(reader, found, point_of(reader, fields));
     first = false;
   }
-  if (repeats_first(found.points)) {
-    found.points.pop_back();
-    found.lines.pop_back();
-  }
   return found;
 }
 
@@ -109,7 +115,8 @@ std::vector<Points> read_outline_file(const std::filesystem::path& file, const s
   const std::vector<FilePoints> found =
       gmsh ? read_gmsh_outlines(name, text, parts) : std::vector<FilePoints>{read_csv_outline(name, text)};
   std::vector<Points> outlines;
-  for (const FilePoints& one : found) {
+  for (const FilePoints& whole : found) {
+    const FilePoints one = without_repeats(whole);
     const double scale = unit_of(name, one, unit);
     require_outline(name, one, most_points);
     Points outline = one.points;

@@ -57,12 +57,18 @@ PolygonDefect polygon_defect(const Points& polygon) {
   return {};
 }
 
-bool repeats_first(const Points& points) {
-  constexpr double rounding = 1e-9;
-  if (points.size() < 2) return false;
-  Vec2 low = points[0], high = points[0];
-  for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  return (points.back() - points.front()).norm() <= rounding * (high - low).norm();
+std::vector<std::size_t> without_repeats(const Points& outline) {
+  constexpr double digits = 1e-6;
+  std::vector<std::size_t> kept;
+  if (outline.empty()) return kept;
+  Vec2 low = outline[0], high = outline[0];
+  for (const Vec2& p : outline) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double least = digits * (high - low).norm();
+  const auto repeats = [&](const Vec2& p, std::size_t other) { return (p - outline[other]).norm() <= least; };
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    if (kept.empty() || !repeats(outline[i], kept.back())) kept.push_back(i);
+  while (kept.size() > 1 && repeats(outline[kept.back()], kept.front())) kept.pop_back();
+  return kept;
 }
 
 PolygonProperties polygon_properties(const Points& polygon) {

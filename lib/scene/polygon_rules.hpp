@@ -18,9 +18,9 @@ struct PolygonDefect {
 /// O(points^2).
 PolygonDefect polygon_defect(const Points& polygon);
 
-/// Whether the last point repeats the first, as many programs write closed outlines: nearer to it than 1e-9 of the
-/// extent, as cos(2 pi) is not always 1.
-bool repeats_first(const Points& points);
+/// Numbers of the points of a closed outline without those that repeat the one before, or at the end the first: nearer
+/// to it than 1e-6 of the extent. Files often close outlines so, and have six digits.
+std::vector<std::size_t> without_repeats(const Points& outline);
 
 struct PolygonProperties {
   double area = 0;

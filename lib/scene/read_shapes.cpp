@@ -21,7 +21,10 @@ constexpr std::int64_t most_variants = 1000;
 void read_polygon(TableReader& table, ShapeSpec& shape) {
   shape.in_place = true;
   table.required("points", shape.points, List<Vector>{{"m"}, 3, most_polygon_points});
-  if (shape.points.size() > 3 && repeats_first(shape.points)) shape.points.pop_back();
+  Points points;
+  for (const std::size_t i : without_repeats(shape.points)) points.push_back(shape.points[i]);
+  shape.points = std::move(points);
+  if (shape.points.size() < 3) table.fail("points", "fewer than three that differ by more than 1e-6 of their extent");
   const std::string defect = polygon_defect(shape.points).text;
   if (!defect.empty()) table.fail("points", defect + "; allowed: a closed outline that does not cross or touch itself");
   if (signed_area(shape.points) < 0) std::reverse(shape.points.begin(), shape.points.end());
