@@ -49,6 +49,7 @@ int main_program(int argc, char** argv) {
   }
   if (options.quiet) spdlog::set_level(spdlog::level::err);
   Scene scene = read_scene(file);
+  for (const std::string& text : scene.warnings) spdlog::warn(text);
   if (!until.empty()) scene.time.end = parse_time("--until", until);
   if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
   options.solver.mass =

@@ -35,6 +35,7 @@ Scene load(const Arguments& arguments) {
     scene.checkpoint_period.reset();
   else if (!arguments.checkpoint_every.empty())
     scene.checkpoint_period = parse_time("--checkpoint-every", arguments.checkpoint_every);
+  for (const std::string& text : scene.warnings) spdlog::warn(text);
   for (const std::string& text : late_conditions(scene)) spdlog::warn(text);
   return scene;
 }
@@ -55,9 +56,11 @@ void print_schema(const std::vector<std::string>& files) {
       "Written by `./pliant schema` from the code that reads scenes (change it there, then `./pliant schema >\n"
       "docs/scene.md`). A quantity is a number in SI units or a string with a unit, such as \"2 GPa\"; \"a number\" "
       "has\n"
-      "none. `with` names the choice in the same table that a key belongs to. Unknown keys are refused. Reasons of "
-      "the\n"
-      "defaults: [defaults.md](defaults.md).\n\n{}",
+      "none. Angles are no numbers: units such as deg, rad and turn are for quantities in rad and rad/s and for "
+      "friction\n"
+      "angles alone; an angle without a unit is in radians. `with` names the choice in the same table that a key "
+      "belongs\n"
+      "to. Unknown keys are refused. Reasons of the defaults: [defaults.md](defaults.md).\n\n{}",
       schema.markdown());
 }
 

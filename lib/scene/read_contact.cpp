@@ -60,7 +60,7 @@ void read_impact(TableReader& table, ContactRule& rule) {
 
 void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
   table.optional("shear_stiffness", rule.shear_stiffness, automatic_stiffness);
-  table.required("friction", rule.friction, Quantity{"1", non_negative});
+  table.required("friction", rule.friction, Friction{});
   table.optional("cohesion", rule.cohesion, Quantity{"Pa", non_negative});
   table.optional("tension", rule.tension, Quantity{"Pa", non_negative});
   if (rule.tension == 0) read_impact(table, rule);
@@ -87,7 +87,7 @@ void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
   read_strength(table, rule);
   table.required("bond_gap", rule.bond_gap, Quantity{"m", non_negative});
   table.optional("shear_ratio", rule.shear_ratio, Quantity{"1", positive});
-  table.optional("friction", rule.friction, Quantity{"1", non_negative});
+  table.optional("friction", rule.friction, Friction{});
   const Range up_to_strength{.low = 0, .high = rule.strength};
   table.optional("residual_strength", rule.residual_strength, Quantity{"Pa", up_to_strength});
   const bool grows = table.optional("fatigue_rate", rule.fatigue_rate, Quantity{"Pa-1", non_negative});

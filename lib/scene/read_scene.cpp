@@ -67,9 +67,9 @@ Scene read_scene(const fs::path& file) { return read_scene(file, nullptr); }
 
 Scene read_scene(const fs::path& file, SceneSchema* schema) {
   const Untrapped untrapped;
-  const std::string file_name = file.string();
-  const toml::table document = parse(read_text_file(file, "a scene file (.toml)"), file_name);
-  TableReader root(document, "the scene", file_name, schema, top_pattern);
+  const Source source{file.string()};
+  const toml::table document = parse(read_text_file(file, "a scene file (.toml)"), source.file);
+  TableReader root(document, "the scene", source, schema, top_pattern);
   Scene scene;
   scene.file = file;
   scene.name = file.stem().string();
@@ -85,6 +85,7 @@ Scene read_scene(const fs::path& file, SceneSchema* schema) {
   read_outputs(root, scene);
   read_checkpoint(root.optional_table("checkpoint"), scene);
   root.finish();
+  scene.warnings = source.warnings;
   return scene;
 }
 

@@ -297,6 +297,7 @@ struct Scene {
   std::vector<Probe> probes;
   Frames frames;
   std::optional<double> checkpoint_period = 600.0;  ///< wall time between checkpoints, s; nullopt: "never"
+  std::vector<std::string> warnings{};  ///< of values that are allowed but hardly meant, with their place
 
   Vec2 gravity_at(double time) const;
   /// Contacts repay the energy that steps gain or lose (contact/energy_debt.hpp): those that have an energy, of steps

@@ -24,7 +24,7 @@ bool TableReader::has(const std::string& key) {
 
 Value TableReader::value(const std::string& key) {
   known_.insert(key);
-  return {*table_->get(key), fmt::format("'{}' in {}", key, title_), *file_};
+  return {*table_->get(key), fmt::format("'{}' in {}", key, title_), *source_};
 }
 
 TableReader TableReader::required_table(const std::string& key) {
@@ -43,7 +43,7 @@ TableReader TableReader::optional_table(const std::string& key) {
 
 TableReader TableReader::child(const toml::table& table, const std::string& key) const {
   const bool at_the_top = pattern_ == top_pattern;
-  return {table, child_title(key), *file_, schema_,
+  return {table, child_title(key), *source_, schema_,
           at_the_top ? fmt::format("[{}]", key) : fmt::format("{} of {}", key, pattern_)};
 }
 
@@ -58,10 +58,10 @@ std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const
   if (!all.node.is_table()) all.reject(fmt::format("tables [{}.NAME]", key));
   std::vector<std::pair<std::string, TableReader>> named;
   for (auto&& [name, node] : *all.node.as_table()) {
-    const Value one{node, fmt::format("'{}.{}'", key, name.str()), *file_};
+    const Value one{node, fmt::format("'{}.{}'", key, name.str()), *source_};
     if (!node.is_table()) one.reject("a table");
     if (!Identifier::valid(name.str())) one.fail(fmt::format("{}: allowed: {}", one.label, Identifier{}.allowed()));
-    named.emplace_back(name.str(), TableReader(*node.as_table(), fmt::format("[{}.{}]", key, name.str()), *file_,
+    named.emplace_back(name.str(), TableReader(*node.as_table(), fmt::format("[{}.{}]", key, name.str()), *source_,
                                                schema_, fmt::format("[{}.NAME]", key)));
   }
   std::stable_sort(named.begin(), named.end(), [](const auto& a, const auto& b) {
@@ -80,7 +80,7 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
     const auto number = all.size() + 1;
     const std::string title =
         nested() ? fmt::format("{} {} of {}", key, number, title_) : fmt::format("[[{}]] {}", key, number);
-    all.emplace_back(*element.node.as_table(), title, *file_, schema_,
+    all.emplace_back(*element.node.as_table(), title, *source_, schema_,
                      nested() ? fmt::format("{} of {}", key, pattern_) : fmt::format("[[{}]]", key));
   }
   return all;
@@ -91,13 +91,13 @@ std::string TableReader::child_title(const std::string& key) const {
 }
 
 std::string TableReader::place() const {
-  return fmt::format("{}:{}:{}", *file_, table_->source().begin.line, table_->source().begin.column);
+  return fmt::format("{}:{}:{}", source_->file, table_->source().begin.line, table_->source().begin.column);
 }
 
-void TableReader::fail(const std::string& message) const { fail_at(*file_, table_->source().begin, message); }
+void TableReader::fail(const std::string& message) const { fail_at(source_->file, table_->source().begin, message); }
 
 void TableReader::fail(const std::string& key, const std::string& message) const {
-  fail_at(*file_, table_->get(key)->source().begin, fmt::format("'{}' in {}: {}", key, title_, message));
+  fail_at(source_->file, table_->get(key)->source().begin, fmt::format("'{}' in {}: {}", key, title_, message));
 }
 
 const toml::key* TableReader::misspelling_of(const std::string& key) const {
@@ -117,7 +117,7 @@ const toml::key* TableReader::misspelling_of(const std::string& key) const {
 void TableReader::fail_missing(const std::string& key, const std::string& allowed) const {
   const toml::key* culprit = misspelling_of(key);
   if (!culprit) fail(fmt::format("missing key '{}' in {}: add {}", key, title_, allowed));
-  fail_at(*file_, culprit->source().begin,
+  fail_at(source_->file, culprit->source().begin,
           fmt::format("unknown key '{}' in {}, perhaps meant as '{}', which is missing: give {}", culprit->str(),
                       title_, key, allowed));
 }
@@ -136,7 +136,7 @@ void TableReader::finish() const {
   const auto unknown = unknown_keys();
   if (unknown.empty()) return;
   const toml::key& first = *unknown.front();
-  fail_at(*file_, first.source().begin,
+  fail_at(source_->file, first.source().begin,
           fmt::format("unknown key '{}' in {}; {}", first.str(), title_,
                       allowed_names(first.str(), {known_.begin(), known_.end()})));
 }

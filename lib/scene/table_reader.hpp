@@ -19,9 +19,9 @@ namespace pliant {
 class TableReader {
  public:
   /// `schema`, if any, learns what is asked for; `pattern` is the title without names and numbers.
-  TableReader(const toml::table& table, std::string title, const std::string& file, SceneSchema* schema = nullptr,
+  TableReader(const toml::table& table, std::string title, const Source& source, SceneSchema* schema = nullptr,
               std::string pattern = {})
-      : table_(&table), title_(std::move(title)), file_(&file), schema_(schema), pattern_(std::move(pattern)) {
+      : table_(&table), title_(std::move(title)), source_(&source), schema_(schema), pattern_(std::move(pattern)) {
     if (schema_) number_ = schema_->begin_table(pattern_);
   }
 
@@ -56,7 +56,7 @@ class TableReader {
   std::vector<TableReader> tables(const std::string& key);
 
   const std::string& title() const { return title_; }
-  const std::string& file() const { return *file_; }
+  const std::string& file() const { return source_->file; }
   std::string place() const;  ///< "file:line:column", for messages
   /// Throws InputError at the table.
   [[noreturn]] void fail(const std::string& message) const;
@@ -87,7 +87,7 @@ class TableReader {
 
   const toml::table* table_;
   std::string title_;  ///< such as [materials.soft]
-  const std::string* file_;
+  const Source* source_;
   SceneSchema* schema_;
   std::string pattern_;
   int number_ = 0;  ///< of this table in the schema

@@ -56,6 +56,48 @@ bool same_dimension(const ut_unit* a, const ut_unit* b) {
   return ratio && ut_are_convertible(ratio.get(), one.get());
 }
 
+/// UDUNITS-2 takes the radian for a number, but remembers in which power a unit has it.
+struct AnglePower {
+  const ut_unit* radian;
+  int sum = 0;
+
+  static int of(const ut_unit* unit) {
+    static const Unit radian(ut_get_unit_by_name(unit_system(), "radian"));
+    AnglePower power{radian.get()};
+    ut_accept_visitor(unit, &visitor, &power);
+    return power.sum;
+  }
+
+ private:
+  static ut_status basic(const ut_unit* one, void* power) {
+    const int once = 1;
+    return product(one, 1, &one, &once, power);
+  }
+  static ut_status product(const ut_unit*, int count, const ut_unit* const* basics, const int* powers, void* power) {
+    auto& [radian, sum] = *static_cast<AnglePower*>(power);
+    for (int i = 0; i < count; ++i)
+      if (ut_compare(basics[i], radian) == 0) sum += powers[i];
+    return UT_SUCCESS;
+  }
+  static ut_status scaled(const ut_unit*, double, const ut_unit* underlying, double, void* power) {
+    return ut_accept_visitor(underlying, &visitor, power);
+  }
+  static ut_status timestamp(const ut_unit*, const ut_unit*, double, void*) { return UT_SUCCESS; }
+  static ut_status logarithmic(const ut_unit*, double, const ut_unit*, void*) { return UT_SUCCESS; }
+  static constexpr ut_visitor visitor{basic, product, scaled, timestamp, logarithmic};
+};
+
+/// Throws UnitError where one unit counts an angle that the other does not.
+void check_angles(const ut_unit* from, const std::string& from_text, const ut_unit* to) {
+  const int has = AnglePower::of(from), wanted = AnglePower::of(to);
+  if (has == wanted) return;
+  if (wanted == 0) throw UnitError(fmt::format("unit \"{}\" of an angle, which is no number", from_text));
+  const bool pure = same_dimension(to, Unit(ut_get_dimensionless_unit_one(unit_system())).get());
+  if (has != 0 || (pure && !from_text.empty())) throw UnitError(fmt::format("wrong unit \"{}\"", from_text));
+  if (from_text.find("Hz") != std::string::npos || from_text.find("hertz") != std::string::npos)
+    throw UnitError(fmt::format("unit \"{}\", which may be turns or radians: write turn/s or rad/s", from_text));
+}
+
 double convert(const std::string& from_text, const std::string& to_text, double number) {
   const Unit from(well_formed(from_text) ? ut_parse(unit_system(), from_text.c_str(), UT_UTF8) : nullptr);
   if (!from) throw UnitError(fmt::format("unknown unit \"{}\"", from_text));
@@ -63,6 +105,7 @@ double convert(const std::string& from_text, const std::string& to_text, double 
   if (!same_dimension(from.get(), to.get())) {
     throw UnitError(from_text.empty() ? std::string("no unit") : fmt::format("wrong unit \"{}\"", from_text));
   }
+  check_angles(from.get(), from_text, to.get());
   const Converter converter(ut_get_converter(from.get(), to.get()));
   if (!converter || cv_convert_double(converter.get(), 0.0) != 0) {
     throw UnitError(fmt::format("unit \"{}\" with an offset", from_text));
@@ -71,6 +114,20 @@ double convert(const std::string& from_text, const std::string& to_text, double 
 }
 
 }  // namespace
+
+bool is_angle(const std::string& text) {
+  double number = 0;
+  const std::string_view quantity = trimmed(text);
+  if (std::from_chars(quantity.data(), quantity.data() + quantity.size(), number).ptr ==
+      quantity.data() + quantity.size())
+    return false;
+  try {
+    parse_quantity(text, "rad");
+    return true;
+  } catch (const UnitError&) {
+    return false;
+  }
+}
 
 double parse_quantity(const std::string& text, const std::string& unit) {
   const Untrapped untrapped;

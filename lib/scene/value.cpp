@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/errors.hpp"
 #include "scene/units.hpp"
@@ -12,7 +13,13 @@ void fail_at(const std::string& file, const toml::source_position& at, const std
   throw InputError(fmt::format("{}:{}:{}: {}", file, at.line, at.column, message));
 }
 
-void Value::fail(const std::string& message) const { fail_at(file, node.source().begin, message); }
+void Value::fail(const std::string& message) const { fail_at(source.file, node.source().begin, message); }
+
+void Value::warn(const std::string& message) const {
+  const toml::source_position at = node.source().begin;
+  source.warnings.push_back(
+      fmt::format("{}:{}:{}: {}: found {}, {}", source.file, at.line, at.column, label, found(), message));
+}
 
 void Value::reject(const std::string& allowed) const {
   fail(fmt::format("{}: found {}; allowed: {}", label, found(), allowed));
@@ -24,7 +31,7 @@ std::vector<Value> Value::elements(const std::string& allowed) const {
   std::vector<Value> all;
   all.reserve(array->size());
   for (const toml::node& element : *array) {
-    all.push_back({element, fmt::format("element {} of {}", all.size() + 1, label), file});
+    all.push_back({element, fmt::format("element {} of {}", all.size() + 1, label), source});
   }
   return all;
 }
@@ -68,23 +75,52 @@ std::string Quantity::allowed() const {
   return range.text() == "any" ? kind : fmt::format("{}, {}", kind, range.text());
 }
 
-double Quantity::operator()(const Value& value) const {
-  double number = 0;
+namespace {
+
+/// A quantity, whatever its range.
+double read_number(const Value& value, const std::string& unit, const std::string& allowed) {
   if (const auto* text = value.node.as_string()) {
     try {
-      number = parse_quantity(text->get(), unit);
+      return parse_quantity(text->get(), unit);
     } catch (const UnitError& error) {
-      value.fail(fmt::format("{}: found {}, {}; allowed: {}", value.label, value.found(), error.what(), allowed()));
+      value.fail(fmt::format("{}: found {}, {}; allowed: {}", value.label, value.found(), error.what(), allowed));
     }
-  } else if (const auto* real = value.node.as_floating_point()) {
-    number = real->get();
-  } else if (const auto* integer = value.node.as_integer()) {
-    number = static_cast<double>(integer->get());
-  } else {
-    value.reject(allowed());
   }
-  if (!range.contains(number)) value.reject(allowed());
+  if (const auto* real = value.node.as_floating_point()) return real->get();
+  if (const auto* integer = value.node.as_integer()) return static_cast<double>(integer->get());
+  value.reject(allowed);
+}
+
+bool has_angle_unit(const Value& value) {
+  const auto* text = value.node.as_string();
+  return text && is_angle(text->get());
+}
+
+/// Of an angle that says no unit and is more than a turn.
+std::string doubt_of_degrees(const Value& value, const std::string& unit, double number) {
+  if (unit != "rad" || std::abs(number) <= 2 * std::numbers::pi || has_angle_unit(value)) return {};
+  return fmt::format("which is read as radians; did you mean \"{:g} deg\"?", number);
+}
+
+}  // namespace
+
+double Quantity::operator()(const Value& value) const {
+  const double number = read_number(value, unit, allowed());
+  const std::string doubt = doubt_of_degrees(value, unit, number);
+  if (!range.contains(number)) {
+    if (doubt.empty()) value.reject(allowed());
+    value.fail(fmt::format("{}: found {}, {} allowed: {}", value.label, value.found(), doubt, allowed()));
+  }
+  if (!doubt.empty()) value.warn(doubt);
   return number;
+}
+
+double Friction::operator()(const Value& value) const {
+  const bool angle = has_angle_unit(value);
+  const double number = read_number(value, angle ? "rad" : "1", allowed());
+  const Range steep{.low = 0, .high = std::numbers::pi / 2, .high_open = true};
+  if (!(angle ? steep : non_negative).contains(number)) value.reject(allowed());
+  return angle ? std::tan(number) : number;
 }
 
 std::optional<double> QuantityOr::operator()(const Value& value) const {

@@ -16,16 +16,24 @@
 
 namespace pliant {
 
+/// A scene file that is being read.
+struct Source {
+  std::string file;  ///< its name, for messages
+  mutable std::vector<std::string> warnings{};
+};
+
 /// One value of a scene file and what it is called in messages.
 struct Value {
   const toml::node& node;
-  std::string label;        ///< such as 'density' in [materials.soft]
-  const std::string& file;  ///< name of the scene file, for messages
+  std::string label;  ///< such as 'density' in [materials.soft]
+  const Source& source;
 
   /// Throws InputError "file:line:column: message" at the value.
   [[noreturn]] void fail(const std::string& message) const;
   /// Throws InputError "... label: found ..., allowed: ...".
   [[noreturn]] void reject(const std::string& allowed) const;
+  /// What the reader is told of a value that is allowed: "file:line:column: label: found ..., message".
+  void warn(const std::string& message) const;
   /// Throws unless the value is an array; then its elements, labelled by their number.
   std::vector<Value> elements(const std::string& allowed) const;
   /// Throws unless the value is a string.
@@ -50,11 +58,18 @@ inline constexpr Range non_negative{.low = 0};
 
 // What a key may hold. Each type has `allowed()`, the text for messages, and converts a Value or throws InputError.
 
-/// A number in SI units or a string with a unit ("2 GPa"), in `unit` afterwards ("1": a pure number).
+/// A number in SI units or a string with a unit ("2 GPa"), in `unit` afterwards ("1": a pure number). An angle without
+/// a unit that is more than a turn as radians is warned of.
 struct Quantity {
   std::string unit;
   Range range = any_number;
   std::string allowed() const;
+  double operator()(const Value& value) const;
+};
+
+/// A coefficient of friction, or an angle whose tangent it is ("30 deg").
+struct Friction {
+  std::string allowed() const { return "a number, >= 0, or an angle from 0 to below 90 deg whose tangent it is"; }
   double operator()(const Value& value) const;
 };
 

@@ -45,6 +45,11 @@ TEST(BadContacts, Laws) {
   const char* friction = "friction = 0.3";
   const std::vector<Bad> all{
       {"[\"soft\", \"hard\"]", "[\"soft\", \"flor\"]", "\"flor\"", "nearest: floor"},
+      {friction, "friction = \"90 deg\"", "\"90 deg\"", "an angle from 0 to below 90 deg"},
+      {friction, "friction = \"-1 deg\"", "\"-1 deg\"", "an angle from 0 to below 90 deg"},
+      {friction, "friction = \"45 dge\"", "\"45 dge\"", "an angle from 0 to below 90 deg"},
+      {friction, "friction = -1", "-1\nstiffness", "an angle from 0 to below 90 deg"},
+      {friction, "friction = 0.3\nsmoothing = \"1 deg\"", "\"1 deg\"", "no number; allowed: a number, >= 0 and <= 1"},
       {friction, "friction = 0.3\nrestitution = 0", "0\nstiffness", "'restitution' in [[contacts]] 2"},
       {friction, "pull = true\nfriction = 0.3", "pull", "unknown key 'pull'"},
       {friction, "friction = 0.3\nrestitution = 0.5\npull = 1", "1\nstiffness", "true or false"},

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "bad_scenes.hpp"
@@ -153,6 +154,37 @@ TEST(ReadScene, ContactSettingsAndLaws) {
   EXPECT_EQ(plain.contact.refresh_steps, 0);
   EXPECT_EQ(plain.contact.refresh_period, 0);
   EXPECT_FALSE(plain.contact.self_contact);
+}
+
+TEST(ReadScene, AFrictionAngleIsItsTangent) {
+  const auto friction = [](const std::string& value) {
+    return read_scene(SceneFile(replaced(good_scene, "friction = 0.3", "friction = " + value)).path())
+        .contacts.at(1)
+        .friction;
+  };
+  // Two roundings, of the unit's factor and of the tangent.
+  EXPECT_NEAR(friction("\"45 deg\""), 1, 1e-15);
+  EXPECT_NEAR(friction("\"30°\""), 1 / std::numbers::sqrt3, 1e-15);
+  EXPECT_NEAR(friction("\"0.5 rad\""), std::tan(0.5), 1e-15);
+  EXPECT_EQ(friction("\"0 deg\""), 0);
+  EXPECT_EQ(friction("\"0.7\""), 0.7);
+  EXPECT_NEAR(friction("\"70 %\""), 0.7, 1e-15);
+  EXPECT_EQ(friction("2"), 2);
+}
+
+TEST(ReadScene, WarnsOfAnglesThatMayBeDegrees) {
+  const auto warnings = [](const std::string& angle) {
+    return read_scene(SceneFile(replaced(good_scene, "angle = \"45 deg\"", "angle = " + angle)).path()).warnings;
+  };
+  for (const char* meant : {"6.28", "-6.28", "\"6.28\"", "\"45 rad\"", "\"4500 deg\""})
+    EXPECT_TRUE(warnings(meant).empty()) << meant;
+  for (const char* doubtful : {"45", "45.0", "-45", "\"45\""}) {
+    const std::vector<std::string> all = warnings(doubtful);
+    ASSERT_EQ(all.size(), 1u) << doubtful;
+    EXPECT_NE(all[0].find(".toml:39:9: 'angle' in [[grains]] 2: found "), std::string::npos) << all[0];
+    EXPECT_NE(all[0].find("read as radians; did you mean \""), std::string::npos) << all[0];
+    EXPECT_NE(all[0].find("45 deg\"?"), std::string::npos) << all[0];
+  }
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {

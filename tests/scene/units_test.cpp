@@ -28,6 +28,12 @@ TEST(Units, ConvertToSi) {
   near("60°", "rad", std::numbers::pi / 3);
   near("0.5 rad", "rad", 0.5);
   near("2 rad/s", "rad/s", 2);
+  near("0.25 turn", "rad", std::numbers::pi / 2);
+  near("90 deg/s", "rad/s", std::numbers::pi / 2);
+  near("30 rpm", "rad/s", std::numbers::pi);
+  near("2 s-1", "rad/s", 2);
+  near("0.5", "rad", 0.5);
+  near("5 Hz", "1/s", 5);
   near("5 ns", "s", 5e-9);
   near("0.1 GPa/m", "Pa/m", 1e8);
   near("1 MPa/um", "Pa/m", 1e12);
@@ -51,6 +57,17 @@ TEST(Units, RejectWhatTheyCannotMean) {
   rejects("2", "m", "no unit");
   rejects("1 MHz", "s", "wrong unit");  // the reciprocal, which UDUNITS-2 calls convertible
   rejects("1 s/m", "m/s", "wrong unit");
+  // The angle is no number, whatever its unit and whatever stands beside it.
+  for (const char* angle :
+       {"45 deg", "45°", "0.785 rad", "785 mrad", "0.125 turn", "45 arc_degree", "50 grade", "1 sr"})
+    rejects(angle, "1", "which is no number");
+  for (const char* rate : {"20 rad/s", "20 deg/s", "20 rpm"}) rejects(rate, "1/s", "which is no number");
+  rejects("2 m rad", "m", "which is no number");
+  rejects("30 %", "rad", "wrong unit");
+  rejects("1 sr", "rad", "wrong unit");
+  rejects("1 rad2/s", "rad/s", "wrong unit");
+  rejects("10 Hz", "rad/s", "turns or radians");
+  rejects("10 kilohertz", "rad/s", "turns or radians");
   rejects("2 foo", "m", "unknown unit");
   rejects("2 m)", "m", "unknown unit");
   rejects("2 1000 m", "m", "unknown unit");
@@ -67,6 +84,13 @@ TEST(Units, RejectWhatTheyCannotMean) {
   rejects("1e999 m", "m", "double precision");
   rejects("1e308 GPa", "Pa", "double precision");
   rejects("0x10 m", "m", "unknown unit");
+}
+
+TEST(Units, TellAnglesFromNumbers) {
+  // EXACT
+  for (const char* angle : {"45 deg", " 45° ", "0.1 rad", "-1e-3 turn", "20 arc_minute"}) EXPECT_TRUE(is_angle(angle));
+  for (const char* other : {"", "45", "4.5e1", "30 %", "45 dge", "1 rad/s", "deg", "1 m", "nan rad", "auto"})
+    EXPECT_FALSE(is_angle(other)) << other;
 }
 
 TEST(Names, EditDistance) {
