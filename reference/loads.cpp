@@ -173,8 +173,10 @@ Vector Loads::gravity(double time) const {
 
 Vector Loads::applied(const Instant& at) const {
   Vector force = Vector::Zero(bodies_.dofs());
+  const Vector weight = gravity(at.time);
   for (const RigidLoad& load : rigid_)
-    if (load.loaded(at)) force[load.dof] += load.factor * load.drive.history.at(at.time);
+    if (const double borne = load.drive.mode == Mode::pressure ? weight[load.dof] : 0; load.loaded(at))
+      force[load.dof] += load.factor * load.drive.history.at(at.time) - borne;
   return force;
 }
 

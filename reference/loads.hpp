@@ -55,7 +55,7 @@ class Loads {
  public:
   explicit Loads(const Bodies& bodies);
 
-  /// Forces of histories on the degrees of freedom: [dofs], N/m.
+  /// Forces of histories on the degrees of freedom: [dofs], N/m. A wall's pressure comes with what bears its weight.
   Vector applied(const Instant& at) const;
   Vector gravity(double time) const;  ///< [dofs], N/m
   /// Pressures and supports.

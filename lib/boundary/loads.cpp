@@ -9,23 +9,29 @@ namespace pliant {
 
 namespace {
 
+using Gravity = Eigen::Vector3d;  ///< along x, y and the angle, m/s2
+
+Gravity gravity_of(const Vec2& g) { return {g.x(), g.y(), 0}; }
+Gravity gravity_of(const Model& model, const Instant& at) { return gravity_of(model.scene.gravity_at(at.time)); }
+
 /// Of the loads on rigid bodies, their dashpots and gravity.
-void add_rigid_load_change(const RigidBody& rigid, const Vec2& g, const Instant& from, const Instant& to,
-                           const double* velocity, double* force) {
-  for (int c = 0; c < 2; ++c) force[c] += rigid.dof[c].mass * g[c];
+void add_rigid_load_change(const RigidBody& rigid, const Gravity& before, const Gravity& after, const Instant& from,
+                           const Instant& to, const double* velocity, double* force) {
+  for (int c = 0; c < 2; ++c) force[c] += rigid.dof[c].mass * (after[c] - before[c]);
   if (!rigid.driven) return;
   for (int c = 0; c < 3; ++c) {
     const RigidDof& dof = rigid.dof[c];
-    force[c] += applied_load(dof, to) - applied_load(dof, from) -
+    force[c] += applied_load(dof, to, after[c]) - applied_load(dof, from, before[c]) -
                 (drag_coefficient(dof, to) - drag_coefficient(dof, from)) * velocity[c];
   }
 }
 
 }  // namespace
 
-double applied_load(const RigidDof& dof, const Instant& at) {
-  const bool loaded = dof.mode == Drive::Mode::force || dof.mode == Drive::Mode::pressure;
-  return loaded && contains(dof.window, at) ? dof.force_scale * dof.history.at(at.time) : 0.0;
+double applied_load(const RigidDof& dof, const Instant& at, double g) {
+  const bool servo = dof.mode == Drive::Mode::pressure, loaded = servo || dof.mode == Drive::Mode::force;
+  if (!loaded || !contains(dof.window, at)) return 0;
+  return dof.force_scale * dof.history.at(at.time) - (servo ? dof.mass * g : 0);
 }
 
 namespace {
@@ -56,24 +62,27 @@ void add_rigid_loads(const RigidBody& rigid, const Vec2& g, const Instant& at, d
   force[0] += rigid.dof[0].mass * g.x();
   force[1] += rigid.dof[1].mass * g.y();
   if (!rigid.driven) return;
-  for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], at);
+  for (int c = 0; c < 3; ++c) force[c] += applied_load(rigid.dof[c], at, gravity_of(g)[c]);
 }
 
 double add_load_change(const Model& model, const Motion& at, const Outlines& outlines, const Instant& to, Dofs& force) {
-  const Vec2 g = model.scene.gravity_at(to.time) - model.scene.gravity_at(at.time);
+  const Gravity before = gravity_of(model, at.instant()), after = gravity_of(model, to);
+  const Vec2 g = (after - before).head<2>();
   if (!g.isZero(0))
     parallel_for(static_cast<int>(model.regions.size()), [&](int r) {
       const Region& region = model.regions[r];
       add_gravity(model, region, g, &force.compliant[model.batches[region.batch].offset]);
     });
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
-    add_rigid_load_change(model.rigid_bodies[r], g, at.instant(), to, &at.velocity.rigid[3 * r], &force.rigid[3 * r]);
+    add_rigid_load_change(model.rigid_bodies[r], before, after, at.instant(), to, &at.velocity.rigid[3 * r],
+                          &force.rigid[3 * r]);
   return add_outline_load_change(model, at, outlines, to, force);
 }
 
 double external_work(const Model& model, const Motion& before, const Dofs& force, const Motion& after,
                      const Dofs& next_force) {
   double work = 0;
+  const Gravity g0 = gravity_of(model, before.instant()), g1 = gravity_of(model, after.instant());
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
     const RigidBody& rigid = model.rigid_bodies[r];
     if (!rigid.driven) continue;
@@ -85,7 +94,7 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
         const double v0 = before.velocity.rigid[i], v1 = after.velocity.rigid[i];
         work += 0.5 * dof.mass * (v1 * v1 - v0 * v0) - 0.5 * (force.rigid[i] + next_force.rigid[i]) * moved;
       } else {
-        work += 0.5 * (applied_load(dof, before.instant()) + applied_load(dof, after.instant())) * moved;
+        work += 0.5 * (applied_load(dof, before.instant(), g0[c]) + applied_load(dof, after.instant(), g1[c])) * moved;
       }
     }
   }

@@ -6,8 +6,9 @@
 
 namespace pliant {
 
-/// Force that a history applies to one rigid degree of freedom, N/m (0 for imposed and free ones).
-double applied_load(const RigidDof& dof, const Instant& at);
+/// Force that a history applies to one rigid degree of freedom, N/m (0 for imposed and free ones). What a pressure
+/// drives is held against its own weight in gravity g, m/s2 along it: contacts bear the pressure (docs/method.md 5).
+double applied_load(const RigidDof& dof, const Instant& at, double g);
 
 /// Adds gravity g, m/s2, at the nodes of one region to its batch's forces: [slots x 2].
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces);

@@ -98,7 +98,8 @@ std::vector<ProbeQuantity> forces() {
               "of stresses on the degrees of freedom; over a whole body it vanishes to rounding"),
       by_body("body_force", vector_columns("body_force", "N/m"), Of::any, sum_first, Node::none, "of gravity"),
       by_body("applied_force", vector_columns("applied_force", "N/m"), Of::any, sum_first, Node::none,
-              "of the histories of force and pressure, and of soft supports"),
+              "of the histories of force and pressure, with what bears the weight of a wall under a pressure, and of "
+              "soft supports"),
       by_body("damping_force", vector_columns("damping_force", "N/m"), Of::any, sum_first, Node::none,
               "of mass_damping and of dashpots beside loads"),
       by_body("reaction_force", vector_columns("reaction_force", "N/m"), Of::any, sum_first, Node::none,

@@ -104,14 +104,19 @@ TEST(Window, of_a_wall_lets_it_go) {
   EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT: constant forces";
 }
 
-/// m v' = L (p - d v): a servo wall in free flight approaches the speed p/d.
-TEST(ServoWall, approaches_the_speed_of_pressure_over_damping) {
+/// m v' = L (p - d v): a servo wall in free flight approaches the speed p/d, whatever it weighs.
+void expect_servo_flight(Integrator integrator, const Vec2& gravity, const std::vector<History>& gravity_history) {
   constexpr double pressure = 0.7, damping = 2, end = 1.5;
   Scene scene = on_a_floor(end, 3, 0.25, {0, 0});
   scene.shapes = {disc_shape("disc", 2, 20)};
   scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
+  scene.boundary = {drives_of("far", 0)};
+  for (Drive* drive : {&scene.boundary[0].x, &scene.boundary[0].y, &scene.boundary[0].angle}) *drive = Drive{};
   scene.walls[0].y = {Drive::Mode::pressure, constant(pressure)};
   scene.walls[0].y.damping = damping;
+  scene.gravity = gravity;
+  scene.gravity_history = gravity_history;
+  scene.time.integrator = integrator;
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, end);
@@ -121,15 +126,45 @@ TEST(ServoWall, approaches_the_speed_of_pressure_over_damping) {
   EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT";
 }
 
+TEST(ServoWall, approaches_the_speed_of_pressure_over_damping) {
+  expect_servo_flight(Integrator::verlet, {0, 0}, {});
+  expect_servo_flight(Integrator::verlet, {0.4, -0.9}, {});
+}
+
+TEST(ServoWall, does_not_feel_a_gravity_that_changes) {
+  expect_servo_flight(Integrator::verlet, {0, 0}, {{{0, 1}, {0, 0.2}}, {{0, 0.5, 1}, {0, -2, 1}}});
+}
+
+/// Gravity is borne as long as the pressure acts, 1, and not after: 0.7 x 3 over the mass, then free fall.
+TEST(ServoWall, falls_when_its_pressure_ends) {
+  for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
+    Scene scene = on_a_floor(2, 3, 0.25, {0, -0.3});
+    scene.shapes = {disc_shape("disc", 2, 20)};
+    scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
+    scene.walls[0].y = {Drive::Mode::pressure, constant(0.7)};
+    scene.walls[0].y.window.until = 1;
+    scene.time.integrator = integrator;
+    const Model model = build_model(scene);
+    Simulation simulation(model);
+    advance(simulation, 2);
+    const double push = 0.7 * 3 / model.rigid_bodies[1].dof[1].mass;
+    EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], push - 0.3, 1e-12) << "EXACT";
+    if (integrator == Integrator::verlet) {
+      EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT: constant forces";
+    }
+  }
+}
+
 struct Pressed {
   double largest = 0, last = 0;  ///< force on the floor over pressure x period
+  double lid = 0;                ///< force on the lid at the end, N/m
   double imbalance = 0;
 };
 
 /// A lid pressed on a compliant block that lies on the floor.
-Pressed pressed_block(double damping) {
+Pressed pressed_block(double damping, double gravity = 0) {
   constexpr double pressure = 0.02, end = 60;
-  Scene scene = on_a_floor(end, 3, 0.25, {0, 0});
+  Scene scene = on_a_floor(end, 3, 0.25, {0, -gravity});
   scene.shapes = {box_shape("block", 2, 2, 0.4)};
   scene.grains = {grains("block", "block", BodyKind::compliant, {{1.5, 1.0}})};
   scene.materials[0].viscosity = 0.1;
@@ -144,6 +179,7 @@ Pressed pressed_block(double damping) {
     result.last = -contact_force(simulation, 1).y() / (pressure * 3);
     result.largest = std::max(result.largest, result.last);
   }
+  result.lid = contact_force(simulation, 2).y();
   result.imbalance = simulation.balance_error(simulation.audit().energy);
   return result;
 }
@@ -153,6 +189,16 @@ TEST(ServoWall, reaches_its_pressure_without_ringing_when_damped_enough) {
   EXPECT_GT(ringing.largest, 1.5) << "EXACT: a load that is there at once doubles, but for the block's own viscosity";
   EXPECT_LT(servo.largest, 1.01) << "EXACT: above critical damping nothing overshoots but the block itself";
   EXPECT_NEAR(servo.last, 1, 1e-3) << "EXACT: equilibrium";
+  EXPECT_LT(servo.imbalance, 0.01) << "EXACT: the promise of 1 %";
+}
+
+/// A lid whose weight is half its load lies on the block with the pressure alone; the floor bears the block's weight
+/// besides, 4 g.
+TEST(ServoWall, is_held_against_its_own_weight) {
+  constexpr double gravity = 0.02, load = 0.02 * 3;
+  const Pressed servo = pressed_block(3, gravity);
+  EXPECT_NEAR(servo.lid, load, 1e-3 * load) << "EXACT: equilibrium, as without gravity";
+  EXPECT_NEAR(servo.last * load, load + 4 * gravity, 1e-3 * load) << "EXACT: the same";
   EXPECT_LT(servo.imbalance, 0.01) << "EXACT: the promise of 1 %";
 }
 

@@ -238,6 +238,33 @@ TEST(ReferenceLoads, targets_that_move_their_dashpots_work) {
   EXPECT_GT(observed_order({2, 1}, {missing[0], missing[1]}), 1.8);
 }
 
+/// EXACT: at rest contacts bear a servo wall's pressure, whatever the wall weighs; the floor bears the block besides.
+TEST(ReferenceLoads, contacts_bear_a_walls_pressure_under_gravity) {
+  constexpr double pressure = 0.02, gravity = 0.02, period = 3;
+  Scene scene = on_a_floor(1, period, 0.25, {0, -gravity});
+  scene.shapes = {box_shape("block", 2, 2, 0.5)};
+  scene.grains = {grains("block", "block", BodyKind::compliant, {{1.5, 0.999}})};
+  scene.walls.push_back(flat_wall("lid", Wall::Solid::above, 1.998, 0.25, 0.5));
+  scene.walls[1].y = drive(Mode::pressure, constant(pressure), 3);
+  SolverOptions statics;
+  statics.statics = true;
+  ReferenceRun run(scene, statics);
+  run.run(1);
+  const auto on = [&](const std::string& name) {
+    double force = 0;
+    for (const reference::Body& body : run.system.bodies().all())
+      for (const reference::ContactElement& element : run.stepping.forces().contacts.elements)
+        for (int i = 0; i < 3; ++i)
+          if (body.placed.name == name && element.node[i] >= body.first_outline &&
+              element.node[i] < body.first_outline + static_cast<int>(body.outline.size()))
+            force -= element.force[2 * i + 1];
+    return force;
+  };
+  // Newton's residual is 1e-9 of the forces, times the roots of their numbers.
+  EXPECT_NEAR(on("lid"), pressure * period, 1e-7 * pressure * period);
+  EXPECT_NEAR(on("floor"), -(pressure * period + 4 * gravity), 1e-7 * pressure * period);
+}
+
 /// EXACT: everything imposed leaves no equation; positions are integrals of histories, and the work is the kinetic
 /// energy.
 TEST(ReferenceLoads, scenes_without_free_bodies_move_as_told) {

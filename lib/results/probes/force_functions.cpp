@@ -37,7 +37,8 @@ Vec2 applied_force(const Snapshot& snapshot, int b) {
   if (body.kind == BodyKind::compliant) return on_outline;
   const RigidBody& rigid = snapshot.model().rigid_bodies[body.rigid];
   const Instant now = snapshot.motion().instant();
-  return on_outline + Vec2(applied_load(rigid.dof[0], now), applied_load(rigid.dof[1], now));
+  const Vec2 g = snapshot.model().scene.gravity_at(now.time);
+  return on_outline + Vec2(applied_load(rigid.dof[0], now, g.x()), applied_load(rigid.dof[1], now, g.y()));
 }
 
 /// Of the material and of dashpots beside loads; viscosity exerts no force on a body as a whole.
