@@ -50,6 +50,8 @@ int main_program(int argc, char** argv) {
   if (options.quiet) spdlog::set_level(spdlog::level::err);
   Scene scene = read_scene(file);
   for (const std::string& text : scene.warnings) spdlog::warn(text);
+  if (!scene.start_from.empty())
+    throw InputError(fmt::format("{}: [start]: the reference solver starts no scene from another run's end", file));
   if (!until.empty()) scene.time.end = parse_time("--until", until);
   if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
   options.solver.mass =

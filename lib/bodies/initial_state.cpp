@@ -38,6 +38,12 @@ Dofs initial_positions(const Model& model) {
   return q;
 }
 
+void set_imposed_velocities(const Model& model, Dofs& v) {
+  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
+    for (std::size_t c = 0; c < 3; ++c)
+      v.rigid[3 * r + c] = model.rigid_bodies[r].dof[c].velocity_after(0, 0, v.rigid[3 * r + c]);
+}
+
 Dofs initial_velocities(const Model& model, const Dofs& q) {
   Dofs v = zero_dofs(model);
   for (const Body& body : model.bodies) {
@@ -57,8 +63,8 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
       const InitialVelocity& field = model.scene.grains[body.grains].velocity;
       v.rigid[3 * r] = field.uniform.x(), v.rigid[3 * r + 1] = field.uniform.y(), v.rigid[3 * r + 2] = field.rotation;
     }
-    for (int c = 0; c < 3; ++c) v.rigid[3 * r + c] = rigid.dof[c].velocity_after(0, 0, v.rigid[3 * r + c]);
   }
+  set_imposed_velocities(model, v);
   return reduced_momentum(model, v);
 }
 

@@ -14,6 +14,9 @@ void fill_padding(const Model& model, Dofs& dofs);
 /// the body's scale.
 Dofs initial_positions(const Model& model);
 
+/// Of driven degrees of freedom at t = 0, where their motion is imposed; others stay as they are. [3 rigid bodies]
+void set_imposed_velocities(const Model& model, Dofs& velocities);
+
 /// Uniform, rotational and linear initial velocity fields of the scene, and the imposed ones of driven walls at t = 0.
 Dofs initial_velocities(const Model& model, const Dofs& positions);
 

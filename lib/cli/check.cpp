@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "cli/rehearsal.hpp"
 #include "cli/stability.hpp"
 #include "core/memory.hpp"
+#include "results/start_file.hpp"
 
 namespace pliant {
 namespace {
@@ -260,6 +262,7 @@ void print_sizes(const Model& model, const OutputSize& size) {
 
 void print_check(const Scene& scene, int threads) {
   if (threads > 0) omp_set_num_threads(threads);
+  const std::unique_ptr<const StartFile> from = start_file_of(scene);
   const Model model = build_model(scene);
   print_row("scene", scene.title.empty() ? scene.name : scene.title);
   print_bodies(model);
@@ -268,7 +271,8 @@ void print_check(const Scene& scene, int threads) {
   print_masses(model);
   print_shapes(model);
   const Stability stable = stability(model);
-  Simulation simulation(model);
+  Simulation simulation = start_simulation(model, from.get());
+  if (from) print_row("start", fmt::format("from '{}' at its t = {:.6g} s", from->scene_name(), from->time()));
   print_contacts(model, simulation.forces().contact());
   print_overlap(simulation);
   print_errors(model);

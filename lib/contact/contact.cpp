@@ -7,14 +7,12 @@
 #include <tuple>
 #include <utility>
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "contact/close_phase.hpp"
 #include "contact/patch_forces.hpp"
 #include "contact/patch_queries.hpp"
 #include "contact/self_contact.hpp"
-#include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "core/prefetch.hpp"
 
@@ -72,10 +70,12 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
 void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   warn_of_missed_contacts(outlines.position);
   watch_.forget();
-  const bool start = !fresh_;  // an empty history would not tell: bodies may have been far from each other
+  const bool start = !fresh_;  // an empty history would not tell: bodies may have been far apart
+  const std::vector<Patch> inherited = start ? patches() : std::vector<Patch>();
   take_over_patches(outlines, outlines.position, history, clock);
-  if (start) refuse_self_overlap();
-  if (start) parallel_for(table_.count(), [&](int p) { start_records(view(patches()[p]), history); });
+  if (start && inherited.empty()) refuse_self_overlap();
+  const auto begin = [&](const Patch& p) { return is_among(inherited, p) ? void() : start_records(view(p), history); };
+  if (start) parallel_for(table_.count(), [&](int p) { begin(patches()[p]); });
   fresh_ = true;
 }
 
@@ -285,16 +285,6 @@ void ContactSystem::add_self_patches(std::vector<Patch>& all) {
     find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, all, thread_scratch());
     for (std::size_t p = others; p < all.size(); ++p) all[p].found = refreshes_;
   }
-}
-
-/// A limb thinner than contact sees would press its own far side out.
-void ContactSystem::refuse_self_overlap() const {
-  for (const Patch& patch : patches())
-    if (patch.of_itself() && overlaps(view(patch)))
-      throw InputError(fmt::format(
-          "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
-          "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",
-          model_.bodies[patch.first].name, model_.outline_of(patch.first).spacing + skin_));
 }
 
 }  // namespace pliant

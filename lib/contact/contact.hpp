@@ -10,6 +10,7 @@
 #include "bodies/outline.hpp"
 #include "contact/contact_laws.hpp"
 #include "contact/history.hpp"
+#include "contact/inherited.hpp"
 #include "contact/pair_watch.hpp"
 #include "contact/patch.hpp"
 #include "contact/patch_table.hpp"
@@ -64,6 +65,12 @@ class ContactSystem {
   /// whether all hold on trial, where they were last asked whether they do; without one, where they are.
   bool renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {},
                         const OutlineField* trial = nullptr);
+
+  /// What another run of the same bodies may inherit; `history` is that of the state now.
+  InheritedContact leave(const ContactHistory& history) const;
+  /// Before the first search: it carries places, slip and what laws remember over, but of pairs whose law was of
+  /// another kind. Those begin as in any run. Throws ArchiveError for contacts of other bodies.
+  void inherit(const InheritedContact& from, ContactHistory& history);
 
   /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
   /// was, so that contacts may repay what they owe. Without it, as at the start, all stands still.

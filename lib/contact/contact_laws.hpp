@@ -23,6 +23,7 @@ class ContactLaws {
   /// `until`.
   int era(double time) const;
   bool automatic_stiffness(int first, int second) const;
+  ContactLawKind kind(int first, int second) const { return rule(bodies_[first], bodies_[second])->law; }
 
   double max_reach() const { return max_reach_; }             ///< of any pair, m
   double largest_stiffness(int body) const;                   ///< of any pair with this body, Pa/m

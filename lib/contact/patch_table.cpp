@@ -102,6 +102,17 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
   index();
 }
 
+void PatchTable::take(std::vector<Patch> patches, int records) {
+  patches_ = std::move(patches);
+  records_ = record_room_ = records;
+  entries_ = 0;
+  for (Patch& patch : patches_)
+    for (int side = 0; side < 2; ++side)
+      patch.entry[side] = std::exchange(entries_, entries_ + padded(patch.forces(side).count));
+  entry_room_ = entries_;
+  loaded();
+}
+
 /// Where the numbers of new patches go. False, and nothing taken, where there is no room.
 bool PatchTable::take_room(const std::vector<int>& at, std::vector<Patch>& now, ContactHistory& history) {
   int records = records_, entries = entries_;

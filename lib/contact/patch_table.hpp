@@ -45,6 +45,9 @@ class PatchTable {
 
   /// Takes these, in the order of their keys, for those before. The history follows, with so many fields of laws.
   void lay_out(std::vector<Patch> patches, std::size_t fields, ContactHistory& history);
+  /// Takes those of another run, with so many records in a history of its own: the next layout carries them over.
+  /// Throws ArchiveError for those of other bodies.
+  void take(std::vector<Patch> patches, int records);
   /// Takes patches for those of the same bodies that have these places in the table; the history follows. Calls
   /// also(old, now) for each, by several threads at once. False, and nothing done, where there is no room.
   template <class Also>

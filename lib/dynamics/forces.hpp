@@ -60,6 +60,9 @@ class Forces {
   /// Warns once a run that contacts get deep, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 
+  /// As ContactSystem::inherit.
+  void inherit(const InheritedContact& from, ContactHistory& history) { contact_.inherit(from, history); }
+
   const Model& model() const { return model_; }
   const ContactSystem& contact() const { return contact_; }
   PhaseTimes& phases() { return phases_; }

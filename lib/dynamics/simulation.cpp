@@ -5,27 +5,59 @@
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
 #include "contact/deepest_node.hpp"
+#include "core/archive.hpp"
 #include "dynamics/failure.hpp"
 #include "dynamics/take_step.hpp"
 
 namespace pliant {
 
-Simulation::Simulation(const Model& model) : model_(model), forces_(model) {
-  state_.position = initial_positions(model);
-  state_.reduced_momentum = initial_velocities(model, state_.position);
+void StartPoint::require_fit(const Model& model) const {
+  const bool fits = position.compliant.size() == model.compliant_size &&
+                    position.rigid.size() == 3 * model.rigid_bodies.size() &&
+                    reduced_momentum.compliant.size() == position.compliant.size() &&
+                    reduced_momentum.rigid.size() == position.rigid.size() && material.size() == model.material_memory;
+  if (!fits) throw ArchiveError("bodies have other nodes");
+}
+
+Simulation::Simulation(const Model& model, const StartPoint* from) : model_(model), forces_(model) {
   state_.force = zero_dofs(model);
   state_.memory = initial_memory(model);
-  refuse_deep_overlap(model, placed_outlines(model, state_.position));
+  if (from) {
+    begin(*from);
+  } else {
+    state_.position = initial_positions(model);
+    state_.reduced_momentum = initial_velocities(model, state_.position);
+    refuse_deep_overlap(model, placed_outlines(model, state_.position));
+  }
   const Evaluation start = find_forces(forces_, state_);
   check_start(start, state_, forces_);
   forces_.warn_of_depth(start, 0);
-  if (start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), state_.outlines);
+  if (!from && start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), state_.outlines);
   ++state_.evaluations;
   auditor_ = std::make_unique<Auditor>(model, state_);
   if (model.scene.time.integrator == Integrator::verlet)
     integrator_ = std::make_unique<Verlet>(forces_, state_);
   else
     integrator_ = std::make_unique<StepDoubling>(forces_, state_);
+}
+
+void Simulation::begin(const StartPoint& start) {
+  start.require_fit(model_);
+  state_.next_dt = start.next_dt, state_.jerk = start.jerk, state_.jerk_before = start.jerk_before;
+  state_.position = start.position, state_.reduced_momentum = start.reduced_momentum;
+  state_.memory.material = start.material;
+  set_imposed_velocities(model_, state_.reduced_momentum);
+  forces_.inherit(start.contact, state_.memory.contact);
+}
+
+StartPoint Simulation::start_point() const {
+  return {state_.next_dt,
+          state_.jerk,
+          state_.jerk_before,
+          state_.position,
+          state_.reduced_momentum,
+          state_.memory.material,
+          forces_.contact().leave(state_.memory.contact)};
 }
 
 StepReport Simulation::step(double until, const Observer* observer) {

@@ -6,6 +6,7 @@
 #include "contact/initial_overlap.hpp"
 #include "dynamics/energy.hpp"
 #include "dynamics/observer.hpp"
+#include "dynamics/start_point.hpp"
 #include "dynamics/state.hpp"
 #include "dynamics/step_doubling.hpp"
 #include "dynamics/step_statistics.hpp"
@@ -16,7 +17,10 @@ namespace pliant {
 /// A model in motion: state, forces, integrator and energy books.
 class Simulation {
  public:
-  explicit Simulation(const Model& model);
+  /// From the scene's own start, or from where another run of the same bodies ended, at t = 0 either way. Throws
+  /// ArchiveError for a start point of other bodies.
+  explicit Simulation(const Model& model, const StartPoint* start = nullptr);
+  StartPoint start_point() const;  ///< of the state now
 
   /// One accepted step, ending at `until` at the latest. An observer sees what it passes by; if it has seen enough
   /// then, no step is taken, and the report's has no length.
@@ -47,6 +51,8 @@ class Simulation {
   }
 
  private:
+  void begin(const StartPoint& start);
+
   const Model& model_;
   State state_;
   Forces forces_;

@@ -26,12 +26,19 @@ constexpr const char* instruction_set =
     "baseline";
 #endif
 
-/// What decides about the last bits: commit, compiler, options, instructions.
+/// What a checkpoint holds, in the order of the file. Reading calls it as well.
+template <class Visitor>
+void visit_run(Visitor&& visitor, Simulation& simulation, Recorder& recorder) {
+  visitor("simulation", simulation);
+  visitor("outputs", recorder);
+}
+
+}  // namespace
+
 std::string build_identity() {
   return fmt::format("{}, {}, {}, {}", build_commit, build_compiler, build_options, instruction_set);
 }
 
-/// Hash of all that array sizes follow from: a build that meshes a scene otherwise cannot go on.
 std::string mesh_hash(const Model& model) {
   Fnv1a hash;
   const auto add = [&](std::int64_t number) { hash.add(&number, sizeof number); };
@@ -44,15 +51,6 @@ std::string mesh_hash(const Model& model) {
   }
   return fmt::format("{:016x}", hash.value());
 }
-
-/// What a checkpoint holds, in the order of the file. Reading calls it as well.
-template <class Visitor>
-void visit_run(Visitor&& visitor, Simulation& simulation, Recorder& recorder) {
-  visitor("simulation", simulation);
-  visitor("outputs", recorder);
-}
-
-}  // namespace
 
 void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
                       Recorder& recorder, double time) {

@@ -12,6 +12,12 @@ namespace pliant {
 void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
                       Recorder& recorder, double time);
 
+/// What decides about the last bits: commit, compiler, options, instructions.
+std::string build_identity();
+
+/// Hash of all that array sizes follow from: a build that meshes a scene otherwise cannot go on.
+std::string mesh_hash(const Model& model);
+
 /// A checkpoint that was read and is not used yet.
 class Checkpoint {
  public:

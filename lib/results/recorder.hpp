@@ -41,6 +41,7 @@ class Recorder {
     visitor("worst_momentum_error", figures.worst_momentum_error);
     visitor("wall_seconds", figures.wall_seconds);
     visitor("resumed", figures.resumed);
+    visitor("started_from", figures.started_from);
   }
   void loaded();
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "results/failure_report.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
+#include "results/start_file.hpp"
 #include "scene/text_file.hpp"
 
 namespace pliant {
@@ -83,6 +85,7 @@ struct Run {
     const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
     end_summary = recorder.summary(simulation, "finished");
     recorder.figures.checkpoint_time = before;
+    write_start_file(options.out, scene_text, simulation);
     end_line = last_line(simulation, recorder.figures, options);
     warn_of_balance(simulation, simulation.audit().energy);
   }
@@ -155,9 +158,10 @@ std::string last_words(Run& run, const Error& error) {
 
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
+  const std::unique_ptr<const StartFile> from = checkpoint ? nullptr : start_file_of(scene);
   const Model model = build_model(scene);
   make_samplers(model);  // refuses nodes that no body has, before anything is written
-  Simulation simulation(model);
+  Simulation simulation = start_simulation(model, from.get());
   // Read before the folder is emptied: the scene may lie in it.
   const SceneFiles files(scene.file);
   const StopSignals signals;  // a run that was begun ends in order
@@ -167,15 +171,20 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   checkpoint ? remove_temporary_files(options.out) : empty_output_folder(options.out, files.names());
   Recorder recorder(model, options.out, options.quiet, checkpoint ? Opening::resume : Opening::create);
   if (checkpoint) checkpoint->restore(simulation, recorder);
+  if (from) write_file_atomically(options.out / start_copy_name, from->bytes());
+  if (from) recorder.figures.started_from = from->origin();
   files.write(options.out);
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
   if (checkpoint) recorder.figures.checkpoint_time = checkpoint->time();
   fs::remove(failure_file(options.out));
+  fs::remove(options.out / start_file_name);  // of an earlier end
   if (!options.quiet)
     fmt::print("{}: {} bodies, {} nodes, {} DOFs, prepared in {:.2f} s{}\n", scene.name, model.bodies.size(),
                model.node_count(), model.dof_count(), recorder.figures.preparation_seconds,
-               checkpoint ? fmt::format(", going on from t = {:.6g} s", checkpoint->time()) : "");
+               checkpoint ? fmt::format(", going on from t = {:.6g} s", checkpoint->time())
+               : from     ? fmt::format(", starting from '{}' at its t = {:.6g} s", from->scene_name(), from->time())
+                          : "");
   Run run{options, files.text(), simulation, recorder};
   try {
     advance(run);

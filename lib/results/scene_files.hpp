@@ -11,7 +11,8 @@
 namespace pliant {
 
 /// What a run was asked, to be kept beside its results: the scene file, made independent of its place, and the outlines
-/// and tables of grains that it names. Held in memory, as the folder that the run empties may hold the originals.
+/// and tables of grains that it names; the state that it starts from is kept by the run. Held in memory, as the folder
+/// that the run empties may hold the originals.
 class SceneFiles {
  public:
   /// Reads a scene file, known to be valid, and what it names. Throws InputError for what cannot be read.
@@ -33,6 +34,7 @@ class SceneFiles {
 
   std::string text_;
   std::vector<File> files_;
+  bool starts_from_a_state_;
 };
 
 }  // namespace pliant

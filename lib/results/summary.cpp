@@ -51,6 +51,7 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   json["commit"] = build_commit;
   json["compiler"] = build_compiler;
   json["threads"] = figures.threads;
+  if (!figures.started_from.empty()) json["started_from"] = nlohmann::ordered_json::parse(figures.started_from);
   json["resumed"] = figures.resumed;
   json["checkpoint_time"] = figures.checkpoint_time < 0 ? nlohmann::json() : nlohmann::json(figures.checkpoint_time);
   return json.dump(2) + "\n";

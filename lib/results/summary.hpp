@@ -13,6 +13,7 @@ struct RunFigures {
   double process_seconds = 0;       ///< of these, of this process
   double worst_momentum_error = 0;  ///< over all audits of the run
   int threads = 1;
+  std::string started_from{};   ///< JSON of the state that the run started from; empty: none
   int resumed = 0;              ///< times that the run went on from a checkpoint
   double checkpoint_time = -1;  ///< s of the scene; -1: none yet
 };

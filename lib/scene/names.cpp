@@ -128,6 +128,7 @@ constexpr std::string_view keys[] = {
     "solid",
     "solid_fraction",
     "spacing",
+    "start",
     "stiffness",
     "stop_at_outputs",
     "strength",

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "scene/names.hpp"
+#include "scene/scene.hpp"
 
 namespace pliant {
 namespace {
@@ -48,8 +49,14 @@ class FileNames {
     copies_[index_of(text_, file->source().begin)] = files_.back().copy;
   }
 
+  /// That the run starts from.
+  void look_at_state(const toml::node& from) {
+    starts_from_a_state_ = true;
+    copies_[index_of(text_, from.source().begin)] = start_copy_name;
+  }
+
   PortableScene result() const {
-    PortableScene scene{text_, files_};
+    PortableScene scene{text_, files_, starts_from_a_state_};
     for (auto copy = copies_.rbegin(); copy != copies_.rend(); ++copy)
       scene.text.replace(copy->first, quoted_length(text_, copy->first), fmt::format("\"{}\"", copy->second));
     return scene;
@@ -59,6 +66,7 @@ class FileNames {
   const std::string& text_;
   std::vector<FileCopy> files_;
   std::map<std::size_t, std::string> copies_;  // by the place of the file's name
+  bool starts_from_a_state_ = false;
 };
 
 }  // namespace
@@ -75,6 +83,7 @@ PortableScene portable_scene(const std::string& text) {
       const std::string name = (*grains)["name"].value_or(default_grains_name(i + 1));
       names.look_at(grains->get("packing"), "table of grains", "packing_" + name);
     }
+  if (const toml::node* from = scene["start"]["from"].node()) names.look_at_state(*from);
   return names.result();
 }
 

@@ -12,10 +12,11 @@ struct FileCopy {
   std::string copy;  ///< "outline_SHAPE.csv" or ".msh", "packing_GRAINS.csv": names that no two share
 };
 
-/// A scene file that finds beside it what it names, wherever it is put.
+/// A scene file that finds beside it what it names, and the state that it starts from, wherever it is put.
 struct PortableScene {
-  std::string text;  ///< as it was, but for the names of files
+  std::string text;  ///< as it was, but for the names of these files
   std::vector<FileCopy> files;
+  bool starts_from_a_state = false;  ///< whose copy is called start.bin
 };
 
 /// Of the text of a valid scene file. A portable text stays as it is.

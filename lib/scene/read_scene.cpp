@@ -83,6 +83,7 @@ Scene read_scene(const fs::path& file, SceneSchema* schema) {
   for (const TableReader& table : root.tables("boundary")) scene.boundary.push_back(read_condition(table, scene));
   read_contacts(root, scene);
   read_outputs(root, scene);
+  if (root.has("start")) read_start(root.required_table("start"), scene);
   read_checkpoint(root.optional_table("checkpoint"), scene);
   root.finish();
   scene.warnings = source.warnings;

@@ -65,6 +65,17 @@ DiscretisationSettings read_discretisation(TableReader table) {
   return settings;
 }
 
+void read_start(TableReader table, Scene& scene) {
+  std::string from;
+  table.required("from", from, Text{});
+  const std::filesystem::path path = std::filesystem::path(table.file()).parent_path() / from;
+  if (!std::filesystem::exists(path))
+    table.value("from").reject(fmt::format(
+        "the output folder of a run that has ended, from the folder of this file; there is no {}", path.string()));
+  scene.start_from = std::filesystem::is_directory(path) ? path / start_file_name : path;
+  table.finish();
+}
+
 void read_checkpoint(TableReader table, Scene& scene) {
   table.optional("period", scene.checkpoint_period, QuantityOr{"never", {"s", positive}});
   table.finish();

@@ -28,6 +28,7 @@ DiscretisationSettings read_discretisation(TableReader table);
 Probe read_probe(TableReader table, const Scene& scene);
 Frames read_frames(TableReader table, const Scene& scene);
 void read_checkpoint(TableReader table, Scene& scene);
+void read_start(TableReader table, Scene& scene);
 
 Material read_material(TableReader table, const std::string& name);
 /// One shape, or all variants of it.

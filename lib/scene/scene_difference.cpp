@@ -22,6 +22,28 @@ toml::table significant(const std::string& text) {
   }
 }
 
+/// What a new start leaves as it is.
+toml::table of_bodies(const std::string& text) {
+  toml::table table = significant(text);
+  for (const char* key : {"start", "time", "boundary", "contacts", "probes", "frames"}) table.erase(key);
+  if (toml::table* domain = table["domain"].as_table()) domain->erase("gravity");
+  if (toml::table* contact = table["contact"].as_table())
+    for (const char* key : {"skin", "length", "refresh", "energy_consistent"}) contact->erase(key);
+  for (const char* key : {"domain", "contact"})
+    if (const toml::table* left = table[key].as_table(); left && left->empty()) table.erase(key);
+  if (toml::table* materials = table["materials"].as_table())
+    for (auto&& [name, material] : *materials)
+      if (toml::table* one = material.as_table())
+        for (const char* key :
+             {"density", "young", "poisson", "viscosity", "mass_damping", "branch_modulus", "relaxation_time"})
+          one->erase(key);
+  if (toml::array* walls = table["walls"].as_array())
+    for (toml::node& wall : *walls)
+      if (toml::table* one = wall.as_table())
+        for (const char* key : {"x", "y", "thickness"}) one->erase(key);
+  return table;
+}
+
 std::string shown(const toml::node* node) {
   constexpr std::size_t longest = 60;
   if (!node) return "not there";
@@ -73,6 +95,10 @@ std::string difference(const std::string& path, const toml::node* before, const 
 
 std::string scene_difference(const std::string& before, const std::string& now) {
   return table_difference({}, significant(before), significant(now));
+}
+
+std::string start_difference(const std::string& before, const std::string& now) {
+  return table_difference({}, of_bodies(before), of_bodies(now));
 }
 
 }  // namespace pliant

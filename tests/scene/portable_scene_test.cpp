@@ -40,6 +40,15 @@ TEST(PortableScene, names_the_copies_of_tables_of_grains) {
   EXPECT_EQ(scene.files[2].file, "b/c.dat");
 }
 
+TEST(PortableScene, names_the_copy_of_the_state_that_it_starts_from) {
+  const std::string text = "[start]\nfrom = '../results/old' # there\n[time]\nend = 1\n";
+  const PortableScene scene = portable_scene(text);
+  EXPECT_EQ(scene.text, "[start]\nfrom = \"start.bin\" # there\n[time]\nend = 1\n");
+  EXPECT_TRUE(scene.starts_from_a_state);
+  EXPECT_EQ(portable_scene(scene.text).text, scene.text) << "once more changes nothing";
+  EXPECT_FALSE(portable_scene("[time]\nend = 1\n").starts_from_a_state);
+}
+
 TEST(PortableScene, without_outlines_is_as_it_was) {
   const std::string text = "[shapes.disc]\nkind = \"disc\"\n";
   EXPECT_EQ(portable_scene(text).text, text);

@@ -25,6 +25,33 @@ TEST(SceneDifference, what_changes_no_step_may_change) {
   EXPECT_EQ(changed("density = 1200\n[shapes", "density = 1200.0\n[shapes"), "");
 }
 
+std::string restarted(const std::string& old, const std::string& by) {
+  std::string now = before;
+  EXPECT_NE(now.find(old), std::string::npos) << old;
+  return start_difference(before, now.replace(now.find(old), old.size(), by));
+}
+
+TEST(StartDifference, loads_laws_and_outputs_may_change) {
+  EXPECT_EQ(restarted("[contact]", "[start]\nfrom = \".\"\n[contact]"), "");
+  EXPECT_EQ(restarted("tolerance = 1e-2", "integrator = \"step-doubling\""), "");
+  EXPECT_EQ(restarted("\"2 GPa\"", "\"3 GPa\""), "");
+  EXPECT_EQ(restarted("gravity = [\"0 m/s2\", -9.81]\n", ""), "");
+  EXPECT_EQ(restarted("skin = 0.4", "length = \"current\""), "");
+  EXPECT_EQ(restarted("friction = 0.3", "friction = 0.4"), "");
+  EXPECT_EQ(restarted("x = { velocity = \"10 m/s\" }", "x = \"fixed\""), "");
+  EXPECT_EQ(restarted("[frames]", "[frames] # none\n[other]").substr(0, 7), "'other'");
+}
+
+TEST(StartDifference, bodies_shapes_and_the_discretisation_must_not) {
+  EXPECT_EQ(restarted("support = 9", "support = 10"), "'discretisation.support' was 9, now 10");
+  EXPECT_EQ(restarted("\"neo-hookean\"", "\"melody\""), "'materials.soft.law' was 'neo-hookean', now 'melody'");
+  EXPECT_EQ(restarted("seed = 7", "seed = 8"), "'grains 1.seed' was 7, now 8");
+  EXPECT_EQ(restarted("nodes = 168", "nodes = 169"), "'shapes.disc.nodes' was 168, now 169");
+  EXPECT_EQ(restarted("period = \"10 um\"", "period = \"11 um\""), "'domain.period' was '10 um', now '11 um'");
+  EXPECT_EQ(restarted("level = \"-1 um\"", "level = \"-2 um\""), "'walls 1.level' was '-1 um', now '-2 um'");
+  EXPECT_EQ(restarted("skin = 0.4", "self_contact = true"), "'contact' was not there, now a table");
+}
+
 TEST(SceneDifference, the_first_other_key_is_named_with_both_values) {
   EXPECT_EQ(changed("support = 9", "support = 10"), "'discretisation.support' was 9, now 10");
   EXPECT_EQ(changed("\"2 GPa\"", "\"3 GPa\""), "'materials.soft.young' was '2 GPa', now '3 GPa'");
