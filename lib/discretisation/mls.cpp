@@ -40,13 +40,16 @@ struct Neighbour {
 
 std::vector<Neighbour> find_neighbours(const MlsNodes& nodes, const Vec2& x) {
   std::vector<Neighbour> found;
+  const WaysToNodes ways(nodes, x, nodes.reach);
   for (const int i : nodes.near(x)) {
     const Vec2 r = nodes.position[i] - x;
     const double radius = nodes.radius[i], limit = support_edge * radius;
     if (r.squaredNorm() >= limit * limit) continue;
-    const double distance = r.norm();
+    const Vec2 way = ways(i);
+    const double distance = way.norm();
+    if (distance >= limit) continue;
     const Weight w = cubic_spline(distance / radius);
-    const Vec2 gradient = distance > 0 ? Vec2(-w.slope / (radius * distance) * r) : Vec2(0, 0);
+    const Vec2 gradient = distance > 0 ? Vec2(-w.slope / (radius * distance) * way) : Vec2(0, 0);
     found.push_back({i, Vector3d(1, r.x(), r.y()), w.value, gradient});
   }
   return found;
@@ -78,6 +81,38 @@ MlsNodes make_mls_nodes(const Points& nodes, int support) {
   MlsNodes result{nodes, {}, 0, std::make_shared<NodeGrid>(make_node_grid(nodes))};
   for (const Vec2& x : nodes)  // the node itself is number 0
     result.radius.push_back(std::sqrt(result.grid->square_distance_to_nearest(x, support)));
+  result.reach = *std::max_element(result.radius.begin(), result.radius.end());
+  return result;
+}
+
+namespace {
+
+// Distance through the body of a node to its support-th nearest other one.
+double inner_radius(const MlsNodes& nodes, int i, int support) {
+  const Vec2& x = nodes.position[i];
+  for (double reach = nodes.radius[i];; reach *= 1.5) {
+    const WaysToNodes ways(nodes, x, reach);
+    std::vector<double> squared;
+    for (const int j : nodes.grid->near(x, reach))
+      if ((nodes.position[j] - x).squaredNorm() <= reach * reach) squared.push_back(ways(j).squaredNorm());
+    if (static_cast<int>(squared.size()) <= support) continue;
+    std::nth_element(squared.begin(), squared.begin() + support, squared.end());
+    if (squared[support] <= reach * reach) return std::sqrt(squared[support]);
+  }
+}
+
+}  // namespace
+
+MlsNodes make_mls_nodes(const FieldMesh& mesh, int support) {
+  MlsNodes result = make_mls_nodes(mesh.nodes, support);
+  const auto paths =
+      std::make_shared<const InnerPaths>(Points(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count));
+  if (paths->convex()) return result;
+  result.paths = paths;
+  for (const Vec2& x : mesh.nodes) result.triangle.push_back(paths->triangle_at(x));
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
+    if (paths->room(mesh.nodes[i], result.radius[i]) < result.radius[i])
+      result.radius[i] = inner_radius(result, i, support);
   result.reach = *std::max_element(result.radius.begin(), result.radius.end());
   return result;
 }

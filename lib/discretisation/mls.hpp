@@ -5,6 +5,7 @@
 #include "core/errors.hpp"
 #include "core/vec2.hpp"
 #include "discretisation/basis.hpp"
+#include "discretisation/inner_paths.hpp"
 #include "discretisation/node_grid.hpp"
 
 namespace pliant {
@@ -21,13 +22,42 @@ struct MlsNodes {
   std::vector<double> radius;                      ///< [nodes]
   double reach = 0;                                ///< the largest radius, when there is a grid
   std::shared_ptr<const NodeGrid> grid = nullptr;  ///< finds the nodes near a point; without one all are looked at
+  /// Of concave bodies: distances are those through the body. Without it they are straight.
+  std::shared_ptr<const InnerPaths> paths = nullptr;
+  std::vector<int> triangle = {};  ///< [nodes] of `paths`
 
   /// Numbers of nodes, ascending, that hold all whose support reaches x.
   std::vector<int> near(const Vec2& x) const;
 };
 
-/// Gives each node the distance to its support-th nearest other node as radius (docs/method.md 2). Throws InputError
-/// when there are not that many nodes.
+/// Ways from one place to nodes that are at most `reach` away: as long as the distance through the body, in the
+/// direction in which it begins.
+class WaysToNodes {
+ public:
+  /// `nodes` must outlive it.
+  WaysToNodes(const MlsNodes& nodes, const Vec2& x, double reach)
+      : nodes_(nodes), x_(x), bends_(nodes.paths && nodes.paths->room(x, reach) < reach) {
+    if (bends_) triangle_ = nodes.paths->triangle_at(x);
+  }
+
+  Vec2 operator()(int i) const {
+    if (!bends_) return nodes_.position[i] - x_;
+    return nodes_.paths->way(x_, triangle_, nodes_.position[i], nodes_.triangle[i]);
+  }
+
+ private:
+  const MlsNodes& nodes_;
+  Vec2 x_;
+  bool bends_;
+  int triangle_ = 0;
+};
+
+/// Gives each node the distance to its support-th nearest other node as radius, distances through the body
+/// (docs/method.md 2). Throws InputError when there are not that many nodes. The mesh is in lengths of about one node
+/// distance.
+MlsNodes make_mls_nodes(const FieldMesh& mesh, int support);
+
+/// The same of nodes that lie in a convex body.
 MlsNodes make_mls_nodes(const Points& nodes, int support);
 
 /// Moving least squares at x: linear basis centred at x, cubic spline weight; the gradients are the full derivatives.

@@ -19,8 +19,9 @@ Vec2 radial_gradient(const Vec2& r) {
 
 std::vector<int> supporting_nodes(const MlsNodes& nodes, const Vec2& x) {
   std::vector<int> found;
+  const WaysToNodes ways(nodes, x, nodes.reach);
   for (const int i : nodes.near(x))
-    if ((nodes.position[i] - x).norm() < nodes.radius[i]) found.push_back(i);
+    if ((nodes.position[i] - x).norm() < nodes.radius[i] && ways(i).norm() < nodes.radius[i]) found.push_back(i);
   return found;
 }
 

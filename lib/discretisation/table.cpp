@@ -28,7 +28,7 @@ MlsNodes nodes_with_supports(const FieldMesh& mesh, const DiscretisationSettings
   if (settings.support > largest_support_mls)
     spdlog::warn("discretisation: support = {} nodes; above 12, row-sum mass creates modes that move no material",
                  settings.support);
-  return make_mls_nodes(mesh.nodes, settings.support);
+  return make_mls_nodes(mesh, settings.support);
 }
 
 RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows,

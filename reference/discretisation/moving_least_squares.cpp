@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -50,17 +52,36 @@ Scalar spline(const Scalar& square) {
   return 4.0 / 3 * rest * rest * rest;  // 4/3 - 4 q + 4 q^2 - 4/3 q^3 without its cancellation at q = 1
 }
 
+/// What one node's shape function needs of it at a place.
+struct Support {
+  Vec2 node;
+  double radius;
+  Leg leg;  ///< of the way to the node
+};
+
+/// Square of the distance through the body over the radius.
+template <class Scalar>
+Scalar square_distance(const Support& support, const Scalar& x, const Scalar& y) {
+  using std::sqrt;
+  const Scalar dx = support.leg.to.x() - x, dy = support.leg.to.y() - y;
+  Scalar square = dx * dx + dy * dy;
+  if (support.leg.rest > 0) {
+    const Scalar whole = sqrt(square) + support.leg.rest;
+    square = whole * whole;
+  }
+  return square / (support.radius * support.radius);
+}
+
 /// Shape functions at (x, y) of nodes with their radii: QR of the weighted basis, the constant its last column. What
 /// the columns of the linear functions leave of it gives the value of the fit at (x, y).
 template <class Scalar>
-Column<Scalar> shape_functions(const Points& nodes, const std::vector<double>& radius, const Scalar& x,
-                               const Scalar& y) {
+Column<Scalar> shape_functions(const std::vector<Support>& supports, const Scalar& x, const Scalar& y) {
   using std::sqrt;
-  const std::size_t n = nodes.size();
+  const std::size_t n = supports.size();
   Column<Scalar> root(n), linear_x(n), linear_y(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const Scalar dx = nodes[i].x() - x, dy = nodes[i].y() - y;
-    root[i] = sqrt(spline(Scalar((dx * dx + dy * dy) / (radius[i] * radius[i]))));
+    const Scalar dx = supports[i].node.x() - x, dy = supports[i].node.y() - y;
+    root[i] = sqrt(spline(square_distance(supports[i], x, y)));
     linear_x[i] = root[i] * dx;
     linear_y[i] = root[i] * dy;
   }
@@ -76,63 +97,74 @@ Column<Scalar> shape_functions(const Points& nodes, const std::vector<double>& r
   return rest;
 }
 
-/// Distance of each node to its support-th nearest other one.
-std::vector<double> support_radii(const Points& nodes, int support) {
-  std::vector<double> radius, distance(nodes.size());
+/// Distance of each node to its support-th nearest other one. A path is no shorter than a straight line: nodes further
+/// away than that of the moment are not asked.
+std::vector<double> support_radii(const Points& nodes, const BodyDistances& distances, int support) {
+  std::vector<double> radius;
+  std::vector<std::size_t> order(nodes.size());
+  std::iota(order.begin(), order.end(), 0);
   for (const Vec2& from : nodes) {
-    for (std::size_t i = 0; i < nodes.size(); ++i) distance[i] = (nodes[i] - from).norm();
-    std::nth_element(distance.begin(), distance.begin() + support, distance.end());  // the node itself comes first
-    radius.push_back(distance[support]);
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t i, std::size_t j) { return (nodes[i] - from).norm() < (nodes[j] - from).norm(); });
+    std::vector<double> nearest(support + 1, std::numeric_limits<double>::infinity());  // the node itself comes first
+    for (const std::size_t i : order) {
+      if ((nodes[i] - from).norm() >= nearest.back()) break;
+      const double distance = distances.first_leg(from, nodes[i], nearest.back()).length_from(from);
+      if (distance >= nearest.back()) continue;
+      nearest.back() = distance;
+      std::sort(nearest.begin(), nearest.end());
+    }
+    radius.push_back(nearest.back());
   }
   return radius;
 }
 
 }  // namespace
 
-MovingLeastSquares::MovingLeastSquares(Points nodes, int support) : nodes_(std::move(nodes)) {
+MovingLeastSquares::MovingLeastSquares(Points nodes, int outline_count, int support)
+    : nodes_(std::move(nodes)), distances_(Points(nodes_.begin(), nodes_.begin() + outline_count)) {
   if (support < 3 || std::size_t(support) >= nodes_.size())
     throw InputError(fmt::format("support = {} neighbours: at least 3, and fewer than the shape's {} nodes", support,
                                  nodes_.size()));
-  radius_ = support_radii(nodes_, support);
+  radius_ = support_radii(nodes_, distances_, support);
 }
 
 std::vector<int> MovingLeastSquares::neighbours(const Vec2& x) const {
   std::vector<int> found;
-  for (std::size_t i = 0; i < nodes_.size(); ++i)
-    if ((nodes_[i] - x).norm() < reach * radius_[i]) found.push_back(int(i));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const double limit = reach * radius_[i];
+    if ((nodes_[i] - x).norm() < limit && distances_.first_leg(x, nodes_[i], limit).length_from(x) < limit)
+      found.push_back(int(i));
+  }
   return found;
 }
 
-namespace {
-
 /// The shape functions of some nodes at a place; throws where they do not exist.
 template <class Scalar>
-Column<Scalar> functions_at(const Points& nodes, const std::vector<double>& radius, const std::vector<int>& chosen,
-                            const Scalar& x, const Scalar& y) {
-  Points place;
-  std::vector<double> reaches;
-  for (int i : chosen) place.push_back(nodes[i]), reaches.push_back(radius[i]);
-  Column<Scalar> functions = shape_functions(place, reaches, x, y);
+std::vector<Scalar> MovingLeastSquares::functions_at(const std::vector<int>& chosen, const Scalar& x,
+                                                     const Scalar& y) const {
+  std::vector<Support> supports;
+  const Vec2 place(value_of(x), value_of(y));
+  for (int i : chosen) supports.push_back({nodes_[i], radius_[i], distances_.first_leg(place, nodes_[i], radius_[i])});
+  Column<Scalar> functions = shape_functions(supports, x, y);
   if (chosen.size() < 3 || functions.empty())
     throw InputError(
         fmt::format("the {} nodes near ({:.3g}, {:.3g}) mean node distances do not determine a linear "
                     "function there: use fewer outline_nodes, more nodes or a larger `support`",
-                    chosen.size(), value_of(x), value_of(y)));
+                    chosen.size(), place.x(), place.y()));
   return functions;
 }
 
-}  // namespace
-
 Row MovingLeastSquares::values(const Vec2& x) const {
   Row row{neighbours(x), {}};
-  row.value = functions_at(nodes_, radius_, row.node, x.x(), x.y());
+  row.value = functions_at(row.node, x.x(), x.y());
   return row;
 }
 
 Point MovingLeastSquares::gradients(const Vec2& x) const {
   Point point;
   point.node = neighbours(x);
-  for (const Jet<2>& phi : functions_at(nodes_, radius_, point.node, Jet<2>(x.x(), 0), Jet<2>(x.y(), 1)))
+  for (const Jet<2>& phi : functions_at(point.node, Jet<2>(x.x(), 0), Jet<2>(x.y(), 1)))
     point.gradient.push_back(phi.gradient);
   return point;
 }

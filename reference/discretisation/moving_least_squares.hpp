@@ -3,18 +3,19 @@
 #include <vector>
 
 #include "core/vec2.hpp"
+#include "reference/discretisation/body_distances.hpp"
 #include "reference/discretisation/space.hpp"
 
 namespace pliant::reference {
 
 /// Moving least squares of a linear basis over scattered nodes (docs/method.md 2): cubic spline weights, a node's
-/// radius its distance to the `support`-th nearest other node. Every place is a dense least squares problem of its own,
-/// solved by orthogonalisation; gradients come from differentiating that whole solution.
+/// radius its distance to the `support`-th nearest other node, distances through the body. Every place is a dense least
+/// squares problem of its own, solved by orthogonalisation; gradients come from differentiating that whole solution.
 class MovingLeastSquares {
  public:
-  /// `nodes` in lengths of about the node distance: rounding is then the same for all sizes. Throws InputError when
-  /// there are too few nodes.
-  MovingLeastSquares(Points nodes, int support);
+  /// `nodes` in lengths of about the node distance: rounding is then the same for all sizes; the first `outline_count`
+  /// are the body's outline. Throws InputError when there are too few nodes.
+  MovingLeastSquares(Points nodes, int outline_count, int support);
 
   /// Values of all shape functions that do not vanish at x. Throws InputError where nodes do not determine them.
   Row values(const Vec2& x) const;
@@ -23,8 +24,11 @@ class MovingLeastSquares {
 
  private:
   std::vector<int> neighbours(const Vec2& x) const;
+  template <class Scalar>
+  std::vector<Scalar> functions_at(const std::vector<int>& chosen, const Scalar& x, const Scalar& y) const;
 
   Points nodes_;
+  BodyDistances distances_;
   std::vector<double> radius_;
 };
 

@@ -129,7 +129,7 @@ void fill_with_triangles(Space& space, Recipe recipe) {
 }
 
 void fill_with_moving_least_squares(Space& space, const DiscretisationSettings& settings) {
-  const MovingLeastSquares mls(space.mesh.nodes, settings.support);
+  const MovingLeastSquares mls(space.mesh.nodes, space.mesh.outline_count, settings.support);
   for (const Vec2& node : space.mesh.nodes) space.nodes.push_back(mls.values(node));
   const std::vector<Row> outline(space.nodes.begin(), space.nodes.begin() + space.mesh.outline_count);
   space.points = gauss_points(space.mesh, mls, settings.recipe == Recipe::mls ? 1 : settings.gauss_points);

@@ -29,6 +29,13 @@ inline ShapeSpec l_shape(int nodes) {
   return polygon("L", {{0, 0}, {2e-3, 0}, {2e-3, 1e-3}, {1e-3, 1e-3}, {1e-3, 2e-3}, {0, 2e-3}}, nodes);
 }
 
+/// Two prongs of length 6 on a foot of 2 by 5, with a gap between: by default half a unit, less than the supports of
+/// 180 nodes reach.
+inline ShapeSpec fork(int nodes, double gap = 0.5) {
+  const double left = 2.5 - gap / 2, right = 2.5 + gap / 2;
+  return polygon("fork", {{0, 0}, {5, 0}, {5, 8}, {right, 8}, {right, 2}, {left, 2}, {left, 8}, {0, 8}}, nodes);
+}
+
 inline ShapeSpec curve(const char* name, const Points& points, int nodes) {
   ShapeSpec shape = polygon(name, points, nodes);
   shape.kind = ShapeKind::curve;
@@ -36,7 +43,8 @@ inline ShapeSpec curve(const char* name, const Points& points, int nodes) {
 }
 
 inline std::vector<ShapeSpec> all_shapes() {
-  return {disc(168), square(150), l_shape(250), curve("fourier", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 168)};
+  return {disc(168), square(150), l_shape(250), fork(180),
+          curve("fourier", fourier_grain(1, {0.15, 0.1, 0.05}, 3), 168)};
 }
 
 inline Points outline_of(const FieldMesh& mesh) {

@@ -7,9 +7,13 @@ namespace pliant::testing {
 
 inline std::vector<ShapeSpec> reference_shapes() {
   const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
-  return {disc(60),     disc(168),
-          disc(700),    curve("rounded", rounded_polygon(square, 0.3), 150),
-          l_shape(250), curve("fourier", fourier_grain(1e-3, {0.15, 0.1, 0.05}, 3), 168)};
+  return {disc(60),
+          disc(168),
+          disc(700),
+          curve("rounded", rounded_polygon(square, 0.3), 150),
+          l_shape(250),
+          fork(180),
+          curve("fourier", fourier_grain(1e-3, {0.15, 0.1, 0.05}, 3), 168)};
 }
 
 inline DiscretisationSettings settings_of(Recipe recipe, int gauss_points = 3, int support = 8) {

@@ -37,7 +37,7 @@ TEST(ReferenceShapeFunctions, reproduce_linear_functions) {
   for (const ShapeSpec& shape : reference_shapes())
     for (const int support : {8, 10, 14}) {
       const FieldMesh mesh = in_node_distances(make_field_mesh(shape));
-      const MovingLeastSquares mls(mesh.nodes, support);
+      const MovingLeastSquares mls(mesh.nodes, mesh.outline_count, support);
       for (int sample = 0; sample < 50; ++sample) {
         const Vec2 x = random_place(random, mesh);
         const Row row = mls.values(x);
@@ -86,7 +86,7 @@ TEST(ReferenceShapeFunctions, solve_the_normal_equations) {
     std::sort(distance.begin(), distance.end());
     radius.push_back(distance[support]);
   }
-  const MovingLeastSquares mls(mesh.nodes, support);
+  const MovingLeastSquares mls(mesh.nodes, mesh.outline_count, support);
   for (int sample = 0; sample < 100; ++sample) {
     const Vec2 x = random_place(random, mesh);
     const Row row = mls.values(x);
@@ -101,7 +101,7 @@ TEST(ReferenceShapeFunctions, solve_the_normal_equations) {
 TEST(ReferenceShapeFunctions, gradients_are_the_limit_of_differences) {
   Random random(3);
   const FieldMesh mesh = in_node_distances(make_field_mesh(reference_shapes().back()));
-  const MovingLeastSquares mls(mesh.nodes, 9);
+  const MovingLeastSquares mls(mesh.nodes, mesh.outline_count, 9);
   for (int sample = 0; sample < 200; ++sample) {
     const Vec2 x = random_place(random, mesh);
     const Point point = mls.gradients(x);
@@ -134,7 +134,7 @@ TEST(ReferenceSpace, gradients_of_mls_are_consistent) {
 /// differences of other gradients that obey the conditions, here of plain gradients with something added first.
 TEST(ReferenceSpace, change_of_mls_is_the_least) {
   const FieldMesh mesh = in_node_distances(make_field_mesh(disc(60, 1)));
-  const MovingLeastSquares mls(mesh.nodes, 8);
+  const MovingLeastSquares mls(mesh.nodes, mesh.outline_count, 8);
   const Space space = make_space(mesh, settings_of(Recipe::mls));
   std::vector<Point> other = space.points;
   Random random(4);
