@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "contact/facing.hpp"
 #include "contact/node_strips.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
@@ -148,6 +149,22 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
   });
 }
 
+/// Of the nodes of a patch of a body with itself, as contact sees them.
+void look_at_itself(const PatchView& view, DeepestNode& deepest) {
+  const int body = view.patch.first;
+  const OutlineShape& shape = view.model.outline_of(body);
+  for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
+    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
+      if (!at.p.hit[lane] || !(at.p.gap[lane] < 0)) continue;
+      const int index = pass.nodes.begin + i + lane, node = index - turn_of(index, shape.count) * shape.count;
+      const double length = at.p.length[lane], reference = shape.segment_length[static_cast<int>(at.p.number[lane])];
+      const Vec2 position = view.outlines.position.at(view.model.outline_offset[body] + node);
+      const DeepestNode found{body, body, node, position, -at.p.gap[lane], length, length / reference, true};
+      if (is_deeper(found, deepest)) deepest = found;
+    }
+  });
+}
+
 /// Of two bodies on the same spot no node is deep, but their middles are.
 bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPair& pair) {
   if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return false;
@@ -197,6 +214,18 @@ DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const
   for (const DeepestNode& found : of_block)
     if (is_deeper(found, deepest)) deepest = found;
   return deepest;
+}
+
+DeepestNode deepest_contact(const Model& model, const Outlines& outlines, const ContactSystem& contact) {
+  std::vector<BodyPair> pairs;
+  DeepestNode of_itself;
+  for (const Patch& patch : contact.patches())
+    if (patch.of_itself())
+      look_at_itself({model, outlines, patch, contact.skin(), thread_scratch()}, of_itself);
+    else
+      pairs.push_back(patch.pair());
+  const DeepestNode of_two = deepest_node(model, outlines.position, pairs);
+  return is_deeper(of_itself, of_two) ? of_itself : of_two;
 }
 
 void refuse_deep_overlap(const Model& model, const OutlineField& outlines) {

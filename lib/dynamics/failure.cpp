@@ -90,31 +90,40 @@ std::optional<Failure> number_that_is_none(const Model& model, const Dofs& posit
   return {};
 }
 
-DeepestNode deepest_contact(const Forces& forces, const OutlineField& place_of_nodes) {
-  std::vector<BodyPair> pairs;
-  for (const Patch& patch : forces.contact().patches()) pairs.push_back({patch.first, patch.second, patch.images});
-  return deepest_node(forces.model(), place_of_nodes, pairs);
+DeepestNode deepest_contact(const Forces& forces, const Outlines& outlines) {
+  return deepest_contact(forces.model(), outlines, forces.contact());
+}
+
+/// "contact between" two bodies, or within one.
+std::string contact_of(const Model& model, const DeepestNode& deepest) {
+  const std::string slave = name_of(model, deepest.slave);
+  if (deepest.of_itself) return fmt::format("contact of {} with itself", slave);
+  if (deepest.slave == deepest.master) return fmt::format("contact of {} with its own periodic image", slave);
+  return fmt::format("contact between {} and {}", slave, name_of(model, deepest.master));
 }
 
 /// What may help where contact is lost. Contact sees as deep as segments are long: where they are squeezed, soon.
 std::string advice(const DeepestNode& deepest) {
   constexpr double squeezed = 0.5;
-  if (deepest.squeeze >= squeezed) return "raise the contact stiffness or remove initial overlaps";
+  if (deepest.squeeze >= squeezed)
+    return deepest.of_itself
+               ? "where its limb there is hardly thicker than contact sees, a segment and a skin, give the shape "
+                 "a finer outline; else raise the contact stiffness or press less"
+               : "raise the contact stiffness or remove initial overlaps";
   return fmt::format(
       "that segment is squeezed to {:.2f} of its length: its surface creases, and stiffer contact hardly "
       "helps; give the shape more nodes, or press less",
       deepest.squeeze);
 }
 
-Failure lost_contact(const Forces& forces, const OutlineField& place_of_nodes) {
+Failure lost_contact(const Forces& forces, const Outlines& outlines) {
   const Model& model = forces.model();
-  const DeepestNode deepest = deepest_contact(forces, place_of_nodes);
+  const DeepestNode deepest = deepest_contact(forces, outlines);
   Failure failure;
-  failure.words = fmt::format(
-      "contact between {} and {} is lost: outline node {} of the first, at {}, has a penetration of {:.3g} m, {:.2f} "
-      "of a segment length; {}",
-      name_of(model, deepest.slave), name_of(model, deepest.master), deepest.node, place(deepest.position),
-      deepest.depth, deepest.depth / deepest.segment_length, advice(deepest));
+  failure.words =
+      fmt::format("{} is lost: outline node {}{}, at {}, has a penetration of {:.3g} m, {:.2f} of a segment length; {}",
+                  contact_of(model, deepest), deepest.node, deepest.slave == deepest.master ? "" : " of the first",
+                  place(deepest.position), deepest.depth, deepest.depth / deepest.segment_length, advice(deepest));
   failure.cause = Failure::Cause::contact_lost;
   failure.bodies = {deepest.slave, deepest.master};
   failure.node = deepest.node;
@@ -127,7 +136,7 @@ template <class Tried>
 std::optional<Failure> found(const Evaluation& evaluation, const Tried& tried, const Forces& forces) {
   if (!(evaluation.least_jacobian > 0)) return inversion(forces.model(), tried.position);
   if (std::optional<Failure> nan = number_that_is_none(forces.model(), tried.position, tried.force)) return nan;
-  if (!evaluation.sound) return lost_contact(forces, tried.outlines.position);
+  if (!evaluation.sound) return lost_contact(forces, tried.outlines);
   return {};
 }
 
@@ -144,7 +153,7 @@ void check_time_step(const FailedStep& step, const State& accepted, const Forces
   failure.time = step.trial.time, failure.dt = step.report.dt, failure.error = step.report.error;
   failure.largest_dt = step.largest_dt, failure.governed_by = step.governed_by;
   failure.least_jacobian = least_jacobian(forces.model(), accepted.position);
-  failure.deepest = deepest_contact(forces, accepted.outlines.position);
+  failure.deepest = deepest_contact(forces, accepted.outlines);
   const std::string message = fmt::format(
       "{}; at t = {:.6g} s, time step {:.3g} s (at most {:.3g} s: {}; trials rejected: {}); last good state: step {}, "
       "t = {:.6g} s",

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "contact/deepest_node.hpp"
 #include "core/errors.hpp"
 #include "support/contact_rig.hpp"
 #include "support/simulations.hpp"
@@ -115,6 +116,28 @@ TEST(SelfContact, an_overlap_later_is_a_contact) {
   }
   rig.step();
   EXPECT_GT(rig.totals.contacts, 0);
+  const DeepestNode deepest = deepest_contact(rig.model, rig.outlines, rig.contact);
+  EXPECT_TRUE(deepest.of_itself);
+  const double longest = rig.model.outlines[rig.model.bodies[0].outline].spacing;
+  EXPECT_GE(deepest.depth / deepest.segment_length, rig.totals.deepest)
+      << "EXACT: over a segment, not the longest near";
+  EXPECT_LT(deepest.depth, 1.2 * rig.totals.deepest * longest);
+}
+
+/// EXACT: jaws that pass through each other, their contact far too soft, are what the message names.
+TEST(SelfContact, that_is_lost_is_named) {
+  Scene scene = clamp(true);
+  scene.contacts = {frictionless(0.1)};
+  scene.grains[0].velocity.gradient *= 3;
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  std::string message;
+  try {
+    advance(simulation, scene.time.end);
+  } catch (const PhysicsError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find("contact of body 0 'clamp' with itself is lost: outline node"), std::string::npos) << message;
 }
 
 /// A turn about the origin and a shift.
