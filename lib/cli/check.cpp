@@ -15,6 +15,7 @@
 #include "cli/expected_errors.hpp"
 #include "cli/rehearsal.hpp"
 #include "cli/stability.hpp"
+#include "cli/thin_parts.hpp"
 #include "core/memory.hpp"
 #include "results/start_file.hpp"
 
@@ -168,6 +169,7 @@ void print_overlap(const Simulation& simulation) {
 
 void print_errors(const Model& model) {
   if (const std::string text = describe_expected_errors(model); !text.empty()) print_row("errors", text);
+  if (const std::string text = describe_bending(model); !text.empty()) print_row("bending", text);
 }
 
 void print_cautions(const Model& model) {

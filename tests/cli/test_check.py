@@ -187,6 +187,17 @@ def test_short_edges_cost_no_steps_or_are_told(desk) -> None:
         assert ("'disc' has an edge of 0.1" in told) == is_told, told
 
 
+def test_limbs_of_few_segments_across_are_told(desk) -> None:
+    strip = 'kind = "polygon"\npoints = [[0, 0], ["4 um", 0], ["4 um", "1 um"], [0, "1 um"]]\nspacing = "{} um"'
+    disc = 'kind = "disc"\ndiameter = "1 um"\nnodes = 60'
+    assert disc in TWO_DISCS
+    check = {across: checked(desk, TWO_DISCS.replace(disc, strip.format(1 / across)).replace("3.02 um", "6.3 um").replace("8 um", "12 um"))
+             for across in (2, 5)}
+    assert "'disc' is 2 segments across, 1e-06 m" in check[2]["bending"]
+    assert "bent 20 % too far" in check[2]["bending"]
+    assert "bending" not in check[5]
+
+
 def test_too_fine_an_outline_is_told_how_many_nodes_fit(desk) -> None:
     fine = TWO_DISCS.replace("nodes = 60", "nodes = 60\noutline_nodes = 48")
     desk.write(fine)
