@@ -45,8 +45,8 @@ RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& o
   }
 }
 
-/// Distances to the nearest node, m; at least half of what nodes of this area, in squares of `length`, have in a regular
-/// lattice: a pair of nodes that all but coincide, as the ends of a very short edge, moves as one.
+/// Distances to the nearest node, m; at least half of what nodes of this area, in squares of `length`, have in a
+/// regular lattice: a pair of nodes that all but coincide, as the ends of a very short edge, moves as one.
 std::vector<double> nodal_distances(const Points& nodes, const std::vector<double>& area, double length) {
   const NodeGrid grid = make_node_grid(nodes);
   std::vector<double> distances;

@@ -79,7 +79,7 @@ void require_outline(const std::string& file, const FilePoints& found, std::size
 FilePoints without_repeats(const FilePoints& whole) {
   FilePoints result;
   result.unit = whole.unit;
-  for (const std::size_t i : without_repeats(whole.points)) {
+  for (const std::size_t i : pliant::without_repeats(whole.points)) {
     result.points.push_back(whole.points[i]);
     result.lines.push_back(whole.lines[i]);
   }
