@@ -222,26 +222,24 @@ void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, d
   }
 }
 
-void find_self_patches(const Model& model, const OutlineField& outlines, int body, const OwnArcs& own,
-                       const ContactLaw& law, double margin, double skin, std::vector<Patch>& patches,
-                       MasterWindow& scratch) {
+void find_self_patches(const Model& model, const OutlineField& outlines, int body, const ContactLaw& law, double margin,
+                       double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
   const Side side = make_side(model, outlines, body, 0);
   const int n = side.shape->count;
-  constexpr int most_arcs = 64;
-  for (int begin = 0; begin < n; begin += OwnArcs::together) {
-    const Arc nodes{begin, std::min(OwnArcs::together, n - begin)};
-    int part = most_arcs * begin;
-    for (const Arc& segments : own.of(model.bodies[body].outline, begin)) {
-      scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
-      Patch patch;
-      patch.first = patch.second = body;
-      patch.part = part++;
-      patch.corners = side.shape->has_corners();
-      patch.law = law;
-      const Margins margins(margin, skin, patch.corners, side.longest_segment);
-      narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
-      if (patch.nodes[0].count > 0) patches.push_back(patch);
-    }
+  constexpr int together = 2, unseen = 2;
+  for (int begin = 0; begin < n; begin += together) {
+    const Arc nodes{begin, std::min(together, n - begin)};
+    const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
+    if (segments.count <= 0) continue;
+    scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
+    Patch patch;
+    patch.first = patch.second = body;
+    patch.part = begin;
+    patch.corners = side.shape->has_corners();
+    patch.law = law;
+    const Margins margins(margin, skin, patch.corners, side.longest_segment);
+    narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
+    if (patch.nodes[0].count > 0) patches.push_back(patch);
   }
 }
 

@@ -41,7 +41,6 @@ ContactSystem::ContactSystem(const Model& model)
     : model_(model),
       laws_(model),
       skin_(skin_of(model)),
-      own_arcs_(model, skin_),
       watch_(model, skin_, laws_.max_reach()),
       table_(model),
       most_repaid_(most_repaid(model.scene.time.safety)) {}
@@ -283,8 +282,7 @@ void ContactSystem::add_self_patches(std::vector<Patch>& all) {
     watch_.add({b, b, 0}, found_at_.position);  // as any pair: the body's parts may move by the skin against each other
     const ContactLaw law = laws_.between(b, b, refreshed_.time);
     const std::size_t others = all.size();
-    find_self_patches(model_, found_at_.position, b, own_arcs_, law, reach_of(law) + skin_, skin_, all,
-                      thread_scratch());
+    find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, all, thread_scratch());
     for (std::size_t p = others; p < all.size(); ++p) all[p].found = refreshes_;
   }
 }

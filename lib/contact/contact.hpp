@@ -11,7 +11,6 @@
 #include "contact/contact_laws.hpp"
 #include "contact/history.hpp"
 #include "contact/inherited.hpp"
-#include "contact/own_arcs.hpp"
 #include "contact/pair_watch.hpp"
 #include "contact/patch.hpp"
 #include "contact/patch_table.hpp"
@@ -140,7 +139,6 @@ class ContactSystem {
   const Model& model_;
   ContactLaws laws_;
   double skin_;
-  OwnArcs own_arcs_;
   PairWatch watch_;
   PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
   double most_repaid_;      ///< see energy_debt.hpp

@@ -40,13 +40,14 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   }
 }
 
-/// Parts that start in each other would press each other out.
+/// A limb thinner than contact sees would press its own far side out.
 void ContactSystem::refuse_self_overlap() const {
   for (const Patch& patch : patches())
     if (patch.of_itself() && overlaps(view(patch)))
-      throw InputError(
-          fmt::format("'{}' overlaps itself at the start; give it a finer outline, or leave [contact] self_contact out",
-                      model_.bodies[patch.first].name));
+      throw InputError(fmt::format(
+          "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
+          "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",
+          model_.bodies[patch.first].name, model_.outline_of(patch.first).spacing + skin_));
 }
 
 }  // namespace pliant

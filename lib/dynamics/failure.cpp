@@ -106,8 +106,10 @@ std::string contact_of(const Model& model, const DeepestNode& deepest) {
 std::string advice(const DeepestNode& deepest) {
   constexpr double squeezed = 0.5;
   if (deepest.squeeze >= squeezed)
-    return deepest.of_itself ? "raise the contact stiffness, give the shape more nodes, or press less"
-                             : "raise the contact stiffness or remove initial overlaps";
+    return deepest.of_itself
+               ? "where its limb there is hardly thicker than contact sees, a segment and a skin, give the shape "
+                 "a finer outline; else raise the contact stiffness or press less"
+               : "raise the contact stiffness or remove initial overlaps";
   return fmt::format(
       "that segment is squeezed to {:.2f} of its length: its surface creases, and stiffer contact hardly "
       "helps; give the shape more nodes, or press less",
