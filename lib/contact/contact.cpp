@@ -223,7 +223,7 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
   const double lost =
       before.stored - now.stored - now.dissipated - 0.5 * step->elapsed * (before.damping_power + now.damping_power);
   to.owed[patch] += now.work - lost;
-  if (view.patch.corners && reach_of(view.patch.law) > 0) now.jump = now.work - lost;
+  if (view.patch.corners && reach_of(view.patch.law) > 0) now.at_corners = now.jump = now.work - lost;
   return now;
 }
 

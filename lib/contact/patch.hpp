@@ -105,13 +105,15 @@ struct PatchTotals {
   double ways = 0;         ///< squares of the ways of gaps, times the lengths of contacts, m3
   double recent_ways = 0;  ///< the larger of these and those of the step before
   double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
-  double jump = 0;         ///< most that a law with a reach made, or lost, without cause in a step beside corners, J/m
+  /// What laws with a reach made, or lost, without cause in the step beside corners, J/m: in all, and the most of one.
+  double at_corners = 0, jump = 0;
 
   /// Another patch's, but for what belongs to one alone.
   void add(const PatchTotals& other) {
     stored += other.stored, dissipated += other.dissipated, damping_power += other.damping_power;
     deepest = deepest > other.deepest ? deepest : other.deepest;
     contacts += other.contacts;
+    at_corners += other.at_corners;
     jump = std::abs(jump) > std::abs(other.jump) ? jump : other.jump;
   }
   template <class Visitor>
@@ -119,7 +121,7 @@ struct PatchTotals {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts), visitor("work", work), visitor("ways", ways);
     visitor("recent_ways", recent_ways), visitor("pending", pending);
-    visitor("jump", jump);
+    visitor("at_corners", at_corners), visitor("jump", jump);
   }
 };
 

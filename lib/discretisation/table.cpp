@@ -45,15 +45,10 @@ RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& o
   }
 }
 
-/// Distances to the nearest node, m; at least half of what nodes of this area, in squares of `length`, have in a
-/// regular lattice: a pair of nodes that all but coincide, as the ends of a very short edge, moves as one.
-std::vector<double> nodal_distances(const Points& nodes, const std::vector<double>& area, double length) {
+std::vector<double> nearest_distances(const Points& nodes) {
   const NodeGrid grid = make_node_grid(nodes);
   std::vector<double> distances;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const double lattice = length * std::sqrt(2 / std::sqrt(3.0) * area[i]);
-    distances.push_back(std::max(std::sqrt(grid.square_distance_to_nearest(nodes[i], 1)), lattice / 2));
-  }
+  for (const Vec2& x : nodes) distances.push_back(std::sqrt(grid.square_distance_to_nearest(x, 1)));
   return distances;
 }
 
@@ -98,7 +93,7 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.node_rows = rows_at_nodes(scaled, basis);
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
   result.unit_mass = lumped_mass(scaled, basis);
-  result.nodal_distance = nodal_distances(mesh.nodes, result.unit_mass, length);
+  result.nodal_distance = nearest_distances(mesh.nodes);
   result.weight_share = add_rim_mass(mesh.outline_count, settings.rim_mass, result.unit_mass);
   if (settings.mass == Mass::corrected) {
     result.mass_correction = mass_correction(scaled, basis, result.unit_mass);

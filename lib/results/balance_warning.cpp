@@ -18,8 +18,8 @@ constexpr double rounding = 1e-13;
 constexpr double calm_safety = 0.4;
 /// Penetration over segment length from which on it is to blame, and that stiffer contacts should come down to.
 constexpr double deep = 0.3, shallow = 0.1;
-/// Of the energy that is gained or lost, in a single step: errors of the time integration come by and by.
-constexpr double jump_share = 0.25;
+/// Of the energy that is gained or lost.
+constexpr double corner_share = 0.5;
 
 /// Modulus times area of all compliant bodies, and weights and contact forces times coordinates, J/m.
 double energy_scale(const Simulation& simulation) {
@@ -88,10 +88,10 @@ std::string against_jumps(const Simulation& simulation) {
 /// corner holds goes as the square of the spacing, what comes in as the spacing.
 std::string against_corners(const StepStatistics& seen) {
   return fmt::format(
-      "the energy of a cohesive contact jumped by {:.2g} J/m in one step at t = {:.4g} s, at a corner, as it does "
-      "at any time step (docs/limits.md): no [time] setting mends that; a smaller spacing of the outlines makes it "
-      "less",
-      std::abs(seen.jump), seen.jump_time);
+      "cohesive contacts at corners made {:.2g} J/m, up to {:.2g} J/m in one step (t = {:.4g} s): their energy jumps "
+      "where nodes pass corners, at any time step (docs/limits.md): take a smaller spacing of the outlines; a smaller "
+      "[time] safety leaves the jumps",
+      seen.at_corners, seen.jump, seen.jump_time);
 }
 
 /// The likeliest cause by what the run has met, and what to do.
@@ -103,7 +103,7 @@ std::string diagnosis(const Simulation& simulation, double error, double gained)
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
-  if (std::abs(seen.jump) > jump_share * std::abs(gained)) return against_corners(seen);
+  if (std::abs(seen.at_corners) > corner_share * std::abs(gained)) return against_corners(seen);
   if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time);
   return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation);
 }

@@ -170,7 +170,7 @@ def test_short_edges_cost_no_steps_or_are_told(desk) -> None:
     """Points nearer than 1e-6 of the extent are one; the error of a step counts over a length that no pair of nodes
     makes short. Where stable steps do go with the edge, as of triangles, `check` says so."""
     def text(edge: float | None, recipe: str = "mls") -> str:
-        corner = "" if edge is None else f", [1e-6, {edge:g}e-6]"
+        corner = "" if edge is None else f", [1e-6, {edge * 1e-6:g}]"
         square = f'kind = "polygon"\npoints = [[0, 0], [1e-6, 0]{corner}, [1e-6, 1e-6], [0, 1e-6]]\nspacing = "0.1 um"\n'
         scene = TWO_DISCS.replace('kind = "disc"\ndiameter = "1 um"\nnodes = 60\n', square)
         return f'{scene}[discretisation]\nrecipe = "{recipe}"\n'
