@@ -118,15 +118,21 @@ Variable wear(const Law& law, double rate, double p_old, const Variable& p) {
   return rate / (2 * (law.strength - law.threshold)) * (after * after - before * before);
 }
 
-Internal hold(const Law& law, const ContactMemory& memory, const Variable& gap, const Variable& motion) {
+/// `elastic`: slip of what is broken. More damage turns the energy of the bond into that of friction, and must not take
+/// any.
+Internal hold(const Law& law, const ContactMemory& memory, const Variable& gap, const Variable& motion,
+              const Variable& elastic) {
   const Variable slip = memory.slip + motion, opening = gap.value > 0 ? gap : Variable(0);
+  const double whole = law.kn * opening.value * opening.value + law.kt * slip.value * slip.value,
+               broken = law.kt * elastic.value * elastic.value;
+  if (broken > whole * (1 + 1e-9)) return {slip, memory.damage, elastic};
   const double stiffness = law.kn * (1 - memory.damage), shear_stiffness = law.kt * law.ratio * (1 - memory.damage);
   const Variable size = slip.value < 0 ? -slip : slip;
   const Variable worn =
       memory.damage + wear(law, law.rate, stiffness * memory.opening, stiffness * opening) +
       wear(law, law.shear_rate / law.ratio, shear_stiffness * std::abs(memory.slip), shear_stiffness * size);
   const Variable sudden = static_damage(law, opening, slip), damage = worn > sudden ? worn : sudden;
-  return {slip, damage.value < 1 ? damage : Variable(1), 0};
+  return {slip, damage.value < 1 ? damage : Variable(1), elastic};
 }
 
 // ---- books: what the mean traction of a step does along it, less what is then stored more
@@ -170,9 +176,9 @@ Response respond(const Law& law, const ContactMemory& memory, double gap, double
   const Variable g(gap, 0), m(motion, 1);
   const bool bonded = law.bonds() && memory.damage < 1;
   const double old_elastic = bonded ? memory.friction_slip : memory.slip;
-  Internal now;
-  if (bonded) now = initial ? Internal{0, memory.damage, 0} : hold(law, memory, g, m);
-  now.elastic = slide(law, g, old_elastic + m);
+  const Variable elastic = slide(law, g, old_elastic + m);
+  Internal now{0, 1, elastic};
+  if (bonded) now = initial ? Internal{0, memory.damage, elastic} : hold(law, memory, g, m, elastic);
   const bool holds = bonded && now.damage.value < 1;
   const Energy by_gap(gap, 0), by_elastic(now.elastic.value, 3);
   Response response;

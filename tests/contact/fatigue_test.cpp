@@ -146,7 +146,7 @@ TEST(Fatigue, FrictionActsInTheBrokenShare) {
   EXPECT_NEAR(path.imbalance(), 0, 1e-14);
 }
 
-// EXACT: a bond weaker than friction changes nothing of what friction bears: nowhere less than min(kt s, friction p),
+// EXACT: a bond weaker than friction changes nothing of what friction bears while slip grows: nowhere less than min(kt s, friction p),
 // and just kt s until both give way. Back and forth, with the pressure changing, the books stay whole.
 TEST(Fatigue, AWeakBondWeakensNothing) {
   ContactRule rule = cohesive_fatigue(kn, 0.02, range, ratio, 0.001);
@@ -166,6 +166,28 @@ TEST(Fatigue, AWeakBondWeakensNothing) {
   for (const Vec2& by : {Vec2(-0.03, 0.004), Vec2(0.012, -0.006), Vec2(-0.004, 0.001), Vec2(0.03, 0.003)})
     path.go(by, 20);
   EXPECT_NEAR(path.imbalance(), 0, 1e-14);
+}
+
+// EXACT: nothing that a bond does gives energy back that was dissipated. Slid under little pressure, pressed, and slid
+// back, friction comes to store more than the bond, which wears on: more damage would then take energy. Less than kt s
+// ds of a unit of damage in a step: tractions there are means.
+TEST(Fatigue, DissipationNeverFalls) {
+  ContactRule rule = bond_rule();
+  rule.friction = 0.5, rule.fatigue_rate = rule.shear_fatigue_rate = 2;
+  Path path(rule);
+  constexpr double step = 1e-5, reach = 0.016;
+  const double tolerance = length * kn / (ratio * ratio) * reach * step;
+  double most = 0;
+  for (const Vec2& by : {Vec2(0, -0.002), Vec2(0.008, 0), Vec2(0, -0.02), Vec2(-0.016, 0), Vec2(0.012, 0.015)}) {
+    const int steps = static_cast<int>(by.norm() / step);
+    for (int i = 0; i < steps; ++i) {
+      path.go(by / steps, 1);
+      most = std::max(most, lost(path));
+      ASSERT_GE(lost(path), most - tolerance) << path.work;
+    }
+  }
+  EXPECT_GT(most, 20 * tolerance);
+  EXPECT_NEAR(path.imbalance(), 0, 1e-12);
 }
 
 // INDEPENDENT: dD = rate (p - threshold) / (strength - threshold) dp along p = (1 - D) kn g, in a million small steps.

@@ -210,8 +210,9 @@ class ContactOracle {
     }
     const double gap = point->gap, opening = std::max(gap, 0.0), pressed = std::min(gap, 0.0);
     const double moved = gap < *rule.range ? way(master, old, *point) : 0, slip = old.slip + moved;
-    const OracleBond now{rule, before.damage_at(opening, slip), opening, slip};
     const double most = left.shear_limit(gap) / kt, elastic = std::clamp(old.elastic + moved, -most, most);
+    const bool releases = kt * elastic * elastic <= (before.kn() * opening * opening + kt * slip * slip) * (1 + 1e-9);
+    const OracleBond now{rule, releases ? before.damage_at(opening, slip) : old.damage, opening, slip};
     const double frictional = now.damage * kt * elastic, squeezed = before.kn() * pressed * pressed / 2;
     result.dissipated += weight * (before.work_to(now) - (now.stored() - before.stored()) +
                                    (old.damage * kt * old.elastic + frictional) / 2 * moved -

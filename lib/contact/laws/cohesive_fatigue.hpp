@@ -8,12 +8,13 @@ namespace pliant {
 /// Bonds with damage D (docs/method.md 4). Tractions and energy are 1 - D times those of a whole bond and D times those
 /// of broken surfaces (Alfano and Sacco 2006, doi 10.1002/nme.1728). A whole bond has the energy (kn g^2 + kt s^2) / 2,
 /// so the shear stiffness is kn / r^2 for strengths in the ratio r; broken surfaces have the cohesive law of the
-/// residual strength, and friction, whose elastic slip goes on from the first step. Both have one stiffness: a bond
-/// never bears less than friction alone. With the opening delta = sqrt(max(g, 0)^2 + (s/r)^2) a whole bond's tension
-/// releases kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta (g_max - g_c)) makes its traction
-/// fall in a straight line from the strength at g_c = strength / kn to zero at g_max, which takes strength g_max / 2.
-/// Above a threshold stress each growing stress p adds dD = rate (p - threshold) / (strength - threshold) dp, in shear
-/// with stresses times r. The bond itself has no limit of slip but its damage.
+/// residual strength, and friction, whose elastic slip goes on from the first step. Both have one stiffness: while slip
+/// grows, a bond never bears less than friction alone. With the opening delta = sqrt(max(g, 0)^2 + (s/r)^2) a whole
+/// bond's tension releases kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta (g_max - g_c))
+/// makes its traction fall in a straight line from the strength at g_c = strength / kn to zero at g_max, which takes
+/// strength g_max / 2. Above a threshold stress each growing stress p adds dD = rate (p - threshold) / (strength -
+/// threshold) dp, in shear with stresses times r. The bond itself has no limit of slip but its damage, which grows only
+/// where that releases energy.
 struct CohesiveFatigue {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive-fatigue";
@@ -76,7 +77,7 @@ struct CohesiveFatigue {
   /// longer beside the master tear off.
   void hold(const Encounter& at, const Bond& bond, LaneBits bonded, Lanes elastic, Contact& c, Record& now) const {
     const Lanes opening = select(at.beside, max(at.gap, Lanes{}), bond.opening), slip = bond.slip + at.moved;
-    const Lanes damage = select(bonded & at.beside, this->damage(bond, opening, slip), broadcast(1));
+    const Lanes damage = select(bonded & at.beside, this->damage(bond, opening, slip, c.slip), broadcast(1));
     const Lanes whole = 1.0 - damage, grown = damage - bond.damage, depth = min(at.gap, Lanes{});
     // Work of the mean of old and new tractions in the step, less what is stored: of the whole share, of friction, of
     // residual cohesion.
@@ -97,8 +98,9 @@ struct CohesiveFatigue {
     c.slip = select(held, slip, c.slip);
   }
 
-  /// Damage after a step to another opening and slip.
-  Lanes damage(const Bond& bond, Lanes opening, Lanes slip) const {
+  /// Damage after a step to another opening, slip, and elastic slip of the broken share. It grows only where that
+  /// releases energy: not where friction, after a reversal under more pressure, stores more than the bond.
+  Lanes damage(const Bond& bond, Lanes opening, Lanes slip, Lanes elastic) const {
     const double critical_gap = strength / normal_stiffness;
     const Lanes delta = sqrt(opening * opening + (shear_stiffness / normal_stiffness) * slip * slip);
     const Lanes safe = max(delta, broadcast(critical_gap));
@@ -107,7 +109,10 @@ struct CohesiveFatigue {
     const Lanes tension = normal_stiffness * intact, shear = (shear_stiffness * shear_ratio) * intact;
     const Lanes by_loads = rate * worn(tension * bond.opening, tension * opening) +
                            (shear_rate / shear_ratio) * worn(shear * abs(bond.slip), shear * abs(slip));
-    return min(max(bond.damage + by_loads, by_opening), broadcast(1));
+    constexpr double rounding = 1e-9;  // without a reversal both stick, or friction slips
+    const Lanes whole = normal_stiffness * opening * opening + shear_stiffness * slip * slip;
+    const LaneBits releases = shear_stiffness * elastic * elastic <= (1 + rounding) * whole;
+    return select(releases, min(max(bond.damage + by_loads, by_opening), broadcast(1)), bond.damage);
   }
 
   /// Work that the bond's growing damage takes in a step, J/m2: the mean of the old and the new traction along the way,
