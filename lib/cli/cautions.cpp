@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "bodies/short_edges.hpp"
 #include "discretisation/mass.hpp"
 
 namespace pliant {
@@ -15,7 +16,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double least_excess = 1e-3;  ///< of inertia, worth a word
-constexpr double short_edge = 0.1;     ///< over the spacing: three times as many steps, worth a word
 
 bool is_smooth(const Model& model, const Body& body) {
   return !body.wall && model.scene.shapes[body.shape].kind != ShapeKind::polygon;
@@ -63,27 +63,6 @@ double largest_inertia_ratio(const Model& model) {
 std::string of_inertia(double excess, bool corrected) {
   return fmt::format("compliant grains have up to {:.2g} % more rotational inertia than their polygons{}", 100 * excess,
                      corrected ? "" : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
-}
-
-/// The shortest edge of a compliant outline over its mean, and whose. Triangles at an edge are as flat as it is short,
-/// and the stable step goes with their height; meshfree nodes see past it.
-std::optional<std::string> of_short_edges(const Model& model) {
-  const Recipe recipe = model.scene.discretisation.recipe;
-  if (recipe != Recipe::t3 && recipe != Recipe::es_t3) return {};
-  double least = short_edge;
-  std::string shape;
-  for (const Body& body : model.bodies) {
-    if (body.kind != BodyKind::compliant) continue;
-    const OutlineShape& outline = model.outlines[body.outline];
-    const double shortest = *std::min_element(outline.segment_length.begin(), outline.segment_length.end());
-    if (shortest / outline.spacing < least)
-      least = shortest / outline.spacing, shape = model.scene.shapes[body.shape].name;
-  }
-  if (shape.empty()) return {};
-  return fmt::format(
-      "shape '{}' has an edge of {:.2g} of its spacing: triangles beside it make stable steps about as much shorter; "
-      "leave one of its ends out, or take recipe \"mls\"",
-      shape, least);
 }
 
 std::optional<double> least_restitution(const Scene& scene) {

@@ -89,8 +89,9 @@ std::string against_jumps(const Simulation& simulation) {
 std::string against_corners(const StepStatistics& seen) {
   return fmt::format(
       "cohesive contacts at corners made {:.2g} J/m, up to {:.2g} J/m in one step (t = {:.4g} s): their energy jumps "
-      "where nodes pass corners, at any time step (docs/limits.md): take a smaller spacing of the outlines; a smaller "
-      "[time] safety leaves the jumps",
+      "where nodes pass corners (docs/limits.md). A smaller [time] safety mends what is of the steps; the jumps are "
+      "less "
+      "with a smaller spacing of the outlines alone",
       seen.at_corners, seen.jump, seen.jump_time);
 }
 

@@ -8,11 +8,14 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
+#include "bodies/short_edges.hpp"
 #include "core/errors.hpp"
 #include "core/stop_signals.hpp"
 #include "files/atomic_file.hpp"
@@ -162,6 +165,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   const Model model = build_model(scene);
   make_samplers(model);  // refuses nodes that no body has, before anything is written
   Simulation simulation = start_simulation(model, from.get());
+  if (const std::optional<std::string> warning = of_short_edges(model)) spdlog::warn(*warning);
   // Read before the folder is emptied: the scene may lie in it.
   const SceneFiles files(scene.file);
   const StopSignals signals;  // a run that was begun ends in order

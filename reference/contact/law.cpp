@@ -141,8 +141,8 @@ double bond_loss(const Law& law, const ContactMemory& memory, double opening, do
   return (damage - memory.damage) / 2 * (law.kn * memory.opening * opening + law.kt * memory.slip * slip);
 }
 
-/// Of the share that is broken, of damage `before` and then `damage`: what its mean traction does along the motion, less
-/// what it stores. Exactly 0 where it sticks and the damage stays.
+/// Of the share that is broken, of damage `before` and then `damage`: what its mean traction does along the motion,
+/// less what it stores. Exactly 0 where it sticks and the damage stays.
 double sliding_loss(const Law& law, double before, double damage, double old_slip, double slip, double motion) {
   const double slid = old_slip + motion - slip;
   return law.kt / 2 * ((before * old_slip + damage * slip) * slid - (damage - before) * old_slip * slip);

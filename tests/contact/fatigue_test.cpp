@@ -146,8 +146,9 @@ TEST(Fatigue, FrictionActsInTheBrokenShare) {
   EXPECT_NEAR(path.imbalance(), 0, 1e-14);
 }
 
-// EXACT: a bond weaker than friction changes nothing of what friction bears while slip grows: nowhere less than min(kt s, friction p),
-// and just kt s until both give way. Back and forth, with the pressure changing, the books stay whole.
+// EXACT: a bond weaker than friction changes nothing of what friction bears while slip grows: nowhere less than
+// min(kt s, friction p), and just kt s until both give way. Back and forth, with the pressure changing, the books stay
+// whole.
 TEST(Fatigue, AWeakBondWeakensNothing) {
   ContactRule rule = cohesive_fatigue(kn, 0.02, range, ratio, 0.001);
   rule.friction = 0.5;

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "bodies/model.hpp"
+
+namespace pliant {
+
+/// A sentence on the shortest edge of a compliant outline, over its mean; nothing where all are a tenth of it or more.
+std::optional<std::string> of_short_edges(const Model& model);
+
+}  // namespace pliant
