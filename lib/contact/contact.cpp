@@ -71,10 +71,9 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   warn_of_missed_contacts(outlines.position);
   watch_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far apart
-  const std::vector<Patch> inherited = start ? patches() : std::vector<Patch>();
   take_over_patches(outlines, outlines.position, history, clock);
-  if (start && inherited.empty()) refuse_self_overlap();
-  const auto begin = [&](const Patch& p) { return is_among(inherited, p) ? void() : start_records(view(p), history); };
+  if (start && !starts_from_a_state()) refuse_self_overlap();
+  const auto begin = [&](const Patch& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
   if (start) parallel_for(table_.count(), [&](int p) { begin(patches()[p]); });
   fresh_ = true;
 }

@@ -132,6 +132,8 @@ class ContactSystem {
                      ContactHistory& to, PatchForces& forces);
   void add_self_patches(std::vector<Patch>& all);
   void refuse_self_overlap() const;
+  bool starts_from_a_state() const { return laws_before_.count > 0; }
+  bool keeps_law(const Patch& patch) const;  ///< of the state that it starts from; false: there is none
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void prefetch(const Patch& patch, const OutlineField& position, const StepStart* step, const ContactHistory& from,
                 const ContactHistory& to, const PatchForces& forces) const;
@@ -149,6 +151,7 @@ class ContactSystem {
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0, pairs_searched_ = 0;
+  PairLaws laws_before_;  ///< of the run whose state it starts from
 };
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,11 @@ class ContactLaws {
   /// `until`.
   int era(double time) const;
   bool automatic_stiffness(int first, int second) const;
-  ContactLawKind kind(int first, int second) const { return rule(bodies_[first], bodies_[second])->law; }
+  /// Number of the ContactLawKind; -1: the two never meet.
+  std::int32_t kind(int first, int second) const {
+    const ContactRule* found = rule(bodies_[first], bodies_[second]);
+    return found ? static_cast<std::int32_t>(found->law) : -1;
+  }
 
   double max_reach() const { return max_reach_; }             ///< of any pair, m
   double largest_stiffness(int body) const;                   ///< of any pair with this body, Pa/m

@@ -1,5 +1,6 @@
 // How contact begins: from nothing, or from another run.
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -8,22 +9,42 @@
 #include "core/errors.hpp"
 
 namespace pliant {
+namespace {
+
+PairLaws pair_laws(const ContactLaws& laws, int bodies) {
+  PairLaws all;
+  std::vector<int> member;  // [parties] some body of each
+  for (int b = 0; b < bodies; ++b) {
+    const int party = laws.party(b);
+    all.parties.push_back(party);
+    if (party >= static_cast<int>(member.size())) member.resize(party + std::size_t{1});
+    member[party] = b;
+  }
+  all.count = static_cast<std::int32_t>(member.size());
+  for (const int first : member)
+    for (const int second : member) all.kinds.push_back(laws.kind(first, second));
+  return all;
+}
+
+void require_fit(const PairLaws& laws, std::size_t bodies) {
+  const auto is_one = [&](std::int32_t party) { return party >= 0 && party < laws.count; };
+  if (laws.parties.size() != bodies || laws.kinds.size() != static_cast<std::size_t>(laws.count) * laws.count ||
+      !std::ranges::all_of(laws.parties, is_one))
+    throw ArchiveError("contacts have other laws");
+}
+
+}  // namespace
 
 InheritedContact ContactSystem::leave(const ContactHistory& history) const {
-  InheritedContact left{patches(), {}, history};
-  for (const Patch& patch : left.patches)
-    left.kinds.push_back(static_cast<std::int32_t>(laws_.kind(patch.first, patch.second)));
-  return left;
+  return {patches(), pair_laws(laws_, static_cast<int>(model_.bodies.size())), history};
 }
 
 void ContactSystem::inherit(const InheritedContact& from, ContactHistory& history) {
-  if (from.kinds.size() != from.patches.size()) throw ArchiveError("contacts have other laws");
+  require_fit(from.laws, model_.bodies.size());
+  laws_before_ = from.laws;
   table_.take(from.patches, from.history.records());
   std::vector<Patch> kept;
-  for (std::size_t p = 0; p < from.patches.size(); ++p)
-    if (const Patch& patch = from.patches[p];
-        from.kinds[p] == static_cast<std::int32_t>(laws_.kind(patch.first, patch.second)))
-      kept.push_back(patch);
+  std::ranges::copy_if(from.patches, std::back_inserter(kept), [&](const Patch& patch) { return keeps_law(patch); });
   table_.take(std::move(kept), from.history.records());
   make_room(last_);
   history = {};
@@ -38,6 +59,10 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
     for (const int column : {ContactHistory::place, ContactHistory::slip}) to[column] = old[column];
     std::copy_n(old + from.history.first_of_law, fields, to + history.first_of_law);
   }
+}
+
+bool ContactSystem::keeps_law(const Patch& patch) const {
+  return starts_from_a_state() && laws_before_.kind(patch.first, patch.second) == laws_.kind(patch.first, patch.second);
 }
 
 /// A limb thinner than contact sees would press its own far side out.

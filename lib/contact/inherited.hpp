@@ -8,15 +8,28 @@
 
 namespace pliant {
 
+/// Which kind of law holds between any two bodies, whether they are close or not.
+struct PairLaws {
+  std::vector<std::int32_t> parties;  ///< [bodies] number of each body's party
+  std::vector<std::int32_t> kinds;    ///< [parties x parties] as ContactLaws::kind
+  std::int32_t count = 0;             ///< of parties
+
+  std::int32_t kind(int first, int second) const { return kinds[parties[first] * count + parties[second]]; }
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("parties", parties), visitor("kinds", kinds), visitor("count", count);
+  }
+};
+
 /// What contact remembers at the end of a run, for another one of the same bodies.
 struct InheritedContact {
   std::vector<Patch> patches;
-  std::vector<std::int32_t> kinds;  ///< [patches] ContactLawKind of each
-  ContactHistory history;           ///< whose records the patches name
+  PairLaws laws;
+  ContactHistory history;  ///< whose records the patches name
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("patches", patches), visitor("kinds", kinds), visitor("history", history);
+    visitor("patches", patches), visitor("laws", laws), visitor("history", history);
   }
 };
 

@@ -96,7 +96,7 @@ TEST_P(AStart, goes_on_as_the_run_did) {
   EXPECT_EQ(next.state().dissipated, 0);
   EXPECT_EQ(next.overlap().pairs, 0) << "contact at the start is no overlap of a packing";
   EXPECT_NEAR(next.audit().energy.mechanical(), whole.audit().energy.mechanical(), 1e-13) << "EXACT";
-  start.contact = {};
+  start.contact.patches = {}, start.contact.history = {};
   Simulation forgetful(model, &start);
   step_evenly(whole, after), step_evenly(next, after), step_evenly(forgetful, after);
   EXPECT_EQ(whole.state().time, (before + after) * dt);
@@ -173,6 +173,34 @@ TEST(StartPoint, pairs_with_another_law_begin_anew) {
   }());
   EXPECT_EQ(apart, 1) << "EXACT: too far for bonds";
   EXPECT_EQ(wholeness(0.1, without_bonds).first, 1) << "EXACT: of the same law, none comes about";
+  const StartPoint far_apart = [&] {
+    StartPoint lifted = start;
+    lifted.position.rigid[1] += 5;
+    return wholeness(1e-30, lifted).second;
+  }();
+  EXPECT_TRUE(std::ranges::all_of(far_apart.contact.patches, &Patch::is_empty));
+  EXPECT_EQ(wholeness(8, far_apart).first, 1) << "EXACT: nor where the pair was too far apart to be watched";
+}
+
+/// EXACT: a body in touch with itself starts with another law of itself; at no state it would be refused.
+TEST(StartPoint, a_body_pressed_on_itself_takes_another_law) {
+  Scene scene = empty_scene(4);
+  ShapeSpec clamp = box_shape("clamp", 2, 2, 0.13);
+  clamp.points = {{-1, -1}, {1, -1}, {1, -0.15}, {-0.4, -0.15}, {-0.4, 0.15}, {1, 0.15}, {1, 1}, {-1, 1}};
+  scene.shapes = {clamp};
+  InitialVelocity closing;
+  closing.gradient << 0, 0, 0, -0.35;
+  scene.grains = {grains("clamp", "clamp", BodyKind::compliant, {{0, 0}}, closing)};
+  scene.contacts = {frictionless(300)};
+  scene.contact.self_contact = true;
+  const Model model = build_model(scene);
+  Simulation first(model);
+  while (first.state().time < 4 && first.audit().energy.contact < 1e-4) first.step(4);
+  ASSERT_GE(first.audit().energy.contact, 1e-4) << "it touches itself";
+  const StartPoint start = point_of(first);
+  scene.contacts = {mohr_coulomb(300, 0.4)};
+  const Model other = build_model(scene);
+  EXPECT_NO_THROW(Simulation(other, &start));
 }
 
 TEST(StartPoint, of_other_bodies_is_refused) {
@@ -180,7 +208,7 @@ TEST(StartPoint, of_other_bodies_is_refused) {
   const StartPoint start = Simulation(one).start_point();
   EXPECT_THROW(Simulation(other, &start), ArchiveError) << "EXACT";
   StartPoint damaged = start;
-  damaged.contact.kinds.push_back(0);
+  damaged.contact.laws.kinds.push_back(0);
   EXPECT_THROW(Simulation(one, &damaged), ArchiveError) << "EXACT";
 }
 
