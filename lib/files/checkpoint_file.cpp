@@ -59,7 +59,7 @@ std::string_view CheckpointText::content() const {
   return std::string_view(bytes).substr(content_begin, content_end - content_begin);
 }
 
-CheckpointText read_checkpoint_file(const std::filesystem::path& file) {
+CheckpointText read_checkpoint_file(const std::filesystem::path& file, const char* advice) {
   const auto refuse = [&](const std::string& why) -> void {
     throw OutputError(fmt::format("{}: {}", file.string(), why));
   };
@@ -67,16 +67,14 @@ CheckpointText read_checkpoint_file(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   text.bytes = read_all(stream);
-  if (!stream.is_open() || stream.bad())
-    refuse(fmt::format("cannot be read: {}; without a checkpoint a run can only start anew (--force)",
-                       std::strerror(errno)));
+  if (!stream.is_open() || stream.bad()) refuse(fmt::format("cannot be read: {}{}", std::strerror(errno), advice));
   const std::string_view all = text.bytes;
   if (!all.starts_with(magic.substr(0, magic.size() - 2))) refuse("is not a checkpoint");
   if (!all.starts_with(magic)) refuse("is a checkpoint of another version of the program; use that one");
   const std::size_t line_end = all.find('\n', magic.size());
   if (line_end == all.npos || all.size() < line_end + 1 + digits ||
       hash_of(all.substr(0, all.size() - digits)) != all.substr(all.size() - digits))
-    refuse("is damaged: it was cut short or changed; the run can only start anew (--force)");
+    refuse(fmt::format("is damaged: it was cut short or changed{}", advice));
   text.header_begin = magic.size();
   text.content_begin = line_end + 1;
   text.content_end = all.size() - digits;

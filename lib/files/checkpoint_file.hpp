@@ -31,7 +31,8 @@ struct CheckpointText {
   std::string_view content() const;
 };
 
-/// Throws OutputError for a file that is missing, unreadable, cut short or otherwise damaged.
-CheckpointText read_checkpoint_file(const std::filesystem::path& file);
+/// Throws OutputError for a file that is missing, unreadable, cut short or otherwise damaged, with advice at its end.
+CheckpointText read_checkpoint_file(const std::filesystem::path& file,
+                                    const char* advice = "; the run can only start anew (--force)");
 
 }  // namespace pliant

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <ctime>
 
 #include "build_info.hpp"
@@ -52,6 +53,27 @@ std::string mesh_hash(const Model& model) {
   return fmt::format("{:016x}", hash.value());
 }
 
+std::string bodies_hash(const Model& model) {
+  Fnv1a hash;
+  const auto add = [&](double value, double unit) {
+    const std::int64_t number = std::llround(value / (1e-6 * unit));
+    hash.add(&number, sizeof number);
+  };
+  const auto add_points = [&](const Points& points, double unit) {
+    for (const Vec2& point : points) add(point.x(), unit), add(point.y(), unit);
+  };
+  for (const OutlineShape& outline : model.outlines) add_points(outline.points, outline.spacing);
+  for (const CompliantShape& shape : model.shapes)
+    add_points(shape.space.mesh.nodes, model.outlines[shape.outline].spacing);
+  for (const Body& body : model.bodies) {
+    const double segment = model.outlines[body.outline].spacing;
+    for (const int number : {body.outline, body.compliant_shape, body.material}) hash.add(&number, sizeof number);
+    add(body.centre.x(), segment), add(body.centre.y(), segment);
+    add(body.angle, 1), add(body.scale, 1);
+  }
+  return fmt::format("{:016x}", hash.value());
+}
+
 void write_checkpoint(const std::filesystem::path& folder, const std::string& scene_text, Simulation& simulation,
                       Recorder& recorder, double time) {
   recorder.sync();
@@ -65,6 +87,7 @@ void write_checkpoint(const std::filesystem::path& folder, const std::string& sc
                                          {"written", fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(std::time({})))},
                                          {"build", build_identity()},
                                          {"mesh", mesh_hash(simulation.model())},
+                                         {"bodies", bodies_hash(simulation.model())},
                                          {"scene_text", scene_text}};
   CheckpointFile file(folder / file_name, header.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
   SaveLeaf save(file);
@@ -80,6 +103,7 @@ Checkpoint::Checkpoint(const std::filesystem::path& folder)
   scene_name_ = header.value("scene", "");
   build_ = header.value("build", "");
   mesh_ = header.value("mesh", "");
+  bodies_ = header.value("bodies", "");
   time_ = header.value("time", 0.0);
 }
 
@@ -87,6 +111,15 @@ void Checkpoint::warn_of_other_build() const {
   if (build_ == build_identity()) return;
   spdlog::warn("{}: written by another build ({}; this is {}); the run goes on, but not with the same last bits",
                path_.string(), build_, build_identity());
+}
+
+void Checkpoint::require_bodies_of(const Model& model) const {
+  if (bodies_.empty() || bodies_ == bodies_hash(model)) return;
+  throw InputError(fmt::format(
+      "{}: other bodies than the run began with: an outline or a table of grains was changed since{}; a run cannot "
+      "change its shapes and packings; start anew (--force)",
+      path_.string(),
+      build_ == build_identity() ? "" : fmt::format(", or the build that wrote it ({}) meshes otherwise", build_)));
 }
 
 void Checkpoint::restore(Simulation& simulation, Recorder& recorder) const {

@@ -163,6 +163,7 @@ std::string last_words(Run& run, const Error& error) {
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
   const std::unique_ptr<const StartFile> from = checkpoint ? nullptr : start_file_of(scene);
   const Model model = build_model(scene);
+  if (checkpoint) checkpoint->require_bodies_of(model);
   make_samplers(model);  // refuses nodes that no body has, before anything is written
   Simulation simulation = start_simulation(model, from.get());
   if (const std::optional<std::string> warning = of_short_edges(model)) spdlog::warn(*warning);
@@ -235,6 +236,15 @@ void require_scene_of(const Checkpoint& checkpoint, const Scene& scene, const fs
                     "[checkpoint] may change",
                     scene.file.string(), folder.string(), difference));
   files.compare(folder);
+  require_same_start(scene, folder);
+}
+
+/// Of a run that was killed before its first checkpoint, when the state that it began from is kept in its folder alone.
+Scene with_kept_start(const Scene& scene, const fs::path& folder) {
+  Scene kept = scene;
+  const fs::path copy = folder / start_copy_name;
+  if (!scene.start_from.empty() && !fs::exists(scene.start_from) && fs::exists(copy)) kept.start_from = copy;
+  return kept;
 }
 
 }  // namespace
@@ -245,7 +255,7 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   if (!options.resume) return simulate(scene, options, nullptr, start);
   if (killed_before_checkpoint(options.out)) {
     if (!options.quiet) fmt::print("{}: has no checkpoint yet; starting anew\n", options.out.string());
-    return simulate(scene, options, nullptr, start);
+    return simulate(with_kept_start(scene, options.out), options, nullptr, start);
   }
   const Checkpoint checkpoint(options.out);
   require_scene_of(checkpoint, scene, options.out);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -70,6 +71,25 @@ class FileNames {
 };
 
 }  // namespace
+
+std::string place_of_key(const std::string& text, const std::string& key) {
+  const toml::table scene = toml::parse(text);
+  const toml::node* at = &scene;
+  std::string place;
+  for (std::size_t begin = 0; begin < key.size();) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    const std::string part = key.substr(begin, end - begin);
+    const std::size_t blank = part.find(' ');
+    const toml::table* table = at->as_table();
+    at = table ? table->get(part.substr(0, blank)) : nullptr;
+    if (at && blank != part.npos)
+      at = at->is_array() ? at->as_array()->get(std::stoul(part.substr(blank)) - 1) : nullptr;
+    if (!at) break;
+    if (at->source().begin) place = fmt::format("{}:{}", at->source().begin.line, at->source().begin.column);
+    begin = end + 1;
+  }
+  return place;
+}
 
 PortableScene portable_scene(const std::string& text) {
   FileNames names(text);

@@ -1,3 +1,4 @@
+#include "scene/portable_scene.hpp"
 #include "scene/read_tables.hpp"
 
 namespace pliant {
@@ -68,10 +69,8 @@ DiscretisationSettings read_discretisation(TableReader table) {
 void read_start(TableReader table, Scene& scene) {
   std::string from;
   table.required("from", from, Text{});
+  if (from.empty()) table.value("from").reject(start_allowed);
   const std::filesystem::path path = std::filesystem::path(table.file()).parent_path() / from;
-  if (!std::filesystem::exists(path))
-    table.value("from").reject(fmt::format(
-        "the output folder of a run that has ended, from the folder of this file; there is no {}", path.string()));
   scene.start_from = std::filesystem::is_directory(path) ? path / start_file_name : path;
   table.finish();
 }

@@ -1,11 +1,17 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "core/errors.hpp"
 #include "scene/scene.hpp"
+#include "scene/units.hpp"
 
 namespace pliant {
 namespace {
@@ -54,6 +60,28 @@ std::string shown(const toml::node* node) {
   return text.str().size() <= longest ? text.str() : text.str().substr(0, longest) + "...";
 }
 
+/// In a unit that a quantity may have; none for what is no such quantity.
+std::optional<double> value_in(const toml::node& node, const char* unit) {
+  if (node.is_number()) return node.value<double>();
+  try {
+    if (const auto* text = node.as_string()) return parse_quantity(text->get(), unit);
+  } catch (const UnitError&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// "10 mm", "1 cm" and 0.01 are one quantity, to the rounding of units.
+bool same_quantity(const toml::node& a, const toml::node& b) {
+  if (a.is_number() && b.is_number()) return false;
+  constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
+  const auto same = [&](const char* unit) {
+    const std::optional<double> left = value_in(a, unit), right = value_in(b, unit);
+    return left && right && std::abs(*left - *right) <= rounding * std::abs(*left);
+  };
+  return std::ranges::any_of(std::array{"m", "rad", "1", "Pa", "s", "m/s", "rad/s", "kg/m3"}, same);
+}
+
 /// Of two nodes that are not both tables or both arrays. 1 and 1.0 are the same.
 bool same_value(const toml::node& a, const toml::node& b) {
   if (a.is_number() && b.is_number()) return a.value<double>() == b.value<double>();
@@ -61,44 +89,50 @@ bool same_value(const toml::node& a, const toml::node& b) {
   return left == right;
 }
 
-std::string difference(const std::string& path, const toml::node* before, const toml::node* now);
+bool same_quantity_or_value(const toml::node& a, const toml::node& b) {
+  return same_quantity(a, b) || same_value(a, b);
+}
 
-std::string table_difference(const std::string& path, const toml::table& before, const toml::table& now) {
+using Same = bool (*)(const toml::node&, const toml::node&);
+
+std::string difference(const std::string& path, const toml::node* before, const toml::node* now, Same same);
+
+std::string table_difference(const std::string& path, const toml::table& before, const toml::table& now, Same same) {
   std::set<std::string> keys;
   for (const toml::table* table : {&before, &now})
     for (auto&& [key, value] : *table) keys.emplace(key.str());
   for (const std::string& key : keys) {
-    const std::string found = difference(path.empty() ? key : path + "." + key, before.get(key), now.get(key));
+    const std::string found = difference(path.empty() ? key : path + "." + key, before.get(key), now.get(key), same);
     if (!found.empty()) return found;
   }
   return {};
 }
 
-std::string array_difference(const std::string& path, const toml::array& before, const toml::array& now) {
+std::string array_difference(const std::string& path, const toml::array& before, const toml::array& now, Same same) {
   for (std::size_t i = 0; i < std::max(before.size(), now.size()); ++i) {
-    const std::string found = difference(fmt::format("{} {}", path, i + 1), before.get(i), now.get(i));
+    const std::string found = difference(fmt::format("{} {}", path, i + 1), before.get(i), now.get(i), same);
     if (!found.empty()) return found;
   }
   return {};
 }
 
-std::string difference(const std::string& path, const toml::node* before, const toml::node* now) {
+std::string difference(const std::string& path, const toml::node* before, const toml::node* now, Same same) {
   if (before && now && before->is_table() && now->is_table())
-    return table_difference(path, *before->as_table(), *now->as_table());
+    return table_difference(path, *before->as_table(), *now->as_table(), same);
   if (before && now && before->is_array() && now->is_array())
-    return array_difference(path, *before->as_array(), *now->as_array());
-  if (before && now && same_value(*before, *now)) return {};
+    return array_difference(path, *before->as_array(), *now->as_array(), same);
+  if (before && now && same(*before, *now)) return {};
   return fmt::format("'{}' was {}, now {}", path, shown(before), shown(now));
 }
 
 }  // namespace
 
 std::string scene_difference(const std::string& before, const std::string& now) {
-  return table_difference({}, significant(before), significant(now));
+  return table_difference({}, significant(before), significant(now), same_value);
 }
 
 std::string start_difference(const std::string& before, const std::string& now) {
-  return table_difference({}, of_bodies(before), of_bodies(now));
+  return table_difference({}, of_bodies(before), of_bodies(now), same_quantity_or_value);
 }
 
 }  // namespace pliant

@@ -126,38 +126,53 @@ def test_other_bodies_are_refused(desk, change) -> None:
     for command in ["run", "check"]:
         result = desk.engine(command, desk.scene)
         assert result.returncode == 2, result.stderr
-        assert f"'{key}'" in result.stderr and str(desk.scene) in result.stderr
+        assert f"'{key}'" in result.stderr
+        place = result.stderr.split(f"{desk.scene}:")[1].split(":")[0]
+        assert new.split("\n")[0] in desk.scene.read_text().splitlines()[int(place) - 1] or key == "contact"
     assert desk.content() == before
 
 
-def test_without_a_state_it_says_so(desk) -> None:
-    """EXACT: the place of the key, or the file that is not there; exit code 2, nothing written."""
-    desk.write(AFTER.replace('"first"', '"frist"'))
+WRONG = {
+    "nothing": ("frist", "there is no"),
+    "a folder without a state": (".", "there is no"),
+    "an empty name": ("", "found"),
+    "a scene": ("scene.toml", "is not a checkpoint"),
+    "a table": ("first/probes.csv", "is not a checkpoint"),
+    "an empty file": ("empty", "is not a checkpoint"),
+    "a part of a state": ("cut", "is damaged"),
+    "a changed state": ("flipped", "is damaged"),
+    "a checkpoint": ("first/checkpoint.bin", "no state to start from"),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_what_is_no_state_is_refused(desk, what) -> None:
+    """EXACT: the place of the key, what it names and what it may; exit code 2, nothing written."""
+    name, why = WRONG[what]
+    state = (desk.folder / "first/final.bin").read_bytes()
+    (desk.folder / "empty").touch()
+    (desk.folder / "cut").write_bytes(state[:-100])
+    (desk.folder / "flipped").write_bytes(state[:-100] + bytes([state[-100] ^ 1]) + state[-99:])
+    text = AFTER.replace('"first"', f'"{name}"')
+    desk.write(text)
     before = desk.content()
-    result = desk.run("--out", "next")
-    assert result.returncode == 2
-    assert f"{desk.scene}:{line_of(AFTER, 'from =')}:" in result.stderr and "frist" in result.stderr
-    desk.write(AFTER)
-    (desk.folder / "first/final.bin").rename(desk.folder / "first/other.bin")
+    for command in ["run", "check"]:
+        result = desk.engine(command, desk.scene)
+        assert result.returncode == 2, result.stderr
+        assert f"{desk.scene}:{line_of(text, 'from =')}:8: 'from' in [start]: " in result.stderr
+        assert name in result.stderr and why in result.stderr
+        assert "allowed: the output folder of a run that has come to its end" in result.stderr
+        assert "--force" not in result.stderr
+    assert desk.content() == before
+
+
+def test_a_run_that_has_not_ended_is_to_go_on(desk) -> None:
+    """EXACT"""
+    (desk.folder / "first/final.bin").unlink()
     result = desk.run("--out", "next")
     assert result.returncode == 2 and "final.bin" in result.stderr and "--resume" in result.stderr
-    assert not (desk.folder / "next").exists()
-    assert len(desk.content()) == len(before)
-    desk.write(AFTER.replace('"first"', '"first/checkpoint.bin"'))
-    result = desk.run("--out", "next")
-    assert result.returncode == 2 and "no state to start from" in result.stderr
     result = desk.reference("--out", "next")
     assert result.returncode == 2 and "[start]" in result.stderr
-
-
-def test_a_damaged_state_is_refused(desk) -> None:
-    """EXACT"""
-    file = desk.folder / "first/final.bin"
-    content = bytearray(file.read_bytes())
-    content[len(content) // 2] ^= 1
-    file.write_bytes(content)
-    result = desk.run("--out", "next")
-    assert result.returncode == 4 and "damaged" in result.stderr
     assert not (desk.folder / "next").exists()
 
 
@@ -176,6 +191,95 @@ def test_results_hold_the_state_that_they_started_from(desk) -> None:
     assert len({str(desk.summary(out)["started_from"]) for out in ["next", "again", "half"]}) == 1
     files = {(desk.folder / out / "final.bin").read_bytes() for out in ["next", "half"]}
     assert len(files) == 1, "a run that went on leaves what one without a stop leaves"
+
+
+def test_other_spellings_of_the_same_bodies_start(desk) -> None:
+    """EXACT"""
+    desk.write(AFTER.replace("period = 6", 'period = "600 cm"').replace("diameter = 2", 'diameter = "2 m"'))
+    result = desk.engine("check", desk.scene)
+    assert result.returncode == 0, result.stderr
+
+
+DISC = "".join(f"{x:.6f},{y:.6f}\n" for x, y in zip(np.cos(np.arange(40) * np.pi / 20), np.sin(np.arange(40) * np.pi / 20)))
+TABLE = "x,y\n1,0\n3,0\n"
+FROM_FILES = """\
+[time]
+end = 0.1
+[materials.hard]
+law = "rigid"
+density = 1
+[shapes.disc]
+kind = "file"
+file = "disc.csv"
+nodes = 40
+[[grains]]
+name = "discs"
+shape = "disc"
+body = "rigid"
+material = "hard"
+packing = { kind = "file", file = "table.csv" }
+velocity = { uniform = [1, 0] }
+[[contacts]]
+between = "all"
+law = "frictionless"
+stiffness = 1
+"""
+
+
+@pytest.fixture
+def from_files(tmp_path) -> Desk:
+    """A run of an outline and a table of grains, in `first`; its state alone, in state.bin."""
+    desk = Desk(tmp_path)
+    (tmp_path / "disc.csv").write_text(DISC)
+    (tmp_path / "table.csv").write_text(TABLE)
+    desk.write(FROM_FILES)
+    result = desk.run("--out", "first", "--quiet")
+    assert result.returncode == 0, result.stderr
+    shutil.copyfile(tmp_path / "first/final.bin", tmp_path / "state.bin")
+    return desk
+
+
+@pytest.mark.parametrize("file, old, new", [("disc.csv", "1.000000,0.000000", "1.010000,0.000000"),
+                                            ("table.csv", "3,0", "3,0.01")])
+def test_a_state_knows_its_outlines_and_tables(from_files, file, old, new) -> None:
+    """EXACT: other bodies by a file, with as many nodes, are refused; where a run goes on, before anything is written."""
+    desk = from_files
+    desk.write(FROM_FILES + '[start]\nfrom = "state.bin"\n')
+    assert desk.engine("check", desk.scene).returncode == 0
+    original = (desk.folder / file).read_text()
+    assert old in original
+    (desk.folder / file).write_text(original.replace(old, new))
+    result = desk.run("--out", "next")
+    assert result.returncode == 2 and "other bodies" in result.stderr, result.stderr
+    assert f"{desk.scene}:{line_of(desk.scene.read_text(), 'from =')}:" in result.stderr
+    assert not (desk.folder / "next").exists()
+    copy = next((desk.folder / "first").glob("outline_*" if file == "disc.csv" else "packing_*"))
+    copy.write_text(copy.read_text().replace(old, new))
+    before = {path: path.read_bytes() for path in desk.content() if path.is_file()}
+    result = desk.engine("run", "--resume", "--out", "first", "--until", "0.2")
+    assert result.returncode == 2 and "other bodies" in result.stderr, result.stderr
+    assert {path: path.read_bytes() for path in desk.content() if path.is_file()} == before
+
+
+def test_a_run_goes_on_from_the_state_that_it_started_from(desk) -> None:
+    """EXACT: another one is refused; one that is gone is not missed, as the folder keeps it."""
+    assert desk.run("--out", "next", "--until", "0.1", "--quiet").returncode == 0
+    assert desk.engine("run", "--resume", "--out", "first", "--until", "2.1", "--quiet").returncode == 0
+    before = {path: path.read_bytes() for path in desk.content() if path.is_file()}
+    result = desk.run("--out", "next", "--until", "0.2", "--resume")
+    assert result.returncode == 2 and "start.bin" in result.stderr, result.stderr
+    assert f"{desk.scene}:{line_of(AFTER, 'from =')}:" in result.stderr
+    assert {path: path.read_bytes() for path in desk.content() if path.is_file()} == before
+    shutil.rmtree(desk.folder / "first")
+    result = desk.run("--out", "next", "--until", "0.2", "--resume", "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert desk.summary("next")["time"] == pytest.approx(0.2)
+    (desk.folder / "killed").mkdir()  # before its first checkpoint
+    (desk.folder / "killed/run.lock").touch()
+    shutil.copyfile(desk.folder / "next/start.bin", desk.folder / "killed/start.bin")
+    result = desk.run("--out", "killed", "--until", "0.2", "--resume", "--quiet")
+    assert result.returncode == 0, result.stderr
+    assert desk.summary("killed")["state_hash"] == desk.summary("next")["state_hash"]
 
 
 def test_check_says_where_it_starts(desk) -> None:

@@ -6,6 +6,15 @@
 namespace pliant {
 namespace {
 
+TEST(PlaceOfKey, is_that_of_its_value_or_of_its_table) {
+  const std::string text = "[start]\nfrom = 'x'\n[[grains]]\nseed = 1\n[[grains]]\nseed = 22\n";
+  EXPECT_EQ(place_of_key(text, "start.from"), "2:8");
+  EXPECT_EQ(place_of_key(text, "grains 2.seed"), "6:8");
+  EXPECT_EQ(place_of_key(text, "grains 2.shape"), "5:1");
+  EXPECT_EQ(place_of_key(text, "grains 3.shape"), "");
+  EXPECT_EQ(place_of_key(text, "domain.period"), "");
+}
+
 TEST(PortableScene, names_the_copies_of_its_outlines_and_changes_nothing_else) {
   const std::string text =
       "title = \"\xc3\xa4\" # [shapes.a] file = \"x\"\n"

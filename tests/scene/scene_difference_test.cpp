@@ -42,6 +42,12 @@ TEST(StartDifference, loads_laws_and_outputs_may_change) {
   EXPECT_EQ(restarted("[frames]", "[frames] # none\n[other]").substr(0, 7), "'other'");
 }
 
+TEST(StartDifference, one_quantity_in_other_units_is_the_same) {
+  EXPECT_EQ(restarted("period = \"10 um\"", "period = \"0.01 mm\""), "");
+  EXPECT_EQ(restarted("period = \"10 um\"", "period = 1e-5"), "");
+  EXPECT_EQ(restarted("period = \"10 um\"", "period = \"10 mm\""), "'domain.period' was '10 um', now '10 mm'");
+}
+
 TEST(StartDifference, bodies_shapes_and_the_discretisation_must_not) {
   EXPECT_EQ(restarted("support = 9", "support = 10"), "'discretisation.support' was 9, now 10");
   EXPECT_EQ(restarted("\"neo-hookean\"", "\"melody\""), "'materials.soft.law' was 'neo-hookean', now 'melody'");
