@@ -81,18 +81,20 @@ class Scene:
         return Scene(self.text(), self.file_name, self.folder)
 
     def files(self) -> list[str]:
-        """Outlines, meshes and the like: texts that name files which are there, seen from the scene's folder. BadScene:
-        one is not at or below it, so it could not go along with a copy of the scene."""
+        """Outlines, meshes and the like: texts that name files which are there, seen from the scene's folder; not the
+        state that it starts from. BadScene: one is not at or below it, so it could not go along with a copy of the
+        scene."""
         found: list[str] = []
 
-        def look(at: Any) -> None:
+        def look(at: Any, path: str = "") -> None:
             if isinstance(at, MutableMapping):
-                for value in at.values():
-                    look(value)
+                for key, value in at.items():
+                    look(value, f"{path}.{key}")
             elif isinstance(at, MutableSequence):
                 for value in at:
-                    look(value)
-            elif isinstance(at, str) and self.folder and _may_name_a_file(at) and (self.folder / at).is_file():
+                    look(value, path)
+            elif isinstance(at, str) and self.folder and path != ".start.from" and _may_name_a_file(
+                    at, path.endswith(".file")) and (self.folder / at).is_file():
                 if ".." in Path(at).parts:
                     raise BadScene(f"{self.file_name}: names {at}; only files at or below the scene's folder go along")
                 found.append(str(at))
@@ -100,12 +102,28 @@ class Scene:
         look(self._document)
         return sorted(set(found))
 
+    def state(self) -> Path | None:
+        """The file with the state that it starts from, by an absolute path; None: it starts from none. Whether it is
+        there the engine asks."""
+        name = self["start.from"] if "start.from" in self else ""
+        if not isinstance(name, str) or not name or self.folder is None:
+            return None
+        named = (self.folder / name).absolute()
+        return named / "final.bin" if named.is_dir() else named
+
+    def starting_from(self, state: str | Path) -> Scene:
+        """A copy of one that starts from a state, which it is to find there."""
+        changed = self.copy()
+        changed["start.from"] = str(state)
+        return changed
+
     def write_whole(self, folder: Path) -> Path:
-        """Under its own name, with the files that it names."""
+        """Under its own name, with the files that it names; the state that it starts from stays where it is."""
         for name in self.files():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(self.folder / name, folder / name)
-        return self.write(folder / self.file_name)
+        state = self.state()
+        return (self if state is None else self.starting_from(state)).write(folder / self.file_name)
 
     def text(self) -> str:
         return tomlkit.dumps(self._document)
@@ -121,8 +139,8 @@ class Scene:
             return check(self.write_whole(Path(folder)), threads)
 
 
-def _may_name_a_file(text: str) -> bool:
-    return 0 < len(text) < 255 and text.isprintable() and "." in text and not Path(text).is_absolute()
+def _may_name_a_file(text: str, surely: bool) -> bool:
+    return 0 < len(text) < 255 and text.isprintable() and (surely or "." in text) and not Path(text).is_absolute()
 
 
 def _names(at: Any) -> Iterator[str]:

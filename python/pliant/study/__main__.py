@@ -17,7 +17,7 @@ from pathlib import Path
 from pliant.engine import BadScene, Estimate, check
 from pliant.scene import Scene
 from pliant.study import slurm
-from pliant.study.folder import Folder
+from pliant.study.folder import Folder, state_beside
 from pliant.study.gather import CannotGather, function_of
 from pliant.study.points import Point, points_of
 from pliant.study.reading import BadStudy
@@ -79,8 +79,9 @@ def check_paths(study: Study, base: Scene) -> None:
             taken[key] = p.name
 
 
-def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[str]]:
-    """Each scene as the engine reads it: nothing runs if one is wrong. Estimates, and files that go along."""
+def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], dict[str, Path]]:
+    """Each scene as the engine reads it: nothing runs if one is wrong. Estimates, and files that go along, by what they
+    are called beside the scene."""
     unique_names = {point.name: point for point in points}
     if len(unique_names) < len(points):
         raise BadStudy(f"{study.file}: two runs would have the same values")
@@ -90,7 +91,8 @@ def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], list[s
     base = Scene.read(study.scene)
     scenes, estimates = [scene_of(base, point) for point in points], []
     check_paths(study, base)
-    files = sorted({name for scene in scenes for name in scene.files()})
+    files = {name: study.scene.parent / name for scene in scenes for name in scene.files()}
+    files |= {state_beside(scene["start.from"]): state for scene in scenes if (state := scene.state())}
     with tempfile.TemporaryDirectory() as scratch:
         for point, scene in zip(points, scenes):
             file = scene.write_whole(Path(scratch))

@@ -35,6 +35,11 @@ def copy_if_other(source: Path, target: Path) -> None:
         target.write_bytes(content)
 
 
+def state_beside(name: str) -> str:
+    """What the copy of a state is called that a scene starts from, by how the scene names it."""
+    return f"start_{hashlib.sha256(name.encode()).hexdigest()[:12]}.bin"
+
+
 def as_text(value: Any) -> str:
     return json.dumps(value, indent=1) + "\n"
 
@@ -89,11 +94,12 @@ class Folder:
     def quantities(self) -> list[Quantity]:
         return [Quantity(**table) for table in self.read("quantities.json")]
 
-    def lay_out(self, study: Study, points: list[Point], files: list[str]) -> None:
-        """All that the steps read, renewed where it differs. `files`: those that scenes name, beside the scene."""
+    def lay_out(self, study: Study, points: list[Point], files: dict[str, Path]) -> None:
+        """All that the steps read, renewed where it differs. `files`: those that scenes name, by what they
+        are called beside the scene."""
         replace_if_other(self.path / "base.toml", study.scene.read_text("utf-8-sig"))
-        for name in files:
-            copy_if_other(study.scene.parent / name, self.beside / name)
+        for name, file in files.items():
+            copy_if_other(file, self.beside / name)
         for other in self.files_beside():
             if str(other.relative_to(self.beside)) not in files:
                 other.unlink()

@@ -14,7 +14,7 @@ from pliant.engine import is_finished, start
 from pliant.results import checkpoint_header, read_run
 from pliant.scene import Scene
 from pliant.study import gather as gathering
-from pliant.study.folder import Folder, as_text, copy_if_other, replace
+from pliant.study.folder import Folder, as_text, copy_if_other, replace, state_beside
 
 FILES = 4  # exit code: a full disk, another run in the folder
 KILLED = (130, 143, -2, -15, -9)  # by signals: to be gone on with, not a failure
@@ -26,6 +26,8 @@ def scene(folder: Folder, name: str) -> None:
         changed[path] = value
     for other in folder.files_beside():
         copy_if_other(other, folder.run(name) / other.relative_to(folder.beside))
+    if changed.state() is not None:
+        changed = changed.starting_from(state_beside(changed["start.from"]))
     replace(folder.scene(name), changed.text())
 
 
