@@ -75,11 +75,6 @@ inline bool comes_before(const Patch& a, const Patch& b) {
   return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part);
 }
 
-/// Whether there is one of the same bodies among some, which stand in their order.
-inline bool is_among(const std::vector<Patch>& patches, const Patch& patch) {
-  return std::binary_search(patches.begin(), patches.end(), patch, comes_before);
-}
-
 /// A patch with all that work on it looks at.
 struct PatchView {
   const Model& model;
