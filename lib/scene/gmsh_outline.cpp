@@ -49,7 +49,7 @@ class GmshOutlines {
         if (numbered && std::find(names.begin(), names.end(), part.group) == names.end()) names.push_back(part.group);
         names.push_back(part.name);
       }
-      throw InputError(fmt::format("{}: no part \"{}\"; {}", file_, choice, allowed_names(choice, names)));
+      throw PartsError(fmt::format("{}: no part \"{}\"; {}", file_, choice, allowed_names(choice, names)));
     }
     if (mesh_.surfaces.empty() && choice == "all") refuse_nested(outlines);
     return outlines;

@@ -5,8 +5,9 @@
 #include <algorithm>
 
 #include "core/errors.hpp"
+#include "scene/columns.hpp"
+#include "scene/length_limits.hpp"
 #include "scene/polygon_rules.hpp"
-#include "scene/text_file.hpp"
 #include "scene/units.hpp"
 
 namespace pliant {
@@ -19,8 +20,8 @@ double column_unit(const LineReader& reader, std::string_view field, const char*
   if (column.name != name)
     reader.fail(
         fmt::format("found \"{}\"; allowed: two numbers, or in the first line the names of the columns, "
-                    "\"x, y\" or \"x [mm], y [mm]\"",
-                    reader.line()));
+                    "\"x, y\" or \"x [mm], y [mm]\"{}",
+                    reader.line(), unit_hint(field)));
   if (!column.unit) return 0;
   try {
     return parse_quantity("1 " + *column.unit, "m");
@@ -76,6 +77,15 @@ void require_outline(const std::string& file, const FilePoints& found, std::size
                  defect.text + "; allowed: a closed outline that does not cross or touch itself");
 }
 
+void refuse_far(const std::string& file, const FilePoints& found, double scale) {
+  for (std::size_t i = 0; i < found.points.size(); ++i)
+    if (found.points[i].cwiseAbs().maxCoeff() > largest_length / scale)
+      fail_at_line(file, found.lines[i],
+                   fmt::format("the point ({:g}, {:g}) is out of range; allowed: coordinates of at most {:g} m either "
+                               "way",
+                               found.points[i].x(), found.points[i].y(), largest_length));
+}
+
 FilePoints without_repeats(const FilePoints& whole) {
   FilePoints result;
   result.unit = whole.unit;
@@ -91,12 +101,15 @@ FilePoints without_repeats(const FilePoints& whole) {
 FilePoints read_csv_outline(const std::string& file, const std::string& text) {
   LineReader reader(file, text);
   FilePoints found;
+  CommentedNames commented;
   bool first = true;
   while (reader.next()) {
-    const std::vector<std::string_view> fields = columns_of(reader.line());
+    if (first) commented.look_at(reader, {"x", "y"});
+    const std::vector<std::string_view> fields = columns_of(reader);
     if (fields.empty()) continue;
     double number = 0;
     const bool header = first && !parse_number(fields[0], number);
+    if (first && !header && commented.line()) found.unit = header_unit(*commented.line(), commented.fields());
     if (header)
       found.unit = header_unit(reader, fields);
     else
@@ -111,13 +124,14 @@ std::vector<Points> read_outline_file(const std::filesystem::path& file, const s
   const std::string name = file.string();
   const std::string text = read_text_file(file, "an outline (.csv or .msh)");
   const bool gmsh = file.extension() == ".msh";
-  if (!gmsh && !parts.empty()) throw InputError(fmt::format("{}: has no parts; allowed: those of a .msh file", name));
+  if (!gmsh && !parts.empty()) throw PartsError(fmt::format("{}: has no parts; allowed: those of a .msh file", name));
   const std::vector<FilePoints> found =
       gmsh ? read_gmsh_outlines(name, text, parts) : std::vector<FilePoints>{read_csv_outline(name, text)};
   std::vector<Points> outlines;
   for (const FilePoints& whole : found) {
+    const double scale = unit_of(name, whole, unit);
+    refuse_far(name, whole, scale);
     const FilePoints one = without_repeats(whole);
-    const double scale = unit_of(name, one, unit);
     require_outline(name, one, most_points);
     Points outline = one.points;
     for (Vec2& p : outline) p *= scale;

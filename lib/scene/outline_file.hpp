@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/errors.hpp"
 #include "core/vec2.hpp"
 
 namespace pliant {
@@ -16,8 +17,14 @@ struct FilePoints {
 };
 
 /// The outline in a text file of two columns x, y, separated by commas, semicolons, blanks or tabs; a first line may
-/// name them and their unit, as in "x [mm], y [mm]"; "#" begins a comment. The last point may repeat the first.
+/// name them and their unit, as in "x [mm], y [mm]"; "#" begins a comment, which may be that first line. The last
+/// point may repeat the first.
 FilePoints read_csv_outline(const std::string& file, const std::string& text);
+
+/// The file has no such part; the message says which it has, the reader of the scene adds the place.
+struct PartsError : InputError {
+  using InputError::InputError;
+};
 
 /// Outlines in a gmsh file, format 2.2 or 4.1, ASCII, of first order in one plane z: the boundary of each of its parts,
 /// which are triangles and quadrangles of one physical group that share edges, or, without any of these, chains of
@@ -27,7 +34,8 @@ std::vector<FilePoints> read_gmsh_outlines(const std::string& file, const std::s
 
 /// The closed outlines in a file (.msh: gmsh, else one in columns), counter-clockwise, m. `unit`: such as "mm", for a
 /// file that does not say its own; empty: m. `parts`: as above. Throws InputError with file and line: holes, several
-/// loops in one part, open or crossing chains, points that coincide, fewer than three or more than `most_points`.
+/// loops in one part, open or crossing chains, coordinates beyond 1e12 m, points that coincide, fewer than three or
+/// more than `most_points`.
 std::vector<Points> read_outline_file(const std::filesystem::path& file, const std::string& unit,
                                       const std::string& parts, std::size_t most_points);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/grain_file.hpp"
 #include "scene/polygon_rules.hpp"
@@ -121,11 +122,32 @@ void check_sizes(const std::string& file, const GrainFile& found, const Scene& s
   }
 }
 
+/// So far away that gaps between grains have no digits left.
+void check_places(const std::string& file, const GrainFile& found, const Scene& scene, const Grains& grains) {
+  constexpr double farthest = 1e9;                          // leaves 1e-7 of a size
+  double extent = std::numeric_limits<double>::infinity();  // of a grain of scale 1, m
+  for (const auto& [index, share] : scene.shape_shares(grains))
+    extent = std::min(extent, extent_of(scene.shapes[static_cast<std::size_t>(index)]));
+  for (std::size_t i = 0; i < found.lines.size(); ++i) {
+    const double size = !found.diameters.empty() ? found.diameters[i]
+                        : !found.scales.empty()  ? found.scales[i] * extent
+                                                 : extent;
+    const double away = found.positions[i].cwiseAbs().maxCoeff();
+    if (away > farthest * size)
+      fail_at_line(file, found.lines[i],
+                   fmt::format("the grain, {:.3g} m wide, lies {:.3g} m from the origin; allowed: at most {:g} times "
+                               "its width, beyond which numbers lack the digits for its contacts",
+                               size, away, farthest));
+  }
+}
+
 void read_grains_of_file(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
   const NamedFile file = read_named_file(table);
   GrainFile found = read_grain_file(file.path, file.unit, SceneLimits::bodies);
   if (scene.period && !(found.scales.empty() && found.diameters.empty()))
     check_sizes(file.path.string(), found, scene, grains);
+  if (!found.doubt.empty()) table.value("file").source.warnings.push_back(found.doubt);
+  check_places(file.path.string(), found, scene, grains);
   packing.positions = std::move(found.positions);
   packing.scales = std::move(found.scales);
   packing.diameters = std::move(found.diameters);

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scene/curves.hpp"
+#include "scene/length_limits.hpp"
 #include "scene/outline_file.hpp"
 #include "scene/polygon_rules.hpp"
 #include "scene/read_tables.hpp"
@@ -21,6 +22,10 @@ constexpr std::int64_t most_variants = 1000;
 void read_polygon(TableReader& table, ShapeSpec& shape) {
   shape.in_place = true;
   table.required("points", shape.points, List<Vector>{{"m"}, 3, most_polygon_points});
+  for (std::size_t i = 0; i < shape.points.size(); ++i)
+    if (shape.points[i].cwiseAbs().maxCoeff() > largest_length)
+      table.fail("points", fmt::format("point {} is out of range; allowed: coordinates of at most {:g} m either way",
+                                       i + 1, largest_length));
   Points points;
   for (const std::size_t i : without_repeats(shape.points)) points.push_back(shape.points[i]);
   shape.points = std::move(points);
@@ -76,7 +81,13 @@ std::vector<ShapeSpec> read_file(TableReader& table, ShapeSpec shape) {
   std::string parts;
   if (table.optional("parts", parts, Text{}) && parts.empty())
     table.value("parts").reject("\"all\", \"merged\", or the name of a part or of a physical group");
-  const std::vector<Points> outlines = read_outline_file(file.path, file.unit, parts, most_polygon_points);
+  const std::vector<Points> outlines = [&] {
+    try {
+      return read_outline_file(file.path, file.unit, parts, most_polygon_points);
+    } catch (const PartsError& error) {
+      table.fail("parts", error.what());
+    }
+  }();
   shape.in_place = !table.optional("diameter", shape.diameter, Quantity{"m", positive});
   table.optional("outline", shape.kind,
                  Choice<ShapeKind>{{{"polygon", ShapeKind::polygon}, {"curve", ShapeKind::curve}}});

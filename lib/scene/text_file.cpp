@@ -44,6 +44,8 @@ std::string read_text_file(const fs::path& file, const std::string& what) {
   if (!stream.is_open() || stream.bad()) refuse("cannot be read; check its permissions");
   for (const std::string_view mark : utf16_marks)
     if (text.starts_with(mark)) refuse("is UTF-16; allowed: UTF-8, save it as that");
+  if (text.size() > 1 && (text[0] == 0) != (text[1] == 0))
+    refuse("every second byte is zero, as in UTF-16 without its mark; allowed: UTF-8, save it as that");
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }
@@ -79,22 +81,6 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     if (by_blanks) line = trimmed(line);
   }
   return fields;
-}
-
-std::vector<std::string_view> columns_of(std::string_view line) {
-  line = trimmed(line.substr(0, line.find('#')));
-  for (const char separator : {',', ';', '\t'})
-    if (line.find(separator) != std::string_view::npos) return fields_of(line, separator);
-  return fields_of(line, ' ');
-}
-
-ColumnName column_name(std::string_view field) {
-  const auto open = field.find('[');
-  const bool bracketed = open != std::string_view::npos && field.ends_with(']');
-  ColumnName column{std::string(bracketed ? trimmed(field.substr(0, open)) : field), {}};
-  for (char& c : column.name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c | 0x20) : c;
-  if (bracketed) column.unit = field.substr(open + 1, field.size() - open - 2);
-  return column;
 }
 
 bool parse_number(std::string_view text, double& number) { return parse_whole(text, number) && std::isfinite(number); }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,8 +8,8 @@
 namespace pliant {
 
 /// The text of an input file, without the byte-order mark of UTF-8 that some programs begin files with. Throws
-/// InputError when it cannot be read or is UTF-16; `what` says what the user should name there, such as "a scene file
-/// (.toml)".
+/// InputError when it cannot be read or is UTF-16, be it without its mark; `what` says what the user should name there,
+/// such as "a scene file (.toml)".
 std::string read_text_file(const std::filesystem::path& file, const std::string& what);
 
 /// The lines of an input file one after another, and errors that name the present one.
@@ -36,17 +35,6 @@ class LineReader {
 /// The parts of a line between separators; an empty field counts, but none is behind a separator at the end.
 /// Blanks around fields are left out; where blanks are the separator, any number of them is one.
 std::vector<std::string_view> fields_of(std::string_view line, char separator);
-
-/// The parts of a line of a text table: between commas, semicolons or tabs, whichever it has, or else between blanks;
-/// "#" begins a comment.
-std::vector<std::string_view> columns_of(std::string_view line);
-
-/// What a column is called by the first line of a text table: "x [mm]" is x in "mm".
-struct ColumnName {
-  std::string name;                 ///< lower case
-  std::optional<std::string> unit;  ///< as it stands between the brackets; nullopt: there are none
-};
-ColumnName column_name(std::string_view field);
 
 std::string_view trimmed(std::string_view text);
 

@@ -22,6 +22,21 @@ TEST(OutlineFile, ColumnsInAllForms) {
   expect_square(read(".csv", "X [cm]\tY [cm]\n0\t0\n+2\t0\n2e0\t2\n0\t2\n"), 1e-2);
 }
 
+// EXACT: names and unit in a comment before the first point; other comments mean nothing.
+TEST(OutlineFile, ACommentBeforeTheNumbersMayNameTheColumns) {
+  const std::string points = "0 0\n2 0\n2 2\n0 2\n";
+  expect_square(read(".csv", "# x [mm], y [mm]\n" + points), 1e-3);
+  expect_square(read(".csv", "# a square\n# x [mm] y [mm]\n" + points), 1e-3);
+  expect_square(read(".csv", "# x [mm], mass\n" + points), 1);
+  expect_square(read(".csv", "0 0\n# x [mm], y [mm]\n2 0\n2 2\n0 2\n"), 1);
+  expect_square(read(".csv", "x [mm] y [mm]\n" + points), 1e-3);
+  expect_refused(error_of(".csv", "# x [mm], y [cm]\n" + points), "1: the columns have different units", "one unit");
+  expect_refused(error_of(".csv", "x_mm,y_mm\n" + points), "1: found \"x_mm,y_mm\"", "write \"x [mm]\"");
+  expect_refused(error_of(".csv", "0;0\n0,5;0\n"), "2: found \"0,5;0\"", "decimal comma");
+  expect_refused(error_of(".csv", "0,0\n1e200,0\n1e200,1e200\n"), "2: the point (1e+200, 0) is out of range",
+                 "at most 1e+12 m");
+}
+
 // EXACT: a byte-order mark before a point, a header or a section; the last point off the first by rounding.
 TEST(OutlineFile, MarksAndClosingPointsAreReadPast) {
   const std::string mark = "\xEF\xBB\xBF";

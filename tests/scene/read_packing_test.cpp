@@ -31,6 +31,49 @@ const std::string lattice = "kind = \"hexagonal\", columns = 10, rows = 4, pitch
 
 // EXACT throughout.
 
+TEST(ReadPacking, ShapesOutOfRangeAndPartsThatAMeshLacks) {
+  const auto message_of = [](const std::string& shape) {
+    try {
+      changed({{disc, shape}});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const std::string far = message_of("kind = \"polygon\"\npoints = [[0, 0], [1e200, 0], [1e200, 1e200]]");
+  EXPECT_NE(far.find("'points' in [shapes.disc]: point 2 is out of range; allowed: coordinates of at most 1e+12 m"),
+            std::string::npos)
+      << far;
+  const std::filesystem::path mesh = std::filesystem::path(::testing::TempDir()) / "read_packing_parts.msh";
+  std::ofstream(mesh) << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 7 \"left\"\n$EndPhysicalNames\n"
+                         "$Nodes\n3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n$EndNodes\n"
+                         "$Elements\n1\n1 2 2 7 1 1 2 3\n$EndElements\n";
+  const std::string lacks = message_of("kind = \"file\"\nfile = \"" + mesh.string() + "\"\nparts = \"lft\"");
+  EXPECT_NE(lacks.find(".toml:"), std::string::npos) << lacks;
+  EXPECT_NE(lacks.find("'parts' in [shapes.disc]: " + mesh.string() + ": no part \"lft\""), std::string::npos) << lacks;
+}
+
+TEST(ReadPacking, AFilesDoubtfulAnglesAndPlacesTooFarOff) {
+  const auto with_file = [](const std::string& rows) {
+    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "read_packing_far.csv";
+    std::ofstream(file) << rows;
+    return changed(
+        {{lattice, "kind = \"file\", file = \"" + file.string() + "\""}, {"angle = \"random\"\nseed", "seed"}});
+  };
+  const std::vector<std::string> warnings = with_file("x [um],y [um],angle\n1,1,0\n3,3,30\n").warnings;
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_NE(warnings[0].find("read_packing_far.csv:3: column angle: found 30"), std::string::npos) << warnings[0];
+  EXPECT_NO_THROW(with_file("x,y\n1e-6,900\n"));
+  try {
+    with_file("x,y\n1e-6,1e-6\n1e-6,-1100\n");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("read_packing_far.csv:3: the grain, 1e-06 m wide, lies 1.1e+03 m"), std::string::npos)
+        << message;
+  }
+}
+
 TEST(ReadPacking, VariantsAreShapesOfTheirOwn) {
   const Scene scene = changed({{disc, pebble + "\nvariants = 3"}});
   ASSERT_EQ(scene.shapes.size(), 4U);
