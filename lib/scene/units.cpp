@@ -37,8 +37,10 @@ ut_system* unit_system() {
   return system;
 }
 
-/// UDUNITS-2 tolerates a stray ")", ignores what follows it, and takes "2 1000 kg" for a unit of 1000 kg.
+/// UDUNITS-2 tolerates a stray ")", ignores what follows it, and takes "2 1000 kg" for a unit of 1000 kg. Of numbers
+/// only the one of "1/s" may begin a unit.
 bool well_formed(std::string_view unit) {
+  if (unit.starts_with("1/")) unit.remove_prefix(2);
   if (!unit.empty() && std::string_view("0123456789.+-").find(unit.front()) != std::string_view::npos) return false;
   if (unit.find('@') != std::string_view::npos) return false;
   int depth = 0;

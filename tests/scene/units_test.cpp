@@ -34,6 +34,9 @@ TEST(Units, ConvertToSi) {
   near("2 s-1", "rad/s", 2);
   near("0.5", "rad", 0.5);
   near("5 Hz", "1/s", 5);
+  near("20 1/s", "s-1", 20);
+  near("3 1/ms", "1/s", 3000);
+  near("2 1/(GPa)", "Pa-1", 2e-9);
   near("5 ns", "s", 5e-9);
   near("0.1 GPa/m", "Pa/m", 1e8);
   near("1 MPa/um", "Pa/m", 1e12);
@@ -66,6 +69,8 @@ TEST(Units, RejectWhatTheyCannotMean) {
   rejects("30 %", "rad", "wrong unit");
   rejects("1 sr", "rad", "wrong unit");
   rejects("1 rad2/s", "rad/s", "wrong unit");
+  rejects("2 1/1000 s", "s", "unknown unit");
+  rejects("2 1/s", "s", "wrong unit");
   rejects("10 Hz", "rad/s", "turns or radians");
   rejects("10 kilohertz", "rad/s", "turns or radians");
   rejects("2 foo", "m", "unknown unit");
