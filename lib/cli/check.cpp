@@ -149,6 +149,8 @@ std::string describe(const ContactPair& pair, double pressure) {
   if (pair.strength > 0)
     text += fmt::format("; pull greatest at {}, none from {}", percent(pair.strength / pair.stiffness),
                         percent(pair.reach));
+  if (pair.friction > 0)
+    text += fmt::format("{} friction {:.3g}", pressure > 0 || pair.strength > 0 ? ";" : "", pair.friction);
   return text;
 }
 

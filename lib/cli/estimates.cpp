@@ -72,7 +72,8 @@ bool same(double a, double b) { return std::abs(a - b) <= 1e-3 * std::max(std::a
 
 bool alike(const ContactPair& a, const ContactPair& b) {
   const bool names = a.first == b.first && a.second == b.second;
-  return names && same(a.stiffness, b.stiffness) && same(a.spacing, b.spacing) && same(a.curvature, b.curvature);
+  return names && a.friction == b.friction && same(a.stiffness, b.stiffness) && same(a.spacing, b.spacing) &&
+         same(a.curvature, b.curvature);
 }
 
 ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
@@ -89,6 +90,10 @@ ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first,
     if constexpr (requires { l.strength; }) pair.strength = l.strength;
   };
   std::visit(find_strength, law);
+  const auto find_friction = [&](const auto& l) {
+    if constexpr (requires { l.friction; }) pair.friction = l.friction;
+  };
+  std::visit(find_friction, law);
   pair.reach = reach_of(law);
   pair.spacing = std::min(model.outlines[a.outline].spacing, model.outlines[b.outline].spacing);
   if (a.kind == BodyKind::compliant || b.kind == BodyKind::compliant) return pair;

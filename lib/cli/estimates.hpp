@@ -18,6 +18,7 @@ struct ContactPair {
   bool automatic = false;     ///< the stiffness
   double stiffness = 0;       ///< kn, Pa/m
   double shear_stiffness = 0;  ///< kt, Pa/m; 0 for frictionless contact
+  double friction = 0;         ///< coefficient; 0: none
   double strength = 0;         ///< cohesive: normal strength, Pa
   double reach = 0;            ///< m
   double spacing = 0;          ///< h of the finer outline, m

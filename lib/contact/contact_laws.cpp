@@ -84,12 +84,20 @@ void ContactLaws::add_body(const Model& model, const Body& body) {
   });
   if (party == parties_.end()) {
     const double young = body.kind == BodyKind::compliant ? model.scene.materials[body.material].young : 0;
-    party = parties_.insert(party, Party{body.kind, body.material, name, young, h, h, 0});
+    party = parties_.insert(party, Party{body.kind, body.material, name, young, h, h, 0, 0, true});
   }
+  ++party->bodies;
+  party->wall &= body.wall;
   party->least_h = std::min(party->least_h, h);
   party->largest_h = std::max(party->largest_h, h);
   party->largest_inverse_mass = std::max(party->largest_inverse_mass, inverse);
   bodies_.push_back({static_cast<int>(party - parties_.begin()), h, inverse});
+}
+
+/// A single body meets at most its image or itself.
+bool ContactLaws::meets_itself(const Scene& scene, const Party& party) const {
+  if (party.bodies > 1) return true;
+  return !party.wall && (scene.period || (scene.contact.self_contact && party.kind == BodyKind::compliant));
 }
 
 void ContactLaws::find_rules(const Scene& scene) {
@@ -102,7 +110,7 @@ void ContactLaws::find_rules(const Scene& scene) {
     for (const Party& b : parties_) {
       const ContactParty first = describe(a), second = describe(b);
       const RuleMatch match = match_rule(scene, first, second);
-      const bool never_meets = &a == &b && first.wall;
+      const bool never_meets = &a == &b && !meets_itself(scene, a);
       if (!match.rule && !never_meets)
         throw InputError(
             fmt::format("{}: no [[contacts]] rule between materials '{}' and '{}'; add one, or one between \"all\"",
@@ -115,10 +123,8 @@ void ContactLaws::find_rules(const Scene& scene) {
 /// `softer`: the compliant one of two, if any.
 void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const {
   if (softer.kind == BodyKind::rigid || rule.restitution.value_or(1) == 1) return;
-  throw InputError(
-      fmt::format("{}: {}: restitution = {} is of pairs of rigid bodies, and bodies of '{}' are compliant: they lose "
-                  "by the viscosity of their material; give rigid pairs a rule of their own",
-                  file_, pair_text(rule), *rule.restitution, scene.materials[softer.material].name));
+  throw InputError(fmt::format("{}: {}: {}", file_, pair_text(rule),
+                               refusal_of_restitution(scene, rule, scene.materials[softer.material].name)));
 }
 
 /// Lengths, and stiffness with its inverse, grow with the finer of the two spacings.

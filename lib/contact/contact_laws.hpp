@@ -46,6 +46,8 @@ class ContactLaws {
     double young;               ///< Pa; 0: rigid
     double least_h, largest_h;  ///< outline spacings, m
     double largest_inverse_mass;
+    int bodies;
+    bool wall;  ///< all of them are walls
   };
   /// What a law depends on besides the rule.
   struct Side {
@@ -55,6 +57,7 @@ class ContactLaws {
 
   void add_body(const Model& model, const Body& body);
   void find_rules(const Scene& scene);
+  bool meets_itself(const Scene& scene, const Party& party) const;
   void check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const;
   void look_at_extremes();
   void find_eras(const Model& model);

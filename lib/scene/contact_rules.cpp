@@ -1,5 +1,7 @@
 #include "scene/contact_rules.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -33,6 +35,41 @@ std::vector<ContactParty> contact_parties(const Scene& scene) {
     for (const MixEntry& entry : grains.mix) parties.insert(contact_party(scene, entry.material, grains.name, false));
   for (const Wall& wall : scene.walls) parties.insert(contact_party(scene, wall.material, wall.name, true));
   return {parties.begin(), parties.end()};
+}
+
+bool meets_itself(const Scene& scene, const ContactParty& party) {
+  std::int64_t bodies = 0;
+  bool may_return = false;  // to its own image or folds, as walls do not
+  for (const Grains& grains : scene.grains)
+    for (const MixEntry& entry : grains.mix) {
+      if (contact_party(scene, entry.material, grains.name, false) != party) continue;
+      bodies += grains.packing.grain_count();
+      may_return |= scene.period || (scene.contact.self_contact && entry.body == BodyKind::compliant);
+    }
+  for (const Wall& wall : scene.walls) bodies += contact_party(scene, wall.material, wall.name, true) == party;
+  return bodies != 1 || may_return;
+}
+
+std::string refusal_of_restitution(const Scene& scene, const ContactRule& rule, const std::string& material) {
+  std::set<std::string> soft, rigid;  // materials of bodies
+  for (const Wall& wall : scene.walls) rigid.insert(wall.material);
+  for (const Grains& grains : scene.grains)
+    for (const MixEntry& entry : grains.mix) (entry.body == BodyKind::compliant ? soft : rigid).insert(entry.material);
+  const auto own = std::ranges::find_if(rigid, [&](const std::string& name) { return !soft.contains(name); });
+  std::string instead = "take 'restitution' out of this rule";
+  if (own != rigid.end())
+    instead += fmt::format(
+        "; pairs of rigid bodies may have it in a rule of their own, such as between = "
+        "[\"{0}\", \"{0}\"]",
+        *own);
+  else if (!rigid.empty())
+    instead +=
+        "; pairs of rigid bodies, whose material is compliant elsewhere, may have it in a rule between names of "
+        "grains and walls";
+  return fmt::format(
+      "restitution = {} is of pairs of rigid bodies, and bodies of '{}' are compliant: they lose by the "
+      "viscosity of their material; {}",
+      *rule.restitution, material, instead);
 }
 
 RuleMatch match_rule(const Scene& scene, const ContactParty& a, const ContactParty& b) {

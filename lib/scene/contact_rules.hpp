@@ -22,6 +22,13 @@ ContactParty contact_party(const Scene& scene, const std::string& material, cons
 /// All parties of the scene, sorted, each once.
 std::vector<ContactParty> contact_parties(const Scene& scene);
 
+/// Whether two bodies of the party may touch, or one its own image or itself: not where it is a single wall, nor a
+/// single body of a scene without a period and self-contact.
+bool meets_itself(const Scene& scene, const ContactParty& party);
+
+/// Why a rule with restitution does not serve a compliant body of that material, and what to write instead.
+std::string refusal_of_restitution(const Scene& scene, const ContactRule& rule, const std::string& material);
+
 /// The rule of a pair. A side of a rule that names grains or a wall counts 2, a material 1, "all" 0: the largest sum
 /// wins.
 struct RuleMatch {

@@ -37,14 +37,30 @@ const ContactRule& require_rule(const TableReader& root, const Scene& scene, con
   return *match.rule;
 }
 
+bool has_compliant(const Scene& scene, const ContactParty& party) {
+  for (const Grains& grains : scene.grains)
+    for (const MixEntry& entry : grains.mix)
+      if (entry.body == BodyKind::compliant && contact_party(scene, entry.material, grains.name, false) == party)
+        return true;
+  return false;
+}
+
+void check_restitution(const Scene& scene, const TableReader& table, const ContactRule& rule, const ContactParty& a,
+                       const ContactParty& b) {
+  if (rule.restitution.value_or(1) == 1) return;
+  for (const ContactParty* party : {&a, &b})
+    if (has_compliant(scene, *party)) table.fail("restitution", refusal_of_restitution(scene, rule, party->material));
+}
+
 /// The automatic stiffness follows from the compliant bodies of the scene.
 void check_pair(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
                 const ContactParty& a, const ContactParty& b) {
   const ContactRule& rule = require_rule(root, scene, tables, a, b);
+  const TableReader& table = tables[static_cast<std::size_t>(&rule - scene.contacts.data())];
+  check_restitution(scene, table, rule, a, b);
   const bool compliant = std::any_of(scene.grains.begin(), scene.grains.end(),
                                      [](const Grains& grains) { return has_body(grains, BodyKind::compliant); });
   if (compliant || rule.stiffness) return;
-  const TableReader& table = tables[static_cast<std::size_t>(&rule - scene.contacts.data())];
   table.fail(
       fmt::format("the stiffness between '{}' and '{}' cannot be automatic in a scene without compliant "
                   "bodies; add stiffness in {} (Pa/m)",
@@ -55,7 +71,7 @@ void check_rules(const TableReader& root, const Scene& scene, const std::vector<
   const std::vector<ContactParty> parties = contact_parties(scene);
   for (auto a = parties.begin(); a != parties.end(); ++a)
     for (auto b = a; b != parties.end(); ++b)
-      if (a != b || !a->wall) check_pair(root, scene, tables, *a, *b);
+      if (a != b || meets_itself(scene, *a)) check_pair(root, scene, tables, *a, *b);
 }
 
 /// "safe", a whole number of steps, or a time.

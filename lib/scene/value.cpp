@@ -120,6 +120,10 @@ double Friction::operator()(const Value& value) const {
   const double number = read_number(value, angle ? "rad" : "1", allowed());
   const Range steep{.low = 0, .high = std::numbers::pi / 2, .high_open = true};
   if (!(angle ? steep : non_negative).contains(number)) value.reject(allowed());
+  constexpr double steepest = 2;  // 63 deg: beyond, a number that may be an angle is likelier one
+  if (!angle && number > steepest && number < 90)
+    value.warn(fmt::format("which is a coefficient, of {:.3g} deg; did you mean \"{:g} deg\"?",
+                           std::atan(number) * 180 / std::numbers::pi, number));
   return angle ? std::tan(number) : number;
 }
 

@@ -67,7 +67,8 @@ struct Quantity {
   double operator()(const Value& value) const;
 };
 
-/// A coefficient of friction, or an angle whose tangent it is ("30 deg").
+/// A coefficient of friction, or an angle whose tangent it is ("30 deg"). A number without a unit from 2 to 90 is
+/// warned of.
 struct Friction {
   std::string allowed() const { return "a number, >= 0, or an angle from 0 to below 90 deg whose tangent it is"; }
   double operator()(const Value& value) const;

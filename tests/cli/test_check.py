@@ -79,6 +79,9 @@ def test_contact_and_its_cost(desk) -> None:
     rows = checked(desk, BLOCK)
     assert "stone - wall of stone" in rows["contact"] and "mohr-coulomb" in rows["contact"]
     assert "1e+08 Pa/m given" in rows["contact"]
+    friction = re.search(r"^friction = .*$", BLOCK, re.MULTILINE)[0]
+    assert f"; friction {friction.split()[-1]}" in rows["contact"]
+    assert "friction 0.577" in checked(desk, BLOCK.replace(friction, 'friction = "30 deg"'))["contact"]  # its tangent
     assert "0.1 % of h deep at 1 kPa" in rows["contact"]  # 1000 Pa / 1e8 Pa/m = 10 um of 10 mm
     assert "10 times as stiff: 3.2 times as many steps" in rows["time step"]  # sqrt(10): nothing but contact is stiff
 

@@ -1,6 +1,10 @@
 // Which rule a pair of bodies gets, and which rules are refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "bodies/model.hpp"
+#include "contact/contact_laws.hpp"
 #include "core/errors.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene_files.hpp"
@@ -91,6 +95,70 @@ TEST(ContactRules, EveryPairNeedsOne) {
   const std::string complete = floor_only + rule("[\"lid\", \"soft\"]", 1) + rule("[\"lid\", \"hard\"]", 1);
   EXPECT_EQ(error_of(with_rules(complete)), "no error");
   EXPECT_NE(error_of(with_rules(rule("[\"soft\", \"all\"]", 1))).find("'hard' and 'hard'"), std::string::npos);
+}
+
+/// Compliant and rigid discs apart from each other, and walls, which need a period.
+std::string few_bodies(const std::string& top, int soft, int hard, int walls, const std::string& contacts) {
+  std::string text = top + "[time]\nend = 1\n" + R"([materials.soft]
+law = "neo-hookean"
+density = 1
+young = 1
+poisson = 0.3
+[materials.hard]
+law = "rigid"
+density = 1
+[shapes.disc]
+kind = "disc"
+diameter = 1
+nodes = 60
+)";
+  const auto add_disc = [&](const std::string& kind, double x, int row) {
+    text += "[[grains]]\nshape = \"disc\"\n" + kind + "packing = { kind = \"positions\", positions = [[" +
+            std::to_string(x) + ", " + std::to_string(2 * row + 2) + "]] }\n";
+  };
+  for (int i = 0; i < soft; ++i) add_disc("body = \"compliant\"\nmaterial = \"soft\"\n", 1, i);
+  for (int i = 0; i < hard; ++i) add_disc("body = \"rigid\"\nmaterial = \"hard\"\n", 4, i);
+  for (int i = 0; i < walls; ++i)
+    text += "[[walls]]\nname = \"wall" + std::to_string(i) + "\"\nmaterial = \"hard\"\n" +
+            (i == 0 ? "solid = \"below\"\nlevel = 0\n" : "solid = \"above\"\nlevel = 9\n");
+  return text + contacts;
+}
+
+// EXACT: a lone body meets itself only by its image or its folds; the scene and the engine agree on it.
+TEST(ContactRules, ALoneBodyNeedsNoneWithItself) {
+  const std::string between = rule("[\"soft\", \"hard\"]", 1), period = "[domain]\nperiod = 8\n";
+  const auto refused = [](const std::string& text) {
+    try {
+      const ContactLaws laws(build_model(read_scene(SceneFile(text).path())));
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  const std::string soft = "no contact rule for the materials 'soft' and 'soft'", own = rule("[\"soft\", \"soft\"]", 1);
+  EXPECT_EQ(refused(few_bodies("", 1, 1, 0, between)), "no error");
+  EXPECT_NE(refused(few_bodies(period, 1, 1, 0, between + rule("[\"hard\", \"hard\"]", 1))).find(soft),
+            std::string::npos);
+  EXPECT_NE(refused(few_bodies("[contact]\nself_contact = true\n", 1, 1, 0, between)).find(soft), std::string::npos);
+  EXPECT_NE(refused(few_bodies("", 2, 1, 0, between)).find(soft), std::string::npos);
+  EXPECT_EQ(refused(few_bodies(period, 1, 0, 1, between + own)), "no error") << "one wall, period or not";
+  const std::string hard = "'hard' and 'hard'";
+  EXPECT_NE(refused(few_bodies(period, 1, 0, 2, between + own)).find(hard), std::string::npos);
+  EXPECT_NE(refused(few_bodies(period, 1, 1, 1, between + own)).find(hard), std::string::npos);
+}
+
+// EXACT: restitution of compliant bodies, at its key and with what to write; a pair that never meets has any.
+TEST(ContactRules, RestitutionIsOfRigidPairs) {
+  const std::string between = rule("[\"soft\", \"hard\"]", 1), own = rule("[\"soft\", \"soft\"]", 1);
+  const std::string bounces = "restitution = 0.5\n";
+  EXPECT_EQ(error_of(few_bodies("", 1, 1, 0, between + own + bounces)), "no error");
+  const std::string text = few_bodies("", 2, 1, 0, between + own + bounces), message = error_of(text);
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(bounces)), '\n');
+  EXPECT_NE(message.find(".toml:" + std::to_string(line) + ":15: 'restitution' in [[contacts]] 2"), std::string::npos)
+      << message;
+  EXPECT_NE(message.find("take 'restitution' out of this rule"), std::string::npos) << message;
+  EXPECT_NE(message.find("between = [\"hard\", \"hard\"]"), std::string::npos) << message;
+  EXPECT_EQ(error_of(few_bodies("", 2, 1, 0, between + own + "restitution = 1\n")), "no error");
 }
 
 }  // namespace

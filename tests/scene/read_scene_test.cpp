@@ -125,7 +125,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 TEST(ReadScene, ContactSettingsAndLaws) {
   std::string text =
       replaced(good_scene, "skin = 0.4", "skin = 0.4\nlength = \"current\"\nself_contact = true\nrefresh = \"2 ns\"");
+  text = replaced(text, "between = \"all\"", "between = [\"hard\", \"hard\"]");
   text = replaced(text, "friction = 0.3", "friction = 0.3\nrestitution = 0.5\npull = true");
+  text = replaced(text, "[contact]\n",
+                  "[[contacts]]\nbetween = [\"soft\", \"soft\"]\nlaw = \"frictionless\"\n[contact]\n");
   text = replaced(
       text, "law = \"cohesive\"",
       "law = \"cohesive-fatigue\"\nbond_gap = \"1 nm\"\nshear_ratio = 2\nresidual_strength = 1\nfriction = 0.2\n"
@@ -185,6 +188,19 @@ TEST(ReadScene, WarnsOfAnglesThatMayBeDegrees) {
     EXPECT_NE(all[0].find("read as radians; did you mean \""), std::string::npos) << all[0];
     EXPECT_NE(all[0].find("45 deg\"?"), std::string::npos) << all[0];
   }
+}
+
+// EXACT: a coefficient that is likelier an angle is warned of, no other.
+TEST(ReadScene, WarnsOfFrictionThatSeemsToBeInDegrees) {
+  const auto warnings = [](const std::string& friction) {
+    const SceneFile file(replaced(good_scene, "friction = 0.3", "friction = " + friction));
+    return read_scene(file.path()).warnings;
+  };
+  for (const char* meant : {"2", "0", "90", "1e6", "\"89 deg\""}) EXPECT_TRUE(warnings(meant).empty()) << meant;
+  const std::vector<std::string> all = warnings("30");
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_NE(all[0].find("which is a coefficient, of 88.1 deg; did you mean \"30 deg\"?"), std::string::npos) << all[0];
+  EXPECT_NE(all[0].find(".toml:"), std::string::npos) << all[0];
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
