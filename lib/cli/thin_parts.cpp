@@ -145,12 +145,24 @@ std::string describe_bending(const Model& model) {
     worst = limb, error = found, shape = model.scene.shapes[body.shape].name;
   }
   if (!worst) return {};
+  const std::string across = fmt::format("{:.2g}", worst->segments_across);
+  const int enough = enough_across(recipe);
+  // Rounded down to two digits, so that it suffices.
+  double spacing = worst->thickness / enough;
+  const double digit = std::pow(10, std::floor(std::log10(spacing)) - 1);
+  spacing = std::floor(spacing / digit * (1 + 1e-9)) * digit;
+  const double scale = spacing >= 0.1 ? 1 : spacing >= 1e-4 ? 1e-3 : 1e-6;
   return fmt::format(
-      "'{}' is {:.2g} segments across, {:.3g} m, about ({:.3g}, {:.3g}) m from its centre: strips of as many bent "
+      "'{}' is {} across, {:.3g} m, about ({:.3g}, {:.3g}) m from its centre: strips of as many bent "
       "{:.0f} "
-      "% too {}; from {} across on by less than {:.0f} % (docs/defaults.md, \"Thin shapes\")",
-      shape, worst->segments_across, worst->thickness, worst->position.x(), worst->position.y(), 100 * std::abs(error),
-      error > 0 ? "far" : "little", enough_across(recipe), 100 * worth_a_warning);
+      "% too {}; from {} across on, as with spacing = \"{:.2g} {}\", by less than {:.0f} % (docs/defaults.md, "
+      "\"Thin shapes\")",
+      shape, across == "1" ? "1 segment" : across + " segments", worst->thickness, worst->position.x(),
+      worst->position.y(), 100 * std::abs(error), error > 0 ? "far" : "little", enough, spacing / scale,
+      scale == 1      ? "m"
+      : scale == 1e-3 ? "mm"
+                      : "um",
+      100 * worth_a_warning);
 }
 
 }  // namespace pliant

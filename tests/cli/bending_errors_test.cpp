@@ -133,7 +133,10 @@ std::string bending_of(double length, int segments_across, Recipe recipe = Recip
 TEST(ThinParts, of_a_scene_are_told) {
   const std::string text = bending_of(6, 2);
   EXPECT_NE(text.find("'strip' is 2 segments across, 1 m"), std::string::npos) << text;
-  EXPECT_NE(text.find("bent 20 % too far; from 4 across on by less than 5 %"), std::string::npos) << text;
+  EXPECT_NE(text.find("bent 20 % too far; from 4 across on, as with spacing = \"0.25 m\", by less than 5 %"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(bending_of(6, 1).find("'strip' is 1 segment across"), std::string::npos);
   EXPECT_NE(bending_of(6, 2, Recipe::t3).find("too little"), std::string::npos);
   EXPECT_EQ(bending_of(6, 4), "");
   EXPECT_EQ(bending_of(1.5, 2), "") << "no limb";
