@@ -246,8 +246,10 @@ std::string TimeStepBound::governing() const {
   const double w2 = total(b, 1), c = damping(b);
   std::string text =
       fmt::format("{} (contact {:.0f} % of w^2", model_.bodies[b].name, w2 > 0 ? 100 * contact_[b] / w2 : 0.0);
-  if (b < shortened_.size() && shortened_[b] > 1)
-    text += fmt::format(", dashpots of restitution take {:.2g} times as many steps", shortened_[b]);
+  if (b < shortened_.size() && shortened_[b] > 1) {
+    const double without = w2 - contact_[b] * (1 - 1 / (shortened_[b] * shortened_[b]));
+    text += fmt::format(", dashpots of restitution take {:.2g} times as many steps", std::sqrt(w2 / without));
+  }
   if (c > 0) {
     const double undamped = std::sqrt(limit_square_[b] * w2);
     text += fmt::format(", damping {:.3g} /s", c);
