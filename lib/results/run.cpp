@@ -12,8 +12,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "bodies/short_edges.hpp"
 #include "core/errors.hpp"
