@@ -24,8 +24,8 @@ std::optional<std::string> of_short_edges(const Model& model) {
   }
   if (!of) return {};
   return fmt::format(
-      "shape '{}' has an edge of {:.2g} m, {:.2g} of its spacing: its two nodes share what one should carry, so that "
-      "steps get shorter, triangles flat, and slow modes appear that are none; leave one of its ends out",
+      "shape '{}' has an edge of {:.2g} m, {:.2g} of its spacing: its two nodes share the mass of one: steps get "
+      "shorter, triangles flat, and spurious slow modes appear; leave one of its ends out",
       model.scene.shapes[of->shape].name, least * model.outlines[of->outline].spacing, least);
 }
 

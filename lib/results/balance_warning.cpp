@@ -84,14 +84,12 @@ std::string against_jumps(const Simulation& simulation) {
       time.safety > calm_safety ? calm_safety : time.safety / 2, time.safety);
 }
 
-/// Where a law with a reach meets corners, nodes change what they face, and with it the energy, at any step. What a
-/// corner holds goes as the square of the spacing, what comes in as the spacing.
+/// Where a law with a reach meets corners, nodes change what they face, and with it the energy, at any step.
 std::string against_corners(const StepStatistics& seen) {
   return fmt::format(
-      "cohesive contacts at corners made {:.2g} J/m, up to {:.2g} J/m in one step (t = {:.4g} s): their energy jumps "
-      "where nodes pass corners (docs/limits.md). A smaller [time] safety mends what is of the steps; the jumps are "
-      "less "
-      "with a smaller spacing of the outlines alone",
+      "cohesive contacts at corners made {:.2g} J/m, up to {:.2g} J/m in one step (t = {:.4g} s): a smaller [time] "
+      "safety lessens the error of the steps, but energy jumps where nodes pass corners, whatever the step; no setting "
+      "mends that (docs/limits.md)",
       seen.at_corners, seen.jump, seen.jump_time);
 }
 
