@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "bodies/medial_neighbours.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {
@@ -38,7 +39,9 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift) {
     shape.tributary_length.push_back(0.5 * (length[(i + n - 1) % n] + length[i % n]));
   shape.spacing = std::accumulate(length.begin(), length.end(), 0.0) / n;
   shape.longest = *std::max_element(length.begin(), length.end());
+  for (int i = 0; i < lane_count; ++i) length.push_back(length[i]);
   shape.corner = find_corners(shape);
+  find_medial_neighbours(shape, 1.5 * shape.longest);  // contact sees a segment and a skin
   return shape;
 }
 

@@ -1,11 +1,21 @@
 #pragma once
 
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "core/vec2.hpp"
 
 namespace pliant {
+
+/// Of each segment or node segments of the outline, as offsets of their numbers from its own: see
+/// medial_neighbours.hpp.
+struct MedialNeighbours {
+  std::vector<int> start, offset;  ///< [count + 1], in `offset`
+  std::span<const int> of(int number) const {
+    return {offset.data() + start[number], offset.data() + start[number + 1]};
+  }
+};
 
 /// Reference outline of a shape: what contact needs and never changes. Node arrays are extended cyclically by
 /// lane_count entries, so that eight consecutive nodes can be loaded from any start.
@@ -15,8 +25,10 @@ struct OutlineShape {
   double spacing = 0;     ///< mean segment length, m
   Points points;          ///< [count], reference coordinates about the centroid (walls: about the line's start)
   std::vector<double> tributary_length;  ///< [count + lane_count], half of the two adjacent segments, m
-  std::vector<double> segment_length;    ///< [count], from each node to the next, m
+  std::vector<double> segment_length;    ///< [count + lane_count], from each node to the next, m
   double longest = 0;                    ///< of them, m
+
+  MedialNeighbours medial, node_medial;  ///< of segments and of nodes, as deep as contact sees
 
   /// Nodes at which the outline turns to the left by more than `corner_turn`: where two faces meet.
   std::vector<bool> corner;  ///< [count]; empty: there is none

@@ -195,6 +195,50 @@ Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
   return side.shape->turn_shift == 0 && all.count > side.shape->count ? Arc{nodes.begin, side.shape->count} : all;
 }
 
+/// With the medial neighbours of all.
+Arc with_medial_neighbours(const OutlineShape& shape, const Arc& segments) {
+  const int n = shape.count;
+  if (segments.count == 0 || (shape.turn_shift == 0 && segments.count >= n)) return segments;
+  Arc result = segments;
+  thread_local std::vector<char> flags;  // so that its memory is found once
+  if (shape.turn_shift == 0) flags.assign(static_cast<std::size_t>(n), 0);
+  const auto within = [&](int i) { return i - turn_of(i, n) * n; };
+  const auto add = [&](int i) {
+    if (shape.turn_shift == 0)
+      flags[within(i)] = 1;
+    else
+      result = hull(result, {i, 1});
+  };
+  for (int i = segments.begin; i <= segments.end(); ++i) {
+    if (i < segments.end()) {
+      add(i);
+      for (const int offset : shape.medial.of(within(i))) add(i + offset);
+    }
+    for (const int offset : shape.node_medial.of(within(i))) add(i + offset);
+  }
+  if (shape.turn_shift != 0) return result;
+  result = covering_arc(flags);
+  if (result.count == n) return {segments.begin, n};
+  while (result.begin > segments.begin) result.begin -= n;
+  while (result.end() < segments.end()) result.begin += n;
+  return result;
+}
+
+/// Segments of a side that can touch: with a node near the other outline, or near a node of that. Slaves count once.
+void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patch& patch) {
+  Arc &nodes = patch.nodes[side], &segments = patch.segments[side];
+  if (nodes.count > 0) {
+    const Arc beside{nodes.begin - 1, nodes.count + 1};
+    segments = segments.count == 0 ? beside : hull(beside, segments);
+  }
+  if (shape.turn_shift == 0 && segments.count > shape.count) segments.count = shape.count;
+  const int slaves = two_walls ? std::min(segments.count, shape.count) : segments.count;
+  const bool whole = slaves == shape.count && (two_walls || shape.turn_shift == 0);
+  nodes = {segments.begin, slaves == 0 ? 0 : whole ? slaves : slaves + 1};
+  patch.slave_segments[side] = slaves;
+  patch.window[side] = with_medial_neighbours(shape, segments);
+}
+
 }  // namespace
 
 void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
@@ -220,6 +264,9 @@ void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, d
     // two.
     if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
   }
+  for (int side = 0; side < 2; ++side) patch.window[side] = patch.segments[side];
+  if (model.scene.contact.quadrature == ContactQuadrature::segments)
+    for (int side = 0; side < 2; ++side) widen_to_segments(*sides[side].shape, two_walls, side, patch);
 }
 
 void find_self_patches(const Model& model, const OutlineField& outlines, int body, const ContactLaw& law, double margin,
@@ -227,19 +274,26 @@ void find_self_patches(const Model& model, const OutlineField& outlines, int bod
   const Side side = make_side(model, outlines, body, 0);
   const int n = side.shape->count;
   constexpr int together = 2, unseen = 2;
+  const bool integrates = model.scene.contact.quadrature == ContactQuadrature::segments;
   for (int begin = 0; begin < n; begin += together) {
-    const Arc nodes{begin, std::min(together, n - begin)};
+    const Arc nodes{begin, std::min(together, n - begin) + integrates};
     const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
     if (segments.count <= 0) continue;
     scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
     Patch patch;
     patch.first = patch.second = body;
     patch.part = begin;
-    patch.corners = side.shape->has_corners();
+    patch.corners = !integrates && side.shape->has_corners();
     patch.law = law;
     const Margins margins(margin, skin, patch.corners, side.longest_segment);
     narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
-    if (patch.nodes[0].count > 0) patches.push_back(patch);
+    patch.window[1] = patch.segments[1];
+    if (patch.nodes[0].count == 0) continue;
+    if (integrates) {
+      patch.nodes[0] = nodes, patch.slave_segments[0] = nodes.count - 1;
+      patch.window[1] = with_medial_neighbours(*side.shape, patch.segments[1]);
+    }
+    patches.push_back(patch);
   }
 }
 

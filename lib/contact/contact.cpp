@@ -134,7 +134,7 @@ std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
     Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
-    patch.corners = has_corners(pair.first) || has_corners(pair.second);
+    patch.corners = !integrates() && (has_corners(pair.first) || has_corners(pair.second));
     patch.found = refreshes_;
     find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
     watch_.searched(pairs[i], found_at_.position);
@@ -203,27 +203,14 @@ void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, c
   }
 }
 
-/// Forces of a patch after a step in which it repays some of what it owes, and what it owes then.
-PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
-                                  ContactHistory& to, PatchForces& forces) {
-  to.owed[patch] = from.owed[patch];
-  // What a dashpot takes depends on the step: what it seems to owe, it does not.
-  if (is_damped(view.patch.law)) return compute_patch(view, nullptr, from, to, forces);
-  const PatchTotals& before = last_.totals[patch];
-  // Parts of a body that touches itself are others after a search.
-  const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
-                     (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
-  const PatchStep way{known ? &step->position : nullptr, &last_.forces, from.owed[patch] - before.pending,
-                      known ? before.recent_ways : 0,    most_repaid_,  step != nullptr};
-  PatchTotals now = compute_patch(view, &way, from, to, forces);
-  now.recent_ways = now.ways;
-  if (!known) return now;
-  now.recent_ways = std::max(now.ways, before.ways);
-  const double lost =
-      before.stored - now.stored - now.dissipated - 0.5 * step->elapsed * (before.damping_power + now.damping_power);
-  to.owed[patch] += now.work - lost;
-  if (view.patch.corners && reach_of(view.patch.law) > 0) now.at_corners = now.jump = now.work - lost;
-  return now;
+/// Of all outline nodes.
+const OutlineField* ContactSystem::find_ways(const OutlineField& now, const OutlineField& before) {
+  moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
+  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+    for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
+      moved_.x[i] = now.x[i] - before.x[i], moved_.y[i] = now.y[i] - before.y[i];
+  });
+  return &moved_;
 }
 
 PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
@@ -236,11 +223,12 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     trial_.refreshes = refreshes_;
   }
   Evaluated& now = keeps_debts() ? trial_ : last_;
+  const OutlineField* moved = step && integrates() ? find_ways(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from, to, now.forces);
-    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0};
+    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0, moved};
     PatchTotals& totals = now.totals[p];
     if (view.patch.is_empty())
       totals = {};

@@ -127,6 +127,8 @@ class ContactSystem {
   std::vector<Patch> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
+  bool integrates() const { return model_.scene.contact.quadrature == ContactQuadrature::segments; }
+  const OutlineField* find_ways(const OutlineField& now, const OutlineField& before);
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
   PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
                      ContactHistory& to, PatchForces& forces);
@@ -146,6 +148,7 @@ class ContactSystem {
   double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what is not accepted
   std::vector<PatchTotals> block_totals_;  ///< scratch
+  OutlineField moved_;                     ///< scratch, in a step, m
   Outlines found_at_;                      ///< of each body, where some candidates of its were found last
   std::vector<int> found_;                 ///< see found()
   bool fresh_ = false, warned_ = false;

@@ -25,6 +25,9 @@ using ContactLaw = AnyOf<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, S
 inline double reach_of(const ContactLaw& law) {
   return std::visit([](const auto& l) { return l.reach; }, law);
 }
+inline double normal_stiffness_of(const ContactLaw& law) {
+  return std::visit([](const auto& l) { return l.normal_stiffness; }, law);
+}
 inline double stiffness_of(const ContactLaw& law) {
   return std::visit(
       [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },

@@ -4,6 +4,7 @@
 
 #include "contact/encounter.hpp"
 #include "contact/facing.hpp"
+#include "contact/segment_pass.hpp"
 
 namespace pliant {
 namespace {
@@ -21,6 +22,7 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
 }
 
 std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& history) {
+  if (view.patch.is_integrated()) return inspect_integrated(view, history);
   std::vector<ContactPoint> points;
   const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;

@@ -24,4 +24,23 @@ void carry_forces(const Model& model, const Patch& old, const PatchForces& from,
   }
 }
 
+double repay(double debt, double most, double stays, const Patch& patch, const PatchTotals& totals_before,
+             PatchForces& forces, PatchTotals& totals) {
+  const double work = totals.now_work;
+  totals.ways = work * work;
+  const double most_ways = std::max(totals.ways, totals_before.ways);
+  const double limit = totals.squares > 0 ? most / totals.squares : 0,
+               factor = most_ways > 0 ? -std::clamp(debt / most_ways, -limit, limit) * work : 0;
+  for (int side = 0; side < 2; ++side)
+    for (int i = patch.entry[side]; i < patch.entry[side] + padded(patch.forces(side).count); i += lane_count)
+      for (double* force : {&forces.x[i], &forces.y[i]}) store(force, (stays + factor) * load(force));
+  return -0.5 * factor * work;
+}
+
+ContactLaw parting_law(const ContactLaw& law, double skin) {
+  const double stiffness = normal_stiffness_of(law), reach = reach_of(law) + skin;
+  constexpr double rises = 0.1;  // over this part of the reach
+  return Cohesive{stiffness, stiffness, reach, rises * reach * stiffness, 0};
+}
+
 }  // namespace pliant

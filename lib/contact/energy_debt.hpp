@@ -50,6 +50,17 @@ struct PatchStep {
 /// The forces of a patch that was searched or laid out anew go with its nodes to where they stand now.
 void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to);
 
+/// A pair whose contact is integrated repays by its own forces F: they become 1 - c W times what they were, with W
+/// their work over the way of the step, which takes c W^2, half in this step and half in the next. This is a dashpot c
+/// F F^T, and at most the share `most` of the stiffness K of its contacts if c F K^-1 F is not more, which is c times
+/// PatchTotals::squares. `stays`: 1, or 0 where these forces are there to repay alone. Returns what it takes in the
+/// step at hand, J/m.
+double repay(double debt, double most, double stays, const Patch& patch, const PatchTotals& totals_before,
+             PatchForces& forces, PatchTotals& totals);
+/// The law whose forces repay after a pair has parted, as far as a skin beyond its own law's reach. Of no account is
+/// their size.
+ContactLaw parting_law(const ContactLaw& law, double skin);
+
 /// What contacts of a patch repay, from one history into another: from their first touch on until they are even or out
 /// of sight, as the step that parts them leaves a debt as well.
 class Repayment {

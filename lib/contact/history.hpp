@@ -16,10 +16,11 @@ namespace pliant {
 /// eight nodes that a pass takes at once all numbers stand side by side.
 struct ContactHistory {
   enum Column {
-    place,   ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
-    slip,    ///< elastic tangential displacement then, m
-    gap,     ///< for energy_debt.hpp, of records that touched: then, m; else NaN
-    repaid,  ///< for the same: the pressure that repaid, Pa
+    place,           ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
+    weight = place,  ///< of a node where contact is integrated over segments, see segment_pass.hpp, m
+    slip,            ///< elastic tangential displacement then, m
+    gap,             ///< for energy_debt.hpp, of records that touched: then, m; else NaN
+    repaid,          ///< for the same: the pressure that repaid, Pa
   };
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 

@@ -24,6 +24,7 @@ struct Segments {
 
 void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, const double* outline_y,
                         const Arc& segments, double shift, double inward) {
+  shape_ = &shape;
   count_ = segments.count;
   outline_count_ = shape.count;
   const int first_turn = turn_of(segments.begin, shape.count);

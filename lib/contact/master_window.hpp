@@ -54,6 +54,17 @@ class MasterWindow {
   int number(int row) const {
     return first_number_ + row - turn_of(first_number_ + row, outline_count_) * outline_count_;
   }
+  bool has_medial_neighbours(int row) const { return !shape_->medial.of(number(row)).empty(); }
+  /// Calls visit(row) for the medial neighbours of a row's segment that are in the window.
+  template <class Visit>
+  void for_each_medial_neighbour(int row, Visit&& visit) const {
+    visit_offsets(row, shape_->medial.of(number(row)), visit);
+  }
+  /// The same of the node at its start, or at its end.
+  template <class Visit>
+  void for_each_medial_neighbour_of_node(int row, bool at_end, Visit&& visit) const {
+    visit_offsets(row + at_end, shape_->node_medial.of(number(row + at_end)), visit);
+  }
   /// The same of eight rows.
   Lanes numbers(Lanes rows) const {
     const double n = outline_count_;
@@ -62,6 +73,17 @@ class MasterWindow {
   }
 
  private:
+  template <class Visit>
+  void visit_offsets(int row, std::span<const int> offsets, Visit& visit) const {
+    for (const int offset : offsets) {
+      int other = row + offset;
+      if (shape_->turn_shift == 0 && (other < 0 || other >= count_))
+        other += other < 0 ? outline_count_ : -outline_count_;
+      if (other >= 0 && other < count_) visit(other);
+    }
+  }
+
+  const OutlineShape* shape_ = nullptr;
   int count_ = 0, outline_count_ = 0, first_number_ = 0;
   double longest_ = 0, depth_ = 0;
   double before_ = 0;           ///< length of the segment before the first

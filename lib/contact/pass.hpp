@@ -13,10 +13,12 @@ struct Pass {
   const double* slave_x;
   const double* slave_y;
   Arc nodes;
+  int segments;  ///< of the slave, from the first node on, where contact is integrated over them
   double slave_shift;
   int record;
   int slave_force;                 ///< buffer entry of the first node
   int master_force;                ///< buffer entry of the window's first row
+  Arc rows;                        ///< of the window, that can touch
   const double* tributary_length;  ///< [nodes] of the slave, m
   bool present_lengths;            ///< as the slave's outline is now
   bool corners;                    ///< of either outline
@@ -61,10 +63,12 @@ inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& ru
           &view.outlines.position.x[offset],
           &view.outlines.position.y[offset],
           patch.nodes[slave_side],
+          patch.slave_segments[slave_side],
           view.shift(slave_side),
           patch.record[slave_side],
           runs[slave_side].begin + patch.nodes[slave_side].begin - runs[slave_side].arc.begin,
-          runs[master_side].begin + patch.segments[master_side].begin - runs[master_side].arc.begin,
+          runs[master_side].begin + patch.window[master_side].begin - runs[master_side].arc.begin,
+          {patch.segments[master_side].begin - patch.window[master_side].begin, patch.segments[master_side].count},
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty(),
           patch.corners};
@@ -73,7 +77,7 @@ inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& ru
 inline void fill_window(const PatchView& view, int master_side) {
   const int master = view.body(master_side), offset = view.model.outline_offset[master];
   view.window.fill(view.model.outline_of(master), &view.outlines.position.x[offset], &view.outlines.position.y[offset],
-                   view.patch.segments[master_side], view.shift(master_side), view.skin);
+                   view.patch.window[master_side], view.shift(master_side), view.skin);
 }
 
 }  // namespace pliant

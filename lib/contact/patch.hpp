@@ -39,8 +39,11 @@ struct Patch {
   int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
   bool corners = false;       ///< of either outline: see facing.hpp
   ContactLaw law;
-  Arc nodes[2];            ///< that may touch the other body; no node twice, but images of a wall's
-  Arc segments[2];         ///< that the other's nodes may touch
+  Arc nodes[2];     ///< that may touch the other body; no node twice, but images of a wall's
+  Arc segments[2];  ///< that the other's nodes may touch
+  /// Of contact integrated over segments: how many of each side, from nodes[side].begin on; 0: nodes touch.
+  int slave_segments[2] = {0, 0};
+  Arc window[2];           ///< `segments`, and of those integrated the ones across the medial axis, which may be nearer
   int record[2] = {0, 0};  ///< first history record of each side's nodes (padded to whole lanes)
   int entry[2] = {0, 0};   ///< first entry of each side in buffers of forces; that of node forces(side).begin
   std::int64_t found = 0;  ///< at which refresh
@@ -48,6 +51,7 @@ struct Patch {
   BodyPair pair() const { return {first, second, images}; }
   /// Nothing of it can touch for now.
   bool is_empty() const { return nodes[0].count + nodes[1].count == 0; }
+  bool is_integrated() const { return slave_segments[0] + slave_segments[1] > 0; }
   /// Parts of one outline, not of two or of two images.
   bool of_itself() const { return first == second && images == 0; }
 
@@ -56,8 +60,9 @@ struct Patch {
   void visit(Visitor&& visitor) {
     visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part),
         visitor("corners", corners);
-    visitor("nodes", nodes), visitor("segments", segments), visitor("record", record), visitor("entry", entry),
-        visitor("found", found);
+    visitor("nodes", nodes), visitor("segments", segments), visitor("slave_segments", slave_segments),
+        visitor("window", window);
+    visitor("record", record), visitor("entry", entry), visitor("found", found);
   }
 
   /// Outline nodes that this patch puts forces on.
@@ -80,9 +85,10 @@ struct PatchView {
   const Model& model;
   const Outlines& outlines;  ///< in motion
   const Patch& patch;
-  double skin;           ///< m
-  MasterWindow& window;  ///< scratch: of the pass at hand
-  double elapsed = 0;    ///< in the step that led here, s; 0: not known
+  double skin;                          ///< m
+  MasterWindow& window;                 ///< scratch: of the pass at hand
+  double elapsed = 0;                   ///< in the step that led here, s; 0: not known
+  const OutlineField* moved = nullptr;  ///< ways of outline nodes in that step, m; null: none
   int body(int side) const { return side == 0 ? patch.first : patch.second; }
   /// Periods to add to x of one side's body, m.
   double shift(int side) const { return side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0); }
@@ -99,6 +105,8 @@ struct PatchTotals {
   double work = 0;         ///< of the mean of these forces and those before over the way between them, J/m
   double ways = 0;         ///< squares of the ways of gaps, times the lengths of contacts, m3
   double recent_ways = 0;  ///< the larger of these and those of the step before
+  double now_work = 0;     ///< the same of these forces alone
+  double squares = 0;      ///< of integrated contact: squares of pressures over kn, times lengths, J/m
   double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
   /// What laws with a reach made, or lost, without cause in the step beside corners, J/m: in all, and the most of one.
   double at_corners = 0, jump = 0;
@@ -116,6 +124,7 @@ struct PatchTotals {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts), visitor("work", work), visitor("ways", ways);
     visitor("recent_ways", recent_ways), visitor("pending", pending);
+    visitor("now_work", now_work), visitor("squares", squares);
     visitor("at_corners", at_corners), visitor("jump", jump);
   }
 };

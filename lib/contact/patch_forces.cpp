@@ -10,6 +10,7 @@
 #include "contact/facing.hpp"
 #include "contact/patch_queries.hpp"
 #include "contact/reactions.hpp"
+#include "contact/segment_pass.hpp"
 
 namespace pliant {
 namespace {
@@ -202,15 +203,20 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRun
   return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
 }
 
-/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. Returns the work of
-/// the mean of these forces and those before in the step, J/m; 0 where nobody asks.
-double put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
-               PatchForces& forces) {
+/// Of forces over the way of a step, J/m.
+struct StepWork {
+  double mean = 0, now = 0;  ///< of the mean of both ends', of those now
+};
+
+/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. Returns their work;
+/// 0 where nobody asks, of those now where contact is not integrated.
+StepWork put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
+                 PatchForces& forces) {
   const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
             offset = view.model.outline_offset[body];
-  const bool asks_work = step && step->before;
+  const bool asks_work = step && step->before, integrated = view.patch.is_integrated();
   int node = run.arc.begin;
-  Lanes twice{};
+  Lanes twice{}, now_work{};
   for (int i = 0; i < run.arc.count; i += lane_count, node += lane_count) {
     const Lanes x = load(&near.x[run.begin + i]), y = load(&near.y[run.begin + i]);
     store(&forces.x[entry + i], x), store(&forces.y[entry + i], y);
@@ -221,8 +227,9 @@ double put_out(const PatchView& view, const PatchStep* step, int side, const For
     const int at = offset + node;
     const Lanes way_x = load(&now.x[at]) - load(&before.x[at]), way_y = load(&now.y[at]) - load(&before.y[at]);
     twice += (x + load(&old.x[entry + i])) * way_x + (y + load(&old.y[entry + i])) * way_y;
+    if (integrated) now_work += x * way_x + y * way_y;
   }
-  return 0.5 * sum(twice);
+  return {0.5 * sum(twice), sum(now_work)};
 }
 
 }  // namespace
@@ -247,10 +254,14 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
     totals.ways = repaid.ways(), totals.pending = repaid.pending();
     return totals;
   };
-  PatchTotals totals = std::visit(passes, patch.law);
+  PatchTotals totals =
+      patch.is_integrated() ? integrate_patch(view, runs, from, to, near) : std::visit(passes, patch.law);
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
   // last.
-  for (const int side : {1, 0}) totals.work += put_out(view, step, side, runs[side], near, forces);
+  for (const int side : {1, 0}) {
+    const StepWork work = put_out(view, step, side, runs[side], near, forces);
+    totals.work += work.mean, totals.now_work += work.now;
+  }
   return totals;
 }
 

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "contact/facing.hpp"
+#include "contact/segment_pass.hpp"
+#include "contact/segment_stiffness.hpp"
 #include "contact/slip.hpp"
 
 namespace pliant {
@@ -19,7 +21,7 @@ double touching_length(const PatchView& view) {
 
 void locate_newcomers(const PatchView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.patch.law);
-  if (!shears) return;
+  if (!shears || view.patch.is_integrated()) return;
   for_each_facing(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Facing& at) {
     Lanes& place = history.at(pass.record + i)[ContactHistory::place];
     place = select(at.p.hit & (place != place), place_of(at.p), place);
@@ -38,6 +40,7 @@ void start_records(const PatchView& view, ContactHistory& history) {
 }
 
 bool overlaps(const PatchView& view) {
+  if (view.patch.is_integrated()) return integrated_length(view) > 0;
   bool found = false;
   for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
     const Projection& p = at.p;
@@ -114,6 +117,7 @@ void add_pass_stiffness(const PatchView& view, int slave_side, const double (&fa
 }  // namespace
 
 void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
+  if (view.patch.is_integrated()) return add_integrated_stiffness(view, factor, entries);
   for (int slave_side = 0; slave_side < 2; ++slave_side)
     if (view.patch.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);
 }

@@ -180,7 +180,7 @@ void PatchTable::refuse_others() const {
     bool good = patch.first >= 0 && patch.first <= patch.second && patch.second < bodies && patch.images > -far &&
                 patch.images < far;
     for (int side = 0; good && side < 2; ++side)
-      good = is_arc(patch.nodes[side]) && is_arc(patch.segments[side]) &&
+      good = is_arc(patch.nodes[side]) && is_arc(patch.segments[side]) && is_arc(patch.window[side]) &&
              fits(patch.record[side], padded(patch.nodes[side].count), record_room_) &&
              fits(patch.entry[side], padded(patch.forces(side).count), entry_room_);
     return good;

@@ -104,16 +104,24 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   find_start_force(state, half);
   half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
   const bool hold = show(state, first, proposal, report).hold;
-  if (!evaluate(first, {state.memory, half}, half_memory_, report) || !hold) return Halves::failed;
+  if (!evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report) || !hold)
+    return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
+  if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
   if (!stands(report)) return Halves::done;
   if (show(state, second, proposal, report).found_anew) return Halves::voided;
-  if (!evaluate(second, {half_memory_, half}, trial_.memory, report)) return Halves::failed;
+  const OutlineField* half_way = start_of_step(trial_.outlines) ? &half_outlines_ : nullptr;
+  if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return Halves::done;
+}
+
+/// Where it began, if contact asks.
+const OutlineField* StepDoubling::start_of_step(const Outlines& outlines) const {
+  return model_.scene.contact.quadrature == ContactQuadrature::segments ? &outlines.position : nullptr;
 }
 
 /// With the mean of the loads over the half step: they are linear in time, as steps end at the points of histories.

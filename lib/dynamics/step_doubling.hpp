@@ -38,6 +38,7 @@ class StepDoubling {
   /// Void: contact candidates were found anew in the second half, whose memory is not of them.
   enum class Halves { done, failed, voided };
   Halves try_halves(State& state, const Proposal& proposal, StepReport& report);
+  const OutlineField* start_of_step(const Outlines& outlines) const;
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
   Forces::Candidates show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);
@@ -58,6 +59,7 @@ class StepDoubling {
   Dofs start_force_;                ///< of the first half step
   Trial trial_;                     ///< at the half step, then at the end
   Memory half_memory_;              ///< at the half step
+  OutlineField half_outlines_;      ///< likewise
   std::vector<Lanes> difference_;   ///< u2 - u1 of the compliant degrees of freedom
   std::vector<Lanes> uncorrected_;  ///< scratch: the same before C
 };

@@ -95,6 +95,7 @@ constexpr std::string_view keys[] = {
     "pressure",
     "probes",
     "pull",
+    "quadrature",
     "quantity",
     "range",
     "recipe",

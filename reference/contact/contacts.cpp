@@ -51,6 +51,8 @@ struct PresentBody {
 void refuse_settings(const ContactSettings& settings) {
   if (settings.length == ContactLength::current)
     throw InputError("[contact] length = \"current\": the reference solver knows \"reference\" only");
+  if (settings.quadrature == ContactQuadrature::segments)
+    throw InputError("[contact] quadrature = \"segments\": the reference solver knows \"nodes\" only");
   if (settings.self_contact) throw InputError("[contact] self_contact = true: not in the reference solver");
 }
 

@@ -16,6 +16,7 @@ struct Cohesive {
   double strength = 0;          ///< sigma_c, Pa
   double shear_strength = 0;    ///< tau_c, Pa
 
+  std::array<double, 2> kinks() const { return {strength / normal_stiffness, reach}; }
   Traction operator()(Lanes gap) const {
     const double critical_gap = strength / normal_stiffness;
     const double inverse_taper = 1 / (reach - critical_gap);

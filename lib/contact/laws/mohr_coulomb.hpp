@@ -16,6 +16,7 @@ struct MohrCoulomb {
   double friction = 0;
   double cohesion = 0;  ///< Pa
 
+  std::array<double, 2> kinks() const { return {0, reach}; }
   Traction operator()(Lanes gap) const {
     const LaneBits touching = gap < reach;
     const Lanes pressure = select(touching, -normal_stiffness * gap, Lanes{});

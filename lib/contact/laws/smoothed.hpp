@@ -11,6 +11,7 @@ template <class Law>
 struct Smoothed : Law {
   double width = 0;  ///< m
 
+  std::array<double, 2> kinks() const { return {-width, 0}; }
   Traction operator()(Lanes gap) const {
     const Lanes depth = max(-gap, Lanes{}), start = min(depth, broadcast(width));
     // The linear law at the gap of the same pressure; it has no reach.

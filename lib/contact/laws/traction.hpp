@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/lanes.hpp"
 
 namespace pliant {
