@@ -55,7 +55,7 @@ class Neighbourhood {
     for (const int turn : {-1, 0, 1}) {
       if (turn != 0 && shape_.turn_shift == 0) continue;
       const Vec2 shift(turn * shape_.turn_shift, 0);
-      for_each_near(segments_[i].middle.x() - shift.x(), [&](int k) {
+      for_each_near(segments_[i].middle - shift, [&](int k) {
         const int offset = k + turn * shape_.count - i;
         if (!is_own(offset) && comes_nearer(points, k, shift)) result.push_back(offset);
       });
@@ -105,12 +105,12 @@ class Neighbourhood {
   }
 
   template <class Visit>
-  void for_each_near(double x, Visit&& visit) const {
+  void for_each_near(const Vec2& place, Visit&& visit) const {
     const double reach = 2 * depth_ + shape_.longest;
     const auto middle_of = [&](int i) { return segments_[i].middle.x(); };
-    for (auto at = std::ranges::lower_bound(by_x_, x - reach, {}, middle_of);
-         at != by_x_.end() && middle_of(*at) <= x + reach; ++at)
-      visit(*at);
+    for (auto at = std::ranges::lower_bound(by_x_, place.x() - reach, {}, middle_of);
+         at != by_x_.end() && middle_of(*at) <= place.x() + reach; ++at)
+      if ((segments_[*at].middle - place).norm() <= reach) visit(*at);
   }
 
   bool comes_nearer(const std::vector<Inside>& points, int k, const Vec2& shift) const {

@@ -103,9 +103,9 @@ struct PatchTotals {
   int contacts = 0;          ///< nodes in touch
   // See energy_debt.hpp; 0 without:
   double work = 0;         ///< of the mean of these forces and those before over the way between them, J/m
+  double now_work = 0;     ///< of integrated contact: the same of these forces alone
   double ways = 0;         ///< squares of the ways of gaps, times the lengths of contacts, m3
   double recent_ways = 0;  ///< the larger of these and those of the step before
-  double now_work = 0;     ///< the same of these forces alone
   double squares = 0;      ///< of integrated contact: squares of pressures over kn, times lengths, J/m
   double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
   /// What laws with a reach made, or lost, without cause in the step beside corners, J/m: in all, and the most of one.

@@ -34,7 +34,7 @@ toml::table of_bodies(const std::string& text) {
   for (const char* key : {"start", "time", "boundary", "contacts", "probes", "frames"}) table.erase(key);
   if (toml::table* domain = table["domain"].as_table()) domain->erase("gravity");
   if (toml::table* contact = table["contact"].as_table())
-    for (const char* key : {"skin", "quadrature", "length", "refresh", "energy_consistent"}) contact->erase(key);
+    for (const char* key : {"skin", "length", "refresh", "energy_consistent"}) contact->erase(key);
   for (const char* key : {"domain", "contact"})
     if (const toml::table* left = table[key].as_table(); left && left->empty()) table.erase(key);
   if (toml::table* materials = table["materials"].as_table())

@@ -113,6 +113,7 @@ REFUSED = {
     "rows": ("rows = 3", "rows = 2", "grains 1.packing.rows"),
     "level": ("level = 5.04", "level = 5.05", "walls 2.level"),
     "self-contact": ("energy_consistent = false", "self_contact = true", "contact"),
+    "quadrature": ("energy_consistent = false", 'quadrature = "segments"', "contact"),
 }
 
 
