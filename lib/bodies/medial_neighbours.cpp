@@ -8,7 +8,7 @@ namespace {
 
 constexpr int samples = 64;  ///< along a segment
 
-struct Segment {
+struct OutlineSegment {
   Vec2 start, tangent, middle;
   double length;
   Vec2 outward() const { return {tangent.y(), -tangent.x()}; }
@@ -37,7 +37,7 @@ class Neighbourhood {
   }
 
  private:
-  Segment segment(int i) const {
+  OutlineSegment segment(int i) const {
     const int n = shape_.count, turn = turn_of(i, n), next_turn = turn_of(i + 1, n);
     const Vec2 from = shape_.points[i - turn * n] + Vec2(turn * shape_.turn_shift, 0),
                to = shape_.points[i + 1 - next_turn * n] + Vec2(next_turn * shape_.turn_shift, 0);
@@ -75,7 +75,7 @@ class Neighbourhood {
   /// ones tell.
   std::vector<Inside> points_below(int i) const {
     std::vector<Inside> points;
-    const Segment before = segment(i - 1), s = segment(i), after = segment(i + 1);
+    const OutlineSegment before = segment(i - 1), s = segment(i), after = segment(i + 1);
     const auto limit = [&](const Vec2& in, const Vec2& out, const Vec2& own) {
       return cross(in, out) > 0 ? Vec2(in + out) : own;
     };
@@ -121,7 +121,7 @@ class Neighbourhood {
 
   const OutlineShape& shape_;
   double depth_;
-  std::vector<Segment> segments_;
+  std::vector<OutlineSegment> segments_;
   std::vector<int> by_x_;
 };
 

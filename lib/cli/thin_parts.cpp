@@ -31,7 +31,7 @@ constexpr BendingErrors measured[] = {
 
 // Faces across from each other are that nearly antiparallel (cosine), their distance changes by less than that factor
 // along a limb, and a limb is longer by that factor than thick, and so many segments: a tip's last is not.
-constexpr double across = -0.7, alike = 1.25, slender = 2;
+constexpr double across = -0.7, similar = 1.25, slender = 2;
 constexpr int fewest_segments = 3;
 
 /// A closed outline's segments, and how thick the body is below each.
@@ -47,8 +47,8 @@ class Faces {
   double length(int k) const { return along(k).norm(); }
 
   /// Whether the faces about segment k keep their distance from it on.
-  bool is_alike(int k, int other) const {
-    return thickness(other) < alike * thickness(k) && thickness(other) * alike > thickness(k);
+  bool is_similar(int k, int other) const {
+    return thickness(other) < similar * thickness(k) && thickness(other) * similar > thickness(k);
   }
 
  private:
@@ -80,8 +80,8 @@ class Faces {
 /// The limb to which segment k belongs, if it is one.
 std::optional<ThinPart> limb_at(const Faces& faces, int k) {
   int first = k, last = k;
-  while (last - first + 1 < faces.count() && faces.is_alike(k, last + 1)) ++last;
-  while (last - first + 1 < faces.count() && faces.is_alike(k, first - 1)) --first;
+  while (last - first + 1 < faces.count() && faces.is_similar(k, last + 1)) ++last;
+  while (last - first + 1 < faces.count() && faces.is_similar(k, first - 1)) --first;
   double extent = 0, length = 0;
   for (int j = first; j <= last; ++j) {
     extent = std::max(extent, (faces.middle(j) - faces.middle(first)).norm());

@@ -176,7 +176,7 @@ void integrate_pass(const Law& law, const SegmentPass& at, const ContactHistory&
   const double inverse_longest = 1 / at.window.longest();
   for (int i = 0; i < pass.segments; i += lane_count) {
     const SlaveSegments slaves = load_segments(pass, i);
-    const int node = slave_node(pass, i);
+    const int node = slave_index(pass, i);
     LaneBits touching{};
     for_each_point(at.window, pass.rows, ranges, slaves, [&](const QuadraturePoint& p) {
       Traction traction = law(p.gap);

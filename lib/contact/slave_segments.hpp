@@ -6,14 +6,14 @@
 namespace pliant {
 
 /// Index in a slave's outline, whose numbers are those of its arrays, of position i of the pass.
-inline int slave_node(const Pass& pass, int i) {
+inline int slave_index(const Pass& pass, int i) {
   const int index = pass.nodes.begin + i;
   return index - turn_of(index, pass.slave->count) * pass.slave->count;
 }
 
 /// Eight consecutive slave segments from position i of the arc.
 inline SlaveSegments load_segments(const Pass& pass, int i) {
-  const int turn = turn_of(pass.nodes.begin + i, pass.slave->count), node = slave_node(pass, i);
+  const int turn = turn_of(pass.nodes.begin + i, pass.slave->count), node = slave_index(pass, i);
   const double shift = pass.slave_shift + turn * pass.slave->turn_shift;
   SlaveSegments result{load(pass.slave_x + node) + shift,
                        load(pass.slave_y + node),
