@@ -18,8 +18,9 @@ void count_contacts(benchmark::State& state, const ContactSystem& contact, int c
   state.counters["pairs"] = static_cast<double>(contact.patches().size());
 }
 
-void contact_forces(benchmark::State& state, ContactLawKind law) {
-  ContactScene& scene = third_body_with(law);
+void contact_forces(benchmark::State& state, ContactLawKind law,
+                    ContactQuadrature quadrature = ContactQuadrature::nodes) {
+  ContactScene& scene = third_body_with(law, quadrature);
   const Threads threads(state);
   int contacts = 0;
   for (auto _ : state)
@@ -30,6 +31,20 @@ void contact_forces(benchmark::State& state, ContactLawKind law) {
 BENCHMARK_CAPTURE(contact_forces, frictionless, frictionless)->Name("contact/frictionless")->Apply(one_and_two_threads);
 BENCHMARK_CAPTURE(contact_forces, mohr_coulomb, mohr_coulomb)->Name("contact/mohr-coulomb")->Apply(one_and_two_threads);
 BENCHMARK_CAPTURE(contact_forces, cohesive, cohesive)->Name("contact/cohesive")->Apply(one_and_two_threads);
+
+/// The same, integrated over segments.
+void integrated_forces(benchmark::State& state, ContactLawKind law) {
+  contact_forces(state, law, ContactQuadrature::segments);
+}
+BENCHMARK_CAPTURE(integrated_forces, frictionless, frictionless)
+    ->Name("contact/frictionless_integrated")
+    ->Apply(one_and_two_threads);
+BENCHMARK_CAPTURE(integrated_forces, mohr_coulomb, mohr_coulomb)
+    ->Name("contact/mohr-coulomb_integrated")
+    ->Apply(one_and_two_threads);
+BENCHMARK_CAPTURE(integrated_forces, cohesive, cohesive)
+    ->Name("contact/cohesive_integrated")
+    ->Apply(one_and_two_threads);
 
 void plain_contact_forces(benchmark::State& state, ContactLawKind law) {
   const ContactScene& scene = third_body_with(law);

@@ -92,7 +92,8 @@ const std::optional<Checkpoint>& checkpoint() {
   return found;
 }
 
-Model with_law(Model model, ContactLawKind law) {
+Model with_law(Model model, ContactLawKind law, ContactQuadrature quadrature) {
+  model.scene.contact.quadrature = quadrature;
   for (ContactRule& rule : model.scene.contacts) {
     if (rule.law == law) continue;
     ContactRule other;
@@ -163,8 +164,8 @@ Simulation& third_body() {
   return simulation;
 }
 
-ContactScene::ContactScene(ContactLawKind law)
-    : model(with_law(third_body().model(), law)), before(third_body().state().position), contact(model) {
+ContactScene::ContactScene(ContactLawKind law, ContactQuadrature quadrature)
+    : model(with_law(third_body().model(), law, quadrature)), before(third_body().state().position), contact(model) {
   Simulation& simulation = third_body();
   at_first = simulation.state().outlines;
   for (int i = 0; i < 5; ++i) simulation.step(1e300);
@@ -176,10 +177,10 @@ ContactScene::ContactScene(ContactLawKind law)
   contact.forces(outlines, history, trial, force);
 }
 
-ContactScene& third_body_with(ContactLawKind law) {
-  static std::map<ContactLawKind, std::unique_ptr<ContactScene>> scenes;
-  std::unique_ptr<ContactScene>& scene = scenes[law];
-  if (!scene) scene = std::make_unique<ContactScene>(law);
+ContactScene& third_body_with(ContactLawKind law, ContactQuadrature quadrature) {
+  static std::map<std::pair<ContactLawKind, ContactQuadrature>, std::unique_ptr<ContactScene>> scenes;
+  std::unique_ptr<ContactScene>& scene = scenes[{law, quadrature}];
+  if (!scene) scene = std::make_unique<ContactScene>(law, quadrature);
   return *scene;
 }
 

@@ -33,7 +33,7 @@ Simulation& third_body();
 
 /// The third body with another contact law, in the same state; each contact has slipped by what came in five steps.
 struct ContactScene {
-  explicit ContactScene(ContactLawKind law);
+  explicit ContactScene(ContactLawKind law, ContactQuadrature quadrature);
   ContactScene(const ContactScene&) = delete;
   Model model;
   Dofs before, now;   ///< positions
@@ -44,7 +44,7 @@ struct ContactScene {
   ContactHistory trial;
   OutlineField force;
 };
-ContactScene& third_body_with(ContactLawKind law);
+ContactScene& third_body_with(ContactLawKind law, ContactQuadrature quadrature = ContactQuadrature::nodes);
 const char* name_of(ContactLawKind law);
 
 }  // namespace pliant::kernels

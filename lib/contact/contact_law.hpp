@@ -35,7 +35,7 @@ inline double stiffness_of(const ContactLaw& law) {
 }
 /// Whether it has a dashpot.
 inline bool is_damped(const ContactLaw& law) {
-  return std::visit([]<class Law>(const Law&) { return requires { Law::has_damping; }; }, law);
+  return std::visit([]<class Law>(const Law&) { return has_dashpot<Law>; }, law);
 }
 /// What the law remembers of a node.
 inline std::span<const Remembered> remembered_of(const ContactLaw& law) {

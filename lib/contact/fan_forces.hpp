@@ -6,19 +6,27 @@
 
 namespace pliant {
 
-/// Calls visit(QuadraturePoint) with forces and energies of parts of eight slave segments that lie in the fan outside a
-/// node. x0, y0: their first ends, from the node; `of`: what the points have in common.
+/// Parts of eight slave segments that lie in the fan outside a node, each in a range of gaps.
+struct FanParts {
+  LaneBits hit;
+  Span8 span;
+  Lanes low, high;       ///< the range, m
+  Lanes x0, y0, dx, dy;  ///< the slave's first end, from the node, and its direction, m
+  Lanes counted_length;  ///< of the whole slave segment, m
+};
+
+/// Calls visit.in_fan(FanPoint) with forces and energies of such parts.
 ///
 /// Normals turn from one side of a corner to the other, over no length at all where a segment passes close by: so what
 /// pressures a + b r do to hat functions is found in closed form, from those at two distances. With u along the segment
 /// from the foot of the node and m its distance, r^2 = m^2 + u^2.
 template <class Visit>
-void visit_fan_forces(Lanes x0, Lanes y0, Lanes dx, Lanes dy, Lanes length_that_counts, const Span8& part,
-                      const GapRange& range, const QuadraturePoint& of, Visit& visit) {
-  const Lanes square = dx * dx + dy * dy, length = sqrt(square), ex = dx / length, ey = dy / length;
-  const Lanes u0 = x0 * ex + y0 * ey;
-  const Lanes mx = x0 - u0 * ex, my = y0 - u0 * ey, m2 = mx * mx + my * my;
-  const Lanes a = u0 + select(of.hit, part.low, Lanes{}) * length, b = u0 + select(of.hit, part.high, Lanes{}) * length;
+void visit_fan_forces(const FanParts& of, Visit& visit) {
+  const Lanes length = sqrt(of.dx * of.dx + of.dy * of.dy), ex = of.dx / length, ey = of.dy / length;
+  const Lanes u0 = of.x0 * ex + of.y0 * ey;
+  const Lanes mx = of.x0 - u0 * ex, my = of.y0 - u0 * ey, m2 = mx * mx + my * my;
+  const Lanes a = u0 + select(of.hit, of.span.low, Lanes{}) * length,
+              b = u0 + select(of.hit, of.span.high, Lanes{}) * length;
   const Lanes ra = sqrt(m2 + a * a), rb = sqrt(m2 + b * b);
   // Integrals of 1/r, u/r and u^2/r. a and b are on the same side of the foot.
   const LaneBits before = a + b < 0.0;
@@ -33,23 +41,23 @@ void visit_fan_forces(Lanes x0, Lanes y0, Lanes dx, Lanes dy, Lanes length_that_
   // Integrals of n and r n, alone and times u.
   const Lanes n_x = mx * q0 + ex * q1, n_y = my * q0 + ey * q1, un_x = mx * q1 + ex * q2, un_y = my * q1 + ey * q2;
   const Lanes rn_x = mx * p0 + ex * p1, rn_y = my * p0 + ey * p1, urn_x = mx * p1 + ex * p2, urn_y = my * p1 + ey * p2;
-  const Lanes scale = select(of.hit, 0.5 * length_that_counts / length, Lanes{}), inverse = 1.0 / length;
+  const Lanes scale = select(of.hit, 0.5 * of.counted_length / length, Lanes{}), inverse = 1.0 / length;
   const Lanes r_integral = 0.5 * (b * rb - a * ra + m2 * q0), r2_integral = m2 * p0 + p2;
   // By the pressures at the first and the last of three distances, and the energies at all.
-  const double middle = 0.5 * (range.low + range.high), half = 0.25 * (range.high - range.low);
+  const Lanes middle = 0.5 * (of.low + of.high), half = select(of.hit, 0.25 * (of.high - of.low), broadcast(1));
   for (const int k : {-1, 0, 1}) {
-    const double own = middle + k * half;
-    QuadraturePoint point{of.hit, of.row, true, {}, of.xi, broadcast(own), {}, {}, {}, {}, {}, {}, {}};
-    const double p = own + (k == 0 ? -half : -k * half), q = own + (k == 0 ? half : -2 * k * half);  // the other two
-    point.energy_weight = (scale / ((own - p) * (own - q))) * (r2_integral - (p + q) * r_integral + p * q * p0);
+    const double to_p = k == 0 ? -1 : -k, to_q = k == 0 ? 1 : -2 * k;  // the other two, from this one
+    const Lanes own = middle + k * half, p = own + to_p * half, q = own + to_q * half;
+    FanPoint point{{of.hit, {}, own, {}}, {}, {}, {}, {}, {}};
+    point.energy_weight = scale / ((to_p * to_q) * half * half) * (r2_integral - (p + q) * r_integral + p * q * p0);
     if (k != 0) {
-      const Lanes factor = scale / (q - own);
+      const Lanes factor = scale / (to_q * half);
       const Lanes x = factor * (q * n_x - rn_x), y = factor * (q * n_y - rn_y), ux = factor * (q * un_x - urn_x),
                   uy = factor * (q * un_y - urn_y);
       point.force_x[1] = (ux - u0 * x) * inverse, point.force_y[1] = (uy - u0 * y) * inverse;
       point.force_x[0] = x - point.force_x[1], point.force_y[0] = y - point.force_y[1];
     }
-    visit(point);
+    visit.in_fan(point);
   }
 }
 

@@ -37,10 +37,7 @@ class MasterWindow {
   }
   /// Entries of rows in [0, count()], one a lane.
   Lanes entries(Column c, LaneBits rows) const {
-    if (count_ < 2 * lane_count) return look_up(column(c), rows);
-    Lanes result;
-    for (int lane = 0; lane < lane_count; ++lane) result[lane] = column(c)[rows[lane]];
-    return result;
+    return count_ < 2 * lane_count ? look_up(column(c), rows) : gather(column(c), rows);
   }
   /// Coordinates along a bisector's normal are counted from here, where the first node is: column bisector_at has those
   /// of the nodes.
@@ -54,17 +51,13 @@ class MasterWindow {
   int number(int row) const {
     return first_number_ + row - turn_of(first_number_ + row, outline_count_) * outline_count_;
   }
-  bool has_medial_neighbours(int row) const { return !shape_->medial.of(number(row)).empty(); }
-  /// Calls visit(row) for the medial neighbours of a row's segment that are in the window.
-  template <class Visit>
-  void for_each_medial_neighbour(int row, Visit&& visit) const {
-    visit_offsets(row, shape_->medial.of(number(row)), visit);
-  }
-  /// The same of the node at its start, or at its end.
-  template <class Visit>
-  void for_each_medial_neighbour_of_node(int row, bool at_end, Visit&& visit) const {
-    visit_offsets(row + at_end, shape_->node_medial.of(number(row + at_end)), visit);
-  }
+  bool has_medial_neighbours() const { return !shape_->medial.offset.empty(); }
+  /// Row of the k-th medial neighbour of a row's segment; -1: there is none, or it is not in the window.
+  int medial_neighbour(int row, std::size_t k) const { return neighbour(shape_->medial, row, k); }
+  std::size_t medial_neighbours(int row) const { return shape_->medial.of(number(row)).size(); }
+  /// The same of the node at a row's start.
+  int medial_neighbour_of_node(int row, std::size_t k) const { return neighbour(shape_->node_medial, row, k); }
+  std::size_t medial_neighbours_of_node(int row) const { return shape_->node_medial.of(number(row)).size(); }
   /// The same of eight rows.
   Lanes numbers(Lanes rows) const {
     const double n = outline_count_;
@@ -73,14 +66,13 @@ class MasterWindow {
   }
 
  private:
-  template <class Visit>
-  void visit_offsets(int row, std::span<const int> offsets, Visit& visit) const {
-    for (const int offset : offsets) {
-      int other = row + offset;
-      if (shape_->turn_shift == 0 && (other < 0 || other >= count_))
-        other += other < 0 ? outline_count_ : -outline_count_;
-      if (other >= 0 && other < count_) visit(other);
-    }
+  int neighbour(const MedialNeighbours& all, int row, std::size_t k) const {
+    const std::span<const int> offsets = all.of(number(row));
+    if (k >= offsets.size()) return -1;
+    int other = row + offsets[k];
+    if (shape_->turn_shift == 0 && (other < 0 || other >= count_))
+      other += other < 0 ? outline_count_ : -outline_count_;
+    return other >= 0 && other < count_ ? other : -1;
   }
 
   const OutlineShape* shape_ = nullptr;

@@ -15,9 +15,6 @@
 namespace pliant {
 namespace {
 
-template <class Law>
-constexpr bool has_dashpot = requires { Law::has_damping; };
-
 /// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
 /// length.
 void add_length_forces(const Pass& pass, const Facing& facing, unsigned touching, int i, Lanes energy,

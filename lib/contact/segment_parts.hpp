@@ -6,31 +6,24 @@
 
 namespace pliant {
 
-/// Eight slave segments, from x0, y0 to x1, y1; a point on one is at s in [0, 1].
-struct SlaveSegments {
-  Lanes x0, y0, x1, y1;  ///< m
-  Lanes length;          ///< that counts, of the reference outline or the present one, m
-  LaneBits valid;
-};
-
-/// A point of the quadrature on each of eight slave segments, all of them nearest to the same segment of the master, or
-/// to the same node.
+/// A point of the quadrature on each of eight slave segments, beside segments of the master.
 struct QuadraturePoint {
   LaneBits hit;  ///< which of the eight have one; others have the weight 0
-  int row;       ///< of the window: the master's segment; of a node the one that begins there, or ends at the last
-  bool of_node;  ///< the nearest place is a node: at xi = 0, or 1 at the last one
-  Lanes s, xi;   ///< on the slave's segment, on the master's
+  Lanes s;       ///< on the slave's segment
   Lanes gap;     ///< signed distance to the master's outline, negative inside, m
-  Lanes normal_x, normal_y;  ///< of the master there, outward
-  Lanes weight;              ///< length times 1/2, as each of the two passes has half, m
-  Lanes energy_weight;       ///< the same for energies: in a fan outside forces and energies have points of their own
+  Lanes weight;  ///< length times 1/2, as each of the two passes has half, m
+};
+/// The same in the fans of nodes. In one outside forces and energies may have points of their own.
+struct FanPoint : QuadraturePoint {
+  Lanes normal_x, normal_y;      ///< of the master there, outward
+  Lanes energy_weight;           ///< for energies, m
   Lanes force_x[2], force_y[2];  ///< of a unit pressure on the two nodes of the slave segment, m
-  Lanes depth;                   ///< the most that the slave segment penetrates nearby, m
 };
 
 /// A range of gaps within which the tractions of a law are smooth, m. All of it is inside the master or outside.
 struct GapRange {
   double low, high;
+  bool is_inside() const { return high <= 0; }
 };
 struct GapRanges {
   std::array<GapRange, 4> ranges;
@@ -38,6 +31,7 @@ struct GapRanges {
   double reach = 0;  ///< the largest gap
   const GapRange* begin() const { return ranges.data(); }
   const GapRange* end() const { return ranges.data() + count; }
+  double deepest() const { return -ranges[0].low; }
 };
 
 /// Of a law with kinks(), down to a depth.
@@ -63,23 +57,42 @@ struct Linear {
   Linear operator-(const Linear& o) const { return {at0 - o.at0, at1 - o.at1}; }
   Lanes at(Lanes s) const { return at0 + s * (at1 - at0); }
 };
+inline Linear select(LaneBits mask, const Linear& yes, const Linear& no) {
+  return {select(mask, yes.at0, no.at0), select(mask, yes.at1, no.at1)};
+}
 
-/// Coordinates against a segment of the master: along it, and outward.
-struct Beside {
-  Linear along, height;
-  double length;
+/// Where such a function has values between two.
+class Levels {
+ public:
+  explicit Levels(const Linear& f)
+      : at0_(f.at0), flat_(f.at1 == f.at0), inverse_(1.0 / select(flat_, broadcast(1), f.at1 - f.at0)) {}
+  /// The least and the largest s; none where the second is less.
+  struct Between {
+    Lanes low, high;
+  };
+  Between between(double low, double high) const {
+    const Lanes first = (low - at0_) * inverse_, second = (high - at0_) * inverse_;
+    const LaneBits all = (at0_ >= low) & (at0_ <= high);
+    return {select(flat_, select(all, Lanes{}, broadcast(1)), min(first, second)),
+            select(flat_, select(all, broadcast(1), Lanes{}), max(first, second))};
+  }
+
+ private:
+  Lanes at0_;
+  LaneBits flat_;
+  Lanes inverse_;
 };
 
 /// The part [low, high] of each of eight segments; none where high is not more than low.
 struct Span8 {
   Lanes low{}, high = broadcast(1);
 
-  /// Keeps where a function is not negative that is linear along the segment, from its values at both ends.
-  void keep(Lanes at0, Lanes at1) {
-    const Lanes change = at1 - at0, root = -at0 / select(change != 0.0, change, broadcast(1));
+  /// Keeps where a function is not negative that is linear along the segment.
+  void keep(const Linear& f) {
+    const Lanes change = f.at1 - f.at0, root = -f.at0 / select(change != 0.0, change, broadcast(1));
     low = max(low, select(change > 0.0, root, low));
     high = min(high, select(change < 0.0, root, high));
-    high = select((change == 0.0) & (at0 < 0.0), broadcast(-1), high);
+    high = select((change == 0.0) & (f.at0 < 0.0), broadcast(-1), high);
   }
   /// Whether there is one: what is shorter than `rounding` of the segment is left by clips that should meet.
   LaneBits some() const { return high - low > rounding; }
@@ -110,6 +123,37 @@ class Spans8 {
  private:
   std::array<Span8, 8> spans_;
   int count_ = 1;
+};
+
+/// Parts of eight slave segments, each within a range of gaps, packed so that most of the eight have one.
+class PackedParts {
+ public:
+  struct Eight {
+    LaneBits hit;
+    Span8 span;
+    Lanes low, high;  ///< the range of each, m
+  };
+
+  void clear() { count_ = 0; }
+  void put(LaneBits hit, const Span8& part, const GapRange& range) {
+    LaneBits left = hit & part.some();
+    for (std::size_t i = 0; any(left) && i < eights_.size(); ++i) {
+      if (i == count_) eights_[count_++] = {};
+      Eight& eight = eights_[i];
+      const LaneBits here = left & ~eight.hit;
+      eight.hit |= here;
+      eight.span = {select(here, part.low, eight.span.low), select(here, part.high, eight.span.high)};
+      eight.low = select(here, broadcast(range.low), eight.low);
+      eight.high = select(here, broadcast(range.high), eight.high);
+      left &= ~here;
+    }
+  }
+  const Eight* begin() const { return eights_.data(); }
+  const Eight* end() const { return eights_.data() + count_; }
+
+ private:
+  std::array<Eight, 32> eights_;  ///< two sides, eight spans, two ranges
+  std::size_t count_ = 0;
 };
 
 }  // namespace pliant

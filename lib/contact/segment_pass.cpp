@@ -1,126 +1,195 @@
 #include "contact/segment_pass.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "contact/laws/response.hpp"
+#include "contact/segment_motion.hpp"
+#include "contact/segment_quadrature.hpp"
 #include "contact/segment_sums.hpp"
-#include "contact/slave_segments.hpp"
 
 namespace pliant {
 namespace {
-
-template <class Law>
-constexpr bool has_dashpot = requires { Law::has_damping; };
-
-Ends of_segments(const double* of_nodes, int node) { return {load(of_nodes + node), load(of_nodes + node + 1)}; }
-
-/// How far outlines have come in the step, or how fast they go.
-struct Ways {
-  const double *slave_x = nullptr, *slave_y = nullptr, *master_x = nullptr, *master_y = nullptr;
-};
-
-/// The two nodes of a row and something of both.
-struct RowWays {
-  Vec2 first, second;
-};
-
-RowWays of_row(const Ways& ways, const MasterWindow& window, int row) {
-  const int number = window.number(row);
-  return {{ways.master_x[number], ways.master_y[number]}, {ways.master_x[number + 1], ways.master_y[number + 1]}};
-}
-
-/// Of a point on eight slave segments against a master's: how far, or fast, it goes past that, along x and y.
-struct PairLanes {
-  Lanes x, y;
-};
-
-PairLanes past_row(const Ways& ways, const MasterWindow& window, const QuadraturePoint& p, int node) {
-  const RowWays row = of_row(ways, window, p.row);
-  const Lanes x = of_segments(ways.slave_x, node).at(p.s), y = of_segments(ways.slave_y, node).at(p.s);
-  return {x - (1.0 - p.xi) * row.first.x() - p.xi * row.second.x(),
-          y - (1.0 - p.xi) * row.first.y() - p.xi * row.second.y()};
-}
-
-/// A segment's direction and length.
-struct Frame {
-  Vec2 tangent;
-  double length;
-  Frame(const Vec2& from, const Vec2& to) {
-    const Vec2 along = to - from;
-    length = along.norm(), tangent = along / length;
-  }
-};
-
-/// How far a point has moved along the master's outline in the step, m: beside a segment l d(xi), about a node g times
-/// the turn of the normal against the segment.
-Lanes motion_along(const Ways& ways, const MasterWindow& window, const SlaveSegments& slaves, const QuadraturePoint& p,
-                   int node) {
-  const MasterSegment first = window[p.row], second = window[p.row + 1];
-  const RowWays row = of_row(ways, window, p.row);
-  const Vec2 a(first.x, first.y), b(second.x, second.y);
-  const Frame now(a, b), before(a - row.first, b - row.second);
-  const bool at_end = p.of_node && p.xi[0] > 0;
-  const Vec2 origin = at_end ? b : a, moved = at_end ? row.second : row.first;
-  const Lanes x = Ends{slaves.x0, slaves.x1}.at(p.s) - origin.x(), y = Ends{slaves.y0, slaves.y1}.at(p.s) - origin.y();
-  const Lanes old_x = x - (of_segments(ways.slave_x, node).at(p.s) - moved.x()),
-              old_y = y - (of_segments(ways.slave_y, node).at(p.s) - moved.y());
-  const auto along = [](const Frame& f, Lanes u, Lanes v) { return u * f.tangent.x() + v * f.tangent.y(); };
-  const auto above = [](const Frame& f, Lanes u, Lanes v) { return u * f.tangent.y() - v * f.tangent.x(); };
-  if (!p.of_node) return along(now, x, y) - (now.length / before.length) * along(before, old_x, old_y);
-  // The direction of growing places, in the segment's frame.
-  const Lanes cosine = p.normal_x * now.tangent.y() - p.normal_y * now.tangent.x(),
-              sine = p.normal_x * now.tangent.x() + p.normal_y * now.tangent.y();
-  return cosine * (along(now, x, y) - along(before, old_x, old_y)) -
-         sine * (above(now, x, y) - above(before, old_x, old_y));
-}
-
-/// A point that shears, and where its slaves stand in the pass.
-struct ShearPoint {
-  int i;
-  QuadraturePoint point;
-};
 
 /// What a pass needs besides the law.
 struct SegmentPass {
   const Pass& pass;
   const MasterWindow& window;
-  Ways moved, speeds;  ///< in the step, now; empty where nobody asks
+  const PairMotion* moved;   ///< in the step; null: not known
+  const PairMotion* speeds;  ///< now; null: nobody asks
   PatchForces& forces;
 };
 
 struct Totals {
-  Lanes stored{}, dissipated{}, damping_power{}, deepest{}, squares{};
+  Lanes stored{}, dissipated{}, damping_power{}, squares{};
+  double deepest = 0;
   int segments = 0;  ///< in touch
 };
 
-/// Forces on both nodes of eight slave segments, N/m, and their reaction at xi. The couple is that of shears at the
-/// gap's distance.
-void add_forces(const SegmentPass& at, int i, const QuadraturePoint& p, const Lanes (&x)[2], const Lanes (&y)[2],
-                double couple) {
-  PatchForces& forces = at.forces;
-  const int slave = at.pass.slave_force + i, master = at.pass.master_force + p.row;
-  for (int end = 0; end < 2; ++end) add(&forces.x[slave + end], x[end]), add(&forces.y[slave + end], y[end]);
-  const Lanes of_both_x = x[0] + x[1], of_both_y = y[0] + y[1];
-  const double all_x = sum(of_both_x), all_y = sum(of_both_y), far_x = sum(p.xi * of_both_x),
-               far_y = sum(p.xi * of_both_y);
-  const MasterSegment m = at.window[p.row];
-  const double turn_x = couple * m.tangent_y, turn_y = -couple * m.tangent_x;
-  forces.x[master] -= all_x - far_x + turn_x, forces.y[master] -= all_y - far_y + turn_y;
-  forces.x[master + 1] -= far_x - turn_x, forces.y[master + 1] -= far_y - turn_y;
+/// Puts forces on the nodes of both bodies; the reaction of what acts at s goes to both nodes of the master's segment
+/// by xi. `turn`: of the couple of shears, added to the second of these and taken from the first.
+void add_forces(const SegmentPass& at, LaneBits slave, LaneBits row, LaneBits hit, const PairForces& f,
+                const Linear& xi, Lanes turn_x, Lanes turn_y) {
+  const Lanes all_x = f.x[0] + f.x[1], all_y = f.y[0] + f.y[1], change = xi.at1 - xi.at0;
+  const Lanes far_x = xi.at0 * all_x + change * f.x[1] - turn_x, far_y = xi.at0 * all_y + change * f.y[1] - turn_y;
+  const Lanes near_x = all_x - far_x, near_y = all_y - far_y;
+  for_each_lane(hit, [&](int lane) {
+    const auto first = static_cast<std::size_t>(at.pass.slave_force + slave[lane]),
+               near = static_cast<std::size_t>(at.pass.master_force + row[lane]);
+    double *x = &at.forces.x[first], *y = &at.forces.y[first];
+    x[0] += f.x[0][lane], x[1] += f.x[1][lane], y[0] += f.y[0][lane], y[1] += f.y[1][lane];
+    x = &at.forces.x[near], y = &at.forces.y[near];
+    x[0] -= near_x[lane], x[1] -= far_x[lane], y[0] -= near_y[lane], y[1] -= far_y[lane];
+  });
 }
 
-/// The dashpot's pressure, and what friction makes of it. Returns its power, W/m.
+/// Eight pairs that shear: their normal forces, and integrals of tangents times powers of s, and of gaps, of which the
+/// shears of nodes make forces.
+struct ShearingPairs {
+  LaneBits hit, slave, row;
+  Lanes tangent_x, tangent_y, inverse_length;  ///< of the master's segment
+  Linear xi;
+  PairForces forces;
+  Lanes shear_x[3], shear_y[3];  ///< m
+  Moments gap;                   ///< m2
+
+  /// With shears at both ends, linear between them.
+  void put_out(const SegmentPass& at, Lanes shear0, Lanes shear1) const {
+    const Lanes change = shear1 - shear0;
+    const Lanes all_x = shear0 * shear_x[0] + change * shear_x[1], all_y = shear0 * shear_y[0] + change * shear_y[1],
+                second_x = shear0 * shear_x[1] + change * shear_x[2],
+                second_y = shear0 * shear_y[1] + change * shear_y[2];
+    PairForces f = forces;
+    f.x[0] += all_x - second_x, f.x[1] += second_x, f.y[0] += all_y - second_y, f.y[1] += second_y;
+    // Shears act at the gap's distance from the master.
+    const Lanes couple = (shear0 * gap.plain + change * gap.times_s) * inverse_length;
+    add_forces(at, slave, row, hit, f, xi, couple * tangent_y, -couple * tangent_x);
+  }
+};
+
+/// Memory of a pass that is found once.
+struct PassScratch {
+  NodeSums sums;
+  std::vector<ShearingPairs> shearing;
+  std::size_t shearing_count = 0;
+  std::vector<char> touched;  ///< [slave segments]
+};
+
+/// Visits the points of a pass: tractions of its law become forces of pairs and sums of nodes.
 template <class Law>
-Lanes add_damping(const Law& law, const SegmentPass& at, const QuadraturePoint& p, int node, Traction& traction) {
-  const PairLanes speed = past_row(at.speeds, at.window, p, node);
-  const Lanes rate = p.normal_x * speed.x + p.normal_y * speed.y;
-  const Lanes damping = law.damping_pressure(traction.pressure, p.gap, rate, at.pass.damping, at.pass.elapsed);
-  add_pressure(law, damping, traction);
-  return select(p.hit & (p.gap < 0.0), -p.weight * damping * rate, Lanes{});
-}
+class TractionVisitor {
+ public:
+  TractionVisitor(const Law& law, const SegmentPass& at, PassScratch& scratch, Totals& totals)
+      : law_(law), at_(at), scratch_(scratch), totals_(totals) {
+    scratch_.touched.assign(static_cast<std::size_t>(at.pass.segments), 0);
+    if constexpr (Law::has_shear) scratch_.sums.clear(at.pass.nodes.count), scratch_.shearing_count = 0;
+  }
+
+  void begin(const SegmentPairs& pairs, const Linear& xi) {
+    pairs_ = &pairs, xi_ = xi, hit_ = LaneBits{};
+    pressure_ = {}, in_fans_ = {};
+    if constexpr (Law::has_shear) {
+      weight_ = limit_ = way_ = gap_ = {};
+      for (int power = 0; power < 3; ++power) beside_[power] = shear_x_[power] = shear_y_[power] = Lanes{};
+      if (at_.moved) motion_ = TangentialMotion(pairs, xi, *at_.moved);
+    }
+    if constexpr (has_dashpot<Law>) rates_ = SpeedPast(pairs, *at_.speeds);
+  }
+
+  void beside(const QuadraturePoint& p) {
+    const Traction traction = traction_at(p, pairs_->tangent_y, -pairs_->tangent_x);
+    const Lanes force = p.weight * traction.pressure;
+    pressure_.add(force, p.s);
+    totals_.stored += p.weight * traction.energy, totals_.squares += force * traction.pressure;
+    if constexpr (Law::has_shear) {
+      const Lanes first = p.weight * p.s;
+      beside_[0] += p.weight, beside_[1] += first, beside_[2] += first * p.s;
+      add_shear(p, traction);
+      if (at_.moved) way_.add(p.weight * motion_.beside(p), p.s);
+    }
+  }
+
+  void in_fan(const FanPoint& p) {
+    const Traction traction = traction_at(p, p.normal_x, p.normal_y);
+    const Lanes& pressure = traction.pressure;
+    for (int end = 0; end < 2; ++end)
+      in_fans_.x[end] += pressure * p.force_x[end], in_fans_.y[end] += pressure * p.force_y[end];
+    totals_.stored += p.energy_weight * traction.energy, totals_.squares += p.energy_weight * pressure * pressure;
+    if constexpr (Law::has_shear) {
+      weight_.add(p.weight, p.s);
+      Lanes of_power = p.weight;
+      for (int power = 0; power < 3; ++power, of_power *= p.s)
+        shear_x_[power] -= of_power * p.normal_y, shear_y_[power] += of_power * p.normal_x;
+      add_shear(p, traction);
+      if (at_.moved) way_.add(p.weight * motion_.in_fan(p), p.s);
+    }
+  }
+
+  void end() {
+    for_each_lane(hit_, [&](int lane) {
+      char& touched = scratch_.touched[static_cast<std::size_t>(pairs_->slave[lane])];
+      totals_.segments += !touched, touched = 1;
+    });
+    const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
+    const HatSums beside = pressure_.hats();
+    const PairForces forces{{in_fans_.x[0] + tangent_y * beside.first, in_fans_.x[1] + tangent_y * beside.second},
+                            {in_fans_.y[0] - tangent_x * beside.first, in_fans_.y[1] - tangent_x * beside.second}};
+    if constexpr (Law::has_shear) {
+      const Moments weight{weight_.plain + beside_[0], weight_.times_s + beside_[1]};
+      weight.hats().add_to(scratch_.sums.weight, *pairs_, hit_);
+      limit_.hats().add_to(scratch_.sums.shear_limit, *pairs_, hit_);
+      if (at_.moved) way_.hats().add_to(scratch_.sums.motion, *pairs_, hit_);
+      if (scratch_.shearing.size() == scratch_.shearing_count) scratch_.shearing.emplace_back();
+      ShearingPairs& s = scratch_.shearing[scratch_.shearing_count++];
+      s.hit = hit_, s.slave = pairs_->slave, s.row = pairs_->row, s.xi = xi_, s.forces = forces, s.gap = gap_;
+      s.tangent_x = tangent_x, s.tangent_y = tangent_y, s.inverse_length = pairs_->inverse_length;
+      for (int power = 0; power < 3; ++power) {
+        s.shear_x[power] = shear_x_[power] + tangent_x * beside_[power];
+        s.shear_y[power] = shear_y_[power] + tangent_y * beside_[power];
+      }
+    } else {
+      add_forces(at_, pairs_->slave, pairs_->row, hit_, forces, xi_, Lanes{}, Lanes{});
+    }
+  }
+
+ private:
+  Traction traction_at(const QuadraturePoint& p, Lanes normal_x, Lanes normal_y) {
+    hit_ |= p.hit;
+    Traction traction = law_(p.gap);
+    if constexpr (has_dashpot<Law>) add_damping(p, normal_x, normal_y, traction);
+    return traction;
+  }
+
+  void add_shear(const QuadraturePoint& p, const Traction& traction) {
+    limit_.add(p.weight * traction.shear_limit, p.s);
+    gap_.add(p.weight * p.gap, p.s);
+  }
+
+  /// The dashpot's pressure, and what friction makes of it.
+  void add_damping(const QuadraturePoint& p, Lanes normal_x, Lanes normal_y, Traction& traction) {
+    const Lanes rate = rates_.along(normal_x, normal_y, p.s, xi_.at(p.s));
+    const Lanes damping = law_.damping_pressure(traction.pressure, p.gap, rate, at_.pass.damping, at_.pass.elapsed);
+    add_pressure(law_, damping, traction);
+    totals_.damping_power += select(p.hit & (p.gap < 0.0), -p.weight * damping * rate, Lanes{});
+  }
+
+  const Law& law_;
+  const SegmentPass& at_;
+  PassScratch& scratch_;
+  Totals& totals_;
+  // Of the eight pairs at hand:
+  const SegmentPairs* pairs_ = nullptr;
+  LaneBits hit_{};
+  Linear xi_;
+  Moments pressure_;    ///< beside segments
+  PairForces in_fans_;  ///< of pressures in the fans of nodes
+  Moments weight_, limit_, way_, gap_;
+  Lanes beside_[3], shear_x_[3], shear_y_[3];  ///< weights beside segments, and tangents in fans, times powers of s
+  TangentialMotion motion_;
+  SpeedPast rates_;
+};
 
 /// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along.
 template <class Law>
@@ -148,76 +217,41 @@ void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, C
   }
 }
 
-/// The shears of nodes, by their hat functions, at all points.
-void add_shears(const SegmentPass& at, const std::vector<ShearPoint>& points, const NodeSums& sums) {
-  for (const auto& [i, p] : points) {
-    const Lanes shear = p.weight * Ends{load(&sums.shear[i]), load(&sums.shear[i + 1])}.at(p.s);
-    const double couple = sum(shear * p.gap) * at.window[p.row].inverse_length;
-    const Lanes second = p.s * shear, first = shear - second;
-    add_forces(at, i, p, {-first * p.normal_y, -second * p.normal_y}, {first * p.normal_x, second * p.normal_x},
-               couple);
-  }
-}
-
-Ways ways_of(const PatchView& view, const OutlineField& field, int slave_side) {
-  const int slave = view.model.outline_offset[view.body(slave_side)],
-            master = view.model.outline_offset[view.body(1 - slave_side)];
-  return {&field.x[slave], &field.y[slave], &field.x[master], &field.y[master]};
-}
-
 template <class Law>
 void integrate_pass(const Law& law, const SegmentPass& at, const ContactHistory& from, ContactHistory& to,
                     Totals& totals) {
+  thread_local PassScratch scratch;
   const Pass& pass = at.pass;
-  thread_local NodeSums sums;
-  thread_local std::vector<ShearPoint> points;
-  if constexpr (Law::has_shear) sums.clear(pass.nodes.count), points.clear();
-  const GapRanges ranges = gap_ranges(law, at.window.depth());
-  const double inverse_longest = 1 / at.window.longest();
-  for (int i = 0; i < pass.segments; i += lane_count) {
-    const SlaveSegments slaves = load_segments(pass, i);
-    const int node = slave_index(pass, i);
-    LaneBits touching{};
-    for_each_point(at.window, pass.rows, ranges, slaves, [&](const QuadraturePoint& p) {
-      Traction traction = law(p.gap);
-      if constexpr (has_dashpot<Law>) totals.damping_power += add_damping(law, at, p, node, traction);
-      const Lanes& pressure = traction.pressure;
-      add_forces(at, i, p, {pressure * p.force_x[0], pressure * p.force_x[1]},
-                 {pressure * p.force_y[0], pressure * p.force_y[1]}, 0);
-      totals.stored += p.energy_weight * traction.energy;
-      totals.squares += p.energy_weight * pressure * pressure;
-      totals.deepest = max(totals.deepest, inverse_longest * p.depth);
-      touching |= p.hit;
-      if constexpr (Law::has_shear) {
-        add_to_nodes(sums.weight, i, p.s, p.weight);
-        add_to_nodes(sums.shear_limit, i, p.s, p.weight * traction.shear_limit);
-        if (at.moved.slave_x)
-          add_to_nodes(sums.motion, i, p.s, p.weight * motion_along(at.moved, at.window, slaves, p, node));
-        points.push_back({i, p});
-      }
-    });
-    totals.segments += std::popcount(bits(touching));
-  }
+  TractionVisitor<Law> visitor(law, at, scratch, totals);
+  SegmentQuadrature& quadrature = thread_quadrature();
+  quadrature.run(pass, at.window, gap_ranges(law, at.window.depth()), visitor);
+  totals.deepest = std::max(totals.deepest, quadrature.deepest() / at.window.longest());
   if constexpr (Law::has_shear) {
+    NodeSums& sums = scratch.sums;
     const bool whole = pass.segments == pass.nodes.count;
     if (whole) sums.close(pass.segments);
     slide_nodes(law, pass, from, to, sums, totals);
     if (whole) sums.shear[pass.segments] = sums.shear[0];
-    add_shears(at, points, sums);
+    const double* shear = sums.shear.data();
+    for (const ShearingPairs& s : std::span(scratch.shearing).first(scratch.shearing_count))
+      s.put_out(at, gather(shear, s.slave), gather(shear + 1, s.slave));
   }
 }
 
 }  // namespace
 
 double integrated_length(const PatchView& view) {
-  Lanes length{};
+  struct Length {
+    Lanes sum{};
+    void begin(const SegmentPairs&, const Linear&) {}
+    void beside(const QuadraturePoint& p) { sum += p.weight; }
+    void in_fan(const FanPoint& p) { sum += p.weight; }
+    void end() {}
+  } length;
   for_each_pass(view, runs_in_table(view.patch), [&](const Pass& pass, int) {
-    const GapRanges inside = gap_ranges(Frictionless{}, view.window.depth());
-    for (int i = 0; i < pass.segments; i += lane_count)
-      for_each_point(view.window, pass.rows, inside, load_segments(pass, i),
-                     [&](const QuadraturePoint& p) { length += p.weight; });
+    thread_quadrature().run(pass, view.window, gap_ranges(Frictionless{}, view.window.depth()), length);
   });
-  return sum(length);
+  return sum(length.sum);
 }
 
 PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const ContactHistory& from,
@@ -228,17 +262,19 @@ PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const 
       double damping = 0;
       if constexpr (has_dashpot<Law>)
         if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
+      thread_local PairMotion moved, speeds;
       for_each_pass(view, runs, [&](Pass& pass, int slave_side) {
         pass.damping = damping, pass.elapsed = view.elapsed;
-        SegmentPass at{pass, view.window, {}, {}, forces};
-        if (view.moved) at.moved = ways_of(view, *view.moved, slave_side);
-        if constexpr (has_dashpot<Law>) at.speeds = ways_of(view, view.outlines.velocity, slave_side);
+        SegmentPass at{pass, view.window, nullptr, nullptr, forces};
+        if constexpr (Law::has_shear)
+          if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
+        if constexpr (has_dashpot<Law>) speeds.fill(view, view.outlines.velocity, slave_side), at.speeds = &speeds;
         integrate_pass(law, at, from, to, totals);
       });
     }
   };
   std::visit(both_passes, view.patch.law);
-  PatchTotals result{sum(totals.stored), sum(totals.dissipated), sum(totals.damping_power), largest(totals.deepest),
+  PatchTotals result{sum(totals.stored), sum(totals.dissipated), sum(totals.damping_power), totals.deepest,
                      totals.segments};
   result.squares = sum(totals.squares) / normal_stiffness_of(view.patch.law);
   return result;

@@ -2,59 +2,70 @@
 #include <vector>
 
 #include "contact/segment_pass.hpp"
+#include "contact/segment_quadrature.hpp"
 #include "contact/segment_sums.hpp"
-#include "contact/slave_segments.hpp"
 
 namespace pliant {
 namespace {
 
 /// What points of contact in outputs are made of: of each slave node, times its hat function.
-struct NodeTractions {
-  NodeSums sums;
-  std::vector<double> gap, normal_x, normal_y, force_x, force_y, shear;  ///< m2, m, N/m
+class NodeTractions {
+ public:
+  std::vector<double> weight, gap, normal_x, normal_y, force_x, force_y, shear;  ///< m, m2, m, N/m
 
-  void clear(int nodes) {
-    sums.clear(nodes);
-    for (std::vector<double>* of : {&gap, &normal_x, &normal_y, &force_x, &force_y, &shear}) *of = sums.weight;
-  }
-  void close(int segments) {
-    sums.close(segments);
-    for (std::vector<double>* of : {&gap, &normal_x, &normal_y, &force_x, &force_y, &shear})
-      (*of)[0] += (*of)[segments];
+  /// `shears`: of nodes, Pa, on one behind the last as well.
+  template <class Law>
+  void find(const Law& law, const Pass& pass, const MasterWindow& window, const std::vector<double>& shears) {
+    const auto all = {&weight, &gap, &normal_x, &normal_y, &force_x, &force_y, &shear};
+    for (std::vector<double>* of : all) of->assign(static_cast<std::size_t>(pass.nodes.count) + 1, 0.0);
+    struct Visitor {
+      const Law& law;
+      NodeTractions& of;
+      const std::vector<double>& shears;
+      const SegmentPairs* pairs = nullptr;
+      void begin(const SegmentPairs& now, const Linear&) { pairs = &now; }
+      void end() {}
+      void beside(const QuadraturePoint& p) {
+        const Lanes x = pairs->tangent_y, y = -pairs->tangent_x, first = (1.0 - p.s) * p.weight,
+                    second = p.s * p.weight;
+        in_fan({p, x, y, p.weight, {first * x, second * x}, {first * y, second * y}});
+      }
+      void in_fan(const FanPoint& p) {
+        const Lanes pressure = law(p.gap).pressure;
+        const auto add = [&](std::vector<double>& sums, Lanes value) {
+          Moments of;
+          of.add(p.weight * value, p.s);
+          of.hats().add_to(sums, *pairs, p.hit);
+        };
+        add(of.weight, broadcast(1)), add(of.gap, p.gap);
+        add(of.normal_x, p.normal_x), add(of.normal_y, p.normal_y);
+        HatSums{pressure * p.force_x[0], pressure * p.force_x[1]}.add_to(of.force_x, *pairs, p.hit);
+        HatSums{pressure * p.force_y[0], pressure * p.force_y[1]}.add_to(of.force_y, *pairs, p.hit);
+        const Linear shear{gather(shears.data(), pairs->slave), gather(shears.data() + 1, pairs->slave)};
+        add(of.shear, shear.at(p.s));
+      }
+    } visitor{law, *this, shears};
+    thread_quadrature().run(pass, window, gap_ranges(law, window.depth()), visitor);
+    if (pass.segments == pass.nodes.count)  // the last node of a whole outline is the first one
+      for (std::vector<double>* of : all) of->front() += of->back();
   }
 };
 
+/// Of the nodes of a pass, and of the first one again behind the last.
 template <class Law>
-void find_tractions(const Law& law, const Pass& pass, const MasterWindow& window, const ContactHistory& history,
-                    NodeTractions& found) {
-  found.clear(pass.nodes.count);
-  const bool whole = pass.segments == pass.nodes.count;
-  for (int i = 0; i < pass.nodes.count; ++i)
-    found.sums.shear[i] = -law.shear_stiffness * history.number(pass.record + i, ContactHistory::slip);
-  if (whole) found.sums.shear[pass.segments] = found.sums.shear[0];
-  for (int i = 0; i < pass.segments; i += lane_count)
-    for_each_point(
-        window, pass.rows, gap_ranges(law, window.depth()), load_segments(pass, i), [&](const QuadraturePoint& p) {
-          const Lanes pressure = law(p.gap).pressure;
-          add_to_nodes(found.sums.weight, i, p.s, p.weight);
-          add_to_nodes(found.gap, i, p.s, p.weight * p.gap);
-          add_to_nodes(found.normal_x, i, p.s, p.weight * p.normal_x);
-          add_to_nodes(found.normal_y, i, p.s, p.weight * p.normal_y);
-          for (int end = 0; end < 2; ++end) {
-            add(&found.force_x[i + end], pressure * p.force_x[end]);
-            add(&found.force_y[i + end], pressure * p.force_y[end]);
-          }
-          if constexpr (Law::has_shear)
-            add_to_nodes(found.shear, i, p.s,
-                         p.weight * Ends{load(&found.sums.shear[i]), load(&found.sums.shear[i + 1])}.at(p.s));
-        });
-  if (whole) found.close(pass.segments);
+std::vector<double> shears_of(const Law& law, const Pass& pass, const ContactHistory& history) {
+  std::vector<double> shears(static_cast<std::size_t>(pass.nodes.count) + 1, 0.0);
+  if constexpr (Law::has_shear)
+    for (int i = 0; i <= pass.nodes.count; ++i)
+      shears[static_cast<std::size_t>(i)] =
+          -law.shear_stiffness * history.number(pass.record + i % pass.nodes.count, ContactHistory::slip);
+  return shears;
 }
 
 void add_points(const PatchView& view, const Pass& pass, int side, const NodeTractions& found,
                 const ContactHistory& history, std::vector<ContactPoint>& points) {
   for (int i = 0; i < pass.nodes.count; ++i) {
-    const double weight = found.sums.weight[i];
+    const double weight = found.weight[i];
     if (!(weight > 0)) continue;
     const Vec2 force(found.force_x[i], found.force_y[i]), mean(found.normal_x[i], found.normal_y[i]);
     const Vec2 normal = mean.norm() > 0 ? Vec2(mean.normalized()) : Vec2(0, 0);
@@ -78,7 +89,7 @@ std::vector<ContactPoint> inspect_integrated(const PatchView& view, const Contac
   const auto both_passes = [&]<class Law>(const Law& law) {
     if constexpr (!remembers<Law>)
       for_each_pass(view, runs_in_table(view.patch), [&](const Pass& pass, int side) {
-        find_tractions(law, pass, view.window, history, found);
+        found.find(law, pass, view.window, shears_of(law, pass, history));
         add_points(view, pass, side, found, history, points);
       });
   };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/slave_segments.hpp"
+#include "contact/segment_cuts.hpp"
 
 namespace pliant {
 namespace {
@@ -21,10 +21,10 @@ Span8 within_reach(const SlaveSegments& slaves, const MasterSegment& m, double r
   const Lanes height0 = x0 * m.tangent_y - y0 * m.tangent_x, height1 = x1 * m.tangent_y - y1 * m.tangent_x;
   const Lanes along0 = x0 * m.tangent_x + y0 * m.tangent_y, along1 = x1 * m.tangent_x + y1 * m.tangent_y;
   Span8 part;
-  part.keep(along0 + skin, along1 + skin);
-  part.keep((m.length + skin) - along0, (m.length + skin) - along1);
-  part.keep((reach + skin) - height0, (reach + skin) - height1);
-  part.keep(height0 + (depth + skin), height1 + (depth + skin));
+  part.keep({along0 + skin, along1 + skin});
+  part.keep({(m.length + skin) - along0, (m.length + skin) - along1});
+  part.keep({(reach + skin) - height0, (reach + skin) - height1});
+  part.keep({height0 + (depth + skin), height1 + (depth + skin)});
   return part;
 }
 
@@ -32,13 +32,17 @@ void add_pass(const PatchView& view, const Pass& pass, int slave_side, const dou
               std::vector<double>& entries) {
   const MasterWindow& window = view.window;
   const double stiffness = 0.5 * stiffness_of(view.patch.law), reach = reach_of(view.patch.law), skin = view.skin;
+  thread_local SlaveArc arc;
+  arc.fill(pass);
   for (int i = 0; i < pass.segments; i += lane_count) {
-    const SlaveSegments slaves = load_segments(pass, i);
+    const LaneBits valid = first_lanes(pass.segments - i);
+    const double *x = arc.x.data() + i, *y = arc.y.data() + i;
+    const SlaveSegments slaves{load(x), load(y), load(x + 1), load(y + 1), load(&arc.lengths[i])};
     Hull8 hull;
     for (int row = pass.rows.begin; row < pass.rows.end(); ++row) {
       const MasterSegment m = window[row];
       const Span8 part = within_reach(slaves, m, reach, window.depth(), skin);
-      const LaneBits hit = slaves.valid & (part.low < part.high);
+      const LaneBits hit = valid & (part.low < part.high);
       if (!any(hit)) continue;
       hull.add(hit, part);
       const double length = sum(select(hit, (part.high - part.low) * slaves.length, Lanes{}));

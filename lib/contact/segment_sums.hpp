@@ -1,21 +1,39 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <vector>
 
-#include "core/lanes.hpp"
+#include "contact/segment_cuts.hpp"
 
 namespace pliant {
 
-inline void add(double* to, Lanes value) { store(to, load(to) + value); }
+/// Calls visit(lane) for those that are set.
+template <class Visit>
+void for_each_lane(LaneBits mask, Visit&& visit) {
+  for (unsigned left = bits(mask); left != 0; left &= left - 1) visit(std::countr_zero(left));
+}
 
-/// Values at both ends of eight segments, and between them.
-struct Ends {
+/// Integrals over parts of eight slave segments of something times the hat functions of their two nodes.
+struct HatSums {
   Lanes first, second;
-  Lanes at(Lanes s) const { return (1.0 - s) * first + s * second; }
+  /// To a number of each node in the pass.
+  void add_to(std::vector<double>& of_nodes, const SegmentPairs& pairs, LaneBits hit) const {
+    for_each_lane(hit, [&](int lane) {
+      double* at = &of_nodes[static_cast<std::size_t>(pairs.slave[lane])];
+      at[0] += first[lane], at[1] += second[lane];
+    });
+  }
 };
 
-/// Sums over the quadrature points at each slave node, times its hat function.
+/// Integrals over the same parts of something, alone and times s.
+struct Moments {
+  Lanes plain{}, times_s{};
+  void add(Lanes value, Lanes s) { plain += value, times_s += s * value; }
+  HatSums hats() const { return {plain - times_s, times_s}; }
+};
+
+/// Of the nodes of a pass: integrals over all parts.
 struct NodeSums {
   std::vector<double> weight, shear_limit, motion;  ///< m, N/m, m2
   std::vector<double> shear;                        ///< Pa, what comes of them
@@ -30,8 +48,9 @@ struct NodeSums {
   }
 };
 
-inline void add_to_nodes(std::vector<double>& sums, int i, Lanes s, Lanes value) {
-  add(&sums[i], (1.0 - s) * value), add(&sums[i + 1], s * value);
-}
+/// Forces of eight pairs on both nodes of the slave's segment, N/m.
+struct PairForces {
+  Lanes x[2], y[2];
+};
 
 }  // namespace pliant

@@ -45,6 +45,12 @@ inline Lanes load(const double* from) {
   return value;
 }
 
+inline LaneBits load(const std::int64_t* from) {
+  LaneBits value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
 inline void store(double* to, Lanes value) { std::memcpy(to, &value, sizeof value); }
 
 inline Lanes select(LaneBits mask, Lanes yes, Lanes no) { return mask ? yes : no; }
@@ -148,6 +154,17 @@ inline Lanes look_up(const double* table, LaneBits index) {
   return reinterpret_cast<Lanes>(_mm512_permutex2var_pd(reinterpret_cast<__m512d>(load(table)),
                                                         reinterpret_cast<__m512i>(index),
                                                         reinterpret_cast<__m512d>(load(table + lane_count))));
+#else
+  Lanes result;
+  for (int lane = 0; lane < lane_count; ++lane) result[lane] = table[index[lane]];
+  return result;
+#endif
+}
+
+/// Entries of any table, one a lane.
+inline Lanes gather(const double* table, LaneBits index) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Lanes>(_mm512_i64gather_pd(reinterpret_cast<__m512i>(index), table, sizeof(double)));
 #else
   Lanes result;
   for (int lane = 0; lane < lane_count; ++lane) result[lane] = table[index[lane]];

@@ -58,6 +58,9 @@ concept AnswersEncounters = requires(const Law& law, const Encounter& at, const 
 template <class Law>
 concept CompleteContactLaw = AnswersGaps<Law> && (!remembers<Law> || AnswersEncounters<Law>);
 
+template <class Law>
+constexpr bool has_dashpot = requires { Law::has_damping; };
+
 /// The tangential part of a contact that slips beyond its limit.
 template <class Law>
 void slide(const Law& law, const Traction& traction, LaneBits touching, Lanes old_slip, Lanes trial, Contact& c) {

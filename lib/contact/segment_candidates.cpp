@@ -1,0 +1,67 @@
+#include "contact/segment_candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+/// Along each of eight slave segments.
+struct Bounds8 {
+  Lanes low, high;
+};
+
+/// Bounds of c_x x + c_y y + c.
+Bounds8 bounds(double c_x, double c_y, double c, Lanes x0, Lanes y0, Lanes x1, Lanes y1) {
+  const Lanes at0 = x0 * c_x + (y0 * c_y + c), at1 = x1 * c_x + (y1 * c_y + c);
+  return {min(at0, at1), max(at0, at1)};
+}
+
+/// The largest distance from a node at which its fan counts; 0: it has none. A turn at the level of rounding makes a
+/// fan of no width.
+double fan_radius(const MasterSegment& after, const GapRanges& ranges) {
+  constexpr double least_turn = 1e-12;
+  const double turn = after.bisector_x * after.tangent_y - after.bisector_y * after.tangent_x;
+  if (std::abs(turn) < least_turn) return 0;
+  return turn > 0 ? ranges.reach : ranges.deepest();
+}
+
+}  // namespace
+
+void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows,
+                             const GapRanges& ranges) {
+  beside.clear(), fans.clear();
+  if (rows.count == 0) return;
+  const double *x = slaves.x.data(), *y = slaves.y.data();
+  const MasterSegment start = window[rows.begin], end = window[rows.end()];
+  const double farthest = std::max(ranges.deepest(), ranges.reach);  // below a segment's line, also in a fan outside
+  const bool whole = start.x == end.x && start.y == end.y;
+  for (int i = 0; i < slaves.segments; i += lane_count) {
+    const LaneBits valid = first_lanes(slaves.segments - i);
+    const Lanes x0 = load(x + i), y0 = load(y + i), x1 = load(x + i + 1), y1 = load(y + i + 1);
+    LaneBits beyond = valid;  // the end of the row before
+    for (int row = rows.begin; row <= rows.end(); ++row) {
+      const MasterSegment m = window[row];
+      const double tx = m.tangent_x, ty = m.tangent_y;
+      const Bounds8 height = bounds(ty, -tx, m.y * tx - m.x * ty, x0, y0, x1, y1);
+      const LaneBits near = valid & (height.low < ranges.reach) & (height.high > -farthest);
+      const LaneBits past_last = beyond;
+      beyond = LaneBits{};
+      if (!any(near)) continue;
+      const Bounds8 along = bounds(tx, ty, -m.x * tx - m.y * ty, x0, y0, x1, y1);
+      // The first node may have the fan of the last.
+      if (const double radius = row == rows.end() && whole ? 0 : fan_radius(m, ranges); radius > 0) {
+        const LaneBits in_box =
+            (along.low < 0.0) & (along.high > -radius) & (height.low < radius) & (height.high > -radius);
+        if (const unsigned found = bits(past_last & near & in_box)) fans.add(found, i, row);
+      }
+      if (row == rows.end()) break;
+      const LaneBits within = (along.high > 0.0) & (along.low < m.length);
+      if (const unsigned found = bits(within & near)) beside.add(found, i, row);
+      beyond = near & (along.high > m.length);
+    }
+  }
+  beside.close(), fans.close();
+}
+
+}  // namespace pliant

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "contact/master_window.hpp"
+#include "contact/segment_parts.hpp"
+#include "contact/slave_arc.hpp"
+
+namespace pliant {
+
+/// Pairs of a slave segment, by its position in the pass, and a row of the master's window, one behind the other.
+class PairList {
+ public:
+  void clear() { count_ = 0; }
+  void add(unsigned mask, int first_slave, int row) {
+    if (slave_.size() < count_ + 2 * lane_count) slave_.resize(2 * count_ + 64), row_.resize(slave_.size());
+    for (; mask != 0; mask &= mask - 1, ++count_)
+      slave_[count_] = first_slave + std::countr_zero(mask), row_[count_] = row;
+  }
+  /// Fills the last eight, so that these can be loaded.
+  void close() {
+    if (count_ > 0)
+      for (std::size_t i = count_; i % lane_count != 0; ++i) slave_[i] = slave_[0], row_[i] = row_[0];
+  }
+  int count() const { return static_cast<int>(count_); }
+  LaneBits slaves(int i) const { return load(&slave_[static_cast<std::size_t>(i)]); }
+  LaneBits rows(int i) const { return load(&row_[static_cast<std::size_t>(i)]); }
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<std::int64_t> slave_, row_;
+};
+
+/// What may touch in a pass: slave segments beside segments of the master, and in the fans of its nodes.
+struct SegmentCandidates {
+  PairList beside, fans;
+
+  /// `rows`: that can touch. All that has a part is found, and some that has none.
+  void find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows, const GapRanges& ranges);
+};
+
+}  // namespace pliant

@@ -1,0 +1,225 @@
+#include "contact/segment_cuts.hpp"
+
+namespace pliant {
+namespace {
+
+using Column = MasterWindow::Column;
+
+/// Between the perpendiculars at the ends of a segment.
+Span8 strip_of(const Linear& along, Lanes length) {
+  Span8 part;
+  part.keep(along);
+  part.keep({length - along.at0, length - along.at1});
+  return part;
+}
+
+/// From nodes to the ends of slave segments.
+struct FromNode {
+  Lanes x0, y0, x1, y1;
+  FromNode(const SlaveSegments& slaves, const NodeLanes& nodes)
+      : x0(slaves.x0 - nodes.x), y0(slaves.y0 - nodes.y), x1(slaves.x1 - nodes.x), y1(slaves.y1 - nodes.y) {}
+  Linear along(Lanes tx, Lanes ty) const { return {x0 * tx + y0 * ty, x1 * tx + y1 * ty}; }
+};
+
+/// Between the normals of both segments of a node.
+Span8 fan_of(const SlaveSegments& slaves, const NodeLanes& nodes) {
+  const FromNode from(slaves, nodes);
+  const Linear before = from.along(nodes.before_x, nodes.before_y), after = from.along(nodes.after_x, nodes.after_y);
+  Span8 fan;
+  fan.keep(before), fan.keep({-after.at0, -after.at1});
+  // On the normal itself there is none: the fan of a straight node has no width.
+  const LaneBits on_normal = ((before.at0 == 0.0) & (before.at1 == 0.0)) | ((after.at0 == 0.0) & (after.at1 == 0.0));
+  fan.high = select(on_normal, broadcast(-1), fan.high);
+  return fan;
+}
+
+/// In the fan of a node, and nearer to it than to a line at this height: within a parabola.
+Span8 nearer_to_node(const SlaveSegments& slaves, const NodeLanes& nodes, const Linear& height) {
+  Span8 fan = fan_of(slaves, nodes);
+  const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0;
+  const Lanes change = height.at1 - height.at0, x0 = slaves.x0 - nodes.x, y0 = slaves.y0 - nodes.y;
+  const Lanes a = dx * dx + dy * dy - change * change, half = x0 * dx + y0 * dy - height.at0 * change,
+              c = x0 * x0 + y0 * y0 - height.at0 * height.at0, discriminant = half * half - a * c;
+  const LaneBits some = (a > 0.0) & (discriminant > 0.0);
+  const Lanes root = sqrt(max(discriminant, Lanes{})), inverse = 1.0 / select(some, a, broadcast(1));
+  fan.low = max(fan.low, select(some, (-half - root) * inverse, fan.low));
+  fan.high = select(some, min(fan.high, (root - half) * inverse), broadcast(-1));
+  return fan;
+}
+
+/// But for what all nodes have in common, of second order along the segment.
+Linear squared_distance(const SlaveSegments& slaves, const NodeLanes& nodes) {
+  const FromNode from(slaves, nodes);
+  return {from.x0 * from.x0 + from.y0 * from.y0, from.x1 * from.x1 + from.y1 * from.y1};
+}
+
+Span8 only(LaneBits which, const Span8& part) { return {part.low, select(which, part.high, broadcast(-1))}; }
+
+/// Rows that eight others have in a list, one each; calls visit(LaneBits rows, LaneBits which have one).
+template <class Count, class Neighbour, class Visit>
+void for_each_neighbour(LaneBits rows, LaneBits hit, const Count& count, const Neighbour& neighbour, Visit&& visit) {
+  std::size_t most = 0;
+  for (int lane = 0; lane < lane_count; ++lane)
+    if (hit[lane]) most = std::max(most, count(static_cast<int>(rows[lane])));
+  for (std::size_t k = 0; k < most; ++k) {
+    LaneBits others = rows, have{};
+    for (int lane = 0; lane < lane_count; ++lane) {
+      if (!hit[lane]) continue;
+      if (const int other = neighbour(static_cast<int>(rows[lane]), k); other >= 0)
+        others[lane] = other, have[lane] = -1;
+    }
+    visit(others, have);
+  }
+}
+
+}  // namespace
+
+SegmentPairs SegmentCuts::pairs(const SlaveArc& slaves, LaneBits slave, LaneBits row, LaneBits valid,
+                                bool of_nodes) const {
+  const double *x = slaves.x.data(), *y = slaves.y.data();
+  SegmentPairs pairs{valid,
+                     of_nodes,
+                     slave,
+                     row,
+                     {gather(x, slave), gather(y, slave), gather(x + 1, slave), gather(y + 1, slave),
+                      gather(slaves.lengths.data(), slave)},
+                     {},
+                     {},
+                     window_.entries(Column::tangent_x, row),
+                     window_.entries(Column::tangent_y, row),
+                     window_.entries(Column::length, row),
+                     window_.entries(Column::inverse_length, row)};
+  const auto [along, height, length] = beside_row(pairs.segments, row);
+  pairs.along = along, pairs.height = height;
+  return pairs;
+}
+
+NodeLanes SegmentCuts::nodes(LaneBits rows) const {
+  const auto entries = [&](Column c) { return window_.entries(c, rows); };
+  NodeLanes n{entries(Column::x),         entries(Column::y),         {}, {},
+              entries(Column::tangent_x), entries(Column::tangent_y), {}};
+  const Lanes bisector_x = entries(Column::bisector_x), bisector_y = entries(Column::bisector_y);
+  n.before_x = bisector_x - n.after_x, n.before_y = bisector_y - n.after_y;
+  n.convex = bisector_x * n.after_y > bisector_y * n.after_x;
+  return n;
+}
+
+SegmentCuts::Beside SegmentCuts::beside_row(const SlaveSegments& slaves, LaneBits rows) const {
+  const auto entries = [&](Column c) { return window_.entries(c, rows); };
+  const Lanes mx = entries(Column::x), my = entries(Column::y), tx = entries(Column::tangent_x),
+              ty = entries(Column::tangent_y);
+  const Lanes x0 = slaves.x0 - mx, y0 = slaves.y0 - my, x1 = slaves.x1 - mx, y1 = slaves.y1 - my;
+  return {{x0 * tx + y0 * ty, x1 * tx + y1 * ty}, {x0 * ty - y0 * tx, x1 * ty - y1 * tx}, entries(Column::length)};
+}
+
+Linear SegmentCuts::past_bisector(const SlaveSegments& slaves, LaneBits rows) const {
+  const Lanes bx = window_.entries(Column::bisector_x, rows), by = window_.entries(Column::bisector_y, rows),
+              at = window_.entries(Column::bisector_at, rows);
+  const auto past = [&](Lanes x, Lanes y) {
+    return (x - window_.origin_x()) * bx + ((y - window_.origin_y()) * by - at);
+  };
+  return {past(slaves.x0, slaves.y0), past(slaves.x1, slaves.y1)};
+}
+
+void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
+  const auto& [along, height] = std::pair(pairs.along, pairs.height);
+  const LaneBits rows = pairs.row, next = rows + 1;
+  const auto convex = [&](LaneBits of) {
+    return window_.entries(Column::bisector_x, of) * window_.entries(Column::tangent_y, of) >
+           window_.entries(Column::bisector_y, of) * window_.entries(Column::tangent_x, of);
+  };
+  const LaneBits start_convex = convex(rows), end_convex = convex(next);
+  const Linear start = past_bisector(pairs.segments, rows), end = past_bisector(pairs.segments, next),
+               before_end{pairs.length - along.at0, pairs.length - along.at1};
+  const Levels levels(height);
+  for (const bool inside : {true, false}) {
+    if (!inside && ranges_.reach <= 0) break;
+    const LaneBits near =
+        pairs.valid & (inside ? min(height.at0, height.at1) < 0.0 : max(height.at0, height.at1) > 0.0);
+    if (!any(near)) continue;
+    // What is nearer to a segment than to its neighbours, on one side of the outline.
+    Span8 part;
+    part.keep(select(inside ? start_convex : ~start_convex, start, along));
+    part.keep(select(inside ? end_convex : ~end_convex, {-end.at0, -end.at1}, before_end));
+    if (!any(near & part.some())) continue;
+    const Spans8 spans =
+        inside && window_.has_medial_neighbours() ? nearest_to_segment(pairs, near, part) : Spans8(part);
+    for (const GapRange& range : ranges_) {
+      if (range.is_inside() != inside) continue;
+      const Levels::Between within = levels.between(range.low, range.high);
+      for (const Span8& span : spans) parts.put(near, {max(span.low, within.low), min(span.high, within.high)}, range);
+    }
+  }
+}
+
+Spans8 SegmentCuts::nearest_to_segment(const SegmentPairs& pairs, LaneBits hit, const Span8& part) const {
+  Spans8 spans(part);
+  const Linear& height = pairs.height;
+  for_each_neighbour(
+      pairs.row, hit & part.some(), [&](int row) { return window_.medial_neighbours(row); },
+      [&](int row, std::size_t k) { return window_.medial_neighbour(row, k); },
+      [&](LaneBits others, LaneBits have) {
+        const Beside there = beside_row(pairs.segments, others);
+        Span8 nearer = strip_of(there.along, there.length);
+        const Lanes tie = select(others < pairs.row, Lanes{}, broadcast(-1e-300));  // one of them has it
+        nearer.keep({there.height.at0 - height.at0 + tie, there.height.at1 - height.at1 + tie});
+        nearer.keep({-there.height.at0 - height.at0, -there.height.at1 - height.at1});
+        spans.remove(only(have, nearer));
+        for (const LaneBits end : {others, others + 1})
+          spans.remove(only(have, nearer_to_node(pairs.segments, nodes(end), height)));
+      });
+  return spans;
+}
+
+Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
+                                    const Span8& fan) const {
+  Spans8 spans(fan);
+  const SlaveSegments& slaves = pairs.segments;
+  for_each_neighbour(
+      rows, hit, [&](int row) { return window_.medial_neighbours_of_node(row); },
+      [&](int row, std::size_t k) { return window_.medial_neighbour_of_node(row, k); },
+      [&](LaneBits others, LaneBits have) {
+        const Beside there = beside_row(slaves, others);
+        const Span8 strip = only(have, strip_of(there.along, there.length)),
+                    mine = nearer_to_node(slaves, nodes, there.height);
+        const LaneBits some = mine.some();
+        spans.remove({strip.low, select(some, min(strip.high, mine.low), strip.high)});
+        spans.remove({select(some, max(strip.low, mine.high), broadcast(1)), strip.high});
+        for (const LaneBits end : {others, others + 1}) {
+          const NodeLanes rival = this->nodes(end);
+          Span8 nearer = only(have, fan_of(slaves, rival));
+          nearer.keep(squared_distance(slaves, nodes) - squared_distance(slaves, rival));
+          spans.remove(nearer);
+        }
+      });
+  return spans;
+}
+
+void SegmentCuts::in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, PackedParts& parts) const {
+  const SlaveSegments& slaves = pairs.segments;
+  const Span8 fan = fan_of(slaves, nodes);
+  const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0, x0 = slaves.x0 - nodes.x,
+              y0 = slaves.y0 - nodes.y;
+  const Lanes square = dx * dx + dy * dy, inverse = 1.0 / square, foot = -(x0 * dx + y0 * dy) * inverse;
+  const Lanes across = x0 * dy - y0 * dx, nearest = across * across * inverse;  // squared distance of the line
+  const auto half_chord = [&](double r) { return r == 0 ? Lanes{} : sqrt(max(r * r - nearest, Lanes{}) * inverse); };
+  for (const bool inside : {true, false}) {
+    const double radius = inside ? ranges_.deepest() : ranges_.reach;
+    const LaneBits near =
+        pairs.valid & fan.some() & (inside ? ~nodes.convex : nodes.convex) & (nearest < radius * radius);
+    if (!any(near)) continue;
+    const Spans8 spans =
+        inside && window_.has_medial_neighbours() ? nearest_to_node(pairs, nodes, rows, near, fan) : Spans8(fan);
+    for (const GapRange& range : ranges_) {
+      if (range.is_inside() != inside) continue;
+      const Lanes outer = half_chord(inside ? -range.low : range.high),
+                  inner = half_chord(inside ? -range.high : range.low);
+      for (const Span8& span : spans) {
+        parts.put(near, {max(span.low, foot - outer), min(span.high, foot - inner)}, range);
+        parts.put(near, {max(span.low, foot + inner), min(span.high, foot + outer)}, range);
+      }
+    }
+  }
+}
+
+}  // namespace pliant

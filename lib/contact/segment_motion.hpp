@@ -1,0 +1,95 @@
+#pragma once
+
+#include "contact/segment_cuts.hpp"
+
+namespace pliant {
+
+/// How far the nodes of a pass have come in the step, or how fast they go.
+struct PairMotion {
+  ArcField slave_x, slave_y, master_x, master_y;
+
+  void fill(const PatchView& view, const OutlineField& field, int slave_side) {
+    const int slave = view.body(slave_side), master = view.body(1 - slave_side);
+    const OutlineShape &of_slave = view.model.outline_of(slave), &of_master = view.model.outline_of(master);
+    const Arc segments{view.patch.nodes[slave_side].begin, view.patch.slave_segments[slave_side]},
+        window = view.patch.window[1 - slave_side];
+    slave_x.fill(&field.x[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
+    slave_y.fill(&field.y[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
+    master_x.fill(&field.x[view.model.outline_offset[master]], window, of_master, 0, 0);
+    master_y.fill(&field.y[view.model.outline_offset[master]], window, of_master, 0, 0);
+  }
+};
+
+/// The motion of the four nodes of eight pairs.
+struct NodeMotions {
+  Lanes slave_x0, slave_y0, slave_x1, slave_y1, first_x, first_y, second_x, second_y;
+  NodeMotions() = default;
+  NodeMotions(const SegmentPairs& at, const PairMotion& of)
+      : slave_x0(gather(of.slave_x.data(), at.slave)),
+        slave_y0(gather(of.slave_y.data(), at.slave)),
+        slave_x1(gather(of.slave_x.data() + 1, at.slave)),
+        slave_y1(gather(of.slave_y.data() + 1, at.slave)),
+        first_x(gather(of.master_x.data(), at.row)),
+        first_y(gather(of.master_y.data(), at.row)),
+        second_x(gather(of.master_x.data() + 1, at.row)),
+        second_y(gather(of.master_y.data() + 1, at.row)) {}
+};
+
+/// How far points have moved along the master's outline in the step, m: beside a segment l d(xi), about a node g times
+/// the turn of the normal against the segment.
+class TangentialMotion {
+ public:
+  TangentialMotion() = default;
+  TangentialMotion(const SegmentPairs& at, const Linear& xi, const PairMotion& moved)
+      : tangent_x_(at.tangent_x), tangent_y_(at.tangent_y) {
+    const NodeMotions m(at, moved);
+    const Lanes dx = at.tangent_x * at.length - (m.second_x - m.first_x),
+                dy = at.tangent_y * at.length - (m.second_y - m.first_y), old_length = sqrt(dx * dx + dy * dy),
+                tx = dx / old_length, ty = dy / old_length;
+    // From the first node of the master's segment to the ends of the slave's, before the step.
+    const auto place = [&](const Linear& now) -> std::array<Lanes, 4> {
+      return {
+          at.along.at0 * at.tangent_x + now.at0 * at.tangent_y, at.along.at0 * at.tangent_y - now.at0 * at.tangent_x,
+          at.along.at1 * at.tangent_x + now.at1 * at.tangent_y, at.along.at1 * at.tangent_y - now.at1 * at.tangent_x};
+    };
+    auto [x0, y0, x1, y1] = place(at.height);
+    x0 -= m.slave_x0 - m.first_x, y0 -= m.slave_y0 - m.first_y;
+    x1 -= m.slave_x1 - m.first_x, y1 -= m.slave_y1 - m.first_y;
+    const Linear along{x0 * tx + y0 * ty, x1 * tx + y1 * ty}, height{x0 * ty - y0 * tx, x1 * ty - y1 * tx};
+    // In a fan from the node, whose xi is one.
+    const Lanes stretch = at.of_nodes ? broadcast(1) : at.length / old_length,
+                start = at.of_nodes ? xi.at0 * (at.length - old_length) : Lanes{};
+    along_ = {at.along.at0 - stretch * along.at0 - start, at.along.at1 - stretch * along.at1 - start};
+    height_ = at.height - height;
+  }
+
+  Lanes beside(const QuadraturePoint& p) const { return along_.at(p.s); }
+  Lanes in_fan(const FanPoint& p) const {
+    // The direction of growing places, in the segment's frame.
+    const Lanes cosine = p.normal_x * tangent_y_ - p.normal_y * tangent_x_,
+                sine = p.normal_x * tangent_x_ + p.normal_y * tangent_y_;
+    return cosine * along_.at(p.s) - sine * height_.at(p.s);
+  }
+
+ private:
+  Linear along_, height_;  ///< the change of each
+  Lanes tangent_x_, tangent_y_;
+};
+
+/// The speed of points of the slave past those of the master, m/s.
+class SpeedPast {
+ public:
+  SpeedPast() = default;
+  SpeedPast(const SegmentPairs& at, const PairMotion& speeds) : of_(at, speeds) {}
+
+  Lanes along(Lanes normal_x, Lanes normal_y, Lanes s, Lanes xi) const {
+    const Lanes x = Linear{of_.slave_x0, of_.slave_x1}.at(s) - Linear{of_.first_x, of_.second_x}.at(xi),
+                y = Linear{of_.slave_y0, of_.slave_y1}.at(s) - Linear{of_.first_y, of_.second_y}.at(xi);
+    return normal_x * x + normal_y * y;
+  }
+
+ private:
+  NodeMotions of_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/pass.hpp"
+
+namespace pliant {
+
+/// Index in a slave's outline, whose numbers are those of its arrays, of position i of the pass.
+inline int slave_index(const Pass& pass, int i) {
+  const int index = pass.nodes.begin + i;
+  return index - turn_of(index, pass.slave->count) * pass.slave->count;
+}
+
+/// A field on the nodes of an arc, one behind the other, with room for a whole vector at each.
+class ArcField {
+ public:
+  /// `on_outline`: with its cyclic copies; each turn adds `turn_shift`, and all is moved by `shift`.
+  void fill(const double* on_outline, const Arc& arc, const OutlineShape& outline, double shift, double turn_shift) {
+    const int nodes = arc.count + 1;
+    if (const auto room = static_cast<std::size_t>(padded(nodes) + lane_count); values_.size() < room)
+      values_.resize(room);
+    for (int i = 0; i < nodes; i += lane_count) {
+      const int turn = turn_of(arc.begin + i, outline.count);
+      store(&values_[static_cast<std::size_t>(i)],
+            load(on_outline + arc.begin + i - turn * outline.count) + (shift + turn * turn_shift));
+    }
+  }
+  const double* data() const { return values_.data(); }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// The segments of a slave that a pass integrates over, from its first node on.
+struct SlaveArc {
+  int segments = 0;
+  ArcField x, y;                ///< of nodes, m
+  std::vector<double> lengths;  ///< that count, of the reference outline or the present one, m
+
+  void fill(const Pass& pass) {
+    segments = pass.segments;
+    const Arc arc{pass.nodes.begin, segments};
+    x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift, pass.slave->turn_shift);
+    y.fill(pass.slave_y, arc, *pass.slave, 0, 0);
+    if (const auto room = static_cast<std::size_t>(padded(segments)); lengths.size() < room) lengths.resize(room);
+    for (int i = 0; i < segments; i += lane_count) {
+      Lanes length = load(&pass.slave->segment_length[static_cast<std::size_t>(slave_index(pass, i))]);
+      if (pass.present_lengths) {
+        const Lanes dx = load(x.data() + i + 1) - load(x.data() + i), dy = load(y.data() + i + 1) - load(y.data() + i);
+        length = sqrt(dx * dx + dy * dy);
+      }
+      store(&lengths[static_cast<std::size_t>(i)], length);
+    }
+  }
+};
+
+/// Calls visit(pass, slave side) for both passes, with the master's window filled.
+template <class Visit>
+void for_each_pass(const PatchView& view, const ForceRuns& runs, Visit&& visit) {
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (view.patch.slave_segments[slave_side] == 0) continue;
+    Pass pass = make_pass(view, slave_side, runs);
+    fill_window(view, 1 - slave_side);
+    visit(pass, slave_side);
+  }
+}
+
+}  // namespace pliant
