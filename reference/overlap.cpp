@@ -15,16 +15,19 @@ constexpr double touching = 1e-9;  ///< share of a segment up to which faces tha
 Overlap find_overlap(const Bodies& bodies, const Forces& start) {
   Overlap overlap;
   std::set<std::pair<int, int>> pairs;
-  for (const ContactElement& element : start.contacts.elements) {
-    if (element.depth <= touching) continue;
-    pairs.insert(std::minmax(element.body[0], element.body[1]));
-    overlap.stored += element.compression;
-    if (-element.gap <= overlap.depth) continue;
-    overlap.depth = -element.gap, overlap.share = element.depth;
-    const auto [first, second] = std::minmax(element.body[0], element.body[1]);
+  /// Of a node or a pass, by its depth in m and over a segment.
+  const auto count = [&](const auto& contact, double depth) {
+    if (contact.depth <= touching) return;
+    pairs.insert(std::minmax(contact.body[0], contact.body[1]));
+    overlap.stored += contact.compression;
+    if (depth <= overlap.depth) return;
+    overlap.depth = depth, overlap.share = contact.depth;
+    const auto [first, second] = std::minmax(contact.body[0], contact.body[1]);
     overlap.first = bodies.all()[static_cast<std::size_t>(first)].placed.name;
     overlap.second = bodies.all()[static_cast<std::size_t>(second)].placed.name;
-  }
+  };
+  for (const ContactElement& element : start.contacts.elements) count(element, -element.gap);
+  for (const ContactPatch& patch : start.contacts.patches) count(patch, patch.deepest);
   overlap.pairs = static_cast<int>(pairs.size());
   return overlap;
 }

@@ -45,7 +45,7 @@ struct ContactsSeen {
   double deepest = 0;  ///< over the master's longest segment
 
   void add(const Forces& forces) {
-    any |= !forces.contacts.elements.empty();
+    any |= forces.contacts.count() > 0;
     deepest = std::max(deepest, forces.deepest);
   }
 };
@@ -108,7 +108,7 @@ class Outputs {
     const Forces& forces = run_.forces();
     contacts_seen_.add(forces);
     steps_.row({run_.motion().time, record.dt, record.residual, static_cast<double>(effort.bisections),
-                static_cast<double>(effort.iterations), static_cast<double>(forces.contacts.elements.size()),
+                static_cast<double>(effort.iterations), static_cast<double>(forces.contacts.count()),
                 least_jacobian(forces)});
     steps_.flush();
     progress_.show_if_due(run_, record, effort);

@@ -112,6 +112,19 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
       for (int j = 0; tangent && j < LengthElement::size; ++j)
         outlines.tangent.emplace_back(row, 2 * element.node[j / 2] + j % 2, element.tangent(i, j));
     }
+  for (const ContactPatch& patch : forces.contacts.patches) {
+    forces.deepest = std::max(forces.deepest, patch.depth);
+    const auto place = [&](Eigen::Index i) {
+      return 2 * patch.node[static_cast<std::size_t>(i / 2)] + static_cast<int>(i % 2);
+    };
+    for (Eigen::Index i = 0; i < patch.force.size(); ++i) {
+      outlines.residual[place(i)] += patch.force[i];
+      magnitude[place(i)] += std::abs(patch.force[i]);
+      for (Eigen::Index j = 0; tangent && j < patch.force.size(); ++j)
+        outlines.tangent.emplace_back(place(i), place(j), patch.tangent(i, j));
+    }
+    forces.symmetric &= patch.tangent.isApprox(patch.tangent.transpose(), 1e-12);
+  }
   forces.symmetric &= outlines.symmetric;
   const SparseMatrix back = jacobian.transpose();
   forces.residual += back * outlines.residual;

@@ -8,6 +8,7 @@
 
 #include "core/errors.hpp"
 #include "reference/contact/corners.hpp"
+#include "reference/contact/integrated_contacts.hpp"
 #include "reference/contact/law.hpp"
 #include "reference/contact/pair_laws.hpp"
 #include "reference/contact/projection.hpp"
@@ -49,10 +50,9 @@ struct PresentBody {
 };
 
 void refuse_settings(const ContactSettings& settings) {
-  if (settings.length == ContactLength::current)
-    throw InputError("[contact] length = \"current\": the reference solver knows \"reference\" only");
-  if (settings.quadrature == ContactQuadrature::segments)
-    throw InputError("[contact] quadrature = \"segments\": the reference solver knows \"nodes\" only");
+  if (settings.length == ContactLength::current && settings.quadrature == ContactQuadrature::nodes)
+    throw InputError(
+        "[contact] length = \"current\" with quadrature = \"nodes\": the reference solver knows \"reference\" only");
   if (settings.self_contact) throw InputError("[contact] self_contact = true: not in the reference solver");
 }
 
@@ -62,6 +62,7 @@ struct Contacts::Implementation {
   Implementation(const Scene& scene, std::vector<ContactOutline> given)
       : outlines(std::move(given)), laws(scene, outlines), period(scene.period.value_or(0)) {
     refuse_settings(scene.contact);
+    if (scene.contact.quadrature == ContactQuadrature::segments) integrated.emplace(scene, outlines, laws);
     double finest = std::numeric_limits<double>::infinity();
     for (const ContactOutline& outline : outlines) {
       lengths.push_back(tributary_lengths(outline));
@@ -72,6 +73,7 @@ struct Contacts::Implementation {
   }
 
   ContactResult evaluate(const Points& x) {
+    if (integrated) return integrated->evaluate(x);
     trial.clear();
     result = {};
     bodies.clear();
@@ -250,8 +252,9 @@ struct Contacts::Implementation {
   std::vector<ContactOutline> outlines;
   std::vector<Corners> corners;  ///< [bodies]
   PairLaws laws;
-  double period = 0, skin = 0;               ///< m
-  std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
+  std::optional<IntegratedContacts> integrated;  ///< in place of all that follows
+  double period = 0, skin = 0;                   ///< m
+  std::vector<std::vector<double>> lengths;      ///< [bodies][nodes], m
   Memories accepted, trial;
   bool initial = true;  ///< nothing accepted yet
 
@@ -267,6 +270,9 @@ Points forces_on_nodes(const ContactResult& result, std::size_t nodes) {
   for (const LengthElement& element : result.lengths)
     for (int i = 0; i < LengthElement::size / 2; ++i)
       forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
+  for (const ContactPatch& patch : result.patches)
+    for (std::size_t i = 0; i < patch.node.size(); ++i)
+      forces[static_cast<std::size_t>(patch.node[i])] -= patch.force.segment<2>(2 * static_cast<Eigen::Index>(i));
   return forces;
 }
 
@@ -278,6 +284,7 @@ Contacts::~Contacts() = default;
 ContactResult Contacts::evaluate(const Points& x) { return implementation_->evaluate(x); }
 
 void Contacts::accept() {
+  if (implementation_->integrated) implementation_->integrated->accept();
   implementation_->accepted = implementation_->trial;
   implementation_->initial = false;
 }

@@ -60,11 +60,24 @@ struct LengthElement {
   Eigen::Matrix<double, size, size> tangent;  ///< of `force` and, by the length, of the contact's own forces
 };
 
+/// One body's segments against another, where contact is an integral: all nodes that it depends on together.
+struct ContactPatch {
+  std::vector<int> node;      ///< in the list of all outline nodes
+  Eigen::VectorXd force;      ///< [2 nodes] residual, N/m
+  Eigen::MatrixXd tangent;    ///< [2 nodes x 2 nodes] of `force`, unsymmetric where it slips
+  std::array<int, 2> body{};  ///< whose segments, against whose outline: numbers of outlines
+  double deepest = 0;         ///< penetration of a Gauss point, m
+  double depth = 0;           ///< the same over the master's longest segment
+  double compression = 0;     ///< as of ContactElement
+};
+
 struct ContactResult {
   std::vector<ContactElement> elements;
   std::vector<LengthElement> lengths;
-  double stored = 0;      ///< J/m
-  double dissipated = 0;  ///< from the last accepted state to this one, J/m
+  std::vector<ContactPatch> patches;  ///< in place of both where contact is an integral
+  double stored = 0;                  ///< J/m
+  double dissipated = 0;              ///< from the last accepted state to this one, J/m
+  std::size_t count() const { return elements.size() + patches.size(); }
 };
 
 /// Contact forces on the outline nodes, [nodes], N/m.
@@ -74,8 +87,9 @@ Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 /// own periodic images (docs/method.md 4).
 class Contacts {
  public:
-  /// Throws InputError for what this solver does not have (lengths of the present outline, self-contact, dashpots), for
-  /// a range within which the law does not reach its strength, and for stiffness = "auto" between rigid bodies alone.
+  /// Throws InputError for what this solver does not have (self-contact, dashpots, lengths of the present outline at
+  /// nodes, bonds in an integral), for a range within which the law does not reach its strength, and for stiffness =
+  /// "auto" between rigid bodies alone.
   Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Contacts();
 

@@ -75,7 +75,8 @@ Variable tapered(const Variable& gap, double limit, double strength, const Law& 
   return gap.value > critical ? limit / (law.reach - critical) * (law.reach - gap) : Variable(limit);
 }
 
-/// Largest shear traction.
+}  // namespace
+
 Variable shear_limit(const Law& law, const Variable& gap) {
   const Variable p = pressure(law, gap);
   const Variable frictional = p.value > 0 ? law.friction * p : Variable(0);
@@ -91,6 +92,8 @@ Variable shear_limit(const Law& law, const Variable& gap) {
   }
   return 0;
 }
+
+namespace {
 
 /// Elastic slip that is left of this.
 Variable slide(const Law& law, const Variable& gap, const Variable& trial) {

@@ -61,6 +61,9 @@ struct Response {
 /// `initial`: of the first state, in which bonds are as they are and nothing has moved.
 Response respond(const Law& law, const ContactMemory& memory, double gap, double motion, bool initial);
 
+/// Largest shear traction at a gap within reach, with derivatives, Pa.
+Jet<2> shear_limit(const Law& law, const Jet<2>& gap);
+
 /// Of a node that gets out of touch: what it loses of the energy in shear and in its bond, J/m2. `gap`: of a node that
 /// is still beside the other body; its bond is stretched that far when it tears.
 double parting_loss(const Law& law, const ContactMemory& memory, std::optional<double> gap);

@@ -1,0 +1,132 @@
+#include "reference/contact/integrated_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "core/errors.hpp"
+
+namespace pliant::reference {
+namespace {
+
+/// Gaps at which pressure or the limit of shear has a kink.
+std::vector<double> kinks(const Law& law) {
+  std::vector<double> levels{0};
+  if (law.start > 0) levels.push_back(-law.start);
+  if (law.reach > 0) levels.push_back(law.reach);
+  if (law.kind == ContactLawKind::cohesive) levels.push_back(law.strength / law.kn);
+  return levels;
+}
+
+struct Extent {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  void add(const Vec2& point) { low = low.cwiseMin(point), high = high.cwiseMax(point); }
+};
+
+Extent extent_of(const PresentOutline& outline) {
+  Extent extent;
+  for (int i = 0; i <= outline.count(); ++i) extent.add(outline.node(i));
+  return extent;
+}
+
+Extent extent_of(const PresentOutline& outline, int segment) {
+  Extent extent;
+  extent.add(outline.node(segment));
+  extent.add(outline.node(segment + 1));
+  return extent;
+}
+
+bool are_apart(const Extent& a, const Extent& b, double by) {
+  return (a.low - b.high).maxCoeff() > by || (b.low - a.high).maxCoeff() > by;
+}
+
+}  // namespace
+
+IntegratedContacts::IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines,
+                                       const PairLaws& laws)
+    : outlines_(outlines), laws_(laws), period_(scene.period.value_or(0)) {
+  for (const ContactRule& rule : scene.contacts)
+    if (rule.law == ContactLawKind::cohesive_fatigue)
+      throw InputError(
+          fmt::format("law = \"cohesive-fatigue\" of contacts between \"{}\" and \"{}\" with [contact] "
+                      "quadrature = \"segments\": the reference solver knows \"frictionless\", "
+                      "\"mohr-coulomb\" and \"cohesive\" there",
+                      rule.first, rule.second));
+  for (const ContactOutline& outline : outlines) {
+    const Corners shape(outline);
+    longest_.push_back(shape.longest());
+    lengths_.emplace_back();
+    if (scene.contact.length == ContactLength::reference)
+      for (int i = 0; i < outline.count; ++i) lengths_.back().push_back(shape.length(i));
+  }
+}
+
+ContactResult IntegratedContacts::evaluate(const Points& x) {
+  x_ = x;
+  trial_.clear();
+  ContactResult result;
+  const int count = static_cast<int>(outlines_.size());
+  for (int slave = 0; slave < count; ++slave)
+    for (int master = 0; master < count; ++master)
+      if (laws_.between(slave, master)) meet(slave, master, result);
+  for (const auto& [encounter, slips] : accepted_)
+    for (const auto& [node, slip] : slips) {
+      const auto found = trial_.find(encounter);
+      if (found != trial_.end() && found->second.contains(node)) continue;
+      result.dissipated += lost_slip(*laws_.between(std::get<0>(encounter), std::get<1>(encounter)), slip);
+    }
+  return result;
+}
+
+void IntegratedContacts::accept() {
+  accepted_ = trial_;
+  past_ = x_;
+}
+
+/// All periodic images of the master; a wall goes on and on and is one body.
+void IntegratedContacts::meet(int slave, int master, ContactResult& result) {
+  if (period_ == 0 || outlines_[master].wall) return meet_image({slave, master, 0}, result);
+  const double reach = laws_.between(slave, master)->reach;
+  const Extent a = extent_of({outlines_[slave], x_}), b = extent_of({outlines_[master], x_});
+  const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - reach) / period_)),
+            last = static_cast<int>(std::floor((a.high.x() - b.low.x() + reach) / period_));
+  for (int image = first; image <= last; ++image)
+    if (slave != master || image != 0) meet_image({slave, master, image}, result);
+}
+
+void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& result) {
+  const auto& [slave, master, image] = encounter;
+  const ContactOutline &own = outlines_[slave], &other = outlines_[master];
+  const PresentOutline from(own, x_), to(other, x_), past_from(own, past_), past_to(other, past_);
+  const Law& law = *laws_.between(slave, master);
+  const Vec2 shift(image * period_, 0);
+  PassSetting setting{{from, to, shift, 0, to.count(), kinks(law), law.reach}, law, {}, lengths_[slave], {}};
+  if (!past_.empty()) setting.past.emplace(past_from, past_to);
+  Extent extent = extent_of(to);
+  if (!to.closed()) {  // as many turns as the slave is wide, and one more on either side
+    const Extent wide = extent_of(from);
+    const double turn = to.turn_shift(), middle = (extent.low.x() + extent.high.x()) / 2;
+    const auto [low, high] =
+        std::minmax(std::lround((wide.low.x() - middle) / turn), std::lround((wide.high.x() - middle) / turn));
+    setting.where.first = static_cast<int>(low - 1) * to.count();
+    setting.where.count = static_cast<int>(high - low + 3) * to.count();
+    extent.low.x() = -std::numeric_limits<double>::infinity(), extent.high.x() = -extent.low.x();
+  }
+  extent.low += shift, extent.high += shift;
+  for (int i = 0; i < from.count(); ++i)
+    if (!are_apart(extent_of(from, i), extent, law.reach)) setting.segments.push_back(i);
+  const auto found = accepted_.find(encounter);
+  PassResult pass = integrated_pass(setting, found == accepted_.end() ? NodeSlips{} : found->second);
+  if (pass.patch.node.empty()) return;
+  pass.patch.body = {slave, master};
+  pass.patch.depth = pass.patch.deepest / longest_[master];
+  if (!past_.empty()) pass.patch.compression = 0;
+  result.stored += pass.stored;
+  result.dissipated += pass.dissipated;
+  trial_[encounter] = std::move(pass.slips);
+  result.patches.push_back(std::move(pass.patch));
+}
+
+}  // namespace pliant::reference

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <tuple>
+
+#include "reference/contact/corners.hpp"
+#include "reference/contact/integrated_pass.hpp"
+#include "reference/contact/pair_laws.hpp"
+
+namespace pliant::reference {
+
+/// All contacts of a scene as integrals over segments (docs/method.md 4, "Contact as an integral"), by brute force:
+/// every segment of every body against every segment of every other, and of its own periodic images.
+class IntegratedContacts {
+ public:
+  /// Throws InputError for laws that need a memory at every point.
+  IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws);
+
+  ContactResult evaluate(const Points& x);  ///< as Contacts does
+  void accept();
+
+ private:
+  using Encounter = std::tuple<int, int, int>;  ///< slave, master, image; of walls always 0
+  using Memories = std::map<Encounter, NodeSlips>;
+
+  void meet(int slave, int master, ContactResult& result);
+  void meet_image(const Encounter& encounter, ContactResult& result);
+
+  const std::vector<ContactOutline>& outlines_;
+  const PairLaws& laws_;
+  double period_ = 0;                         ///< m, 0: none
+  std::vector<std::vector<double>> lengths_;  ///< [bodies][segments] that count, m; empty: present ones
+  std::vector<double> longest_;               ///< [bodies], segment, m
+  Memories accepted_, trial_;
+  Points x_, past_;  ///< all outline nodes, now and as last accepted; empty before that
+};
+
+}  // namespace pliant::reference
