@@ -38,6 +38,29 @@ Extent extent_of(const PresentOutline& outline, int segment) {
   return extent;
 }
 
+/// Where the body is; of a wall, whose solid has no end, everywhere.
+Extent solid_of(const PresentOutline& outline, const Vec2& shift) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  if (!outline.closed()) return {Vec2(-far, -far), Vec2(far, far)};
+  Extent extent = extent_of(outline);
+  extent.low += shift, extent.high += shift;
+  return extent;
+}
+
+struct Range {
+  int first, count;
+};
+
+/// Of a wall as many turns as the other is wide, and one more on either side.
+Range segments_beside(const PresentOutline& outline, const Extent& other) {
+  if (outline.closed()) return {0, outline.count()};
+  const Extent one = extent_of(outline);
+  const double turn = outline.turn_shift(), middle = (one.low.x() + one.high.x()) / 2;
+  const auto [low, high] =
+      std::minmax(std::lround((other.low.x() - middle) / turn), std::lround((other.high.x() - middle) / turn));
+  return {static_cast<int>(low - 1) * outline.count(), static_cast<int>(high - low + 3) * outline.count()};
+}
+
 bool are_apart(const Extent& a, const Extent& b, double by) {
   return (a.low - b.high).maxCoeff() > by || (b.low - a.high).maxCoeff() > by;
 }
@@ -85,9 +108,9 @@ void IntegratedContacts::accept() {
   past_ = x_;
 }
 
-/// All periodic images of the master; a wall goes on and on and is one body.
+/// All periodic images of the master. A wall goes on and on and is one body, beside each body where that is.
 void IntegratedContacts::meet(int slave, int master, ContactResult& result) {
-  if (period_ == 0 || outlines_[master].wall) return meet_image({slave, master, 0}, result);
+  if (period_ == 0 || outlines_[slave].wall || outlines_[master].wall) return meet_image({slave, master, 0}, result);
   const double reach = laws_.between(slave, master)->reach;
   const Extent a = extent_of({outlines_[slave], x_}), b = extent_of({outlines_[master], x_});
   const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - reach) / period_)),
@@ -98,24 +121,17 @@ void IntegratedContacts::meet(int slave, int master, ContactResult& result) {
 
 void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& result) {
   const auto& [slave, master, image] = encounter;
-  const ContactOutline &own = outlines_[slave], &other = outlines_[master];
-  const PresentOutline from(own, x_), to(other, x_), past_from(own, past_), past_to(other, past_);
+  const PresentOutline from(outlines_[slave], x_), to(outlines_[master], x_), past_from(outlines_[slave], past_),
+      past_to(outlines_[master], past_);
   const Law& law = *laws_.between(slave, master);
   const Vec2 shift(image * period_, 0);
-  PassSetting setting{{from, to, shift, 0, to.count(), kinks(law), law.reach}, law, {}, lengths_[slave], {}};
+  const Range seen = segments_beside(to, extent_of(from));
+  PassSetting setting{{from, to, shift, seen.first, seen.count, kinks(law), law.reach}, law, {}, lengths_[slave], {}};
   if (!past_.empty()) setting.past.emplace(past_from, past_to);
-  Extent extent = extent_of(to);
-  if (!to.closed()) {  // as many turns as the slave is wide, and one more on either side
-    const Extent wide = extent_of(from);
-    const double turn = to.turn_shift(), middle = (extent.low.x() + extent.high.x()) / 2;
-    const auto [low, high] =
-        std::minmax(std::lround((wide.low.x() - middle) / turn), std::lround((wide.high.x() - middle) / turn));
-    setting.where.first = static_cast<int>(low - 1) * to.count();
-    setting.where.count = static_cast<int>(high - low + 3) * to.count();
-    extent.low.x() = -std::numeric_limits<double>::infinity(), extent.high.x() = -extent.low.x();
-  }
-  extent.low += shift, extent.high += shift;
-  for (int i = 0; i < from.count(); ++i)
+  const Extent extent = solid_of(to, shift);
+  // Of two walls one turn meets the other.
+  const Range own = to.closed() ? segments_beside(from, extent) : Range{0, from.count()};
+  for (int i = own.first; i < own.first + own.count; ++i)
     if (!are_apart(extent_of(from, i), extent, law.reach)) setting.segments.push_back(i);
   const auto found = accepted_.find(encounter);
   PassResult pass = integrated_pass(setting, found == accepted_.end() ? NodeSlips{} : found->second);

@@ -20,6 +20,7 @@ struct Valued {
 /// A sample with what the law says there.
 struct Touch {
   const ContactSample* sample;
+  int segment;             ///< of the slave, counted on
   double weight = 0;       ///< of a point m; of a limit, too
   PointVector stretching;  ///< derivatives of the weight over the weight, 1/m; 0 where reference lengths count
   Response normal;         ///< without shear
@@ -68,9 +69,10 @@ class Pass {
   Touch touch(const ContactSample& sample, int segment) const {
     Touch result{};
     result.sample = &sample;
+    result.segment = segment;
     const bool present = of_.lengths.empty();
     const PresentOutline& slave = of_.where.slave;
-    const double length = present ? slave.length(segment) : of_.lengths[static_cast<std::size_t>(segment)];
+    const double length = present ? slave.length(segment) : of_.lengths[within(segment)];
     result.weight = sample.weight * length / 2;  // one of two passes
     result.stretching.setZero();
     if (present) {
@@ -93,6 +95,11 @@ class Pass {
       result.moved = {moved.value, spread_out(moved.gradient)};
     }
     return result;
+  }
+
+  std::size_t within(int i) const {
+    const int count = of_.where.slave.count();
+    return static_cast<std::size_t>(((i % count) + count) % count);
   }
 
   /// From where the same point of the slave was over the same segment of the master, in that segment's present length.
@@ -172,7 +179,9 @@ class Pass {
     std::map<int, NodeSums> nodes;
     const auto sums_of = [&](const Touch& touch, int end) -> NodeSums& {
       const VectorXd zero = VectorXd::Zero(size());
-      const int node = touch.sample->node[static_cast<std::size_t>(end)];
+      // Where a wall's turns follow each other its nodes are counted on, unless the other is a wall too.
+      const bool counts_on = !of_.where.slave.closed() && of_.where.master.closed();
+      const int number = touch.segment + end, node = counts_on ? number : static_cast<int>(within(number));
       return nodes.try_emplace(node, NodeSums{{0, zero}, {0, zero}, {0, zero}, zero, MatrixXd::Zero(size(), size())})
           .first->second;
     };

@@ -13,7 +13,7 @@ struct NodeSlip {
   double length = 0;  ///< integral of its hat function over what was in touch, m
   double slip = 0;    ///< elastic, m
 };
-using NodeSlips = std::map<int, NodeSlip>;  ///< by numbers in the list of all outline nodes
+using NodeSlips = std::map<int, NodeSlip>;  ///< by nodes of the slave, a wall's counted on
 
 /// Both outlines as last accepted.
 struct PastOutlines {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/contact_pair.hpp"
+#include "reference/contact_crowd.hpp"
 #include "support/figures.hpp"
 
 namespace pliant {
@@ -70,39 +70,6 @@ std::vector<Case> cases() {
           {"cohesive-fatigue, wear", {wearing_bonds()}},
           {"cohesive-fatigue, residual strength", {bonds_with_a_rest()}},
           {"several rules", several_rules()}};
-}
-
-// Discs and a square in a row across the period, on a wall with caps or a flat one, two or three bodies overlapping
-// each other.
-Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool caps) {
-  Scene scene = bare_scene();
-  scene.contacts = rules;
-  scene.materials.push_back({"softer", MaterialLaw::neo_hookean, 1, 0.7, 0.4});
-  scene.period = 4.45;
-  scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
-  const double turn = random.uniform(0, 6), x = random.uniform(-20, 20), y = caps ? 0.99 : 0.79;
-  add_body(scene, polygonal_disc("disc", 1.6, 30, 60), BodyKind::compliant, {x, y}, turn);
-  add_body(scene, outline_shape("square", rectangle(1.3, 1.3, 0.13)), BodyKind::rigid, {x + 1.46, y - 0.13},
-           random.uniform(-0.01, 0.01));
-  add_body(scene, outline_shape("disc", regular(37, 0.8)), BodyKind::rigid, {x + 2.9, y}, -turn);
-  // In the gap above: overlaps the discs, one of them across the period.
-  add_grain(scene, "shape0", BodyKind::compliant, {x - 0.775, y + 1.15}, 2 * turn, "softer");
-  scene.grains.back().size.factors = {0.75};
-  scene.walls = {flat_wall("floor", Wall::Solid::below, caps ? -0.26 : 0.0, 0.15),
-                 flat_wall("lid", Wall::Solid::above, y + 1.745, 0.11)};
-  if (caps) scene.walls[0].caps = Caps{0.9, 4, 0.2, {0, 0.02}, {0.8, 0.5}};
-  return scene;
-}
-
-void stir(ContactRig& rig, Random& random, double size) {
-  const auto by = [&] { return random.uniform(-size, size); };
-  for (std::size_t b = 0; b < rig.model.bodies.size(); ++b) {
-    rig.move(static_cast<int>(b), {by(), by() / 2});
-    if (rig.model.bodies[b].kind == BodyKind::rigid && !rig.model.bodies[b].wall) rig.turn(static_cast<int>(b), by());
-  }
-  for (const Batch& batch : rig.model.batches)
-    for (int i = 0; i < 2 * rig.model.shape_of(batch).nodes(); ++i)
-      for (int lane = 0; lane < batch.count; ++lane) rig.q.compliant[batch.offset + i][lane] += by() / 8;
 }
 
 class Sides {
