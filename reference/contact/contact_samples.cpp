@@ -81,27 +81,39 @@ class Sampler {
     add_fan(part, half, end);
   }
 
-  /// Where a part ends, by the place at which its gap and the next one's are equal, or its gap is at a level. Where a
-  /// segment ends, nothing jumps; nor between the halves of a fan but for the couples of shear, whose derivatives are
-  /// left out: that costs a Newton step.
+  /// Where a part ends: by the place at which its gap and the next one's are equal, or its gap is at a level, or on the
+  /// bisector between the halves of a fan. At the end of a segment nothing jumps.
   void add_limit(const Part& part, const Part& next, double s, double sign) {
+    const bool same = part.nearby == next.nearby, halves = part.nearby.shares_node(next.nearby);
+    if (!same && part.nearby.segment == next.nearby.segment) return;
     ContactSample limit = make(part.nearby, s);
-    const bool same = part.nearby == next.nearby;
-    if (!same && (part.nearby.segment == next.nearby.segment || part.nearby.shares_node(next.nearby))) return;
-    ContactSample other = make(next.nearby, s);
+    limit.weight = sign;
+    const ContactSample other = make(next.nearby, s);
+    std::vector<std::pair<int, Vec2>> by_master;  // derivatives of what is zero at the limit
     Vec2 by_point = limit.at.gap.gradient.head<2>();
+    for (const int end : {0, 1}) {
+      by_master.emplace_back(limit.node[2 + end], limit.at.gap.gradient.segment<2>(2 + 2 * end));
+      if (!same) by_master.emplace_back(other.node[2 + end], -other.at.gap.gradient.segment<2>(2 + 2 * end));
+    }
     if (!same) by_point -= other.at.gap.gradient.head<2>();
+    if (halves && !same) by_point = bisector(part.nearby.node(), stretch_.at(s), by_master);
     const double slope = by_point.dot(stretch_.along());
     if (!(std::abs(slope) > 1e-12 * stretch_.along().norm())) return;  // they touch, or are one line
-    const auto moves = [&](int node, const Vec2& gradient) { limit.moves.emplace_back(node, -gradient / slope); };
-    moves(limit.node[0], (1 - s) * by_point);
-    moves(limit.node[1], s * by_point);
-    for (const int end : {0, 1}) {
-      moves(limit.node[2 + end], limit.at.gap.gradient.segment<2>(2 + 2 * end));
-      if (!same) moves(other.node[2 + end], -other.at.gap.gradient.segment<2>(2 + 2 * end));
-    }
-    limit.weight = sign;
+    limit.moves = {{limit.node[0], -(1 - s) / slope * by_point}, {limit.node[1], -s / slope * by_point}};
+    for (const auto& [node, by] : by_master) limit.moves.emplace_back(node, -by / slope);
     result_.limits.push_back(std::move(limit));
+  }
+
+  /// Derivatives of a point's distance past the bisector of a node, by the point and by the node and its neighbours.
+  Vec2 bisector(int node, const Vec2& point, std::vector<std::pair<int, Vec2>>& by_master) const {
+    const PresentOutline& master = of_.master;
+    const Vec2 from = point - master.node(node), before = master.tangent(node - 1), after = master.tangent(node);
+    const Vec2 turning_before = (from - from.dot(before) * before) / master.length(node - 1),
+               turning_after = (from - from.dot(after) * after) / master.length(node);
+    by_master = {{master.index(node - 1), -turning_before},
+                 {master.index(node), turning_before - turning_after - before - after},
+                 {master.index(node + 1), turning_after}};
+    return before + after;
   }
 
   const Sampling& of_;

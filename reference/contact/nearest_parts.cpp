@@ -135,7 +135,11 @@ void add_levels(const PresentOutline& master, const Stretch& stretch, const Part
   const Distances of(master, stretch);
   const Parabola height = of.height(part.nearby.segment);
   for (const double level : levels)
-    if (part.nearby.end == 0) {
+    if (part.nearby.end != 0 && level == 0) {
+      // A node between segments of one line may be passed right through.
+      const Parabola squared = of.squared(part.nearby.node());
+      add_root(squared.c1, 2 * squared.c2, cuts);
+    } else if (part.nearby.end == 0) {
       add_root(height.c0 - level, height.c1, cuts);
     } else if ((height.c0 + height.c1 * part.middle()) * level > 0) {
       Parabola squared = of.squared(part.nearby.node());
