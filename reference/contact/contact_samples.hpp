@@ -25,9 +25,8 @@ struct ContactSample {
   Eigen::Matrix<double, 6, 8> spread() const;
 };
 
-/// What integrals over one stretch are made of: integral f ds = sum of weight x f over `points`, and its derivative has,
-/// beside theirs, the sum over `limits` of weight x f x derivative of s. Limits at which no integrand jumps are left
-/// out.
+/// What integrals over one stretch are made of: integral f ds = sum of weight x f over `points`. Its derivative has,
+/// beside theirs, the sum over `limits` of weight x f x derivative of s: of those at which an integrand jumps.
 struct ContactSamples {
   std::vector<ContactSample> points, limits;
 };

@@ -128,17 +128,17 @@ struct Comparison {
   }
 
   /// INDEPENDENT: two programs. Tolerance: that of verify/frozen_states; energies, of order 0.1, the same.
-  void expect_same(const char* name) {
+  void expect_same(const std::string& name) {
     LargestFigures figures;
-    figures.note(std::string("integrated contact: ") + name, *std::ranges::max_element(nodes));
+    figures.note("integrated contact: " + name, *std::ranges::max_element(nodes));
     EXPECT_LE(*std::ranges::max_element(nodes), 1e-11);
     EXPECT_LE(stored, 1e-12);
     EXPECT_LE(dissipated, 1e-12);
   }
-  /// INDEPENDENT: the same two. The engine has few Gauss points in fans: three are off by rho^-6 of what a fan carries,
-  /// rho + 1/rho twice the distances of a part's ends from the node over the part's length, 3e-3 where one is five
-  /// times the other. `fans`: their share in nine of ten states; few bodies touch by little more than a fan. The couples
-  /// of shear in fans go to one segment of the node or the other, which nodes feel and bodies do not.
+  /// INDEPENDENT: the same two. The engine has few Gauss points in fans: three are off by rho^-6 of what a fan
+  /// carries, rho + 1/rho twice the distances of a part's ends from the node over the part's length: 3e-3 where one
+  /// distance is five times the other. `fans`: their share in nine of ten states, as few bodies touch by little more.
+  /// The couples of shear in fans go to one segment of the node or the other, which nodes feel and bodies do not.
   void expect_close(double fans) {
     std::ranges::sort(bodies);
     EXPECT_LE(bodies[bodies.size() * 9 / 10], fans * in_fans);
@@ -163,7 +163,7 @@ TEST(IntegratedContact, EngineAgreesOnRandomOutlines) {
   for (const auto& [name, rule] : touching_laws()) {
     SCOPED_TRACE(name);
     Comparison all = compare_random_outlines(rule);
-    all.expect_same(name);
+    all.expect_same(std::string(name) + ", random outlines");
     EXPECT_EQ(all.lost > 1e-6, rule.law != ContactLawKind::frictionless);
   }
 }
@@ -192,7 +192,7 @@ TEST(IntegratedContact, EngineAgreesInACrowd) {
   };
   for (const auto& [name, rule] : touching_laws()) {
     SCOPED_TRACE(name);
-    compare(rule).expect_same(name);
+    compare(rule).expect_same(std::string(name) + ", a crowd");
   }
   for (const auto& [name, rule] : reaching_laws()) {
     SCOPED_TRACE(name);

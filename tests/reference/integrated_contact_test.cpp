@@ -121,7 +121,7 @@ TEST(ReferenceIntegratedContact, TangentIsTheDerivativeOfForces) {
         pair.show();
         pair.evaluate();
         pair.contacts.accept();
-        for (Vec2& p : pair.x) p += Vec2(random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3));
+        for (Vec2& p : pair.x) p += Vec2{random.uniform(-1e-3, 1e-3), random.uniform(-1e-3, 1e-3)};
         const Eigen::MatrixXd tangent = pair.tangent();
         touching += !tangent.isZero(0);
         for (Eigen::Index i = 0; i < tangent.cols(); ++i)
