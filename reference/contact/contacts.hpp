@@ -83,13 +83,13 @@ struct ContactResult {
 /// Contact forces on the outline nodes, [nodes], N/m.
 Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 
-/// All contacts of a scene by brute force: every node of every body against every segment of every other, and of its
-/// own periodic images (docs/method.md 4).
+/// All contacts of a scene by brute force: every node of every body, or every segment where contact is an integral,
+/// against every segment of every other, and of its own periodic images (docs/method.md 4).
 class Contacts {
  public:
   /// Throws InputError for what this solver does not have (self-contact, dashpots, lengths of the present outline at
-  /// nodes, bonds in an integral), for a range within which the law does not reach its strength, and for stiffness =
-  /// "auto" between rigid bodies alone.
+  /// nodes), for a range within which the law does not reach its strength, and for stiffness = "auto" between rigid
+  /// bodies alone.
   Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Contacts();
 

@@ -4,10 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
-#include "core/errors.hpp"
-
 namespace pliant::reference {
 namespace {
 
@@ -70,13 +66,6 @@ bool are_apart(const Extent& a, const Extent& b, double by) {
 IntegratedContacts::IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines,
                                        const PairLaws& laws)
     : outlines_(outlines), laws_(laws), period_(scene.period.value_or(0)) {
-  for (const ContactRule& rule : scene.contacts)
-    if (rule.law == ContactLawKind::cohesive_fatigue)
-      throw InputError(
-          fmt::format("law = \"cohesive-fatigue\" of contacts between \"{}\" and \"{}\" with [contact] "
-                      "quadrature = \"segments\": the reference solver knows \"frictionless\", "
-                      "\"mohr-coulomb\" and \"cohesive\" there",
-                      rule.first, rule.second));
   for (const ContactOutline& outline : outlines) {
     const Corners shape(outline);
     longest_.push_back(shape.longest());

@@ -13,7 +13,7 @@ namespace pliant::reference {
 /// every segment of every body against every segment of every other, and of its own periodic images.
 class IntegratedContacts {
  public:
-  /// Throws InputError for laws that need a memory at every point.
+  /// Of laws without bonds: a scene that asks for those is refused when it is read.
   IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws);
 
   ContactResult evaluate(const Points& x);  ///< as Contacts does

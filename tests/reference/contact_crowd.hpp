@@ -30,6 +30,23 @@ inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool c
   return scene;
 }
 
+/// A disc, or a block whose floor has more nodes beneath it than the period, pressed against its image.
+inline Scene lone_body(Random& random, BodyKind kind, const ContactRule& rule) {
+  Scene scene = bare_scene();
+  scene.contacts = {rule};
+  scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
+  const double x = random.uniform(-20, 20);
+  if (random.below(2) == 0) {
+    scene.period = 1.57;
+    add_body(scene, polygonal_disc("", 1.6, 30, 60), kind, {x, 0.79}, random.uniform(0, 6));
+  } else {
+    scene.period = 1.29;
+    add_body(scene, outline_shape("", rectangle(1.3, 0.65, 0.13), 70), kind, {x, 0.32}, random.uniform(-0.01, 0.01));
+  }
+  scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.1)};
+  return scene;
+}
+
 /// Moves and deforms all bodies by that much, m.
 inline void stir(ContactRig& rig, Random& random, double size) {
   const auto by = [&] { return random.uniform(-size, size); };

@@ -200,6 +200,25 @@ TEST(IntegratedContact, EngineAgreesInACrowd) {
   }
 }
 
+// A disc or a block against its own image, the block wider than the period on its floor. Deformed, a block has
+// re-entrant nodes on its faces, and couples of shear in their fans.
+TEST(IntegratedContact, EngineAgreesOnOwnImages) {
+  const auto compare = [](const ContactRule& rule) {
+    Comparison all;
+    for (int sample = 0; sample < 20; ++sample) {
+      Random random(sample + 60);
+      const bool deforms = rule.law == ContactLawKind::frictionless && sample % 2 == 0;
+      BothIntegrals both(integrated(lone_body(random, deforms ? BodyKind::compliant : BodyKind::rigid, rule)));
+      all.add_states(both, random);
+    }
+    return all;
+  };
+  for (const auto& [name, rule] : touching_laws()) {
+    SCOPED_TRACE(name);
+    compare(rule).expect_same(std::string(name) + ", own images");
+  }
+}
+
 // A tip in a re-entrant corner: most of what touches is in its fan. Without smoothing p n is linear there.
 TEST(IntegratedContact, EngineAgreesInANotch) {
   const auto compare = [](const ContactRule& rule) {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/both.hpp"
-#include "reference/contact_pair.hpp"
+#include "reference/contact_crowd.hpp"
 #include "support/figures.hpp"
 #include "support/simulations.hpp"
 
@@ -11,24 +11,7 @@ namespace {
 
 using namespace testing;
 
-/// A disc, or a block whose floor has more nodes beneath it than the period, pressed against its image.
-Scene lone_body(Random& random, BodyKind kind, const ContactRule& rule) {
-  Scene scene = bare_scene();
-  scene.contacts = {rule};
-  scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
-  const double x = random.uniform(-20, 20);
-  if (random.below(2) == 0) {
-    scene.period = 1.57;
-    add_body(scene, polygonal_disc("", 1.6, 30, 60), kind, {x, 0.79}, random.uniform(0, 6));
-  } else {
-    scene.period = 1.29;
-    add_body(scene, outline_shape("", rectangle(1.3, 0.65, 0.13), 70), kind, {x, 0.32}, random.uniform(-0.01, 0.01));
-  }
-  scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.1)};
-  return scene;
-}
-
-void stir(ContactRig& rig, Random& random) {
+void stir_lone(ContactRig& rig, Random& random) {
   const auto by = [&] { return random.uniform(-0.01, 0.01); };
   rig.move(0, {by(), by()});
   if (rig.model.bodies[0].kind == BodyKind::rigid) rig.turn(0, by());
@@ -83,7 +66,7 @@ TEST(OwnImageAgreement, forces_of_all_laws) {
       rig.refresh();
       compare(rig, contacts, all);
       for (int state = 0; state < 4; ++state) {
-        stir(rig, random);
+        stir_lone(rig, random);
         compare(rig, contacts, all);
       }
     }

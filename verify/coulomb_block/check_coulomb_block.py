@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -19,6 +22,7 @@ ROUNDING = 1e-9  # positions near 1 with 2e-16 of rounding, stiffness 1000, forc
 
 STEPS = [0.01, 0.005, 0.0025]
 FINEST = 0.00125
+QUADRATURES = ["nodes", "segments"]
 TIMES = 0.08 * np.arange(1, 101)
 POSITIONS = Quantity("positions", ["block.position_x", "corner.position_x"])
 DISSIPATION = Quantity("dissipation", ["energy.dissipated"])
@@ -64,28 +68,39 @@ def test_driven_block_follows_the_closed_form(driven: dict[str, Run], solver: st
                RESIDUE + ROUNDING, "mean friction force times slipped way, step by step")
 
 
+def study_of(quadrature: str) -> Study:
+    return run_study(CASE, f"pulled_{quadrature}", STEPS, FINEST, TIMES, template="pulled.toml", quadrature=quadrature)
+
+
+def title_of(quadrature: str) -> str:
+    return "pulled" if quadrature == "nodes" else "pulled, integrated"
+
+
 @pytest.fixture(scope="module")
-def pulled() -> Study:
-    return run_study(CASE, "pulled", STEPS, FINEST, TIMES, template="pulled.toml")
+def pulled() -> Callable[[str], Study]:
+    return cache(study_of)
 
 
+@pytest.mark.parametrize("quadrature", QUADRATURES)
 @pytest.mark.parametrize("quantity", [POSITIONS, DISSIPATION, FORCE], ids=lambda q: q.name)
-def test_pulled_block_converges(pulled: Study, quantity: Quantity) -> None:
-    check_differences(CASE, "pulled", pulled, quantity, 1.5, 0.8,
+def test_pulled_block_converges(pulled: Callable[[str], Study], quantity: Quantity, quadrature: str) -> None:
+    check_differences(CASE, title_of(quadrature), pulled(quadrature), quantity, 1.5, 0.8,
                       "stick and slip begin within steps: between first and second order; 0.3 for their scatter")
 
 
-def test_pulled_block_slips_at_the_friction_angle(pulled: Study) -> None:
+@pytest.mark.parametrize("quadrature", QUADRATURES)
+def test_pulled_block_slips_at_the_friction_angle(pulled: Callable[[str], Study], quadrature: str) -> None:
     """Over the time of slip in one direction. Normals of the deformed block turn by some 1e-4 of their own."""
-    for name, run in pulled.finest_runs().items():
+    for name, run in pulled(quadrature).finest_runs().items():
         times = run.times("force.force_x")
         slips = (times > 4.0) & (times < 5.5)
         ratio = np.abs(run.probe("force.force_x")[slips] / run.probe("force.force_y")[slips])
-        CASE.check(Label.EXACT, f"pulled, {name}: friction factor in slip", ratio.mean(), FRICTION, 1e-3 * FRICTION,
+        CASE.check(Label.EXACT, f"{title_of(quadrature)}, {name}: friction factor in slip", ratio.mean(), FRICTION, 1e-3 * FRICTION,
                    "Coulomb; normals turn by a slope of the face of 1e-3 at most")
 
 
-def test_picture(driven: dict[str, Run], pulled: Study) -> None:
+def test_picture(driven: dict[str, Run], pulled: Callable[[str], Study]) -> None:
+    nodes = pulled("nodes")
     figure, axes = panels(3, "Block with Coulomb friction", across=True)
     for (name, run), colour, style in zip(driven.items(), COLOURS, ("-", "--")):
         after = run.times("clock.force_x") >= SETTLED
@@ -95,9 +110,9 @@ def test_picture(driven: dict[str, Run], pulled: Study) -> None:
     axes[0].set_title("driven rigid block, weight 1 N/m", fontsize=10, loc="left")
     axes[0].set_xlabel("position [mm]")
     axes[0].set_ylabel("force on the floor [N/m]")
-    draw_both(axes[1], pulled.finest_runs(), "force.force_x", 1e3)
-    limit = FRICTION * np.abs(pulled.engine[FINEST].probe("force.force_y")) * 1e3
-    times = pulled.engine[FINEST].times("force.force_y")
+    draw_both(axes[1], nodes.finest_runs(), "force.force_x", 1e3)
+    limit = FRICTION * np.abs(nodes.engine[FINEST].probe("force.force_y")) * 1e3
+    times = nodes.engine[FINEST].times("force.force_y")
     axes[1].plot(times, limit, ":", color=COLOURS[6], linewidth=1.0, label="friction x normal force")
     axes[1].plot(times, -limit, ":", color=COLOURS[6], linewidth=1.0)
     axes[1].set_title("pulled compliant block", fontsize=10, loc="left")
@@ -105,5 +120,5 @@ def test_picture(driven: dict[str, Run], pulled: Study) -> None:
     axes[1].set_ylabel("force on the floor [mN/m]")
     for panel in axes[:2]:
         legend(panel)
-    draw_differences(axes[2], pulled, [POSITIONS, DISSIPATION, FORCE])
+    draw_differences(axes[2], nodes, [POSITIONS, DISSIPATION, FORCE])
     save(CASE, figure, "coulomb_block")
