@@ -84,7 +84,8 @@ Nearby nearest(const PresentOutline& master, const std::vector<int>& segments, c
     if (const double distance = distance_to(master, i, point); distance < least) best = i, least = distance;
   const double along = (point - master.node(best)).dot(master.tangent(best));
   if (along >= 0 && along <= master.length(best)) return {best, 0};
-  const int node = along < 0 ? best : best + 1;
+  int node = along < 0 ? best : best + 1;
+  if (master.closed() && node == master.count()) node = 0;  // one number for each
   const Vec2 bisected = master.tangent(node - 1) + master.tangent(node);
   return (point - master.node(node)).dot(bisected) >= 0 ? Nearby{node, -1} : Nearby{node - 1, 1};
 }

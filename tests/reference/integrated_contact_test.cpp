@@ -161,7 +161,7 @@ struct ManyPoints {
             inside = !inside;
         }
         const double gap = inside ? -from.norm() : from.norm();
-        if (gap >= range) continue;
+        if (gap >= range || gap == 0) continue;
         const Vec2 force = 0.5 * along.norm() / parts * pressure(gap) / gap * from;
         on_slave[i] += (1 - s) * force, on_slave[after] += s * force;
         on_master[nearest] -= (1 - share) * force, on_master[(nearest + 1) % master.size()] -= share * force;
@@ -191,6 +191,34 @@ TEST(ReferenceIntegratedContact, ForcesAreSumsOverManyPoints) {
     for (std::size_t i = 0; i < forces.size(); ++i)
       EXPECT_LE((forces[i] - expected[i]).norm(), 4 * kn * depth * part / 4) << i;
   }
+}
+
+// INDEPENDENT: the same third program. Faces that are parallel and nodes on each other's normals, where distances are
+// equal along whole parts or nowhere, as of blocks in lattices.
+TEST(ReferenceIntegratedContact, FacesThatAreParallel) {
+  constexpr double deep = 0.02, segment = 3;
+  const ManyPoints many{0, 1e-3, 20000};
+  const Points corner{{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};  // re-entrant at (1, 1)
+  for (const double turned : {0.0, 0.37})
+    for (const double width : {0.05, 1.0, 2.0 + deep})
+      for (const double beside : {-deep, 0.0, 0.5}) {
+        SCOPED_TRACE(std::to_string(turned) + " " + std::to_string(width) + " " + std::to_string(beside));
+        Scene scene = integrated(frictionless(kn));
+        add_body(scene, outline_shape("corner", corner), BodyKind::rigid, {0, 0}, turned);
+        const Points block{{0, 0}, {width, 0}, {width, 1.5}, {0, 1.5}};
+        add_body(scene, outline_shape("block", block), BodyKind::rigid, {0, 0}, turned);
+        Pair pair(scene);
+        const Vec2 along = (pair.rig.node(0, 1) - pair.rig.node(0, 0)) / 3, up(-along.y(), along.x());
+        pair.rig.move(1, pair.rig.node(0, 3) + beside * along - deep * up - pair.rig.node(1, 0));
+        pair.show();
+        const Points forces = forces_on_nodes(pair.evaluate(), pair.x.size());
+        Points expected(pair.x.size(), Vec2(0, 0));
+        Vec2 *first = expected.data(), *second = first + pair.rig.count(0);
+        many.add_pass(pair.rig.outline(0), pair.rig.outline(1), first, second);
+        many.add_pass(pair.rig.outline(1), pair.rig.outline(0), second, first);
+        for (std::size_t i = 0; i < forces.size(); ++i)
+          EXPECT_LE((forces[i] - expected[i]).norm(), 4 * kn * segment * segment / many.parts / 4) << i;
+      }
 }
 
 // EXACT: a block of unit width presses on a longer bar over the length that they share; at each end the bar's face is
