@@ -10,15 +10,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 /// What leaves the outline by less counts as inside: a path around the corner there is longer by the square of that.
-constexpr double tolerance = 1e-9;
+constexpr double allowance = 1e-9;
 
 /// Shares of the way at which a segment may pass the outline: crossings with an edge, and its begin if that is near.
 void add_passages(std::vector<double>& shares, const Vec2& from, const Vec2& to, const Vec2& a, const Vec2& b) {
   const Vec2 way = to - from, edge = b - a;
-  if (square_distance_to_edge(from, to, a) < tolerance * tolerance)
+  if (square_distance_to_edge(from, to, a) < allowance * allowance)
     shares.push_back((a - from).dot(way) / way.squaredNorm());
   const double determinant = pliant::cross(way, edge);
-  if (std::abs(determinant) <= tolerance * way.norm() * edge.norm()) return;
+  if (std::abs(determinant) <= allowance * way.norm() * edge.norm()) return;
   const double along_edge = pliant::cross(a - from, way) / determinant;
   if (along_edge >= 0 && along_edge <= 1) shares.push_back(pliant::cross(a - from, edge) / determinant);
 }
@@ -29,7 +29,7 @@ BodyDistances::BodyDistances(Points outline) : outline_(std::move(outline)) {
   const std::size_t n = outline_.size();
   for (std::size_t k = 0; k < n; ++k) {
     const Vec2 before = outline_[k] - outline_[(k + n - 1) % n], after = outline_[(k + 1) % n] - outline_[k];
-    if (pliant::cross(before, after) < -tolerance * before.norm() * after.norm()) corners_.push_back(outline_[k]);
+    if (pliant::cross(before, after) < -allowance * before.norm() * after.norm()) corners_.push_back(outline_[k]);
   }
   const std::size_t count = corners_.size();
   between_.assign(count, std::vector<double>(count, infinity));
@@ -43,19 +43,19 @@ BodyDistances::BodyDistances(Points outline) : outline_(std::move(outline)) {
 }
 
 bool BodyDistances::holds(const Vec2& x) const {
-  return is_inside(outline_, x) || distance_to_outline(outline_, x) < tolerance;
+  return is_inside(outline_, x) || distance_to_outline(outline_, x) < allowance;
 }
 
 bool BodyDistances::sees(const Vec2& from, const Vec2& to) const {
   const double length = (to - from).norm();
-  if (length < tolerance) return true;
+  if (length < allowance) return true;
   std::vector<double> shares{0, 1};
   for (std::size_t k = 0; k < outline_.size(); ++k)
     add_passages(shares, from, to, outline_[k], outline_[(k + 1) % outline_.size()]);
   std::erase_if(shares, [](double share) { return share < 0 || share > 1; });
   std::sort(shares.begin(), shares.end());
   for (std::size_t piece = 1; piece < shares.size(); ++piece) {
-    if ((shares[piece] - shares[piece - 1]) * length < tolerance) continue;
+    if ((shares[piece] - shares[piece - 1]) * length < allowance) continue;
     if (!holds(from + 0.5 * (shares[piece] + shares[piece - 1]) * (to - from))) return false;
   }
   return true;

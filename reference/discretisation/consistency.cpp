@@ -15,7 +15,7 @@ namespace {
 
 using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;  ///< the two components of vectors, which never mix
 
-constexpr double tolerance = 1e-11;
+constexpr double consistent_to = 1e-11;
 
 /// Right side of (2) [nodes]: s_k is half the vector sum of the two outward segment vectors at outline node k.
 Columns outline_integrals(const Points& nodes, const std::vector<Row>& outline) {
@@ -139,11 +139,11 @@ void make_consistent(std::vector<Point>& points, const Points& nodes, const std:
   for (Point& point : points)
     for (Vec2& b : point.gradient) b += change.row(next++).transpose();
   const double error = consistency_error(points, nodes, outline);
-  if (!(error < tolerance))
+  if (!(error < consistent_to))
     throw InputError(
         fmt::format("no consistent gradients on this mesh: they miss the conditions by {:.1e}, allowed {:.0e}; use a "
                     "larger `support`, more nodes, fewer outline_nodes, or the recipe \"es-t3\"",
-                    error, tolerance));
+                    error, consistent_to));
 }
 
 }  // namespace pliant::reference

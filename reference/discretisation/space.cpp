@@ -19,7 +19,7 @@ namespace pliant::reference {
 namespace {
 
 double area(const FieldMesh& mesh, const Triangle& t) {
-  return cross(mesh.nodes[t[1]] - mesh.nodes[t[0]], mesh.nodes[t[2]] - mesh.nodes[t[0]]) / 2;
+  return pliant::cross(mesh.nodes[t[1]] - mesh.nodes[t[0]], mesh.nodes[t[2]] - mesh.nodes[t[0]]) / 2;
 }
 
 Vec2 place(const FieldMesh& mesh, const Triangle& t, const Eigen::Vector3d& barycentric) {
