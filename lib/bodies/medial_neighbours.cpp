@@ -31,6 +31,9 @@ class Neighbourhood {
   std::vector<int> of_segment(int i) const {
     return nearer(points_below(i), i, [&](int offset) { return is_near(offset, -1, 1); });
   }
+  std::array<bool, 2> has_shorter_next(int i) const {
+    return {is_shorter(segment(i - 1), segment(i)), is_shorter(segment(i + 1), segment(i))};
+  }
   /// Of a node: from its number.
   std::vector<int> of_node(int i) const {
     return nearer(points_below_node(i), i, [&](int offset) { return is_near(offset, -1, 0); });
@@ -42,6 +45,11 @@ class Neighbourhood {
     const Vec2 from = shape_.points[i - turn * n] + Vec2(turn * shape_.turn_shift, 0),
                to = shape_.points[i + 1 - next_turn * n] + Vec2(next_turn * shape_.turn_shift, 0);
     return {from, (to - from).normalized(), 0.5 * (from + to), (to - from).norm()};
+  }
+  /// By a sample or more. A bisector holds as far as the other segment is long: there feet on both are as far from the
+  /// node.
+  static bool is_shorter(const OutlineSegment& next, const OutlineSegment& s) {
+    return next.length < (1 - 1.0 / samples) * s.length;
   }
   /// A point inside, and how deep it is as seen from where it was put.
   struct Inside {
@@ -87,8 +95,11 @@ class Neighbourhood {
       const auto stop_at = [&](double at_foot, double inward) {
         if (inward < 0) depth = std::min(depth, std::max(0.0, at_foot) / -inward);
       };
-      stop_at((foot - s.start).dot(at_start), -s.outward().dot(at_start));
-      stop_at((after.start - foot).dot(at_end), s.outward().dot(at_end));
+      const double from_start = s.length * u / samples, to_end = s.length - from_start;
+      if (!is_shorter(before, s) || from_start <= before.length)
+        stop_at((foot - s.start).dot(at_start), -s.outward().dot(at_start));
+      if (!is_shorter(after, s) || to_end <= after.length)
+        stop_at((after.start - foot).dot(at_end), s.outward().dot(at_end));
       points.push_back({foot - depth * s.outward(), depth});
     }
     return points;
@@ -137,6 +148,7 @@ void find_medial_neighbours(OutlineShape& shape, double depth) {
       result.start.push_back(static_cast<int>(result.offset.size()));
     }
   };
+  for (int i = 0; i < shape.count; ++i) shape.shorter_next.push_back(neighbourhood.has_shorter_next(i));
   collect(shape.medial, [&](int i) { return neighbourhood.of_segment(i); });
   collect(shape.node_medial, [&](int i) { return neighbourhood.of_node(i); });
 }

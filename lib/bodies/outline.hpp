@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <numbers>
 #include <span>
 #include <vector>
@@ -29,6 +30,8 @@ struct OutlineShape {
   double longest = 0;                    ///< of them, m
 
   MedialNeighbours medial, node_medial;  ///< of segments and of nodes, as deep as contact sees
+  /// [count] of each segment, whether that before it, and that behind it, is shorter: see medial_neighbours.hpp.
+  std::vector<std::array<bool, 2>> shorter_next;
 
   /// Nodes at which the outline turns to the left by more than `corner_turn`: where two faces meet.
   std::vector<bool> corner;  ///< [count]; empty: there is none

@@ -51,13 +51,21 @@ class MasterWindow {
   int number(int row) const {
     return first_number_ + row - turn_of(first_number_ + row, outline_count_) * outline_count_;
   }
-  bool has_medial_neighbours() const { return !shape_->medial.offset.empty(); }
-  /// Row of the k-th medial neighbour of a row's segment; -1: there is none, or it is not in the window.
-  int medial_neighbour(int row, std::size_t k) const { return neighbour(shape_->medial, row, k); }
-  std::size_t medial_neighbours(int row) const { return shape_->medial.of(number(row)).size(); }
-  /// The same of the node at a row's start.
-  int medial_neighbour_of_node(int row, std::size_t k) const { return neighbour(shape_->node_medial, row, k); }
-  std::size_t medial_neighbours_of_node(int row) const { return shape_->node_medial.of(number(row)).size(); }
+  bool has_medial_neighbours() const { return !shape_->medial.offset.empty() || !shape_->node_medial.offset.empty(); }
+  /// How many others points below a row's segment may be nearer to, but for what bisectors tell: its medial neighbours
+  /// and, where it has some, first of all the segments before it and behind it, if these are shorter.
+  std::size_t rivals(int row) const {
+    const std::size_t medial = shape_->medial.of(number(row)).size();
+    return medial == 0 ? 0 : medial + 2;
+  }
+  /// Row of the k-th of these; -1: it is not in the window.
+  int rival(int row, std::size_t k) const {
+    if (k < 2) return shape_->shorter_next[number(row)][k] ? row_at(row, k == 0 ? -1 : 1) : -1;
+    return row_at(row, shape_->medial.of(number(row))[k - 2]);
+  }
+  /// The same of the node at a row's start: medial neighbours alone.
+  std::size_t rivals_of_node(int row) const { return shape_->node_medial.of(number(row)).size(); }
+  int rival_of_node(int row, std::size_t k) const { return row_at(row, shape_->node_medial.of(number(row))[k]); }
   /// The same of eight rows.
   Lanes numbers(Lanes rows) const {
     const double n = outline_count_;
@@ -66,10 +74,9 @@ class MasterWindow {
   }
 
  private:
-  int neighbour(const MedialNeighbours& all, int row, std::size_t k) const {
-    const std::span<const int> offsets = all.of(number(row));
-    if (k >= offsets.size()) return -1;
-    int other = row + offsets[k];
+  /// So many segments on; -1: not in the window.
+  int row_at(int row, int offset) const {
+    int other = row + offset;
     if (shape_->turn_shift == 0 && (other < 0 || other >= count_))
       other += other < 0 ? outline_count_ : -outline_count_;
     return other >= 0 && other < count_ ? other : -1;

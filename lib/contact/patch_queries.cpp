@@ -11,6 +11,7 @@
 namespace pliant {
 
 double touching_length(const PatchView& view) {
+  if (view.patch.is_integrated()) return integrated_length(view);
   Lanes length{};
   for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & at.p.hit & (at.p.gap < 0.0);
@@ -40,7 +41,7 @@ void start_records(const PatchView& view, ContactHistory& history) {
 }
 
 bool overlaps(const PatchView& view) {
-  if (view.patch.is_integrated()) return integrated_length(view) > 0;
+  if (view.patch.is_integrated()) return touching_length(view) > 0;
   bool found = false;
   for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
     const Projection& p = at.p;

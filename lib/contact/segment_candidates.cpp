@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "contact/segment_cuts.hpp"
 
 namespace pliant {
 namespace {
@@ -17,10 +20,8 @@ Bounds8 bounds(double c_x, double c_y, double c, Lanes x0, Lanes y0, Lanes x1, L
   return {min(at0, at1), max(at0, at1)};
 }
 
-/// The largest distance from a node at which its fan counts; 0: it has none. A turn at the level of rounding makes a
-/// fan of no width.
+/// The largest distance from a node at which its fan counts; 0: it has none.
 double fan_radius(const MasterSegment& after, const GapRanges& ranges) {
-  constexpr double least_turn = 1e-12;
   const double turn = after.bisector_x * after.tangent_y - after.bisector_y * after.tangent_x;
   if (std::abs(turn) < least_turn) return 0;
   return turn > 0 ? ranges.reach : ranges.deepest();
@@ -36,29 +37,29 @@ void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window,
   const MasterSegment start = window[rows.begin], end = window[rows.end()];
   const double farthest = std::max(ranges.deepest(), ranges.reach);  // below a segment's line, also in a fan outside
   const bool whole = start.x == end.x && start.y == end.y;
-  for (int i = 0; i < slaves.segments; i += lane_count) {
-    const LaneBits valid = first_lanes(slaves.segments - i);
-    const Lanes x0 = load(x + i), y0 = load(y + i), x1 = load(x + i + 1), y1 = load(y + i + 1);
-    LaneBits beyond = valid;  // the end of the row before
-    for (int row = rows.begin; row <= rows.end(); ++row) {
-      const MasterSegment m = window[row];
-      const double tx = m.tangent_x, ty = m.tangent_y;
+  past_end_.assign(static_cast<std::size_t>(padded(slaves.segments) / lane_count), ~LaneBits{});
+  for (int row = rows.begin; row <= rows.end(); ++row) {
+    const MasterSegment m = window[row];
+    const double tx = m.tangent_x, ty = m.tangent_y, margin = 1e-9 * m.length;  // far more than rounding
+    // The first node may have the fan of the last.
+    const double radius = row == rows.end() && whole ? 0 : fan_radius(m, ranges);
+    for (int i = 0; i < slaves.segments; i += lane_count) {
+      LaneBits& past_end = past_end_[static_cast<std::size_t>(i / lane_count)];
+      const LaneBits past_last = std::exchange(past_end, LaneBits{});
+      const Lanes x0 = load(x + i), y0 = load(y + i), x1 = load(x + i + 1), y1 = load(y + i + 1);
       const Bounds8 height = bounds(ty, -tx, m.y * tx - m.x * ty, x0, y0, x1, y1);
-      const LaneBits near = valid & (height.low < ranges.reach) & (height.high > -farthest);
-      const LaneBits past_last = beyond;
-      beyond = LaneBits{};
+      const LaneBits near = first_lanes(slaves.segments - i) & (height.low < ranges.reach) & (height.high > -farthest);
       if (!any(near)) continue;
       const Bounds8 along = bounds(tx, ty, -m.x * tx - m.y * ty, x0, y0, x1, y1);
-      // The first node may have the fan of the last.
-      if (const double radius = row == rows.end() && whole ? 0 : fan_radius(m, ranges); radius > 0) {
+      if (radius > 0) {
         const LaneBits in_box =
-            (along.low < 0.0) & (along.high > -radius) & (height.low < radius) & (height.high > -radius);
+            (along.low < margin) & (along.high > -radius) & (height.low < radius) & (height.high > -radius);
         if (const unsigned found = bits(past_last & near & in_box)) fans.add(found, i, row);
       }
-      if (row == rows.end()) break;
-      const LaneBits within = (along.high > 0.0) & (along.low < m.length);
+      if (row == rows.end()) continue;
+      const LaneBits within = (along.high > -margin) & (along.low < m.length + margin);
       if (const unsigned found = bits(within & near)) beside.add(found, i, row);
-      beyond = near & (along.high > m.length);
+      past_end = near & (along.high > m.length - margin);
     }
   }
   beside.close(), fans.close();

@@ -35,11 +35,16 @@ class PairList {
 };
 
 /// What may touch in a pass: slave segments beside segments of the master, and in the fans of its nodes.
-struct SegmentCandidates {
+class SegmentCandidates {
+ public:
   PairList beside, fans;
 
-  /// `rows`: that can touch. All that has a part is found, and some that has none.
+  /// `rows`: that can touch. All that has a part is found, and some that has none, row by row and slave by slave: sums
+  /// do not depend on where arcs begin.
   void find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows, const GapRanges& ranges);
+
+ private:
+  std::vector<LaneBits, LineAllocator<LaneBits>> past_end_;  ///< slaves that reach past the end of the last row
 };
 
 }  // namespace pliant

@@ -5,11 +5,13 @@ namespace {
 
 using Column = MasterWindow::Column;
 
-/// Between the perpendiculars at the ends of a segment.
+/// Between the perpendiculars at the ends of a segment, and rounding beyond: what lies on one of them is as near to the
+/// segment as to its end.
 Span8 strip_of(const Linear& along, Lanes length) {
+  const Lanes end = (1 + Span8::rounding) * length, start = length - end;
   Span8 part;
-  part.keep(along);
-  part.keep({length - along.at0, length - along.at1});
+  part.keep({along.at0 - start, along.at1 - start});
+  part.keep({end - along.at0, end - along.at1});
   return part;
 }
 
@@ -21,10 +23,8 @@ struct FromNode {
   Linear along(Lanes tx, Lanes ty) const { return {x0 * tx + y0 * ty, x1 * tx + y1 * ty}; }
 };
 
-/// Between the normals of both segments of a node.
-Span8 fan_of(const SlaveSegments& slaves, const NodeLanes& nodes) {
-  const FromNode from(slaves, nodes);
-  const Linear before = from.along(nodes.before_x, nodes.before_y), after = from.along(nodes.after_x, nodes.after_y);
+/// Between the normals of both segments of a node, past the end of the one and before the start of the other.
+Span8 fan_between(const Linear& before, const Linear& after) {
   Span8 fan;
   fan.keep(before), fan.keep({-after.at0, -after.at1});
   // On the normal itself there is none: the fan of a straight node has no width.
@@ -33,17 +33,30 @@ Span8 fan_of(const SlaveSegments& slaves, const NodeLanes& nodes) {
   return fan;
 }
 
+Span8 fan_of(const SlaveSegments& slaves, const NodeLanes& nodes) {
+  const FromNode from(slaves, nodes);
+  return fan_between(from.along(nodes.before_x, nodes.before_y), from.along(nodes.after_x, nodes.after_y));
+}
+
 /// In the fan of a node, and nearer to it than to a line at this height: within a parabola.
 Span8 nearer_to_node(const SlaveSegments& slaves, const NodeLanes& nodes, const Linear& height) {
   Span8 fan = fan_of(slaves, nodes);
   const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0;
   const Lanes change = height.at1 - height.at0, x0 = slaves.x0 - nodes.x, y0 = slaves.y0 - nodes.y;
-  const Lanes a = dx * dx + dy * dy - change * change, half = x0 * dx + y0 * dy - height.at0 * change,
+  // Where a s^2 + 2 half s + c < 0. Normal to the line a is rounding, and there may be one end only.
+  const Lanes square = dx * dx + dy * dy, a = square - change * change, half = x0 * dx + y0 * dy - height.at0 * change,
               c = x0 * x0 + y0 * y0 - height.at0 * height.at0, discriminant = half * half - a * c;
-  const LaneBits some = (a > 0.0) & (discriminant > 0.0);
-  const Lanes root = sqrt(max(discriminant, Lanes{})), inverse = 1.0 / select(some, a, broadcast(1));
-  fan.low = max(fan.low, select(some, (-half - root) * inverse, fan.low));
-  fan.high = select(some, min(fan.high, (root - half) * inverse), broadcast(-1));
+  constexpr double rounding = 1e-14;
+  const LaneBits curved = a > rounding * square, some = curved & (discriminant > 0.0);
+  Span8 straight;
+  straight.keep({-c, -c - 2.0 * half});
+  const Lanes root = sqrt(max(discriminant, Lanes{})), larger = -half - select(half < 0.0, -root, root);
+  const Lanes one = larger / select(some, a, broadcast(1)),
+              other = select(larger != 0.0, c / select(larger != 0.0, larger, broadcast(1)), Lanes{});
+  const Lanes low = select(curved, min(one, other), straight.low),
+              high = select(curved, max(one, other), straight.high);
+  fan.low = max(fan.low, low);
+  fan.high = select(some | ~curved, min(fan.high, high), broadcast(-1));
   return fan;
 }
 
@@ -64,9 +77,9 @@ void for_each_neighbour(LaneBits rows, LaneBits hit, const Count& count, const N
   for (std::size_t k = 0; k < most; ++k) {
     LaneBits others = rows, have{};
     for (int lane = 0; lane < lane_count; ++lane) {
-      if (!hit[lane]) continue;
-      if (const int other = neighbour(static_cast<int>(rows[lane]), k); other >= 0)
-        others[lane] = other, have[lane] = -1;
+      const int row = static_cast<int>(rows[lane]);
+      if (!hit[lane] || k >= count(row)) continue;
+      if (const int other = neighbour(row, k); other >= 0) others[lane] = other, have[lane] = -1;
     }
     visit(others, have);
   }
@@ -113,22 +126,20 @@ SegmentCuts::Beside SegmentCuts::beside_row(const SlaveSegments& slaves, LaneBit
 }
 
 Linear SegmentCuts::past_bisector(const SlaveSegments& slaves, LaneBits rows) const {
-  const Lanes bx = window_.entries(Column::bisector_x, rows), by = window_.entries(Column::bisector_y, rows),
-              at = window_.entries(Column::bisector_at, rows);
-  const auto past = [&](Lanes x, Lanes y) {
-    return (x - window_.origin_x()) * bx + ((y - window_.origin_y()) * by - at);
-  };
-  return {past(slaves.x0, slaves.y0), past(slaves.x1, slaves.y1)};
+  const auto entries = [&](Column c) { return window_.entries(c, rows); };
+  const Lanes mx = entries(Column::x), my = entries(Column::y), bx = entries(Column::bisector_x),
+              by = entries(Column::bisector_y);
+  return {(slaves.x0 - mx) * bx + (slaves.y0 - my) * by, (slaves.x1 - mx) * bx + (slaves.y1 - my) * by};
 }
 
 void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
   const auto& [along, height] = std::pair(pairs.along, pairs.height);
   const LaneBits rows = pairs.row, next = rows + 1;
-  const auto convex = [&](LaneBits of) {
-    return window_.entries(Column::bisector_x, of) * window_.entries(Column::tangent_y, of) >
+  const auto turn = [&](LaneBits of) {
+    return window_.entries(Column::bisector_x, of) * window_.entries(Column::tangent_y, of) -
            window_.entries(Column::bisector_y, of) * window_.entries(Column::tangent_x, of);
   };
-  const LaneBits start_convex = convex(rows), end_convex = convex(next);
+  const Lanes start_turn = turn(rows), end_turn = turn(next);
   const Linear start = past_bisector(pairs.segments, rows), end = past_bisector(pairs.segments, next),
                before_end{pairs.length - along.at0, pairs.length - along.at1};
   const Levels levels(height);
@@ -139,11 +150,28 @@ void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
     if (!any(near)) continue;
     // What is nearer to a segment than to its neighbours, on one side of the outline.
     Span8 part;
-    part.keep(select(inside ? start_convex : ~start_convex, start, along));
-    part.keep(select(inside ? end_convex : ~end_convex, {-end.at0, -end.at1}, before_end));
+    const bool has_rivals = inside && window_.has_medial_neighbours();
+    // By the bisector, but where a fan lies between.
+    LaneBits by_start = (inside ? start_turn : -start_turn) > -least_turn,
+             by_end = (inside ? end_turn : -end_turn) > -least_turn;
+    const NextLanes before = has_rivals ? shorter_next(rows, -1, by_start) : NextLanes{},
+                    after = has_rivals ? shorter_next(rows, 1, by_end) : NextLanes{};
+    by_start &= ~before.shorter, by_end &= ~after.shorter;
+    part.keep(select(by_start, start, along));
+    part.keep(select(by_end, {-end.at0, -end.at1}, before_end), by_end);
     if (!any(near & part.some())) continue;
-    const Spans8 spans =
-        inside && window_.has_medial_neighbours() ? nearest_to_segment(pairs, near, part) : Spans8(part);
+    Spans8 spans(part);
+    if (has_rivals) {
+      // Past the bisector, as far as feet on the next segment are on it.
+      const auto remove_past = [&](const NextLanes& next, const Linear& bisector, const Linear& from_node) {
+        Span8 past = only(next.shorter, {});
+        past.keep({-bisector.at0, -bisector.at1});
+        past.keep({next.length - from_node.at0, next.length - from_node.at1});
+        spans.remove(past);
+      };
+      remove_past(before, start, along), remove_past(after, {-end.at0, -end.at1}, before_end);
+      leave_to_rivals(pairs, near & part.some(), spans);
+    }
     for (const GapRange& range : ranges_) {
       if (range.is_inside() != inside) continue;
       const Levels::Between within = levels.between(range.low, range.high);
@@ -152,12 +180,23 @@ void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
   }
 }
 
-Spans8 SegmentCuts::nearest_to_segment(const SegmentPairs& pairs, LaneBits hit, const Span8& part) const {
-  Spans8 spans(part);
+SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int way, LaneBits which) const {
+  NextLanes result{};
+  for (int lane = 0; lane < lane_count; ++lane) {
+    const int row = static_cast<int>(rows[lane]);
+    if (!which[lane] || window_.rivals(row) == 0) continue;
+    const int other = window_.rival(row, way < 0 ? 0 : 1);
+    if (other < 0) continue;
+    result.shorter[lane] = -1, result.length[lane] = window_[other].length;
+  }
+  return result;
+}
+
+void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans8& spans) const {
   const Linear& height = pairs.height;
   for_each_neighbour(
-      pairs.row, hit & part.some(), [&](int row) { return window_.medial_neighbours(row); },
-      [&](int row, std::size_t k) { return window_.medial_neighbour(row, k); },
+      pairs.row, hit, [&](int row) { return window_.rivals(row); },
+      [&](int row, std::size_t k) { return window_.rival(row, k); },
       [&](LaneBits others, LaneBits have) {
         const Beside there = beside_row(pairs.segments, others);
         Span8 nearer = strip_of(there.along, there.length);
@@ -168,7 +207,6 @@ Spans8 SegmentCuts::nearest_to_segment(const SegmentPairs& pairs, LaneBits hit, 
         for (const LaneBits end : {others, others + 1})
           spans.remove(only(have, nearer_to_node(pairs.segments, nodes(end), height)));
       });
-  return spans;
 }
 
 Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
@@ -176,8 +214,8 @@ Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& 
   Spans8 spans(fan);
   const SlaveSegments& slaves = pairs.segments;
   for_each_neighbour(
-      rows, hit, [&](int row) { return window_.medial_neighbours_of_node(row); },
-      [&](int row, std::size_t k) { return window_.medial_neighbour_of_node(row, k); },
+      rows, hit, [&](int row) { return window_.rivals_of_node(row); },
+      [&](int row, std::size_t k) { return window_.rival_of_node(row, k); },
       [&](LaneBits others, LaneBits have) {
         const Beside there = beside_row(slaves, others);
         const Span8 strip = only(have, strip_of(there.along, there.length)),
@@ -195,9 +233,20 @@ Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& 
   return spans;
 }
 
+/// Where it begins the strips of both segments end, also by rounding.
+Span8 SegmentCuts::fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const {
+  LaneBits last = rows - 1;
+  if (window_.count() == window_.outline_count()) last += (rows == 0) & window_.count();
+  const LaneBits known = last >= 0;
+  const Beside there = beside_row(slaves, known ? last : rows), here = beside_row(slaves, rows);
+  const Linear past_last{there.along.at0 - there.length, there.along.at1 - there.length},
+      before = FromNode(slaves, nodes).along(nodes.before_x, nodes.before_y);
+  return fan_between(select(known, past_last, before), here.along);
+}
+
 void SegmentCuts::in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, PackedParts& parts) const {
   const SlaveSegments& slaves = pairs.segments;
-  const Span8 fan = fan_of(slaves, nodes);
+  const Span8 fan = fan_beside(slaves, nodes, rows);
   const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0, x0 = slaves.x0 - nodes.x,
               y0 = slaves.y0 - nodes.y;
   const Lanes square = dx * dx + dy * dy, inverse = 1.0 / square, foot = -(x0 * dx + y0 * dy) * inverse;

@@ -22,20 +22,22 @@ struct SegmentPairs {
   Lanes tangent_x, tangent_y, length, inverse_length;  ///< of the master's segment
 };
 
+/// By less, in terms of tangents' lengths, a node does not turn: rounding would give it a fan of no width.
+constexpr double least_turn = 1e-12;
+
 /// A node of the master for each of eight slave segments.
 struct NodeLanes {
   Lanes x, y;                                  ///< m
   Lanes before_x, before_y, after_x, after_y;  ///< tangents of its two segments
   LaneBits convex;
-  /// Three points integrate over an angle a of a fan with an error of (a/4)^6 of it, here below 1e-7.
-  LaneBits narrow() const { return before_x * after_x + before_y * after_y > 0.966; }
 };
 
 /// Where the nearest part of a master's outline changes along slave segments (docs/method.md 4).
 ///
 /// Inside, the segments at a convex node share the bisector; outside of it a fan between their normals belongs to the
-/// node, and the reverse at a re-entrant one. Across the medial axis of a sharp or thin part the nearer side has each
-/// point.
+/// node, and the reverse at a re-entrant one. Where the medial axis is near, in sharp or thin parts and beside short
+/// segments, points go to what is nearest of all rivals, of those next to a segment as well: bisectors hold as far as
+/// these reach.
 class SegmentCuts {
  public:
   SegmentCuts(const MasterWindow& window, const GapRanges& ranges) : window_(window), ranges_(ranges) {}
@@ -56,7 +58,14 @@ class SegmentCuts {
   };
   Beside beside_row(const SlaveSegments& slaves, LaneBits rows) const;
   Linear past_bisector(const SlaveSegments& slaves, LaneBits rows) const;
-  Spans8 nearest_to_segment(const SegmentPairs& pairs, LaneBits hit, const Span8& part) const;
+  Span8 fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const;
+  /// Of segments those next to them on a way, -1 or 1, that are shorter.
+  struct NextLanes {
+    LaneBits shorter;
+    Lanes length;  ///< m
+  };
+  NextLanes shorter_next(LaneBits rows, int way, LaneBits which) const;
+  void leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans8& spans) const;
   Spans8 nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
                          const Span8& fan) const;
 

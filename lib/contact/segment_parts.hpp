@@ -87,41 +87,52 @@ class Levels {
 struct Span8 {
   Lanes low{}, high = broadcast(1);
 
-  /// Keeps where a function is not negative that is linear along the segment.
-  void keep(const Linear& f) {
+  /// Keeps where a function is not negative that is linear along the segment; where it is 0 all along, not in lanes
+  /// that leave that to others.
+  void keep(const Linear& f, LaneBits leaves_zero = LaneBits{}) {
     const Lanes change = f.at1 - f.at0, root = -f.at0 / select(change != 0.0, change, broadcast(1));
     low = max(low, select(change > 0.0, root, low));
     high = min(high, select(change < 0.0, root, high));
-    high = select((change == 0.0) & (f.at0 < 0.0), broadcast(-1), high);
+    high = select((change == 0.0) & ((f.at0 < 0.0) | (leaves_zero & (f.at0 == 0.0))), broadcast(-1), high);
   }
   /// Whether there is one: what is shorter than `rounding` of the segment is left by clips that should meet.
   LaneBits some() const { return high - low > rounding; }
   static constexpr double rounding = 1e-12;
 };
 
-/// Several such parts, one behind the other in each lane.
+/// Several such parts of each, in any order.
 class Spans8 {
  public:
   explicit Spans8(const Span8& all) : spans_{all} {}
 
   /// Takes a part out of each, which may leave two.
   void remove(const Span8& part) {
-    if (!any(part.some())) return;
+    const LaneBits some = part.some();
+    if (!any(some)) return;
     for (int i = count_ - 1; i >= 0; --i) {
       const Span8 all = spans_[i];
-      const LaneBits cut = part.some() & (part.low < all.high) & (part.high > all.low);
+      const LaneBits cut = some & all.some() & (part.low < all.high) & (part.high > all.low);
       if (!any(cut)) continue;
-      const Span8 before{all.low, select(cut, min(all.high, part.low), all.high)},
-          after{max(all.low, part.high), select(cut, all.high, broadcast(-1))};
-      spans_[i] = before;
-      if (any(after.some()) && count_ < static_cast<int>(spans_.size())) spans_[count_++] = after;
+      spans_[i].high = select(cut, min(all.high, part.low), all.high);
+      add(cut, {max(all.low, part.high), all.high});
     }
   }
   const Span8* begin() const { return spans_.data(); }
   const Span8* end() const { return spans_.data() + count_; }
 
  private:
-  std::array<Span8, 8> spans_;
+  /// Where a lane has room.
+  void add(LaneBits which, const Span8& part) {
+    LaneBits left = which & part.some();
+    for (int i = 0; any(left) && i < static_cast<int>(spans_.size()); ++i) {
+      if (i == count_) spans_[count_++].high = broadcast(-1);
+      const LaneBits here = left & ~spans_[i].some();
+      spans_[i] = {select(here, part.low, spans_[i].low), select(here, part.high, spans_[i].high)};
+      left &= ~here;
+    }
+  }
+
+  std::array<Span8, 16> spans_;
   int count_ = 1;
 };
 
@@ -152,7 +163,7 @@ class PackedParts {
   const Eight* end() const { return eights_.data() + count_; }
 
  private:
-  std::array<Eight, 32> eights_;  ///< two sides, eight spans, two ranges
+  std::array<Eight, 32> eights_;
   std::size_t count_ = 0;
 };
 

@@ -23,8 +23,7 @@ struct SegmentPass {
 };
 
 struct Totals {
-  Lanes stored{}, dissipated{}, damping_power{}, squares{};
-  double deepest = 0;
+  double stored = 0, dissipated = 0, damping_power = 0, squares = 0, deepest = 0;
   int segments = 0;  ///< in touch
 };
 
@@ -89,7 +88,7 @@ class TractionVisitor {
 
   void begin(const SegmentPairs& pairs, const Linear& xi) {
     pairs_ = &pairs, xi_ = xi, hit_ = LaneBits{};
-    pressure_ = {}, in_fans_ = {};
+    pressure_ = {}, in_fans_ = {}, stored_ = squares_ = damping_power_ = Lanes{};
     if constexpr (Law::has_shear) {
       weight_ = limit_ = way_ = gap_ = {};
       for (int power = 0; power < 3; ++power) beside_[power] = shear_x_[power] = shear_y_[power] = Lanes{};
@@ -102,7 +101,7 @@ class TractionVisitor {
     const Traction traction = traction_at(p, pairs_->tangent_y, -pairs_->tangent_x);
     const Lanes force = p.weight * traction.pressure;
     pressure_.add(force, p.s);
-    totals_.stored += p.weight * traction.energy, totals_.squares += force * traction.pressure;
+    stored_ += p.weight * traction.energy, squares_ += force * traction.pressure;
     if constexpr (Law::has_shear) {
       const Lanes first = p.weight * p.s;
       beside_[0] += p.weight, beside_[1] += first, beside_[2] += first * p.s;
@@ -116,7 +115,7 @@ class TractionVisitor {
     const Lanes& pressure = traction.pressure;
     for (int end = 0; end < 2; ++end)
       in_fans_.x[end] += pressure * p.force_x[end], in_fans_.y[end] += pressure * p.force_y[end];
-    totals_.stored += p.energy_weight * traction.energy, totals_.squares += p.energy_weight * pressure * pressure;
+    stored_ += p.energy_weight * traction.energy, squares_ += p.energy_weight * pressure * pressure;
     if constexpr (Law::has_shear) {
       weight_.add(p.weight, p.s);
       Lanes of_power = p.weight;
@@ -131,7 +130,9 @@ class TractionVisitor {
     for_each_lane(hit_, [&](int lane) {
       char& touched = scratch_.touched[static_cast<std::size_t>(pairs_->slave[lane])];
       totals_.segments += !touched, touched = 1;
+      totals_.stored += stored_[lane], totals_.squares += squares_[lane];
     });
+    if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
     const HatSums beside = pressure_.hats();
     const PairForces forces{{in_fans_.x[0] + tangent_y * beside.first, in_fans_.x[1] + tangent_y * beside.second},
@@ -172,7 +173,7 @@ class TractionVisitor {
     const Lanes rate = rates_.along(normal_x, normal_y, p.s, xi_.at(p.s));
     const Lanes damping = law_.damping_pressure(traction.pressure, p.gap, rate, at_.pass.damping, at_.pass.elapsed);
     add_pressure(law_, damping, traction);
-    totals_.damping_power += select(p.hit & (p.gap < 0.0), -p.weight * damping * rate, Lanes{});
+    damping_power_ += select(p.hit & (p.gap < 0.0), -p.weight * damping * rate, Lanes{});
   }
 
   const Law& law_;
@@ -183,6 +184,7 @@ class TractionVisitor {
   const SegmentPairs* pairs_ = nullptr;
   LaneBits hit_{};
   Linear xi_;
+  Lanes stored_, squares_, damping_power_;
   Moments pressure_;    ///< beside segments
   PairForces in_fans_;  ///< of pressures in the fans of nodes
   Moments weight_, limit_, way_, gap_;
@@ -208,9 +210,9 @@ void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, C
     Contact c{};
     slide(law, Traction{Lanes{}, load(&sums.shear_limit[i]) * inverse, Lanes{}}, touching, slip,
           slip + load(&sums.motion[i]) * inverse, c);
-    totals.dissipated +=
-        0.5 * law.shear_stiffness * (old_weight * old_slip * old_slip - weight * slip * slip) + weight * c.slip_work;
-    totals.stored += weight * c.energy;
+    const Lanes lost = 0.5 * law.shear_stiffness * (old_weight * old_slip * old_slip - weight * slip * slip);
+    add_in_order(lost + weight * c.slip_work, totals.dissipated);
+    add_in_order(weight * c.energy, totals.stored);
     store(&sums.shear[i], select(touching, c.shear, Lanes{}));
     after[ContactHistory::weight] = weight;
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
@@ -274,9 +276,8 @@ PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const 
     }
   };
   std::visit(both_passes, view.patch.law);
-  PatchTotals result{sum(totals.stored), sum(totals.dissipated), sum(totals.damping_power), totals.deepest,
-                     totals.segments};
-  result.squares = sum(totals.squares) / normal_stiffness_of(view.patch.law);
+  PatchTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};
+  result.squares = totals.squares / normal_stiffness_of(view.patch.law);
   return result;
 }
 

@@ -68,7 +68,9 @@ void add_points(const PatchView& view, const Pass& pass, int side, const NodeTra
     const double weight = found.weight[i];
     if (!(weight > 0)) continue;
     const Vec2 force(found.force_x[i], found.force_y[i]), mean(found.normal_x[i], found.normal_y[i]);
-    const Vec2 normal = mean.norm() > 0 ? Vec2(mean.normalized()) : Vec2(0, 0);
+    // Beside corners normals differ; what a node bears in all has one direction.
+    const Vec2 along = force.norm() > 0 ? force : mean;
+    const Vec2 normal = along.norm() > 0 ? Vec2((along.dot(mean) < 0 ? -1 : 1) * along.normalized()) : Vec2(0, 0);
     const int node = slave_index(pass, i), turn = turn_of(pass.nodes.begin + i, pass.slave->count);
     ContactPoint point{view.body(side), view.body(1 - side), node, found.gap[i] / weight};
     point.slip = history.number(pass.record + i, ContactHistory::slip);

@@ -39,16 +39,26 @@ void add_pass(const PatchView& view, const Pass& pass, int slave_side, const dou
     const double *x = arc.x.data() + i, *y = arc.y.data() + i;
     const SlaveSegments slaves{load(x), load(y), load(x + 1), load(y + 1), load(&arc.lengths[i])};
     Hull8 hull;
-    for (int row = pass.rows.begin; row < pass.rows.end(); ++row) {
-      const MasterSegment m = window[row];
-      const Span8 part = within_reach(slaves, m, reach, window.depth(), skin);
-      const LaneBits hit = valid & (part.low < part.high);
-      if (!any(hit)) continue;
+    Lanes parts{};  // of one segment these may overlap, as it may come to stand beside either of two
+    const auto for_each_part = [&](auto&& visit) {
+      for (int row = pass.rows.begin; row < pass.rows.end(); ++row) {
+        const MasterSegment m = window[row];
+        const Span8 part = within_reach(slaves, m, reach, window.depth(), skin);
+        const LaneBits hit = valid & (part.low < part.high);
+        if (any(hit)) visit(row, m, hit, part);
+      }
+    };
+    for_each_part([&](int, const MasterSegment&, LaneBits hit, const Span8& part) {
       hull.add(hit, part);
-      const double length = sum(select(hit, (part.high - part.low) * slaves.length, Lanes{}));
-      const double of_node = 0.5 * factor[1 - slave_side] * stiffness * length * m.length / (m.length + 2 * skin);
+      parts += select(hit, part.high - part.low, Lanes{});
+    });
+    const Lanes once = (hull.high - hull.low) / select(parts > 0.0, parts, broadcast(1));
+    for_each_part([&](int row, const MasterSegment& m, LaneBits hit, const Span8& part) {
+      const Lanes share = max(once, broadcast(m.length / (m.length + 2 * skin)));
+      const double length = sum(select(hit, (part.high - part.low) * share * slaves.length, Lanes{}));
+      const double of_node = 0.5 * factor[1 - slave_side] * stiffness * length;
       for (const int node : {row, row + 1}) entries[pass.master_force + node] += of_node;
-    }
+    });
     const LaneBits hit = hull.low < hull.high;
     const Lanes all = select(hit, (factor[slave_side] * stiffness) * (hull.high - hull.low) * slaves.length, Lanes{});
     const Lanes middle = 0.5 * (hull.low + hull.high);

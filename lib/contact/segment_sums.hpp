@@ -1,18 +1,11 @@
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <vector>
 
 #include "contact/segment_cuts.hpp"
 
 namespace pliant {
-
-/// Calls visit(lane) for those that are set.
-template <class Visit>
-void for_each_lane(LaneBits mask, Visit&& visit) {
-  for (unsigned left = bits(mask); left != 0; left &= left - 1) visit(std::countr_zero(left));
-}
 
 /// Integrals over parts of eight slave segments of something times the hat functions of their two nodes.
 struct HatSums {

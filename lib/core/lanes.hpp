@@ -124,6 +124,17 @@ inline unsigned bits(LaneBits mask) {
 #endif
 }
 
+/// Calls visit(lane) for those that are set, in order.
+template <class Visit>
+void for_each_lane(LaneBits mask, Visit&& visit) {
+  for (unsigned left = bits(mask); left != 0; left &= left - 1) visit(std::countr_zero(left));
+}
+
+/// Adds one lane after the other, so that a sum depends on the order of its terms and not on where eights begin.
+inline void add_in_order(Lanes terms, double& sum) {
+  for_each_lane(terms != 0.0, [&](int lane) { sum += terms[lane]; });
+}
+
 /// Mask of the first `count` lanes.
 inline LaneBits first_lanes(int count) {
   const LaneBits index = {0, 1, 2, 3, 4, 5, 6, 7};

@@ -236,9 +236,11 @@ TEST(Refresh, bound_of_stiffness_follows) {
 /// stiffness than its bound, in which each record counts for both bodies with twice its own.
 TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
   int touching = 0, layouts = 0;
-  for (int sample = 0; sample < 40; ++sample) {
-    Random random(sample + 400);
-    ContactRig rig(two_rows(random, {}, false));
+  for (int sample = 0; sample < 80; ++sample) {
+    Random random(sample / 2 + 400);
+    Scene scene = two_rows(random, {}, false);
+    scene.contact.quadrature = sample % 2 == 0 ? ContactQuadrature::nodes : ContactQuadrature::segments;
+    ContactRig rig(scene);
     StiffnessBound bound(rig.model);
     const std::vector<double> compliance(rig.model.bodies.size(), 1.0);
     // Up and down by about a skin, so that patches are kept that go far from where others were laid out.

@@ -244,5 +244,27 @@ TEST(IntegratedContact, EngineAgreesInANotch) {
     compare(rule).expect_close(1);
 }
 
+// INDEPENDENT: below a step of 0.1 points are beyond the bisector of its upper corner, but nearer to the top than to
+// the step's face or foot. Rounding, as of the others.
+TEST(IntegratedContact, EngineAgreesBesideShortEdges) {
+  for (const double spacing : {2.0, 0.2, 0.15})
+    for (const double height : {-0.02, -0.05, -0.08}) {
+      Scene scene = bare_scene();
+      scene.contacts = {frictionless(100)};
+      const Points step{{-1, -1}, {1, -1}, {1, 0.1}, {0, 0.1}, {0, 0}, {-1, 0}},
+          block{{0.1, 0}, {0.4, 0}, {0.4, 1}, {0.1, 1}};
+      add_body(scene, outline_shape("step", refined(step, spacing)), BodyKind::rigid, {0, 0});
+      add_body(scene, outline_shape("block", block), BodyKind::rigid, {0, 0}, 0.01);
+      BothIntegrals both(integrated(scene));
+      both.rig.move(0, Vec2(-1, -1) - both.rig.node(0, 0));
+      both.rig.move(1, Vec2(0.1, height) - both.rig.node(1, 0));
+      Comparison all;
+      both.evaluate(false);
+      all.add(both);
+      EXPECT_GT(all.energy, 0.1);
+      all.expect_same("beside short edges");
+    }
+}
+
 }  // namespace
 }  // namespace pliant
