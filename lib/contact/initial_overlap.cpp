@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 /// Shallower ones are rounding of positions, over the longest segment near.
-constexpr double least_share = 1e-9;
+constexpr double least_depth_share = 1e-9;
 
 /// A node below the other body's outline.
 struct DeepNode {
@@ -31,7 +31,8 @@ std::vector<DeepNode> deep_nodes(const PatchView& view) {
   std::vector<DeepNode> nodes;
   const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
     const Projection& p = at.p;
-    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_share * view.window.longest());
+    const LaneBits deep =
+        first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
     const Lanes stored = 0.5 * at.length * compression(law, p.gap);
     for (int lane = 0; lane < lane_count; ++lane)
       if (deep[lane])

@@ -149,7 +149,7 @@ class PackedParts {
   void put(LaneBits hit, const Span8& part, const GapRange& range) {
     LaneBits left = hit & part.some();
     for (std::size_t i = 0; any(left) && i < eights_.size(); ++i) {
-      if (i == count_) eights_[count_++] = {};
+      if (i == count_) eights_[count_++] = Eight{};
       Eight& eight = eights_[i];
       const LaneBits here = left & ~eight.hit;
       eight.hit |= here;

@@ -25,7 +25,7 @@ constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in d
 /// the largest error counts, of this span of steps and the one before: of many of their periods.
 constexpr int span = 64;
 /// Steps shorter than this part of what was wished for are not remembered. Of equal steps to a stop none is.
-constexpr double least_share = 0.5;
+constexpr double least_step_share = 0.5;
 
 double controller_factor(double error, double tolerance) {
   if (error <= 1e-3 * tolerance) return largest_factor;  // by far; the ratio may overflow
@@ -89,7 +89,7 @@ Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& 
   if (state.steps % span == 0) state.jerk_before = std::exchange(state.jerk, 0);
   // Of the whole step: one cut short to meet a stop does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
-  if (dt >= least_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
+  if (dt >= least_step_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
   const double jerk = std::max(state.jerk, state.jerk_before);
   const double next_dt = wish * controller_factor(jerk * wish * wish * wish, tolerance);
   return {true, std::min(next_dt, proposal.largest_dt)};
