@@ -136,6 +136,16 @@ struct ManyPoints {
   double strength, range;
   int parts;
 
+  Points forces(const ContactRig& rig) const {
+    const Points outlines[] = {rig.outline(0), rig.outline(1)};
+    Points sum(outlines[0].size() + outlines[1].size(), Vec2(0, 0));
+    Vec2 *first = sum.data(), *second = first + outlines[0].size();
+    add_pass(outlines[0], outlines[1], first, second);
+    add_pass(outlines[1], outlines[0], second, first);
+    return sum;
+  }
+
+ private:
   double pressure(double gap) const {
     const double critical = strength / kn;
     return gap <= critical ? -kn * gap : -strength * (range - gap) / (range - critical);
@@ -182,10 +192,7 @@ TEST(ReferenceIntegratedContact, ForcesAreSumsOverManyPoints) {
     press_together(pair.rig, random, random.uniform(0, depth));
     pair.show();
     const Points forces = forces_on_nodes(pair.evaluate(), pair.x.size());
-    Points expected(pair.x.size(), Vec2(0, 0));
-    Vec2 *first = expected.data(), *second = first + pair.rig.count(0);
-    many.add_pass(pair.rig.outline(0), pair.rig.outline(1), first, second);
-    many.add_pass(pair.rig.outline(1), pair.rig.outline(0), second, first);
+    const Points expected = many.forces(pair.rig);
     const double part =
         std::max(pair.rig.model.outline_of(0).longest, pair.rig.model.outline_of(1).longest) / many.parts;
     for (std::size_t i = 0; i < forces.size(); ++i)
@@ -212,10 +219,7 @@ TEST(ReferenceIntegratedContact, FacesThatAreParallel) {
         pair.rig.move(1, pair.rig.node(0, 3) + beside * along - deep * up - pair.rig.node(1, 0));
         pair.show();
         const Points forces = forces_on_nodes(pair.evaluate(), pair.x.size());
-        Points expected(pair.x.size(), Vec2(0, 0));
-        Vec2 *first = expected.data(), *second = first + pair.rig.count(0);
-        many.add_pass(pair.rig.outline(0), pair.rig.outline(1), first, second);
-        many.add_pass(pair.rig.outline(1), pair.rig.outline(0), second, first);
+        const Points expected = many.forces(pair.rig);
         for (std::size_t i = 0; i < forces.size(); ++i)
           EXPECT_LE((forces[i] - expected[i]).norm(), 4 * kn * segment * segment / many.parts / 4) << i;
       }
