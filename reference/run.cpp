@@ -60,7 +60,7 @@ std::string cause(const ContactsSeen& seen, const Overlap& overlap, double dt, d
                        overlap.second, overlap.share);
   if (seen.deepest > deep)
     return fmt::format(
-        "contacts got {:.2g} of a segment deep, where forces jump at corners: take a stiffness {:.2g} times as high, "
+        "contacts got {:.2g} of a segment deep: take a stiffness {:.2g} times as high, "
         "which leaves {:g} of an impact's, and {}",
         seen.deepest, std::pow(seen.deepest / shallow, 2), shallow, shorter);
   return fmt::format("steps of {:.3g} s are long against the vibrations of its {}: {}", dt,

@@ -104,14 +104,6 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
     }
     forces.symmetric &= element.further.empty() && element.tangent.isApprox(element.tangent.transpose(), 1e-13);
   }
-  for (const LengthElement& element : forces.contacts.lengths)
-    for (int i = 0; i < LengthElement::size; ++i) {
-      const int row = 2 * element.node[i / 2] + i % 2;
-      outlines.residual[row] += element.force[i];
-      magnitude[row] += std::abs(element.force[i]);
-      for (int j = 0; tangent && j < LengthElement::size; ++j)
-        outlines.tangent.emplace_back(row, 2 * element.node[j / 2] + j % 2, element.tangent(i, j));
-    }
   for (const ContactPatch& patch : forces.contacts.patches) {
     forces.deepest = std::max(forces.deepest, patch.depth);
     const auto place = [&](Eigen::Index i) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/facing.hpp"
+#include "contact/pass.hpp"
 #include "contact/self_contact.hpp"
 #include "core/lanes.hpp"
 
@@ -152,10 +152,6 @@ Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
 struct Margins {
   double reach;  ///< of the law, and a skin
   double skin;
-  double sight;  ///< beyond the nearest segment, for corners: from a foot to a corner, see node_length.cpp
-
-  Margins(double reach, double skin, bool corners, double longest_segment)
-      : reach(reach), skin(skin), sight(corners ? 2 * longest_segment + skin : 0) {}
 };
 
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to
@@ -179,7 +175,7 @@ void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window
     if (!any(chosen)) continue;
     for (int lane = 0; lane < lane_count; ++lane)
       if (chosen[lane]) near_nodes.add(i + lane);
-    const Lanes reach = max(-nearest, broadcast(margins.reach)) + (2 * margins.skin + margins.sight);
+    const Lanes reach = max(-nearest, broadcast(margins.reach)) + 2 * margins.skin;
     for (int row = 0; row < window.count(); ++row)
       if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(row);
   }
@@ -250,9 +246,9 @@ void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, d
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
-  const Margins margins(margin, skin, patch.corners, longest);
-  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch,
-                  std::max(margin, longest + 2 * skin) + 2 * skin + margins.sight, rough);
+  const Margins margins{margin, skin};
+  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch, std::max(margin, longest + 2 * skin) + 2 * skin,
+                  rough);
   if (rough[0].count == 0 || rough[1].count == 0) return;
   const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
@@ -265,31 +261,27 @@ void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, d
     if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
   }
   for (int side = 0; side < 2; ++side) patch.window[side] = patch.segments[side];
-  if (model.scene.contact.quadrature == ContactQuadrature::segments)
+  if (patch.integrated)
     for (int side = 0; side < 2; ++side) widen_to_segments(*sides[side].shape, two_walls, side, patch);
 }
 
-void find_self_patches(const Model& model, const OutlineField& outlines, int body, const ContactLaw& law, double margin,
+void find_self_patches(const Model& model, const OutlineField& outlines, const Patch& of_body, double margin,
                        double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
-  const Side side = make_side(model, outlines, body, 0);
+  const Side side = make_side(model, outlines, of_body.first, 0);
   const int n = side.shape->count;
   constexpr int together = 2, unseen = 2;
-  const bool integrates = model.scene.contact.quadrature == ContactQuadrature::segments;
   for (int begin = 0; begin < n; begin += together) {
-    const Arc nodes{begin, std::min(together, n - begin) + integrates};
+    const Arc nodes{begin, std::min(together, n - begin) + of_body.integrated};
     const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
     if (segments.count <= 0) continue;
     scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
-    Patch patch;
-    patch.first = patch.second = body;
+    Patch patch = of_body;
     patch.part = begin;
-    patch.corners = !integrates && side.shape->has_corners();
-    patch.law = law;
-    const Margins margins(margin, skin, patch.corners, side.longest_segment);
+    const Margins margins{margin, skin};
     narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
     patch.window[1] = patch.segments[1];
     if (patch.nodes[0].count == 0) continue;
-    if (integrates) {
+    if (patch.integrated) {
       patch.nodes[0] = nodes, patch.slave_segments[0] = nodes.count - 1;
       patch.window[1] = with_medial_neighbours(*side.shape, patch.segments[1]);
     }

@@ -35,15 +35,29 @@ double skin_of(const Model& model) {
   return model.scene.skin * finest;
 }
 
+bool some_may_be_integrated(const Model& model) {
+  const ContactQuadrature quadrature = model.scene.contact.quadrature;
+  return quadrature == ContactQuadrature::segments ||
+         (quadrature == ContactQuadrature::automatic &&
+          std::ranges::any_of(model.outlines, [](const OutlineShape& o) { return o.has_corners(); }));
+}
+
 }  // namespace
 
 ContactSystem::ContactSystem(const Model& model)
     : model_(model),
       laws_(model),
       skin_(skin_of(model)),
+      may_integrate_(some_may_be_integrated(model)),
       watch_(model, skin_, laws_.max_reach()),
       table_(model),
       most_repaid_(most_repaid(model.scene.time.safety)) {}
+
+/// A bond is one of a node: laws that remember are collocated.
+bool ContactSystem::integrates(int first, int second, const ContactLaw& law) const {
+  if (!may_integrate_ || !remembered_of(law).empty()) return false;
+  return model_.scene.contact.quadrature == ContactQuadrature::segments || has_corners(first) || has_corners(second);
+}
 
 PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_at_, patch, skin_, thread_scratch()}; }
 
@@ -134,7 +148,7 @@ std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
     Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
-    patch.corners = !integrates() && (has_corners(pair.first) || has_corners(pair.second));
+    patch.integrated = integrates(pair.first, pair.second, patch.law);
     patch.found = refreshes_;
     find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
     watch_.searched(pairs[i], found_at_.position);
@@ -223,7 +237,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     trial_.refreshes = refreshes_;
   }
   Evaluated& now = keeps_debts() ? trial_ : last_;
-  const OutlineField* moved = step && integrates() ? find_ways(outlines.position, step->position) : nullptr;
+  const OutlineField* moved = step && may_integrate_ ? find_ways(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
@@ -267,10 +281,12 @@ void ContactSystem::add_self_patches(std::vector<Patch>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     watch_.add({b, b, 0}, found_at_.position);  // as any pair: the body's parts may move by the skin against each other
-    const ContactLaw law = laws_.between(b, b, refreshed_.time);
-    const std::size_t others = all.size();
-    find_self_patches(model_, found_at_.position, b, law, reach_of(law) + skin_, skin_, all, thread_scratch());
-    for (std::size_t p = others; p < all.size(); ++p) all[p].found = refreshes_;
+    Patch of_body;
+    of_body.first = of_body.second = b;
+    of_body.law = laws_.between(b, b, refreshed_.time);
+    of_body.integrated = integrates(b, b, of_body.law);
+    of_body.found = refreshes_;
+    find_self_patches(model_, found_at_.position, of_body, reach_of(of_body.law) + skin_, skin_, all, thread_scratch());
   }
 }
 

@@ -95,6 +95,8 @@ class ContactSystem {
   PatchView view(const Patch& patch) const;
   /// Places in the table of the patches that were found at the last refresh.
   const std::vector<int>& found() const { return found_; }
+  /// Whether contact of some pairs is integrated over segments.
+  bool may_integrate() const { return may_integrate_; }
   long refreshes() const { return refreshes_; }
   long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
   double skin() const { return skin_; }
@@ -127,7 +129,7 @@ class ContactSystem {
   std::vector<Patch> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
-  bool integrates() const { return model_.scene.contact.quadrature == ContactQuadrature::segments; }
+  bool integrates(int first, int second, const ContactLaw& law) const;
   const OutlineField* find_ways(const OutlineField& now, const OutlineField& before);
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
   PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
@@ -143,6 +145,7 @@ class ContactSystem {
   const Model& model_;
   ContactLaws laws_;
   double skin_;
+  bool may_integrate_;
   PairWatch watch_;
   PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
   double most_repaid_;      ///< see energy_debt.hpp

@@ -33,7 +33,7 @@ std::vector<double> ContactSystem::least_remembered(const ContactHistory& histor
     const std::span<const Remembered> all = remembered_of(patch.law);
     const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
     if (found == all.end()) continue;
-    const int column = history.first_of_law + static_cast<int>(found - all.begin());
+    const int column = ContactHistory::first_of_law + static_cast<int>(found - all.begin());
     for (int side = 0; side < 2; ++side) {
       const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
       for (int i = 0; i < patch.nodes[side].count; ++i) {

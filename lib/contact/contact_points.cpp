@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "contact/encounter.hpp"
-#include "contact/facing.hpp"
+#include "contact/node_pass.hpp"
 #include "contact/segment_pass.hpp"
 
 namespace pliant {
@@ -22,10 +22,9 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
 }
 
 std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& history) {
-  if (view.patch.is_integrated()) return inspect_integrated(view, history);
+  if (view.patch.integrated) return inspect_integrated(view, history);
   std::vector<ContactPoint> points;
-  const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Facing& at) {
-    const Projection& p = at.p;
+  const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     const SlaveNodes nodes = load_slaves(pass, i);
     Record<Law> now;
@@ -38,13 +37,14 @@ std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHist
       if (!touching[lane]) continue;
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
       points.push_back({view.body(side), view.body(1 - side), index - turn_of(index, count) * count, p.gap[lane],
-                        c.slip[lane], c.pressure[lane], c.shear[lane], damage_of(now, lane), at.length[lane],
-                        Vec2(p.normal_x[lane], p.normal_y[lane]), side, Vec2(nodes.x[lane], nodes.y[lane])});
+                        c.slip[lane], c.pressure[lane], c.shear[lane], damage_of(now, lane),
+                        nodes.tributary_length[lane], Vec2(p.normal_x[lane], p.normal_y[lane]), side,
+                        Vec2(nodes.x[lane], nodes.y[lane])});
     }
   };
   std::visit(
       [&](const auto& law) {
-        for_each_facing(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
+        for_each_beside(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
       },
       view.patch.law);
   return points;

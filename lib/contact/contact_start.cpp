@@ -48,16 +48,16 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   table_.take(std::move(kept), from.history.records());
   make_room(last_);
   history = {};
-  history.set_columns(keeps_debts(), static_cast<int>(laws_.remembered()));
+  history.set_columns(static_cast<int>(laws_.remembered()));
   history.resize(from.history.records());
   history.clear(0, history.records());
-  if (keeps_debts()) history.owed.assign(patches().size(), 0.0);
+  if (keeps_debts()) history.set_debts(patches().size());
   const int fields = std::min(history.fields(), from.history.fields());
   for (int record = 0; record < history.records(); record += lane_count) {
     Lanes* to = history.at(record);
     const Lanes* old = from.history.at(record);
     for (const int column : {ContactHistory::place, ContactHistory::slip}) to[column] = old[column];
-    std::copy_n(old + from.history.first_of_law, fields, to + history.first_of_law);
+    std::copy_n(old + ContactHistory::first_of_law, fields, to + ContactHistory::first_of_law);
   }
 }
 

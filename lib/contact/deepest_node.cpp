@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "contact/facing.hpp"
+#include "contact/node_pass.hpp"
 #include "contact/node_strips.hpp"
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
@@ -153,13 +153,13 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
 void look_at_itself(const PatchView& view, DeepestNode& deepest) {
   const int body = view.patch.first;
   const OutlineShape& shape = view.model.outline_of(body);
-  for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
+  for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      if (!at.p.hit[lane] || !(at.p.gap[lane] < 0)) continue;
+      if (!p.hit[lane] || !(p.gap[lane] < 0)) continue;
       const int index = pass.nodes.begin + i + lane, node = index - turn_of(index, shape.count) * shape.count;
-      const double length = at.p.length[lane], reference = shape.segment_length[static_cast<int>(at.p.number[lane])];
+      const double length = p.length[lane], reference = shape.segment_length[static_cast<int>(p.number[lane])];
       const Vec2 position = view.outlines.position.at(view.model.outline_offset[body] + node);
-      const DeepestNode found{body, body, node, position, -at.p.gap[lane], length, length / reference, true};
+      const DeepestNode found{body, body, node, position, -p.gap[lane], length, length / reference, true};
       if (is_deeper(found, deepest)) deepest = found;
     }
   });

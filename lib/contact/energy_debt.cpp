@@ -24,17 +24,19 @@ void carry_forces(const Model& model, const Patch& old, const PatchForces& from,
   }
 }
 
-double repay(double debt, double most, double stays, const Patch& patch, const PatchTotals& totals_before,
-             PatchForces& forces, PatchTotals& totals) {
-  const double work = totals.now_work;
-  totals.ways = work * work;
-  const double most_ways = std::max(totals.ways, totals_before.ways);
-  const double limit = totals.squares > 0 ? most / totals.squares : 0,
-               factor = most_ways > 0 ? -std::clamp(debt / most_ways, -limit, limit) * work : 0;
+double repayment(double debt, double most, const PatchTotals& before, const PatchTotals& now) {
+  // Where motions turn back, the next way may be many times the last.
+  const double square = std::max(now.work * now.work, before.work * before.work);
+  if (square == 0 || now.squares == 0) return 0;
+  const double limit = most / now.squares;
+  return -std::clamp(debt / square, -limit, limit) * now.work;
+}
+
+void scale_forces(const Patch& patch, double factor, PatchForces& forces) {
+  if (factor == 1) return;
   for (int side = 0; side < 2; ++side)
     for (int i = patch.entry[side]; i < patch.entry[side] + padded(patch.forces(side).count); i += lane_count)
-      for (double* force : {&forces.x[i], &forces.y[i]}) store(force, (stays + factor) * load(force));
-  return -0.5 * factor * work;
+      for (double* force : {&forces.x[i], &forces.y[i]}) store(force, factor * load(force));
 }
 
 ContactLaw parting_law(const ContactLaw& law, double skin) {

@@ -19,31 +19,32 @@ struct ContactHistory {
     place,           ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
     weight = place,  ///< of a node where contact is integrated over segments, see segment_pass.hpp, m
     slip,            ///< elastic tangential displacement then, m
-    gap,             ///< for energy_debt.hpp, of records that touched: then, m; else NaN
-    repaid,          ///< for the same: the pressure that repaid, Pa
+    first_of_law,    ///< what laws remember besides (laws/response.hpp), from here on
   };
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
-  /// [eights of records][columns]: place and slip, gap and repaid where debts are kept, then what laws remember besides
-  /// (laws/response.hpp).
-  std::vector<Lanes> numbers;
-  std::int32_t columns = 2, first_of_law = 2;
+  std::vector<Lanes> numbers;  ///< [eights of records][columns]
+  std::int32_t columns = first_of_law;
   std::vector<double> owed;  ///< [patches] where debts are kept: what they owe, J/m
+  /// [patches] likewise, see energy_debt.hpp: of the forces that repaid there, besides all that stays.
+  std::vector<double> repaid;
   /// Which evaluation of the forces left it behind, where debts are kept; 0: none.
   std::int64_t evaluation = 0;
   /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
   std::int64_t layout = 0;
 
   /// Columns for so many numbers of laws, and none of the records.
-  void set_columns(bool debts, int fields) {
-    first_of_law = debts ? 4 : 2;
+  void set_columns(int fields) {
     columns = first_of_law + fields;
     numbers.clear();
+  }
+  void set_debts(std::size_t patches) { owed.assign(patches, 0.0), repaid.assign(patches, 0.0); }
+  void copy_debt(const ContactHistory& from, int old_patch, int patch) {
+    owed[patch] = from.owed[old_patch], repaid[patch] = from.repaid[old_patch];
   }
   void resize(int records) { numbers.resize(static_cast<std::size_t>(records / lane_count * columns)); }
   int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }
   int fields() const { return columns - first_of_law; }
-  bool keeps_debts() const { return first_of_law > 2; }
 
   /// The columns of eight records.
   Lanes* at(int record) { return numbers.data() + record / lane_count * columns; }
@@ -55,20 +56,16 @@ struct ContactHistory {
   /// As of nodes that met nothing yet, but for what laws remember: 0.
   void clear(int record, int count) {
     for (int i = record; i < record + count; i += lane_count)
-      for (int c = 0; c < columns; ++c) {
-        const bool of_place = c == place || (c == gap && keeps_debts());
-        at(i)[c] = of_place ? broadcast(nowhere) : Lanes{};
-      }
+      for (int c = 0; c < columns; ++c) at(i)[c] = c == place ? broadcast(nowhere) : Lanes{};
   }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("numbers", numbers), visitor("columns", columns), visitor("first_of_law", first_of_law);
-    visitor("owed", owed), visitor("evaluation", evaluation), visitor("layout", layout);
+    visitor("numbers", numbers), visitor("columns", columns);
+    visitor("owed", owed), visitor("repaid", repaid), visitor("evaluation", evaluation), visitor("layout", layout);
   }
   void loaded() const {
-    const bool fits = (first_of_law == 2 || first_of_law == 4) && columns >= first_of_law &&
-                      numbers.size() % static_cast<std::size_t>(columns) == 0;
+    const bool fits = columns >= first_of_law && numbers.size() % static_cast<std::size_t>(columns) == 0;
     if (!fits) throw ArchiveError("contact records have other columns");
   }
 };
@@ -77,12 +74,12 @@ struct ContactHistory {
 template <std::size_t count>
 std::array<Lanes, count> load_record(const ContactHistory& history, int record) {
   std::array<Lanes, count> values;
-  std::copy_n(history.at(record) + history.first_of_law, count, values.begin());
+  std::copy_n(history.at(record) + ContactHistory::first_of_law, count, values.begin());
   return values;
 }
 template <std::size_t count>
 void store_record(ContactHistory& history, int record, const std::array<Lanes, count>& values) {
-  std::copy_n(values.begin(), count, history.at(record) + history.first_of_law);
+  std::copy_n(values.begin(), count, history.at(record) + ContactHistory::first_of_law);
 }
 
 }  // namespace pliant

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "contact/facing.hpp"
+#include "contact/node_pass.hpp"
 
 namespace pliant {
 namespace {
@@ -29,18 +29,16 @@ Lanes compression(const Law& law, Lanes gap) {
 
 std::vector<DeepNode> deep_nodes(const PatchView& view) {
   std::vector<DeepNode> nodes;
-  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Facing& at) {
-    const Projection& p = at.p;
-    const LaneBits deep =
-        first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
-    const Lanes stored = 0.5 * at.length * compression(law, p.gap);
+  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Projection& p) {
+    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
+    const Lanes stored = 0.5 * load_slaves(pass, i).tributary_length * compression(law, p.gap);
     for (int lane = 0; lane < lane_count; ++lane)
       if (deep[lane])
         nodes.push_back({-p.gap[lane], -p.gap[lane] / view.window.longest(), stored[lane],
                          (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
   };
   const auto look = [&](const auto& law) {
-    for_each_facing(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
+    for_each_beside(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
   };
   std::visit(look, view.patch.law);
   return nodes;

@@ -21,7 +21,6 @@ struct Pass {
   Arc rows;                        ///< of the window, that can touch
   const double* tributary_length;  ///< [nodes] of the slave, m
   bool present_lengths;            ///< as the slave's outline is now
-  bool corners;                    ///< of either outline
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
@@ -70,8 +69,7 @@ inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& ru
           runs[master_side].begin + patch.window[master_side].begin - runs[master_side].arc.begin,
           {patch.segments[master_side].begin - patch.window[master_side].begin, patch.segments[master_side].count},
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
-          !present.empty(),
-          patch.corners};
+          !present.empty()};
 }
 
 inline void fill_window(const PatchView& view, int master_side) {

@@ -21,7 +21,6 @@ struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }
   bool operator==(const Arc&) const = default;
-  Arc with_neighbours() const { return count == 0 ? *this : Arc{begin - 1, count + 2}; }
 };
 
 /// The shortest arc with both.
@@ -37,7 +36,7 @@ struct Patch {
   int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
   int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
-  bool corners = false;       ///< of either outline: see facing.hpp
+  bool integrated = false;    ///< over segments; else collocated at nodes
   ContactLaw law;
   Arc nodes[2];     ///< that may touch the other body; no node twice, but images of a wall's
   Arc segments[2];  ///< that the other's nodes may touch
@@ -51,7 +50,6 @@ struct Patch {
   BodyPair pair() const { return {first, second, images}; }
   /// Nothing of it can touch for now.
   bool is_empty() const { return nodes[0].count + nodes[1].count == 0; }
-  bool is_integrated() const { return slave_segments[0] + slave_segments[1] > 0; }
   /// Parts of one outline, not of two or of two images.
   bool of_itself() const { return first == second && images == 0; }
 
@@ -59,7 +57,7 @@ struct Patch {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part),
-        visitor("corners", corners);
+        visitor("integrated", integrated);
     visitor("nodes", nodes), visitor("segments", segments), visitor("slave_segments", slave_segments),
         visitor("window", window);
     visitor("record", record), visitor("entry", entry), visitor("found", found);
@@ -67,11 +65,8 @@ struct Patch {
 
   /// Outline nodes that this patch puts forces on.
   Arc forces(int side) const {
-    const Arc n = nodes[side], s{segments[side].begin, segments[side].count == 0 ? 0 : segments[side].count + 1},
-              all = n.count == 0   ? s
-                    : s.count == 0 ? n
-                                   : hull(n, s);
-    return corners ? all.with_neighbours() : all;
+    const Arc n = nodes[side], s{segments[side].begin, segments[side].count == 0 ? 0 : segments[side].count + 1};
+    return n.count == 0 ? s : s.count == 0 ? n : hull(n, s);
   }
 };
 
@@ -102,30 +97,21 @@ struct PatchTotals {
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< nodes in touch
   // See energy_debt.hpp; 0 without:
-  double work = 0;         ///< of the mean of these forces and those before over the way between them, J/m
-  double now_work = 0;     ///< of integrated contact: the same of these forces alone
-  double ways = 0;         ///< squares of the ways of gaps, times the lengths of contacts, m3
-  double recent_ways = 0;  ///< the larger of these and those of the step before
-  double squares = 0;      ///< of integrated contact: squares of pressures over kn, times lengths, J/m
-  double pending = 0;      ///< what the pressures that repay will have done in the next step, J/m
-  /// What laws with a reach made, or lost, without cause in the step beside corners, J/m: in all, and the most of one.
-  double at_corners = 0, jump = 0;
+  double mean_work = 0;  ///< of the mean of these forces and those before over the way between them, J/m
+  double work = 0;       ///< the same of these forces alone
+  double squares = 0;    ///< of pressures over kn, times lengths, J/m
 
   /// Another patch's, but for what belongs to one alone.
   void add(const PatchTotals& other) {
     stored += other.stored, dissipated += other.dissipated, damping_power += other.damping_power;
     deepest = deepest > other.deepest ? deepest : other.deepest;
     contacts += other.contacts;
-    at_corners += other.at_corners;
-    jump = std::abs(jump) > std::abs(other.jump) ? jump : other.jump;
   }
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
-    visitor("deepest", deepest), visitor("contacts", contacts), visitor("work", work), visitor("ways", ways);
-    visitor("recent_ways", recent_ways), visitor("pending", pending);
-    visitor("now_work", now_work), visitor("squares", squares);
-    visitor("at_corners", at_corners), visitor("jump", jump);
+    visitor("deepest", deepest), visitor("contacts", contacts);
+    visitor("mean_work", mean_work), visitor("work", work), visitor("squares", squares);
   }
 };
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <type_traits>
 
 #include "contact/encounter.hpp"
 #include "contact/energy_debt.hpp"
-#include "contact/facing.hpp"
+#include "contact/node_pass.hpp"
 #include "contact/patch_queries.hpp"
 #include "contact/reactions.hpp"
 #include "contact/segment_pass.hpp"
@@ -15,33 +14,9 @@
 namespace pliant {
 namespace {
 
-/// Adds the forces of contacts whose length changes: minus their energy per length times the gradient of half the
-/// length.
-void add_length_forces(const Pass& pass, const Facing& facing, unsigned touching, int i, Lanes energy,
-                       PatchForces& forces) {
-  for (unsigned left = facing.varying & touching; left != 0; left &= left - 1) {
-    const int lane = std::countr_zero(left), slave = pass.slave_force + i + lane,
-              master = pass.master_force + static_cast<int>(facing.p.row[lane]);
-    const int* corner = facing.corner_row[lane];
-    const int at[Facing::nodes] = {slave - 1,
-                                   slave,
-                                   slave + 1,
-                                   master,
-                                   master + 1,
-                                   master - 1,
-                                   master + 2,
-                                   pass.master_force + std::max(0, corner[0]),
-                                   pass.master_force + std::max(0, corner[1])};
-    for (int node = 0; node < Facing::nodes; ++node) {
-      const Vec2 force = -0.5 * energy[lane] * facing.gradient[lane][node];
-      forces.x[at[node]] += force.x(), forces.y[at[node]] += force.y();
-    }
-  }
-}
-
 /// PatchTotals before the lanes are added up.
 struct LaneTotals {
-  Lanes stored{}, dissipated{}, damping_power{}, deepest{};
+  Lanes stored{}, dissipated{}, damping_power{}, squares{}, deepest{};
   int contacts = 0;
 };
 
@@ -49,12 +24,12 @@ void add(double* to, Lanes value) { store(to, load(to) + value); }
 
 /// Of nodes that are not beside the master.
 template <class Law>
-void forget(Lanes* to, int first_of_law) {
+void forget(Lanes* to) {
   to[ContactHistory::place] = broadcast(ContactHistory::nowhere);
   to[ContactHistory::slip] = Lanes{};
   if constexpr (remembers<Law>)
     for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      to[first_of_law + static_cast<int>(k)] = broadcast(Law::remembered[k].at_first);
+      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::remembered[k].at_first);
 }
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
@@ -96,42 +71,35 @@ Force force_on(const Projection& p, Lanes weight, Lanes pressure, Lanes shear) {
           couple};
 }
 
-/// Where pairs repay nothing.
-struct NoRepayment {};
-
 /// What the passes of a patch go on from and add to.
-template <class Repaid>
 struct Accounts {
   const ContactHistory& from;
   ContactHistory& to;
-  Repaid& repaid;
   PatchForces& forces;
   LaneTotals totals = {};
 };
 
-template <class Law, class Repaid>
-void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accounts<Repaid>& accounts) {
-  constexpr bool repays = !std::is_same_v<Repaid, NoRepayment>;
-  auto& [from, to, repaid, forces, totals] = accounts;
+template <class Law>
+void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accounts& accounts) {
+  auto& [from, to, forces, totals] = accounts;
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
   reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
-  const double outward = law.reach + view.skin;  // places before the touch, and what is repaid after it
+  const double outward = law.reach + view.skin;  // places before the touch
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
     const Lanes* before = from.at(record);
     Lanes* after = to.at(record);
     const LaneBits active = first_lanes(pass.nodes.count - i);
-    const Facing facing = face(pass, window, load_slaves(pass, i), i, outward);
-    const Projection& p = facing.p;
-    const Lanes half_length = select(active, 0.5 * facing.length, Lanes{});
+    const SlaveNodes nodes = load_slaves(pass, i);
+    const Projection p = project(window, nodes.x, nodes.y, outward);
+    const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
     const Lanes old_place = before[ContactHistory::place], old_slip = before[ContactHistory::slip];
     const Record<Law> old = load_record<remembered_count<Law>>(from, record);
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip, old);
-      forget<Law>(after, to.first_of_law);
-      if constexpr (repays) repaid.forget(after);
+      forget<Law>(after);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
@@ -139,32 +107,20 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accou
     Traction traction = law(p.gap);
     if constexpr (has_dashpot<Law>)
       totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
-    LaneBits acting = touching;
-    Lanes more{};
-    if constexpr (repays) {
-      acting = repaid.acting(before, active & p.hit, touching);
-      more = repaid.pressure(before, after, p.gap, acting, half_length);
-      if constexpr (!remembers<Law>) add_pressure(law, more, traction);
-    }
     Record<Law> now;
     const Contact c = respond(law, encounter(law, window, p, touching, old_place, place), traction, old_slip, old, now);
     after[ContactHistory::place] = select(p.hit, place, broadcast(ContactHistory::nowhere));
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
     store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
-    if (!any(acting)) continue;
-    Lanes pressure = c.pressure, shear = c.shear;
-    if constexpr (repays) {
-      pressure = select(touching, remembers<Law> ? c.pressure + more : c.pressure, more);
-      shear = select(touching, shear, Lanes{});
-    }
+    if (!any(touching)) continue;
+    const Lanes pressure = select(touching, c.pressure, Lanes{}), shear = select(touching, c.shear, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
+    totals.squares += half_length * pressure * pressure;
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
-    const Force force = force_on(p, select(acting, half_length, Lanes{}), pressure, shear);
+    const Force force = force_on(p, select(touching, half_length, Lanes{}), pressure, shear);
     reactions.add(p, force.x, force.y, force.couple);
     add(&forces.x[pass.slave_force + i], force.x), add(&forces.y[pass.slave_force + i], force.y);
-    if (facing.varying != 0) [[unlikely]]
-      add_length_forces(pass, facing, bits(touching), i, c.energy, forces);
     totals.contacts += std::popcount(bits(touching));
   }
   reactions.add_to(&forces.x[pass.master_force], &forces.y[pass.master_force]);
@@ -179,8 +135,8 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
 }
 
 /// Both passes of a patch. What a law does not need is neither kept nor added up.
-template <class Law, class Repaid>
-PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRuns& runs, Accounts<Repaid> accounts) {
+template <class Law>
+PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRuns& runs, Accounts accounts) {
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
@@ -197,7 +153,10 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRun
   const LaneTotals& totals = accounts.totals;
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
-  return {sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest), totals.contacts};
+  PatchTotals result{sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest),
+                     totals.contacts};
+  result.squares = sum(totals.squares) / law.normal_stiffness;
+  return result;
 }
 
 /// Of forces over the way of a step, J/m.
@@ -206,27 +165,26 @@ struct StepWork {
 };
 
 /// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. Returns their work;
-/// 0 where nobody asks, of those now where contact is not integrated.
+/// 0 where nobody asks.
 StepWork put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
                  PatchForces& forces) {
   const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
             offset = view.model.outline_offset[body];
-  const bool asks_work = step && step->before, integrated = view.patch.is_integrated();
   int node = run.arc.begin;
-  Lanes twice{}, now_work{};
+  double twice = 0, now_work = 0;
   for (int i = 0; i < run.arc.count; i += lane_count, node += lane_count) {
     const Lanes x = load(&near.x[run.begin + i]), y = load(&near.y[run.begin + i]);
     store(&forces.x[entry + i], x), store(&forces.y[entry + i], y);
-    if (!asks_work) continue;
+    if (!step) continue;
     node -= turn_of(node, n) * n;
     const OutlineField &now = view.outlines.position, &before = *step->before;
-    const PatchForces& old = *step->forces_before;
+    const PatchForces& old = step->forces_before;
     const int at = offset + node;
     const Lanes way_x = load(&now.x[at]) - load(&before.x[at]), way_y = load(&now.y[at]) - load(&before.y[at]);
-    twice += (x + load(&old.x[entry + i])) * way_x + (y + load(&old.y[entry + i])) * way_y;
-    if (integrated) now_work += x * way_x + y * way_y;
+    add_in_order((x + load(&old.x[entry + i])) * way_x + (y + load(&old.y[entry + i])) * way_y, twice);
+    add_in_order(x * way_x + y * way_y, now_work);
   }
-  return {0.5 * sum(twice), sum(now_work)};
+  return {0.5 * twice, now_work};
 }
 
 }  // namespace
@@ -241,23 +199,13 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   const std::size_t size = static_cast<std::size_t>(runs[1].begin + padded(runs[1].arc.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
-  const auto passes = [&](const auto& law) {
-    if (!step) {
-      NoRepayment none;
-      return compute_passes(law, view, runs, Accounts<NoRepayment>{from, to, none, near});
-    }
-    Repayment repaid(*step, law.normal_stiffness);
-    PatchTotals totals = compute_passes(law, view, runs, Accounts<Repayment>{from, to, repaid, near});
-    totals.ways = repaid.ways(), totals.pending = repaid.pending();
-    return totals;
-  };
-  PatchTotals totals =
-      patch.is_integrated() ? integrate_patch(view, runs, from, to, near) : std::visit(passes, patch.law);
+  const auto passes = [&](const auto& law) { return compute_passes(law, view, runs, Accounts{from, to, near}); };
+  PatchTotals totals = patch.integrated ? integrate_patch(view, runs, from, to, near) : std::visit(passes, patch.law);
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
   // last.
   for (const int side : {1, 0}) {
     const StepWork work = put_out(view, step, side, runs[side], near, forces);
-    totals.work += work.mean, totals.now_work += work.now;
+    totals.mean_work += work.mean, totals.work += work.now;
   }
   return totals;
 }

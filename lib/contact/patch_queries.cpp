@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "contact/facing.hpp"
+#include "contact/node_pass.hpp"
 #include "contact/segment_pass.hpp"
 #include "contact/segment_stiffness.hpp"
 #include "contact/slip.hpp"
@@ -11,40 +11,39 @@
 namespace pliant {
 
 double touching_length(const PatchView& view) {
-  if (view.patch.is_integrated()) return integrated_length(view);
+  if (view.patch.integrated) return integrated_length(view);
   Lanes length{};
-  for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
-    const LaneBits touching = first_lanes(pass.nodes.count - i) & at.p.hit & (at.p.gap < 0.0);
-    length += select(touching, 0.5 * at.length, Lanes{});
+  for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
+    const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0);
+    length += select(touching, 0.5 * load_slaves(pass, i).tributary_length, Lanes{});
   });
   return sum(length);
 }
 
 void locate_newcomers(const PatchView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.patch.law);
-  if (!shears || view.patch.is_integrated()) return;
-  for_each_facing(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Facing& at) {
+  if (!shears || view.patch.integrated) return;
+  for_each_beside(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Projection& p) {
     Lanes& place = history.at(pass.record + i)[ContactHistory::place];
-    place = select(at.p.hit & (place != place), place_of(at.p), place);
+    place = select(p.hit & (place != place), place_of(p), place);
   });
 }
 
 void start_records(const PatchView& view, ContactHistory& history) {
   const auto start = [&]<class Law>(const Law& law) {
     if constexpr (remembers<Law>)
-      for_each_facing(view, law.start_reach(), [&](const Pass& pass, int, int i, const Facing& at) {
-        const LaneBits beside = first_lanes(pass.nodes.count - i) & at.p.hit;
-        store_record(history, pass.record + i, law.at_start(at.p.gap, beside));
+      for_each_beside(view, law.start_reach(), [&](const Pass& pass, int, int i, const Projection& p) {
+        const LaneBits beside = first_lanes(pass.nodes.count - i) & p.hit;
+        store_record(history, pass.record + i, law.at_start(p.gap, beside));
       });
   };
   std::visit(start, view.patch.law);
 }
 
 bool overlaps(const PatchView& view) {
-  if (view.patch.is_integrated()) return touching_length(view) > 0;
+  if (view.patch.integrated) return touching_length(view) > 0;
   bool found = false;
-  for_each_facing(view, 0, [&](const Pass& pass, int, int i, const Facing& at) {
-    const Projection& p = at.p;
+  for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
     found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
   });
   return found;
@@ -97,20 +96,12 @@ void add_pass_stiffness(const PatchView& view, int slave_side, const double (&fa
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(view.window, nodes.x, nodes.y, outward);
-    const auto add = [&](int lane, double times) {
-      const double k = 0.5 * times * nodes.tributary_length[lane] * stiffness;
+    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
+      if (!p.hit[lane]) continue;
+      const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
       entries[pass.slave_force + i + lane] += factor[slave_side] * k;
-      return factor[1 - slave_side] * k;
-    };
-    for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane)
-      if (pass.corners) {
-        const Footholds footholds = possible_footholds(pass, view.window, p, lane, i, outward);
-        if (footholds.shares.empty()) continue;
-        const double k = add(lane, footholds.factor);
-        for (const auto& [row, share] : footholds.shares) carried.add(row, share, view.skin / p.length[lane], k);
-      } else if (p.hit[lane]) {
-        add_beside(p, lane, view.skin, add(lane, 1), carried);
-      }
+      add_beside(p, lane, view.skin, factor[1 - slave_side] * k, carried);
+    }
   }
   carried.add_to(view.model.bodies[view.body(1 - slave_side)].kind, &entries[pass.master_force]);
 }
@@ -118,7 +109,7 @@ void add_pass_stiffness(const PatchView& view, int slave_side, const double (&fa
 }  // namespace
 
 void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
-  if (view.patch.is_integrated()) return add_integrated_stiffness(view, factor, entries);
+  if (view.patch.integrated) return add_integrated_stiffness(view, factor, entries);
   for (int slave_side = 0; slave_side < 2; ++slave_side)
     if (view.patch.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);
 }

@@ -22,7 +22,7 @@ void forget_all(const Patch& patch, int side, ContactHistory& history) {
   const std::span<const Remembered> remembered = remembered_of(patch.law);
   for (int record = begin; record < begin + count; record += lane_count)
     for (std::size_t k = 0; k < remembered.size(); ++k)
-      history.at(record)[history.first_of_law + static_cast<int>(k)] = broadcast(remembered[k].at_first);
+      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(remembered[k].at_first);
 }
 
 /// The records of one side's nodes, from where another patch of the same bodies has them.
@@ -42,7 +42,7 @@ void copy_eights(const ContactHistory& from, int first, int count, ContactHistor
 /// The records of a patch alone, on which another may come to stand; none is left where they were.
 void take_aside(ContactHistory& history, Patch& patch, ContactHistory& aside) {
   const int size[2] = {padded(patch.nodes[0].count), padded(patch.nodes[1].count)};
-  aside.columns = history.columns, aside.first_of_law = history.first_of_law;
+  aside.columns = history.columns;
   aside.resize(size[0] + size[1]);
   for (int side = 0; side < 2; ++side) {
     const int from = patch.record[side], to = side * size[0];
@@ -80,11 +80,11 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
     }
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
   ContactHistory next;
-  next.set_columns(model_.scene.keeps_energy_debts(), static_cast<int>(fields));
+  next.set_columns(static_cast<int>(fields));
   next.resize(record_room_);
   next.clear(0, record_room_);
   next.evaluation = history.evaluation;
-  if (next.keeps_debts()) next.owed.assign(patches.size(), 0.0);
+  if (model_.scene.keeps_energy_debts()) next.set_debts(patches.size());
   parallel_for(static_cast<int>(patches.size()), [&](int p) {
     const Patch& patch = patches[p];
     const Patch* from = find(patch.pair(), patch.part);
@@ -93,7 +93,7 @@ void PatchTable::lay_out(std::vector<Patch> patches, std::size_t fields, Contact
         carry(model_, *from, history, patch, side, next);
       else
         forget_all(patch, side, next);
-    if (from && !next.owed.empty()) next.owed[p] = history.owed[from - patches_.data()];
+    if (from && !next.owed.empty()) next.copy_debt(history, static_cast<int>(from - patches_.data()), p);
   });
   history = std::move(next);
   history.layout = laid_out_ = ++layout_;
@@ -153,7 +153,7 @@ void PatchTable::follow(const ContactHistory& from, ContactHistory& to) const {
   }
   parallel_for(static_cast<int>(moved_.size()),
                [&](int i) { copy_eights(from, moved_[i][0], moved_[i][1], to, moved_[i][0]); });
-  to.owed = from.owed;
+  to.owed = from.owed, to.repaid = from.repaid;
   to.evaluation = from.evaluation;
   to.layout = from.layout;
 }

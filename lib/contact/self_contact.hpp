@@ -10,8 +10,8 @@ namespace pliant {
 /// while its parts move by less than the skin against each other. Segments of the two and two more on either side are
 /// left out: they are always near. Further ones need no rule, as a node stands beside a segment only where the outline
 /// between has turned by half a circle, or nearly. The nodes are slaves of one pass, with the weight 1/2: where two
-/// parts meet, both have nodes.
-void find_self_patches(const Model& model, const OutlineField& outlines, int body, const ContactLaw& law, double margin,
+/// parts meet, both have nodes. `of_body`: what all patches have in common.
+void find_self_patches(const Model& model, const OutlineField& outlines, const Patch& of_body, double margin,
                        double skin, std::vector<Patch>& patches, MasterWindow& scratch);
 
 }  // namespace pliant

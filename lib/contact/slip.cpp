@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/faces.hpp"
-
 namespace pliant {
 namespace {
 
@@ -19,22 +17,14 @@ constexpr double folded = -0.5;
 
 double angle_of(double fan) { return std::asin(std::clamp(fan, -1.0, 1.0)); }
 
-double height_over(const MasterSegment& s, const Vec2& position) {
-  return (position - start(s)).dot(outward_of(tangent(s)));
-}
-
-/// Way around the corner at a row's first node, of a node at a position, height over its row and gap. Where the wedges
-/// open, outside a convex corner or inside a re-entrant one, the node runs around it at the distance of the gap; where
-/// they close, the faces' ends are cut off on both sides; inside a sharp corner, where nodes also change faces off the
-/// bisector (node_length.cpp), at the mean of its heights over both: who changes the face at rest has gone no way.
-double corner(const MasterSegment& before, const MasterSegment& after, const Vec2& position, double height,
-              double gap) {
+/// Way around the corner at a row's first node, of a node at a height over its row and a gap. Where the wedges open,
+/// outside a convex corner or inside a re-entrant one, the node runs around it at the distance of the gap; where they
+/// close, the faces' ends are cut off on both sides.
+double corner(const MasterSegment& before, const MasterSegment& after, double height, double gap) {
   const double sine = before.tangent_x * after.tangent_y - before.tangent_y * after.tangent_x;
   const double cosine = before.tangent_x * after.tangent_x + before.tangent_y * after.tangent_y;
   const double turn = std::atan2(sine, cosine);
-  if (height * turn > 0) return gap * turn;
-  const double twice = turn < corner_turn ? 2 * height : height_over(before, position) + height_over(after, position);
-  return twice * std::tan(0.5 * turn);
+  return height * turn > 0 ? gap * turn : 2 * height * std::tan(0.5 * turn);
 }
 
 /// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between
@@ -44,12 +34,11 @@ MasterSegment at(const MasterWindow& window, int row) {
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];
 }
 
-double way_onward(const MasterWindow& window, const Place& from, const Place& to, const Vec2& position, double height,
-                  double gap) {
+double way_onward(const MasterWindow& window, const Place& from, const Place& to, double height, double gap) {
   double way =
       (1 - from.xi) * at(window, from.row).length + to.xi * at(window, to.row).length + gap * (to.angle - from.angle);
   for (int row = from.row + 1; row <= to.row; ++row) {
-    way += corner(at(window, row - 1), at(window, row), position, height, gap);
+    way += corner(at(window, row - 1), at(window, row), height, gap);
     if (row < to.row) way += at(window, row).length;
   }
   return way;
@@ -90,9 +79,7 @@ double way_between_segments(const MasterWindow& window, const Projection& p, int
   const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(fan_of(broadcast(old_u - old_xi))[0])};
   const double height = p.height[lane], gap = p.gap[lane];
   if (are_folded(at(window, old.row), at(window, now.row))) return across_fold(window, old, now, gap);
-  const Vec2 position = stand(at(window, now.row), now, gap).position;
-  return old.row < now.row ? way_onward(window, old, now, position, height, gap)
-                           : -way_onward(window, now, old, position, height, gap);
+  return old.row < now.row ? way_onward(window, old, now, height, gap) : -way_onward(window, now, old, height, gap);
 }
 
 }  // namespace pliant

@@ -121,7 +121,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
 
 /// Where it began, if contact asks.
 const OutlineField* StepDoubling::start_of_step(const Outlines& outlines) const {
-  return model_.scene.contact.quadrature == ContactQuadrature::segments ? &outlines.position : nullptr;
+  return forces_.contact().may_integrate() ? &outlines.position : nullptr;
 }
 
 /// With the mean of the loads over the half step: they are linear in time, as steps end at the points of histories.

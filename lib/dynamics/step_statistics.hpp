@@ -10,19 +10,15 @@ namespace pliant {
 
 /// What the accepted steps of a run have met: for the diagnosis of its energy balance.
 struct StepStatistics {
-  double deepest = 0;              ///< penetration over the longest segment near, the largest
-  double deepest_time = 0;         ///< s
-  double at_corners = 0;           ///< PatchTotals::at_corners, J/m
-  double jump = 0, jump_time = 0;  ///< PatchTotals::jump, the largest, J/m, and when, s
-  std::int64_t contacts = 0;       ///< nodes in touch at once, the most
-  std::int64_t by_error = 0;       ///< steps whose length the error limited ...
-  std::int64_t by_stability = 0;   ///< ... and the bound of stability
+  double deepest = 0;             ///< penetration over the longest segment near, the largest
+  double deepest_time = 0;        ///< s
+  std::int64_t contacts = 0;      ///< nodes in touch at once, the most
+  std::int64_t by_error = 0;      ///< steps whose length the error limited ...
+  std::int64_t by_stability = 0;  ///< ... and the bound of stability
 
   void add(const StepReport& report, double time) {
     const PatchTotals& contact = report.evaluation.contact;
     if (contact.deepest > deepest) deepest = contact.deepest, deepest_time = time;
-    at_corners += contact.at_corners;
-    if (std::abs(contact.jump) > std::abs(jump)) jump = contact.jump, jump_time = time;
     contacts = std::max<std::int64_t>(contacts, contact.contacts);
     by_error += report.governed_by[0] == 'e';
     by_stability += report.governed_by[0] == 's';
@@ -31,7 +27,6 @@ struct StepStatistics {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("deepest", deepest), visitor("deepest_time", deepest_time), visitor("contacts", contacts);
-    visitor("at_corners", at_corners), visitor("jump", jump), visitor("jump_time", jump_time);
     visitor("by_error", by_error), visitor("by_stability", by_stability);
   }
 };

@@ -18,8 +18,6 @@ constexpr double rounding = 1e-13;
 constexpr double calm_safety = 0.4;
 /// Penetration over segment length from which on it is to blame, and that stiffer contacts should come down to.
 constexpr double deep = 0.3, shallow = 0.1;
-/// Of the energy that is gained or lost.
-constexpr double corner_share = 0.5;
 
 /// Modulus times area of all compliant bodies, and weights and contact forces times coordinates, J/m.
 double energy_scale(const Simulation& simulation) {
@@ -45,7 +43,7 @@ double energy_scale(const Simulation& simulation) {
 std::string against_depth(const TimeSettings& time, const StepStatistics& seen) {
   const double ratio = seen.deepest / shallow;
   return fmt::format(
-      "contacts got {:.2g} of a segment deep at t = {:.4g} s, where forces jump as nodes pass corners: take a "
+      "contacts got {:.2g} of a segment deep at t = {:.4g} s, where bodies rebound within few steps: take a "
       "[[contacts]] "
       "stiffness {:.2g} times as high if that was an impact, {:.2g} times if loads press, for {:g} of a segment, with "
       "[time] safety = {:g}",
@@ -84,17 +82,8 @@ std::string against_jumps(const Simulation& simulation) {
       time.safety > calm_safety ? calm_safety : time.safety / 2, time.safety);
 }
 
-/// Where a law with a reach meets corners, nodes change what they face, and with it the energy, at any step.
-std::string against_corners(const StepStatistics& seen) {
-  return fmt::format(
-      "cohesive contacts at corners made {:.2g} J/m, up to {:.2g} J/m in one step (t = {:.4g} s): a smaller [time] "
-      "safety lessens the error of the steps, but energy jumps where nodes pass corners, whatever the step; no setting "
-      "mends that (docs/limits.md)",
-      seen.at_corners, seen.jump, seen.jump_time);
-}
-
 /// The likeliest cause by what the run has met, and what to do.
-std::string diagnosis(const Simulation& simulation, double error, double gained) {
+std::string diagnosis(const Simulation& simulation, double error) {
   const StepStatistics& seen = simulation.statistics();
   const InitialOverlap& overlap = simulation.overlap();
   const Model& model = simulation.model();
@@ -102,7 +91,6 @@ std::string diagnosis(const Simulation& simulation, double error, double gained)
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
-  if (std::abs(seen.at_corners) > corner_share * std::abs(gained)) return against_corners(seen);
   if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time);
   return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation);
 }
@@ -114,7 +102,7 @@ void warn_of_balance(const Simulation& simulation, const Energies& energy) {
   if (error <= largest_error || std::abs(gained) <= rounding * energy_scale(simulation)) return;
   spdlog::warn("energy balance at t = {:.6g} s: {:.2g} J/m {} without cause, {:.3g} % of what came in; {}",
                simulation.state().time, std::abs(gained), gained > 0 ? "gained" : "lost", 100 * error,
-               diagnosis(simulation, error, gained));
+               diagnosis(simulation, error));
 }
 
 }  // namespace pliant

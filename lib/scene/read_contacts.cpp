@@ -90,9 +90,10 @@ void read_refresh(TableReader& table, ContactSettings& contact) {
 
 void read_settings(TableReader settings, Scene& scene) {
   settings.optional("skin", scene.skin, Quantity{"1", Range{.low = 0, .high = most_skin, .low_open = true}});
-  settings.optional(
-      "quadrature", scene.contact.quadrature,
-      Choice<ContactQuadrature>{{{"nodes", ContactQuadrature::nodes}, {"segments", ContactQuadrature::segments}}});
+  settings.optional("quadrature", scene.contact.quadrature,
+                    Choice<ContactQuadrature>{{{"auto", ContactQuadrature::automatic},
+                                               {"nodes", ContactQuadrature::nodes},
+                                               {"segments", ContactQuadrature::segments}}});
   settings.optional(
       "length", scene.contact.length,
       Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});
@@ -107,12 +108,6 @@ void read_settings(TableReader settings, Scene& scene) {
   settings.finish();
 }
 
-/// Bonds are nodes' own.
-void check_quadrature(const TableReader& table, const Scene& scene, const ContactRule& rule) {
-  if (scene.contact.quadrature == ContactQuadrature::segments && rule.law == ContactLawKind::cohesive_fatigue)
-    table.fail("law", "cohesive-fatigue needs [contact] quadrature = \"nodes\"");
-}
-
 }  // namespace
 
 void read_contacts(TableReader& root, Scene& scene) {
@@ -122,7 +117,6 @@ void read_contacts(TableReader& root, Scene& scene) {
   const std::vector<TableReader> tables = root.tables("contacts");
   for (const TableReader& table : tables) scene.contacts.push_back(read_contact(table, scene));
   check_rules(root, scene, tables);
-  for (std::size_t i = 0; i < tables.size(); ++i) check_quadrature(tables[i], scene, scene.contacts[i]);
 }
 
 }  // namespace pliant

@@ -25,7 +25,8 @@ enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive, cohesive_fatigue };
 enum class ContactLength { reference, current };
 /// Where the tractions of contact are evaluated: at nodes, or integrated over segments (docs/method.md 4).
-enum class ContactQuadrature { nodes, segments };
+/// `automatic`: over segments where an outline of the pair has corners, else at nodes.
+enum class ContactQuadrature { automatic, nodes, segments };
 enum class Integrator { verlet, step_doubling };
 enum class Reduction { mean, sum, min, max };
 
@@ -227,7 +228,7 @@ struct ContactRule {
 
 /// Settings of contact that hold for the whole scene; the skin stands in Scene.
 struct ContactSettings {
-  ContactQuadrature quadrature = ContactQuadrature::nodes;
+  ContactQuadrature quadrature = ContactQuadrature::automatic;
   ContactLength length = ContactLength::reference;  ///< what the pressure on a node acts on
   int refresh_steps = 0;                            ///< rebuild candidates every so many steps; 0: when needed
   double refresh_period = 0;                        ///< the same in time, s

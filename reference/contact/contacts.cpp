@@ -7,11 +7,11 @@
 #include <map>
 
 #include "core/errors.hpp"
-#include "reference/contact/corners.hpp"
 #include "reference/contact/integrated_contacts.hpp"
 #include "reference/contact/law.hpp"
 #include "reference/contact/pair_laws.hpp"
 #include "reference/contact/projection.hpp"
+#include "reference/contact/reference_outline.hpp"
 #include "reference/contact/slip.hpp"
 
 namespace pliant::reference {
@@ -50,9 +50,6 @@ struct PresentBody {
 };
 
 void refuse_settings(const ContactSettings& settings) {
-  if (settings.length == ContactLength::current && settings.quadrature == ContactQuadrature::nodes)
-    throw InputError(
-        "[contact] length = \"current\" with quadrature = \"nodes\": the reference solver knows \"reference\" only");
   if (settings.self_contact) throw InputError("[contact] self_contact = true: not in the reference solver");
 }
 
@@ -62,35 +59,58 @@ struct Contacts::Implementation {
   Implementation(const Scene& scene, std::vector<ContactOutline> given)
       : outlines(std::move(given)), laws(scene, outlines), period(scene.period.value_or(0)) {
     refuse_settings(scene.contact);
-    if (scene.contact.quadrature == ContactQuadrature::segments) integrated.emplace(scene, outlines, laws);
+    find_integrated(scene.contact.quadrature);
+    if (scene.contact.length == ContactLength::current && !all_are_integrated())
+      throw InputError(
+          "[contact] length = \"current\" of contacts at nodes: the reference solver knows \"reference\" only there");
+    integrals.emplace(scene, outlines, laws, [this](int a, int b) { return is_integrated(a, b); });
     double finest = std::numeric_limits<double>::infinity();
     for (const ContactOutline& outline : outlines) {
       lengths.push_back(tributary_lengths(outline));
-      corners.emplace_back(outline);
       finest = std::min(finest, mean_spacing(outline));
     }
     skin = scene.skin * finest;
   }
 
+  /// By default over segments where an outline has corners. Bonds are those of nodes.
+  void find_integrated(ContactQuadrature quadrature) {
+    std::vector<bool> has_corners;
+    for (const ContactOutline& outline : outlines) has_corners.push_back(ReferenceOutline(outline).has_corners());
+    for (std::size_t a = 0; a < outlines.size(); ++a)
+      for (std::size_t b = 0; b < outlines.size(); ++b) {
+        const std::optional<Law>& law = laws.between(static_cast<int>(a), static_cast<int>(b));
+        const bool wanted = quadrature == ContactQuadrature::segments ||
+                            (quadrature == ContactQuadrature::automatic && (has_corners[a] || has_corners[b]));
+        integrated.push_back(law && !law->bonds() && wanted);
+      }
+  }
+  bool is_integrated(int a, int b) const {
+    return integrated[static_cast<std::size_t>(a) * outlines.size() + static_cast<std::size_t>(b)];
+  }
+  bool all_are_integrated() const {
+    for (int a = 0; a < static_cast<int>(outlines.size()); ++a)
+      for (int b = 0; b < static_cast<int>(outlines.size()); ++b)
+        if (laws.between(a, b) && !is_integrated(a, b)) return false;
+    return true;
+  }
+
   ContactResult evaluate(const Points& x) {
-    if (integrated) return integrated->evaluate(x);
     trial.clear();
-    result = {};
+    result = integrals->evaluate(x);
     bodies.clear();
     for (const ContactOutline& outline : outlines) bodies.emplace_back(outline, x);
     const int count = static_cast<int>(outlines.size());
     for (int slave = 0; slave < count; ++slave)
       for (int master = 0; master < count; ++master)
-        if (const std::optional<Law>& law = laws.between(slave, master)) meet(slave, master, *law);
+        if (const std::optional<Law>& law = laws.between(slave, master); law && !is_integrated(slave, master))
+          meet(slave, master, *law);
     for (const auto& [encounter, memory] : accepted)
       if (!trial.contains(encounter)) part(encounter, memory);
     return std::move(result);
   }
 
-  /// What a node remembers is lost when it is no longer beside the other body. Past a corner its length has come to
-  /// nothing.
+  /// What a node remembers is lost when it is no longer beside the other body.
   void part(const Encounter& encounter, const ContactMemory& memory) {
-    if (corners[encounter.master].any()) return;
     result.dissipated +=
         weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory, std::nullopt);
   }
@@ -141,47 +161,24 @@ struct Contacts::Implementation {
   void stand_beside(const Encounter& encounter, const Nearest& nearest, const Vec2& point, const Law& law,
                     double outward) {
     const PresentBody& on = bodies[encounter.master];
-    if (corners[encounter.master].any()) outward += tie * on.longest;
     if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
-    const SlaveNode node = slave_node(encounter, point);
-    const Face face{on.outline, corners[encounter.master],
-                    std::min(corners[encounter.slave].longest(), corners[encounter.master].longest())};
-    const std::optional<Footing> stand = footing(face, nearest.segment, node, outward);
-    if (!stand) return;
-    const auto& [segment, length] = *stand;
-    const Projection at = project(point, on.outline.node(segment), on.outline.node(segment + 1));
+    const Projection at = project(point, on.outline.node(nearest.segment), on.outline.node(nearest.segment + 1));
     const auto found = accepted.find(encounter);
     ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
     if (initial && law.bonds() && at.gap.value <= law.bond_gap) before.damage = 0;
     ContactMemory& memory = trial[encounter];
     memory.beside = true;
-    memory.segment = segment;
+    memory.segment = nearest.segment;
     memory.xi = at.xi.value;
     memory.angle = at.angle.value;
     if (at.gap.value < law.reach)
-      touch(encounter, length, at, law, before, memory);
+      touch(encounter, at, law, before, memory);
     else
-      result.dissipated += length.value.value / 2 * parting_loss(law, before, at.gap.value);
+      result.dissipated += weight(encounter) * parting_loss(law, before, at.gap.value);
   }
 
-  /// `point`: where the master sees it.
-  SlaveNode slave_node(const Encounter& encounter, const Vec2& point) const {
-    const PresentOutline& outline = bodies[encounter.slave].outline;
-    const Corners& own = corners[encounter.slave];
-    const int i = encounter.node;
-    const Vec2 shift = point - outline.node(i);
-    return {outline.node(i - 1) + shift,
-            point,
-            outline.node(i + 1) + shift,
-            own.length(i - 1),
-            own.length(i),
-            own.at(i),
-            own.any() && own.at(i - 1),
-            own.any() && own.at(i + 1)};
-  }
-
-  void touch(const Encounter& encounter, const NodeLength& whole, const Projection& at, const Law& law,
-             const ContactMemory& before, ContactMemory& memory) {
+  void touch(const Encounter& encounter, const Projection& at, const Law& law, const ContactMemory& before,
+             ContactMemory& memory) {
     const int segment = memory.segment;
     const PresentBody& on = bodies[encounter.master];
     Motion motion;
@@ -191,28 +188,16 @@ struct Contacts::Implementation {
     memory.friction_slip = response.friction_slip;
     memory.damage = response.damage;
     memory.opening = response.opening;
-    const auto length = whole.value * 0.5;  // one of two passes
-    result.stored += length.value * response.stored;
-    result.dissipated += length.value * response.dissipated;
-    ContactElement element = make_element(on.outline, at, motion, response, length.value);
+    const double length = weight(encounter);
+    result.stored += length * response.stored;
+    result.dissipated += length * response.dissipated;
+    ContactElement element = make_element(on.outline, at, motion, response, length);
     const PresentOutline& slave = bodies[encounter.slave].outline;
     element.node = {slave.index(encounter.node), on.outline.index(segment), on.outline.index(segment + 1)};
-    if (!length.gradient.isZero(0)) {
-      result.lengths.push_back(make_length_element(length, response.stored, element));
-      result.lengths.back().node = {slave.index(encounter.node - 1),
-                                    element.node[0],
-                                    slave.index(encounter.node + 1),
-                                    element.node[1],
-                                    element.node[2],
-                                    on.outline.index(segment - 1),
-                                    on.outline.index(segment + 2),
-                                    on.outline.index(whole.corner[0]),
-                                    on.outline.index(whole.corner[1])};
-    }
     element.body = {encounter.slave, encounter.master};
     element.depth = std::max(0.0, -at.gap.value) / on.longest;
     if (initial && element.depth > 0)
-      element.compression = length.value * (response.stored - respond(law, before, 0, 0, true).stored);
+      element.compression = length * (response.stored - respond(law, before, 0, 0, true).stored);
     result.elements.push_back(std::move(element));
   }
 
@@ -234,27 +219,12 @@ struct Contacts::Implementation {
     return element;
   }
 
-  /// Of the energy length x stored; the element's forces are length x what they are a unit of it.
-  static LengthElement make_length_element(const Jet<LengthElement::size>& length, double stored,
-                                           const ContactElement& element) {
-    constexpr int own[6] = {2, 3, 6, 7, 8, 9};  // places of the element's coordinates among the length's
-    Eigen::Matrix<double, LengthElement::size, 1> of_unit_length;
-    of_unit_length.setZero();
-    if (length.value > 0)
-      for (int i = 0; i < 6; ++i) of_unit_length[own[i]] = element.force[i] / length.value;
-    LengthElement result;
-    result.force = stored * length.gradient;
-    result.tangent = stored * length.hessian + length.gradient * of_unit_length.transpose() +
-                     of_unit_length * length.gradient.transpose();
-    return result;
-  }
-
   std::vector<ContactOutline> outlines;
-  std::vector<Corners> corners;  ///< [bodies]
   PairLaws laws;
-  std::optional<IntegratedContacts> integrated;  ///< in place of all that follows
-  double period = 0, skin = 0;                   ///< m
-  std::vector<std::vector<double>> lengths;      ///< [bodies][nodes], m
+  std::vector<bool> integrated;  ///< [bodies x bodies] which contacts are integrals; others are those of nodes
+  std::optional<IntegratedContacts> integrals;
+  double period = 0, skin = 0;               ///< m
+  std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
   Memories accepted, trial;
   bool initial = true;  ///< nothing accepted yet
 
@@ -267,9 +237,6 @@ Points forces_on_nodes(const ContactResult& result, std::size_t nodes) {
   Points forces(nodes, Vec2(0, 0));
   for (const ContactElement& element : result.elements)
     for (int i = 0; i < 3; ++i) forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
-  for (const LengthElement& element : result.lengths)
-    for (int i = 0; i < LengthElement::size / 2; ++i)
-      forces[static_cast<std::size_t>(element.node[i])] -= element.force.segment<2>(2 * i);
   for (const ContactPatch& patch : result.patches)
     for (std::size_t i = 0; i < patch.node.size(); ++i)
       forces[static_cast<std::size_t>(patch.node[i])] -= patch.force.segment<2>(2 * static_cast<Eigen::Index>(i));
@@ -284,7 +251,7 @@ Contacts::~Contacts() = default;
 ContactResult Contacts::evaluate(const Points& x) { return implementation_->evaluate(x); }
 
 void Contacts::accept() {
-  if (implementation_->integrated) implementation_->integrated->accept();
+  implementation_->integrals->accept();
   implementation_->accepted = implementation_->trial;
   implementation_->initial = false;
 }

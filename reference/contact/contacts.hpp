@@ -51,15 +51,6 @@ struct ContactElement {
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
 };
 
-/// What the energy of a contact adds where the length that its node stands for changes with the places of nodes: see
-/// NodeLength.
-struct LengthElement {
-  static constexpr int size = 18;
-  std::array<int, size / 2> node;             ///< in the list of all outline nodes
-  Eigen::Matrix<double, size, 1> force;       ///< residual, N/m
-  Eigen::Matrix<double, size, size> tangent;  ///< of `force` and, by the length, of the contact's own forces
-};
-
 /// One body's segments against another, where contact is an integral: all nodes that it depends on together.
 struct ContactPatch {
   std::vector<int> node;      ///< in the list of all outline nodes
@@ -73,8 +64,7 @@ struct ContactPatch {
 
 struct ContactResult {
   std::vector<ContactElement> elements;
-  std::vector<LengthElement> lengths;
-  std::vector<ContactPatch> patches;  ///< in place of both where contact is an integral
+  std::vector<ContactPatch> patches;  ///< of pairs whose contact is an integral
   double stored = 0;                  ///< J/m
   double dissipated = 0;              ///< from the last accepted state to this one, J/m
   std::size_t count() const { return elements.size() + patches.size(); }
@@ -88,8 +78,8 @@ Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 class Contacts {
  public:
   /// Throws InputError for what this solver does not have (self-contact, dashpots, lengths of the present outline at
-  /// nodes), for a range within which the law does not reach its strength, and for stiffness = "auto" between rigid
-  /// bodies alone.
+  /// nodes), for a range within which the law does not reach its strength, and for stiffness =
+  /// "auto" between rigid bodies alone.
   Contacts(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Contacts();
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "reference/contact/reference_outline.hpp"
 
 namespace pliant::reference {
 namespace {
@@ -64,10 +67,10 @@ bool are_apart(const Extent& a, const Extent& b, double by) {
 }  // namespace
 
 IntegratedContacts::IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines,
-                                       const PairLaws& laws)
-    : outlines_(outlines), laws_(laws), period_(scene.period.value_or(0)) {
+                                       const PairLaws& laws, std::function<bool(int, int)> has)
+    : outlines_(outlines), laws_(laws), has_(std::move(has)), period_(scene.period.value_or(0)) {
   for (const ContactOutline& outline : outlines) {
-    const Corners shape(outline);
+    const ReferenceOutline shape(outline);
     longest_.push_back(shape.longest());
     lengths_.emplace_back();
     if (scene.contact.length == ContactLength::reference)
@@ -82,7 +85,7 @@ ContactResult IntegratedContacts::evaluate(const Points& x) {
   const int count = static_cast<int>(outlines_.size());
   for (int slave = 0; slave < count; ++slave)
     for (int master = 0; master < count; ++master)
-      if (laws_.between(slave, master)) meet(slave, master, result);
+      if (has_(slave, master)) meet(slave, master, result);
   for (const auto& [encounter, slips] : accepted_)
     for (const auto& [node, slip] : slips) {
       const auto found = trial_.find(encounter);

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <tuple>
 
-#include "reference/contact/corners.hpp"
 #include "reference/contact/integrated_pass.hpp"
 #include "reference/contact/pair_laws.hpp"
 
@@ -13,8 +13,9 @@ namespace pliant::reference {
 /// every segment of every body against every segment of every other, and of its own periodic images.
 class IntegratedContacts {
  public:
-  /// Of laws without bonds: a scene that asks for those is refused when it is read.
-  IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws);
+  /// `has`: whether contacts of two bodies, by their numbers, are among these.
+  IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws,
+                     std::function<bool(int, int)> has);
 
   ContactResult evaluate(const Points& x);  ///< as Contacts does
   void accept();
@@ -28,6 +29,7 @@ class IntegratedContacts {
 
   const std::vector<ContactOutline>& outlines_;
   const PairLaws& laws_;
+  std::function<bool(int, int)> has_;
   double period_ = 0;                         ///< m, 0: none
   std::vector<std::vector<double>> lengths_;  ///< [bodies][segments] that count, m; empty: present ones
   std::vector<double> longest_;               ///< [bodies], segment, m

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference/contact/corners.hpp"
-
 namespace pliant::reference {
 namespace {
 
@@ -24,8 +22,7 @@ class Way {
   }
 
   /// A corner by a turn of the tangent: around it on its open side, at the distance of the gap; on the other side the
-  /// ends of both faces are cut off, inside a sharp corner at the mean of the heights over both, as nodes change faces
-  /// there off the bisector: without this one's derivative, which costs a Newton step that passes it.
+  /// ends of both faces are cut off.
   void add_corner(int i, const Projection& now) {
     const JetVector before = JetVector::point(master_.node(i - 1), 0), corner = JetVector::point(master_.node(i), 1),
                     after = JetVector::point(master_.node(i + 1), 2);
@@ -35,12 +32,6 @@ class Way {
     const Jet<6> turn = around ? 2 * atan(half_tangent) : 2 * half_tangent, &distance = around ? now.gap : now.height;
     add(distance * turn.value);
     for (int k = 0; k < 3; ++k) depends(i - 1 + k, distance.value * turn.gradient.segment<2>(2 * k));
-    if (around || half_tangent.value < std::tan(corner_turn / 2)) return;
-    const Vec2 foot = master_.node(segment_) + now.xi.value * now.length.value * master_.tangent(segment_);
-    const Vec2 at = foot + now.gap.value * Vec2(std::cos(now.angle.value) * outward(segment_) +
-                                                std::sin(now.angle.value) * master_.tangent(segment_));
-    const double mean = 0.5 * (at - master_.node(i)).dot(outward(i - 1) + outward(i));
-    add(Jet<6>((mean - distance.value) * turn.value));
   }
 
   /// Back the way that was summed up.
@@ -60,8 +51,6 @@ class Way {
     else
       motion_.others.emplace_back(node, derivative);
   }
-
-  Vec2 outward(int i) const { return {master_.tangent(i).y(), -master_.tangent(i).x()}; }
 
   const PresentOutline& master_;
   int segment_;

@@ -19,6 +19,8 @@ Scene block_above_floor(const ContactRule& rule, double height, double speed, co
   scene.shapes = {box_shape("block", 2, 1, 0.25)};
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.5 + height}}, moving({0, -speed}))};
   scene.contacts = {rule};
+  scene.contact.quadrature =
+      ContactQuadrature::nodes;  // over segments the block's sides press too, by depth over width
   scene.time.tolerance = 1e300;
   scene.time.safety = safety;
   return scene;

@@ -1,4 +1,4 @@
-// Sharp corners: which faces touch there, over which length, and that nothing locks.
+// Sharp corners: over which length faces touch there, and that nothing locks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,10 +33,11 @@ const double spacings[] = {0.25, 0.1, 1.0 / 16, 0.037};
 /// The length that a bar of half width 1.2 and a block of half width 0.5 share.
 double shared(double shift) { return std::max(0.0, std::min(0.5 + shift, 1.2) - std::max(shift - 0.5, -1.2)); }
 
-// EXACT: flat faces press over the length that they share, wherever their nodes are, aligned or not, and whoever is
-// finer; what they store is that length times the law's energy. Along the faces nothing pulls but the ends: minus the
-// energy a length for each end of the block on the bar, plus one for each end of the bar under the block, so nothing
-// while the block stands on the bar, else that energy, off the bar. Rounding of 40 nodes' forces.
+// EXACT: flat faces press over the length L that they share, wherever their nodes are, aligned or not, and whoever is
+// finer. At either end, of the block on the bar or of the bar under the block, the pass of the one whose end it is adds
+// the side that is inside, kn d^2/4, and that of the other loses twice as much to the side, to which its points are
+// nearer there: kn d (L - d/2) in all, and an energy of kn d^2/2 (L - d/3). Off the bar's end the block is pushed by
+// the derivative of that along the way, kn d^2/2. Rounding of 40 nodes' forces.
 TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
   const double energy = 0.5 * stiffness * depth * depth;
   for (const int segments : {4, 6, 8, 16})
@@ -45,27 +46,36 @@ TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
         for (const bool compliant : {false, true}) {
           if (compliant && segments > 8) continue;  // enough
           SCOPED_TRACE(fmt::format("{} segments, spacing {}, shift {}, {}", segments, spacing, shift, compliant));
-          if (shared(shift) < 4.01 * std::max(1.0 / segments, spacing)) continue;  // two nodes for either end
           ContactRig rig(block_on_bar(frictionless(stiffness), segments, spacing, shift, compliant));
           rig.evaluate();
-          EXPECT_NEAR(rig.force(1).y(), stiffness * depth * shared(shift), 1e-12);
-          EXPECT_NEAR(rig.totals.stored, energy * shared(shift), 1e-14);
+          EXPECT_NEAR(rig.force(1).y(), stiffness * depth * (shared(shift) - depth / 2), 1e-12);
+          EXPECT_NEAR(rig.totals.stored, energy * (shared(shift) - depth / 3), 1e-14);
           const double off = shift > 0.7 ? energy : shift < -0.7 ? -energy : 0;
           EXPECT_NEAR(rig.force(1).x(), off, 1e-12);
         }
 }
 
-// EXACT: the strength of a face is that of its length, for a cohesive one too, which a node beyond a corner would add
-// to.
+// EXACT: the strength of a face is that of its length, and of what is within reach at both ends: the side above one,
+// and what lies past the other, at distances r, which pull by the upright part gap/r of their direction.
 TEST(Corners, AFaceIsAsStrongAsItIsLong) {
-  const double strength = 0.5;
+  const double strength = 0.5, reach = 0.03, gap = strength / stiffness;
+  const auto pull = [&](double r) { return strength * (reach - r) / (reach - gap); };
+  double past_end = 0;
+  constexpr int parts = 100'000;
+  const double widest = std::sqrt(reach * reach - gap * gap);
+  for (int i = 0; i < parts; ++i) {
+    const double r = std::hypot(gap, (i + 0.5) / parts * widest);
+    past_end += pull(r) * gap / r * widest / parts;
+  }
+  const double of_side = 0.5 * strength * (reach - gap), of_ends = of_side + past_end;  // two ends, each half a pass
   for (const int segments : {4, 6, 16})
     for (const double spacing : spacings)
       for (const double shift : {0.0, 0.0317, 0.62}) {
-        ContactRig rig(block_on_bar(cohesive(stiffness, strength, 0.03, 0), segments, spacing, shift));
-        rig.move(1, {0, depth + strength / stiffness});
+        ContactRig rig(block_on_bar(cohesive(stiffness, strength, reach, 0), segments, spacing, shift));
+        rig.move(1, {0, depth + gap});
         rig.evaluate();
-        EXPECT_NEAR(-rig.force(1).y(), strength * shared(shift), 1e-12) << segments << " " << spacing << " " << shift;
+        // The sum's points: kinks cost the square of a part.
+        EXPECT_NEAR(-rig.force(1).y(), strength * shared(shift) + of_ends, 1e-9) << segments << " " << spacing;
       }
 }
 
@@ -84,26 +94,21 @@ TEST(Corners, NothingLocks) {
   }
 }
 
-// EXACT: a corner that pokes into a flat face presses with its own length, of whose two segments each stands for half;
-// turned until one lies flat, with that one's half alone. Nodes of the face beside the tip are left to it.
-TEST(Corners, ACornerPokesWithItsOwnLength) {
-  constexpr double segment = 0.1;
-  const auto force = [&](double degrees) {
+// EXACT: a square corner that pokes into a flat face by d. Each of its sides is inside over d sqrt(2), at d/2 in the
+// mean; the face is inside it over 2 d, at (d - |x|)/sqrt(2) from a side that pushes by 1/sqrt(2) upwards: kn d^2
+// (1/sqrt(2) + 1/4), whatever the nodes.
+TEST(Corners, ACornerPokesByTheSquareOfItsDepth) {
+  for (const double spacing : {0.5, 0.013, 0.003}) {
     Scene scene = bare_scene();
     scene.contacts = {frictionless(stiffness)};
-    add_body(scene, outline_shape("bar", rectangle(3, 0.5, 0.013)), BodyKind::rigid, {0, 0});
-    const double turn = degrees * M_PI / 180;
-    add_body(scene, outline_shape("block", rectangle(1, 1, segment)), BodyKind::rigid, {0, 0}, turn);
+    add_body(scene, outline_shape("bar", rectangle(3, 0.5, spacing)), BodyKind::rigid, {0, 0});
+    add_body(scene, outline_shape("block", rectangle(1, 1, 0.1)), BodyKind::rigid, {0, 0}, M_PI / 4);
     ContactRig rig(scene);
-    const double lowest = (std::abs(std::cos(turn)) + std::abs(std::sin(turn))) / 2;
-    rig.move(1, {0.0017, 0.25 + lowest - depth});
+    rig.move(1, {0.0017, 0.25 + std::sqrt(0.5) - depth});
     rig.evaluate();
     EXPECT_NEAR(rig.force(1).x(), 0, 1e-12);
-    return rig.force(1).y() / (0.5 * stiffness * depth);
-  };
-  EXPECT_NEAR(force(45), segment, 1e-12);
-  EXPECT_NEAR(force(48), segment, 0.25 * segment) << "one of them opposes less";
-  EXPECT_NEAR(force(37), segment / 2, 1e-12) << "that of the flatter segment";
+    EXPECT_NEAR(rig.force(1).y(), stiffness * depth * depth * (std::sqrt(0.5) + 0.25), 1e-12);
+  }
 }
 
 // EXACT: corner against corner, head on and aside, a contact there is, and it pushes them apart; a tip of another angle

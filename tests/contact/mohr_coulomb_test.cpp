@@ -15,12 +15,16 @@ constexpr double stiffness = 100, friction = 0.4, cohesion = 0.3, tension = 0.5,
 // The block's ends stand midway between nodes of the bar, whose nodes below it have its length in all. They stay there
 // within +-0.04.
 Scene block_on_bar() {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {mohr_coulomb(stiffness, friction, cohesion, tension)};
   add_body(scene, outline_shape("bar", rectangle(4, 1, spacing)), BodyKind::rigid, {0, -0.5});
   add_body(scene, outline_shape("block", rectangle(length, 0.5, spacing)), BodyKind::rigid, {0, 0.25});
   return scene;
 }
+
+// Of contact, half of it in either pass: 12 nodes of the block, of which those at the corners stand for half of a
+// side's segment, and 11 of the bar.
+constexpr double touching = 0.5 * (12 + 11) * spacing;
 
 // Traction on the block, to the right and upwards, Pa: of its face, or of a node within it.
 struct Tractions {
@@ -30,7 +34,7 @@ struct Tractions {
 
 Tractions tractions(const ContactRig& rig) {
   Tractions result;
-  result.face = rig.force(1) / length;
+  result.face = rig.force(1) / touching;
   for (int k = 0; k < rig.count(1); ++k) {
     const Vec2 from_middle = rig.node(1, k) - Vec2(rig.node(1, 0) + Vec2(length / 2, 0));
     if (std::abs(from_middle.y()) < 0.01 && std::abs(from_middle.x()) < 0.29)

@@ -48,7 +48,7 @@ constexpr int rule_count = 5;
 
 // Two bodies of given kinds pressed into each other; false when a node lies too deep for the contact box.
 bool compare_pair(Random& random, const ContactRule& rule, int kind_a, int kind_b) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rule};
   for (const int kind : {kind_a, kind_b}) add_random_body(scene, random, kind);
   ContactRig rig(scene);
@@ -78,7 +78,7 @@ TEST(ContactSearch, EqualsBruteForceOnRandomOutlines) {
 
 // A heap: five rigid and three compliant bodies in a narrow period between two walls, squeezed towards each other.
 Scene heap(Random& random, const ContactRule& rule, bool caps) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.period = 4;
   scene.contacts = {rule};
   for (int i = 0; i < 8; ++i) {
@@ -126,7 +126,7 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
         SCOPED_TRACE("kinds " + std::to_string(kind_a) + " " + std::to_string(kind_b) + ", sample " +
                      std::to_string(sample));
         Random random(1000 * samples + 3);
-        Scene scene = bare_scene();
+        Scene scene = nodal_scene();
         const ContactRule& rule = rules[sample % rule_count];
         scene.contacts = {rule};
         for (const int kind : {kind_a, kind_b}) add_random_body(scene, random, kind);
@@ -192,7 +192,7 @@ TEST(ContactSearch, DamageEqualsBruteForceInAMovingHeap) {
 
 // Two bodies fly at each other, turning, from beyond every margin until they overlap; each step is far below the skin.
 void approach(Random& random, const ContactRule& rule) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rule};
   for (int i = 0; i < 2; ++i) add_random_body(scene, random, random.below(5));
   ContactRig rig(scene);
@@ -228,7 +228,7 @@ TEST(ContactSearch, SeesBodiesComing) {
 // turns.
 TEST(ContactSearch, AsksForARefreshInTime) {
   const auto asks = [](double first, double second, double turn) {
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.contacts = {rules[0]};
     for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.01 * i, 0});
     ContactRig rig(scene);
@@ -271,7 +271,7 @@ TEST(ContactSearch, DoesNotDependOnThreads) {
 
 // EXACT: bodies apart have no contacts, and none is left behind by a refresh.
 TEST(ContactSearch, BodiesApartDoNotTouch) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rules[2]};
   for (int i = 0; i < 3; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.5 * i, 0});
   ContactRig rig(scene);

@@ -13,7 +13,7 @@ using namespace testing;
 // A block of 1.01 x 0.5 on a long bar, nodes every 0.1. The bar's nodes beside the block's corners are 0.055 inside and
 // 0.045 outside: within +-0.018 none comes near another face.
 Scene block_on_bar(const ContactRule& rule) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rule};
   add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
   add_body(scene, outline_shape("block", rectangle(1.01, 0.5, 0.1)), BodyKind::rigid, {0.05, 0.25});
@@ -99,7 +99,7 @@ TEST(ContactSlip, HysteresisLoop) {
 // along the way, and the trapezoidal rule errs by O(steps^-2). Kinks where slip turns make single ratios uneven: order
 // over a factor of 8, 2 +- 0.25.
 double turning_defect(const ContactRule& rule, int steps) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rule};
   add_body(scene, outline_shape("bar", rectangle(4, 1, 0.5)), BodyKind::rigid, {0, 0});
   add_body(scene, outline_shape("tip", {{0, 0}, {0.4, 0.5}, {-0.4, 0.5}}), BodyKind::rigid, {0, 0});
@@ -144,7 +144,7 @@ TEST(ContactSlip, WorkOnATurningSurfaceConverges) {
 // too much, 15 times the limit.
 TEST(ContactSlip, WorkPastConvexCorners) {
   for (const double depth : {0.005, 0.02}) {
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.contacts = {mohr_coulomb(100, 0.3)};
     add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
     add_body(scene, polygonal_disc("disc", 2, 48), BodyKind::rigid, {-0.5, 1 - depth}, 0.1);
@@ -161,7 +161,7 @@ TEST(ContactSlip, WayAroundAPolygon) {
   constexpr int n = 12;
   const double l = 2 * std::sin(M_PI / n), apothem = std::cos(M_PI / n);
   for (const double gap : {0.03, -0.03}) {
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.contacts = {cohesive(100, 5, 0.08, 1e6)};
     add_body(scene, outline_shape("polygon", regular(n, 1)), BodyKind::rigid, {0, 0});
     // A needle whose tip is the only node that ever comes near.

@@ -218,15 +218,13 @@ TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
     }
 }
 
-// EXACT: a corner of a heavy block in the tip of a light soft bar, whose end node the corner presses from one face of
-// the tip or from the other: a bound, and no looser than elsewhere, as it never does from both. Over segments it takes
-// all that lies within a skin for in touch, while a corner touches over its own depth: it is loose by so much.
-void expect_bound_in_a_soft_corner(ContactQuadrature quadrature, double least) {
+// EXACT: a corner of a heavy block in the tip of a light soft bar. The bound takes all that lies within a skin for in
+// touch, while a corner touches over its own depth: it is loose by so much.
+TEST(StiffnessBound, CornerInASoftCorner) {
   Random random(11);
   double closest = 0;
   for (int sample = 0; sample < 60; ++sample) {
     Scene scene = bare_scene();
-    scene.contact.quadrature = quadrature;
     scene.contacts = {rules[sample % 3]};
     scene.contacts[0].stiffness = 3e4;
     add_body(scene, outline_shape("bar", rectangle(0.6, 0.3, 0.1), 28), BodyKind::compliant, {0, 0});
@@ -240,13 +238,7 @@ void expect_bound_in_a_soft_corner(ContactQuadrature quadrature, double least) {
     EXPECT_LE(exact, bound) << sample;
     closest = std::max(closest, exact / bound);
   }
-  EXPECT_GT(closest, least);
-}
-
-TEST(StiffnessBound, CornerInASoftCorner) {
-  // A corner up to a fifth of a segment off the end node bears on it by four fifths, and may slide onto it.
-  expect_bound_in_a_soft_corner(ContactQuadrature::nodes, 0.8 / loosest);
-  expect_bound_in_a_soft_corner(ContactQuadrature::segments, 0.1);
+  EXPECT_GT(closest, 0.1);
 }
 
 }  // namespace

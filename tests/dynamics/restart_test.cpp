@@ -218,7 +218,7 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   for (int i = 0; i < history.records(); ++i) {
     slipping += history.number(i, ContactHistory::slip) != 0;
     if (history.fields() == 0) continue;
-    const double damage = history.number(i, history.first_of_law);
+    const double damage = history.number(i, ContactHistory::first_of_law);
     worn += damage > 0.01 && damage < 0.99;
   }
   EXPECT_GT(slipping, 1) << "contacts have slip";

@@ -163,7 +163,7 @@ TEST(ReferenceContact, EngineAgreesOnRandomOutlines) {
   for (int sample = 0; sample < 300 && !HasFailure(); ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 5000);
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.skin = 1;
     scene.contacts = cases()[sample % 11].rules;
     if (!scene.contacts[0].stiffness) continue;  // needs a compliant body
@@ -183,7 +183,7 @@ TEST(ReferenceContact, EngineAgreesInANotch) {
   for (int sample = 0; sample < 220 && !HasFailure(); ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 9000);
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.skin = 0.1;
     scene.contacts = cases()[sample % 11].rules;
     scene.contacts[0].stiffness = 100;

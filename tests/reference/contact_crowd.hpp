@@ -11,7 +11,7 @@ namespace pliant::testing {
 /// Discs and a square in a row across the period, on a wall with caps or a flat one, two or three bodies overlapping
 /// each other.
 inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool caps) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = rules;
   scene.materials.push_back({"softer", MaterialLaw::neo_hookean, 1, 0.7, 0.4});
   scene.period = 4.45;
@@ -32,7 +32,7 @@ inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool c
 
 /// A disc, or a block whose floor has more nodes beneath it than the period, pressed against its image.
 inline Scene lone_body(Random& random, BodyKind kind, const ContactRule& rule) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.contacts = {rule};
   scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
   const double x = random.uniform(-20, 20);

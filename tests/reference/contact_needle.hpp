@@ -15,12 +15,10 @@ namespace pliant::testing {
 
 constexpr double kn = 100;  ///< stiffness in these tests, Pa/m
 
-// A polygon with edges of 1 that turn by 30 degrees, too little for a corner, and a needle whose tip alone comes near.
-// By its reference outline the tip
-// is flat, and no corner either: contact_corners_test.cpp is about those.
+// A polygon with edges of 1 that turn by 30 degrees, and a needle whose tip alone comes near.
 struct Needle {
   explicit Needle(const ContactRule& rule, int sides = 12) : corners(regular(sides, 0.5 / std::sin(M_PI / sides))) {
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.contacts = {rule};
     const Points needle{{0, 0}, {3, 4}, {-3, 4}}, flat{{0, 0}, {3, 0.5}, {-3, 0.5}};
     reference::ContactOutline first{0, sides, 0, corners, "hard", "polygon", false, BodyKind::rigid}, second = first;

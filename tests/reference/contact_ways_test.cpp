@@ -46,7 +46,7 @@ TEST(ReferenceContactWays, AroundAPolygon) {
 // A square on a wall of 20 segments in a period of 2, both as contact sees them. It moves over the wall, twice over the
 // seam.
 std::vector<Points> forces_on_a_wall(double start, int images) {
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   scene.period = 2;
   scene.contacts = {mohr_coulomb(kn, 0.3, 0.02)};
   Points wall, square = rectangle(0.35, 0.35, 0.07);
@@ -90,7 +90,7 @@ TEST(ReferenceContactWays, SeamAndPeriodAreInvisible) {
 // EXACT: a pair of discs far apart but for the period feels what it feels side by side.
 TEST(ReferenceContactWays, ImagesOfBodies) {
   const auto sum_of_forces = [](double shift) {
-    Scene scene = bare_scene();
+    Scene scene = nodal_scene();
     scene.period = 3;
     scene.contacts = {mohr_coulomb(kn, 0.3)};
     const Points disc = regular(24, 0.5);
@@ -126,14 +126,14 @@ TEST(ReferenceContactStates, RefusesWhatItDoesNotHave) {
     }
     return std::string();
   };
-  Scene scene = bare_scene();
+  Scene scene = nodal_scene();
   EXPECT_EQ(refused(scene), "");
   scene.contact.length = ContactLength::current;
   EXPECT_NE(refused(scene).find("length"), std::string::npos);
-  scene = bare_scene();
+  scene = nodal_scene();
   scene.contact.self_contact = true;
   EXPECT_NE(refused(scene).find("self_contact"), std::string::npos);
-  scene = bare_scene();
+  scene = nodal_scene();
   scene.contacts = {frictionless(kn)};
   scene.contacts[0].restitution = 0.9;
   EXPECT_NE(refused(scene).find("restitution"), std::string::npos);

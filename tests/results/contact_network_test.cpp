@@ -39,10 +39,13 @@ TEST(ContactNetwork, block_over_the_seam_between_walls) {
   ASSERT_EQ(column(table, "bodies"), (std::vector<float>{0, 1, 0, 2})) << "EXACT";
   for (const std::size_t wall : {0, 1}) {
     const double outward = wall == 0 ? -1 : 1;
-    EXPECT_NEAR(column(table, "length")[wall], 1, 10 * single) << "EXACT: the block's face";
-    EXPECT_NEAR((row(table, "force", wall) - Vec2(0, 0.4 * outward)).norm(), 0, 10 * single) << "EXACT: kn depth";
+    EXPECT_NEAR(column(table, "length")[wall], 1.004, 10 * single)
+        << "EXACT: the block's face, and half of its sides inside";
+    EXPECT_NEAR((row(table, "force", wall) - Vec2(0, 0.4 * 0.998 * outward)).norm(), 0, 10 * single)
+        << "EXACT: kn depth times the face less half the depth";
     const Vec2 middle(0, 0.246 + 0.248 * outward);
-    EXPECT_NEAR((row(table, "point", wall) - middle).norm(), 0, 10 * single) << "EXACT: between both faces";
+    EXPECT_NEAR((row(table, "point", wall) - middle).norm(), 0, 0.004 * 0.004)
+        << "EXACT: between both faces, but for ends";
   }
 }
 

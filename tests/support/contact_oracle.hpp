@@ -7,13 +7,11 @@
 #include <tuple>
 
 #include "geometry/polygon.hpp"
-#include "reference/contact/corners.hpp"
-#include "reference/contact_pair.hpp"
 #include "support/contact_rig.hpp"
 #include "support/oracle_laws.hpp"
 
-/// Contact of docs/method.md 4 once more: scalars, all nodes against all segments, no candidates, no windows.
-/// Deliberately slow. The rules of corners are the reference solver's.
+/// Contact at nodes, as docs/method.md 4 has it, once more: scalars, all nodes against all segments, no candidates, no
+/// windows. Deliberately slow.
 namespace pliant::testing {
 
 /// One slave node and the place on the master that it belongs to.
@@ -21,7 +19,6 @@ struct OraclePoint {
   int segment;  ///< of the master, counted on through its turns
   double height, gap, xi, length;
   Vec2 normal, segment_tangent;
-  reference::NodeLength contact_length;
 
   Vec2 tangent() const { return {-normal.y(), normal.x()}; }
   /// Turn from the segment's normal to the point's.
@@ -31,25 +28,19 @@ struct OraclePoint {
 class ContactOracle {
  public:
   struct Result {
-    std::vector<Points> force;    ///< [bodies][nodes]
-    std::vector<Vec2> by_length;  ///< [bodies], what of their sum is there because lengths of contact change
+    std::vector<Points> force;  ///< [bodies][nodes]
     double stored = 0, dissipated = 0;
     double deepest = 0;  ///< penetration, m
     int contacts = 0, outside_truth = 0;
   };
 
-  ContactOracle(const ContactRig& rig, const ContactRule& rule)
-      : rig_(rig), law_{rule}, outlines_(reference_outlines(rig.model)) {
-    for (const reference::ContactOutline& outline : outlines_) corners_.emplace_back(outline);
-  }
+  ContactOracle(const ContactRig& rig, const ContactRule& rule) : rig_(rig), law_{rule} {}
 
   Result evaluate() {
     Result result;
-    points_ = outline_points(rig_);
     trial_.clear();
     const int bodies = static_cast<int>(rig_.model.bodies.size());
     for (int b = 0; b < bodies; ++b) result.force.emplace_back(rig_.count(b), Vec2(0, 0));
-    result.by_length.assign(result.force.size(), Vec2(0, 0));
     for (int slave = 0; slave < bodies; ++slave)
       for (int master = 0; master < bodies; ++master)
         if (slave != master) pass(slave, master, result);
@@ -101,7 +92,7 @@ class ContactOracle {
     const double length = (b - a).norm();
     const Vec2 t = (b - a) / length, n(t.y(), -t.x());
     const double height = (p - a).dot(n), along = (p - a).dot(t);
-    OraclePoint point{k, height, height, along / length, length, n, t, {}};
+    OraclePoint point{k, height, height, along / length, length, n, t};
     if (along < 0 || along > length) {
       const Vec2 end = along < 0 ? a : b;
       point.xi = along < 0 ? 0 : 1;
@@ -131,33 +122,14 @@ class ContactOracle {
     for (int image = -images; image <= images; ++image)
       for (int k = 0; k < rig_.count(slave); ++k) {
         const Vec2 p = node(slave, k) + Vec2(image * rig_.model.scene.period.value_or(0), 0);
-        auto point = find(master, p);
+        std::optional<OraclePoint> point = find(master, p);
         check_against_truth(master, p, point, result);
-        if (point) point = attend_to_corners(slave, k, master, image, *point);
+        if (point && point->height > reach() + skin()) point.reset();
         const auto memory = committed_.find({slave, k, master, image});
         respond(slave, k, master, image, point, memory == committed_.end() ? nullptr : &memory->second, result);
       }
   }
 
-  reference::SlaveNode slave_node(int slave, int k, int image) const {
-    const Vec2 shift(image * rig_.model.scene.period.value_or(0), 0);
-    return {node(slave, k - 1) + shift,     node(slave, k) + shift,     node(slave, k + 1) + shift,
-            reference_length(slave, k - 1), reference_length(slave, k), corners_[slave].at(k),
-            corners_[slave].at(k - 1),      corners_[slave].at(k + 1)};
-  }
-
-  /// The same point, one on another face, or none; with the length that it stands for.
-  std::optional<OraclePoint> attend_to_corners(int slave, int k, int master, int image, OraclePoint point) const {
-    const reference::PresentOutline outline(outlines_[master], points_);
-    const reference::Face face{outline, corners_[master],
-                               std::min(corners_[slave].longest(), corners_[master].longest())};
-    const reference::SlaveNode node = slave_node(slave, k, image);
-    const std::optional<reference::Footing> stand = reference::footing(face, point.segment, node, reach() + skin());
-    if (!stand) return {};
-    if (stand->segment != point.segment) point = beside(master, stand->segment, node.at);
-    point.contact_length = stand->length;
-    return point;
-  }
   double reach() const { return law_.reach(); }
   double skin() const { return law_.kt() > 0 ? rig_.contact.skin() : 0; }
 
@@ -177,7 +149,7 @@ class ContactOracle {
     if (bonds && old && old->damage < 1) return stretch(key, point, *old, result);
     OracleLaw law = bonds ? OracleLaw{residual_of(law_.rule)} : law_;
     law.h = std::min(shape(slave).spacing, shape(master).spacing);
-    const double weight = weight_of(slave, k, master, point);
+    const double weight = weight_of(slave, k);
     const double start = old ? old->slip : 0;
     if (!point || point->gap >= law.reach()) {
       // The place is remembered before the touch, so that slip counts from the first step of it.
@@ -190,7 +162,7 @@ class ContactOracle {
     const double most = law.kt() > 0 ? law.shear_limit(point->gap) / law.kt() : 0,
                  slip = std::clamp(tried, -most, most);
     remember(key, *point, slip);
-    store(slave, k, master, *point, law.energy(point->gap) + 0.5 * law.kt() * slip * slip, result);
+    result.stored += weight * (law.energy(point->gap) + 0.5 * law.kt() * slip * slip);
     result.dissipated += weight * 0.5 * law.kt() * (start + slip) * (tried - slip);
     share_force(slave, k, master, *point, weight * law.pressure(point->gap), -weight * law.kt() * slip, result);
   }
@@ -200,7 +172,7 @@ class ContactOracle {
   void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
     const auto [slave, k, master, image] = key;
     const ContactRule& rule = law_.rule;
-    const double weight = weight_of(slave, k, master, point);
+    const double weight = weight_of(slave, k);
     const OracleBond before{rule, old.damage, old.opening, old.slip};
     const OracleLaw left{residual_of(rule)};
     const double kt = before.kt(), stored_before = old.damage * kt / 2 * old.elastic * old.elastic;
@@ -224,38 +196,15 @@ class ContactOracle {
     if (gap < *rule.range) count_contact(*point, result);
     if (torn && gap >= *rule.range) return;
     const double adhesion = now.damage * (left.energy(gap) - squeezed);
-    store(slave, k, master, *point, squeezed + now.stored() + adhesion + frictional * elastic / 2, result);
+    result.stored += weight * (squeezed + now.stored() + adhesion + frictional * elastic / 2);
     const double pull = now.tension() - now.damage * (left.pressure(gap) + before.kn() * pressed);
     share_force(slave, k, master, *point, weight * (-before.kn() * pressed - pull),
                 -weight * (now.shear() + frictional), result);
   }
 
-  /// Energy a length, and the forces by the change of that length.
-  void store(int slave, int k, int master, const OraclePoint& point, double energy, Result& result) const {
-    const int n = rig_.count(slave), m = rig_.count(master);
-    const auto within = [](int i, int count) { return ((i % count) + count) % count; };
-    const auto& [length, corner] = point.contact_length;
-    Vec2* const on[] = {&result.force[slave][within(k - 1, n)],
-                        &result.force[slave][k],
-                        &result.force[slave][within(k + 1, n)],
-                        &result.force[master][within(point.segment, m)],
-                        &result.force[master][within(point.segment + 1, m)],
-                        &result.force[master][within(point.segment - 1, m)],
-                        &result.force[master][within(point.segment + 2, m)],
-                        &result.force[master][within(corner[0], m)],
-                        &result.force[master][within(corner[1], m)]};
-    for (int i = 0; i < reference::NodeLength::nodes; ++i) {
-      const Vec2 force = -0.5 * energy * length.gradient.segment<2>(2 * i);
-      *on[i] += force;
-      result.by_length[i < 3 ? slave : master] += force;
-    }
-    result.stored += 0.5 * point.contact_length.value.value * energy;
-  }
-
-  /// Past a corner there is none.
-  double weight_of(int slave, int k, int master, const std::optional<OraclePoint>& point) const {
-    if (point) return 0.5 * point->contact_length.value.value;
-    return corners_[master].any() ? 0 : 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
+  /// In one of the two passes.
+  double weight_of(int slave, int k) const {
+    return 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
   }
   void count_contact(const OraclePoint& point, Result& result) const {
     ++result.contacts;
@@ -296,11 +245,7 @@ class ContactOracle {
                after = node(master, corner + 1) - node(master, corner);
     const double turn = std::atan2(cross(before, after), before.dot(after));
     if (at.height * turn > 0) return at.gap * turn;
-    if (turn < reference::corner_turn) return 2 * at.height * std::tan(turn / 2);
-    // Inside a sharp corner the mean of the heights over both faces: nodes change faces there off the bisector.
-    const Vec2 from =
-        node(master, at.segment) - node(master, corner) + at.xi * at.length * at.segment_tangent + at.gap * at.normal;
-    return (cross(from, before.normalized()) + cross(from, after.normalized())) * std::tan(turn / 2);
+    return 2 * at.height * std::tan(turn / 2);
   }
 
   /// Force on the node; the reaction on the segment's two nodes has the same sum and moment, and splits the normal part
@@ -320,9 +265,6 @@ class ContactOracle {
 
   const ContactRig& rig_;
   OracleLaw law_;
-  std::vector<reference::ContactOutline> outlines_;
-  std::vector<reference::Corners> corners_;
-  Points points_;  ///< of all outlines, now
   std::map<Key, Memory> committed_, trial_;
 };
 

@@ -233,6 +233,13 @@ inline Scene bare_scene() {
   return scene;
 }
 
+/// The same with contact at nodes, also where outlines have corners.
+inline Scene nodal_scene() {
+  Scene scene = bare_scene();
+  scene.contact.quadrature = ContactQuadrature::nodes;
+  return scene;
+}
+
 /// Materials of mu = rho = 1, lambda = 4, and a contact rule; the caller adds shapes and bodies.
 inline Scene empty_scene(double end) {
   Scene scene;

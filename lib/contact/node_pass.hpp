@@ -1,0 +1,25 @@
+#pragma once
+
+#include "contact/pass.hpp"
+#include "contact/projection.hpp"
+
+namespace pliant {
+
+/// Calls visit(pass, slave side, i, projection) where some of eight slave nodes, from position i of the pass on, are
+/// beside the master, at most `outward` off, m.
+template <class Visit>
+void for_each_beside(const PatchView& view, double outward, Visit&& visit) {
+  const ForceRuns runs = runs_in_table(view.patch);
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (view.patch.nodes[slave_side].count == 0) continue;
+    const Pass pass = make_pass(view, slave_side, runs);
+    fill_window(view, 1 - slave_side);
+    for (int i = 0; i < pass.nodes.count; i += lane_count) {
+      const SlaveNodes nodes = load_slaves(pass, i);
+      const Projection p = project(view.window, nodes.x, nodes.y, outward);
+      if (any(p.hit)) visit(pass, slave_side, i, p);
+    }
+  }
+}
+
+}  // namespace pliant
