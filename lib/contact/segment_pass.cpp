@@ -193,7 +193,8 @@ class TractionVisitor {
   SpeedPast rates_;
 };
 
-/// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along.
+/// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along, after half
+/// of the step, as forces of before and now do half of a step's work each.
 template <class Law>
 void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, ContactHistory& to, NodeSums& sums,
                  Totals& totals) {
@@ -204,13 +205,15 @@ void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, C
     const Lanes weight = select(active, load(&sums.weight[i]), Lanes{}), known = before[ContactHistory::weight],
                 old_weight = select(active & (known == known), known, Lanes{}), old_slip = before[ContactHistory::slip];
     const LaneBits touching = weight > 0.0;
+    const Lanes gone = max(old_weight - weight, Lanes{});
     const Lanes inverse = select(touching, 1.0 / select(touching, weight, broadcast(1)), Lanes{});
     const Lanes slip =
         select(weight > old_weight, old_slip * old_weight * inverse, select(touching, old_slip, Lanes{}));
+    const Lanes motion = load(&sums.motion[i]) * inverse;
     Contact c{};
-    slide(law, Traction{Lanes{}, load(&sums.shear_limit[i]) * inverse, Lanes{}}, touching, slip,
-          slip + load(&sums.motion[i]) * inverse, c);
-    const Lanes lost = 0.5 * law.shear_stiffness * (old_weight * old_slip * old_slip - weight * slip * slip);
+    slide(law, Traction{Lanes{}, load(&sums.shear_limit[i]) * inverse, Lanes{}}, touching, slip, slip + motion, c);
+    const Lanes lost = 0.5 * law.shear_stiffness *
+                       (old_weight * old_slip * old_slip - weight * slip * slip + gone * old_slip * motion);
     add_in_order(lost + weight * c.slip_work, totals.dissipated);
     add_in_order(weight * c.energy, totals.stored);
     store(&sums.shear[i], select(touching, c.shear, Lanes{}));

@@ -220,7 +220,8 @@ class Pass {
       const auto found = slips_.find(node);
       const NodeSlip old = found == slips_.end() ? NodeSlip{} : found->second;
       const bool grows = w > old.length;
-      const double share = grows ? old.length / w : 1, start = share * old.slip, tried = start + sums.moved.value / w;
+      const double share = grows ? old.length / w : 1, start = share * old.slip, motion = sums.moved.value / w,
+                   tried = start + motion;
       VectorXd slip_by = (sums.moved.by - (tried - (grows ? 0 : start)) * sums.length.by) / w;
       const double most = sums.limit.value / (kt * w);
       double slip = tried;
@@ -232,6 +233,7 @@ class Pass {
       result_.stored += kt / 2 * w * slip * slip;
       if (of_.past)
         result_.dissipated += kt / 2 * (old.length * old.slip * old.slip - w * start * start) +
+                              kt / 2 * std::max(old.length - w, 0.0) * old.slip * motion +
                               kt / 2 * w * (start + slip) * (tried - slip);
       result_.patch.force += kt * slip * sums.way;
       result_.patch.tangent += kt * (slip * sums.way_by + sums.way * slip_by.transpose());
