@@ -21,7 +21,7 @@ LENGTH = 1.0  # in touch: the block's face
 FREQUENCY = float(np.sqrt(STIFFNESS * LENGTH / MASS))  # w, of the block on its contact
 SAFETIES = [0.2, 0.1, 0.05]
 # Where in its step a block touches is chance: over twelve starts, 2e-3 apart, logarithms of the balance error have
-# standard deviations of 0.22 to 0.44 at these safeties, 0.3 in the mean. Three times that of a slope through means of
+# standard deviations of 0.23 to 0.40 at these safeties, 0.3 in the mean. Three times that of a slope through means of
 # three.
 STARTS = [0, 2e-3, 4e-3]
 SLOPE_SCATTER = float(3 * np.sqrt(2) * 0.3 / np.sqrt(len(STARTS)) / np.log(SAFETIES[0] / SAFETIES[-1]))
@@ -44,44 +44,51 @@ def damping_ratio(e: float, pull: bool) -> float:
     return 0.0 if e == 1 else float(brentq(lambda z: restitution_of(z, pull) - e, 0, 1 - 1e-9, xtol=1e-15))
 
 
-class Impact:
-    """With weight, from a height: x'' = g - w^2 x - 2 z w x', solved up to the end of the force; g = 1."""
+def floor_force(depth: float, rate: float, z: float, pull: bool) -> float:
+    """Of the floor on a block of this depth and its rate, N/m.
 
-    def __init__(self, height: float, z: float, pull: bool) -> None:
-        self.z, self.pull, self.sag = z, pull, 1 / FREQUENCY**2
-        self.damped = FREQUENCY * np.sqrt(1 - z * z)
-        self.a, self.b = -self.sag, (np.sqrt(2 * height) - z * FREQUENCY * self.sag) / self.damped
-        times = np.linspace(0, 1.5 * np.pi / self.damped, 3001)[1:]
-        first = int(np.flatnonzero(self.left(times) < 0)[0])
-        self.end = brentq(self.left, times[first - 1], times[first], xtol=1e-18)
+    The block has its face in the floor, L long and d deep, and two flanks, d long and from 0 to d deep. The floor has L
+    in the block: the d of it beside the flanks are pressed sideways, by their distance to them, and have no rate, the
+    rest is d deep. Each pass counts half: L - d are d deep and d from 0 to d, which two Gauss points of a segment stand
+    for. All that touches is L + d long and shares the dashpot, 2 z sqrt(kn m / (L + d)) a unit length.
+    """
+    gauss = 1 / 2 - 1 / np.sqrt(12)
+    depths = depth * np.array([1, gauss, 1 - gauss])
+    lengths = np.array([LENGTH - depth, depth / 2, depth / 2])
+    pressures = STIFFNESS * depths + dashpot(depth, z) * rate
+    return lengths @ (pressures if pull else np.maximum(pressures, 0))
 
-    def swing(self, t: np.ndarray, a: float, b: float) -> np.ndarray:
-        return np.exp(-self.z * FREQUENCY * t) * (a * np.cos(self.damped * t) + b * np.sin(self.damped * t))
 
-    def depth(self, t: np.ndarray) -> np.ndarray:
-        return self.sag + self.swing(t, self.a, self.b)
+def dashpot(depth: float, z: float) -> float:
+    """Pa s/m."""
+    return 2 * z * np.sqrt(STIFFNESS * MASS / (LENGTH + depth))
 
-    def rate(self, t: np.ndarray) -> np.ndarray:
-        decay = self.z * FREQUENCY
-        return self.swing(t, self.b * self.damped - decay * self.a, -self.a * self.damped - decay * self.b)
 
-    def left(self, t: np.ndarray) -> np.ndarray:
-        """What falls to 0 at the end: the depth, or the force."""
-        return self.depth(t) if self.pull else FREQUENCY * self.depth(t) + 2 * self.z * self.rate(t)
+@cache
+def impact(height: float, z: float, pull: bool) -> tuple[float, float]:
+    """Height of the flight after an impact from a height, and its depth: m x'' = m g - floor_force(x, x'), g = 1."""
+    def motion(_: float, state: np.ndarray) -> list[float]:
+        return [state[1], 1 - floor_force(*state, z, pull) / MASS]
 
-    def height(self) -> float:
-        """Of the flight after it."""
-        return float(self.rate(self.end)**2 / 2 - self.depth(self.end))
+    def left(_: float, state: np.ndarray) -> float:
+        """What falls to 0 at the end: the depth, or the pressure of the face, after that of the flanks."""
+        return state[0] if pull else STIFFNESS * state[0] + dashpot(state[0], z) * state[1]
 
-    def deepest(self) -> float:
-        return float(self.depth(np.linspace(0, self.end, 20001)).max())
+    def deepest(_: float, state: np.ndarray) -> float:
+        return state[1]
+
+    left.terminal, left.direction = True, -1
+    solution = solve_ivp(motion, [0, 2 * np.pi / FREQUENCY], [0, np.sqrt(2 * height)], method="DOP853",
+                         events=[left, deepest], rtol=1e-12, atol=1e-16)
+    (depth, rate), = solution.y_events[0]
+    return rate**2 / 2 - depth, solution.y_events[1][0, 0]
 
 
 @cache
 def heights(name: str, pull: bool) -> list[float]:
     """After each impact, from height 1, down to LEAST."""
     z, found = damping_ratio(RESTITUTION[name], pull), [1.0]
-    while len(found) < 4 and (next_one := Impact(found[-1], z, pull).height()) > LEAST:
+    while len(found) < 4 and (next_one := impact(found[-1], z, pull)[0]) > LEAST:
         found.append(next_one)
     return found[1:]
 
@@ -118,6 +125,7 @@ def bound(name: str, pull: bool, safety: float, impacts: int) -> float:
     it acts for is known there to the change of the rate in a step, 2 z w dt of it: (2 z w dt)^2 of the speed a jump.
     In between it sees a rate that is off by dt^2 / 2 of its second derivative, at most (1 + 4 z^2) w^2 of it, for
     2 z w v times pi / w. The spring's part is (w dt)^2 / 2 of the energy (tests/closed_forms/bounce_test.cpp).
+    Flanks have x / L of each, 0.3 % at most.
     """
     z, jumps = damping_ratio(RESTITUTION[name], pull), 2 if pull else 1
     speed = jumps * (2 * z)**2 + np.pi * z * (1 + 4 * z * z)
@@ -151,25 +159,25 @@ def test_heights(name: str, pull: bool) -> None:
         tolerance = bound(name, pull, finest, k)
         CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over the impact's with weight", height / expected, 1,
                    tolerance,
-                   "closed form of spring, dashpot and weight; touch and end within a step")
+                   "equation of motion of face, flanks and weight; touch and end within a step")
         CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over e^{2 * k} h", height / e**(2 * k), 1,
-                   tolerance + abs(expected / e**(2 * k) - 1), "instant impact; its error and the weight during it")
+                   tolerance + abs(expected / e**(2 * k) - 1), "instant impact; its error, flanks and weight during it")
 
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
 def test_depth(pull: bool) -> None:
     """Each rule has its own damping ratio for the same restitution: the depth tells them apart."""
-    finest, rule, period = SAFETIES[-1], "may pull" if pull else "may not pull", 2e-4
+    finest, rule, period = SAFETIES[-1], "may pull" if pull else "may not pull", 5e-5
     scene = CASE.scene(pull=str(pull).lower(), safety=finest, stiffness=STIFFNESS, end=1.5, period=period, top=1 + HALF)
     of = CASE.engine(f"depth_{'pull' if pull else 'no_pull'}", scene)
     for name in DAMPED:
         z, deepest = damping_ratio(RESTITUTION[name], pull), HALF - of.probe(f"{name}.position_y").min()
-        other = Impact(1.0, damping_ratio(RESTITUTION[name], not pull), not pull).deepest()
-        exact = Impact(1.0, z, pull).deepest()
-        tolerance = (4 * z * z + 0.5) * step(pull, finest)**2 + (FREQUENCY * period)**2 / 8
+        other = impact(1.0, damping_ratio(RESTITUTION[name], not pull), not pull)[1]
+        exact = impact(1.0, z, pull)[1]
+        tolerance = bound(name, pull, finest, 1) / 2 + (FREQUENCY * period)**2 / 8  # as a speed
         CASE.check(Label.EXACT, f"e = {RESTITUTION[name]}, {rule}: depth ({other / exact:.3f} by the other rule)",
                    deepest / exact, 1,
-                   tolerance, "closed form; touch within a step, samples")
+                   tolerance, "equation of motion; touch within a step, samples")
 
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
@@ -180,12 +188,12 @@ def test_dissipation(pull: bool) -> None:
     CASE.check_rate(f"{rule}: balance of energy, rms of three starts", SAFETIES, error, 2, SLOPE_SCATTER,
                     "second order; where in its step a block touches varies the error of each impact")
     of = run(pull, SAFETIES[-1])
-    lost = MASS * sum(1 - RESTITUTION[name]**2 for name in ("lively", "fair", "dull"))
+    lost = MASS * sum(1 - heights(name, pull)[0] for name in DAMPED)
     first = of.at("energy.dissipated", np.array([FIRST_OVER]))[0]
+    # What is lost is more than the heights that are left.
     tolerance = max(bound(name, pull, SAFETIES[-1], 1) for name in DAMPED) + of.balance_error
-    weight = max(abs(heights(name, pull)[0] / RESTITUTION[name]**2 - 1) for name in DAMPED)
-    CASE.check(Label.EXACT, f"{rule}: dissipated in the first impacts", first / lost, 1, tolerance + weight,
-               "m g h (1 - e^2); as heights, and the books")
+    CASE.check(Label.EXACT, f"{rule}: dissipated in the first impacts", first / lost, 1, tolerance,
+               "weight times heights lost, of the equation of motion; as heights, and the books")
 
 
 def test_picture() -> None:

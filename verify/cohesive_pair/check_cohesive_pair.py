@@ -13,7 +13,7 @@ CASE = Case(__file__, fast=True)
 STEPS = [0.005, 0.0025, 0.00125]  # twice as long a step does not follow the tear: the reference is 40 times as far off
 FINEST = 0.000625
 TIMES = 0.04 * np.arange(1, 31)
-STRENGTH, RANGE = 0.03, 0.02
+STRENGTH, RANGE, STIFFNESS = 0.03, 0.02, 20.0
 LENGTH = 1.0  # of the left block's face, which lies within the right one's
 POSITIONS = Quantity("positions", ["left.position_x", "corner.position_x", "corner.position_y"])
 FORCE = Quantity("force", ["force.force_x"])
@@ -39,13 +39,21 @@ def test_solvers_converge_to_each_other(way: str, study: Study, quantity: Quanti
                       "slip and kinks of the law within steps: between first and second order; 0.2 for their scatter")
 
 
+def energy_of_a_bond() -> float:
+    """From closed to torn, reversible: G = strength x range / 2 on the face. Beside either end of it the left block's flank, in one
+    half of contact, and the right block's face, in the other, lie at the distance y: they bear what is left from there on,
+    W(y) = G - kn y^2/2 up to y_c = strength/kn, then strength (range - y)^2/(2 (range - y_c))."""
+    opening = STRENGTH / STIFFNESS
+    bond = 0.5 * STRENGTH * RANGE
+    left = bond * opening - STIFFNESS * opening**3 / 6 + STRENGTH * (RANGE - opening)**2 / 6
+    return bond * LENGTH + 2 * left
+
+
 def test_energy_of_the_bond(way: str, study: Study) -> None:
-    """Reversible: strength x range / 2 an area, from closed to torn."""
     for name, run in study.finest_runs().items():
         energy = run.probe("energy.contact")
-        stored = (energy[-1] - energy[0]) / (0.5 * STRENGTH * RANGE * LENGTH)
-        CASE.check(Label.EXACT, f"{way}, {name}: energy of the bond", stored, 1, 1e-12,
-                   "strength x range / 2; rounding")
+        CASE.check(Label.EXACT, f"{way}, {name}: energy of the bond", (energy[-1] - energy[0]) / energy_of_a_bond(), 1,
+                   1e-12, "strength x range / 2 of the face, and of what lies beside its ends; rounding")
 
 
 def test_picture(way: str, study: Study) -> None:
