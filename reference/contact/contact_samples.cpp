@@ -37,10 +37,10 @@ class Sampler {
     for (std::size_t k = 0; k < parts.size(); ++k) {
       const Part& part = parts[k];
       if (make(part.nearby, part.middle()).at.gap.value >= of_.reach) continue;
-      if (part.nearby.end == 0)
-        add_points(part, part.start, part.end, 2);
-      else
+      if (part.nearby.at_node)
         add_fan(part, part.start, part.end);
+      else
+        add_points(part, part.start, part.end, 2);
       if (k > 0) add_limit(part, parts[k - 1], part.start, -1);
       if (k + 1 < parts.size()) add_limit(part, parts[k + 1], part.end, 1);
     }
@@ -56,6 +56,9 @@ class Sampler {
     sample.s = s;
     sample.nearby = nearby;
     sample.at = project(stretch_.at(s), of_.master.node(j), of_.master.node(j + 1));
+    // The segment's other side, where the outline turns at the node by more than a right angle.
+    if (nearby.at_node && is_outside(of_.master, j, stretch_.at(s)) != sample.at.gap.value > 0)
+      sample.at.gap = -sample.at.gap;
     return sample;
   }
 
@@ -71,7 +74,7 @@ class Sampler {
   /// Distances to a node are roots: pieces no longer than their distance from it have errors of 4.2^-20, as the root's
   /// branch points are on an ellipse of that size. What is nearer than a billionth of the stretch is one piece.
   void add_fan(const Part& part, double start, double end) {
-    const Vec2 node = of_.master.node(part.nearby.node()), way = stretch_.along();
+    const Vec2 node = of_.master.node(part.nearby.segment), way = stretch_.along();
     const double foot = std::clamp((node - stretch_.first).dot(way) / way.squaredNorm(), start, end);
     const double length = (end - start) * way.norm();
     if (length <= (stretch_.at(foot) - node).norm() || length < 1e-9 * way.norm())
@@ -82,21 +85,24 @@ class Sampler {
   }
 
   /// Where a part ends: by the place at which its gap and the next one's are equal, or its gap is at a level, or on the
-  /// bisector between the halves of a fan. At the end of a segment nothing jumps.
+  /// normal at the end of a segment, from where on shear goes by the next segment. At its start nothing jumps.
   void add_limit(const Part& part, const Part& next, double s, double sign) {
-    const bool same = part.nearby == next.nearby, halves = part.nearby.shares_node(next.nearby);
+    const bool same = part.nearby == next.nearby;
     if (!same && part.nearby.segment == next.nearby.segment) return;
     ContactSample limit = make(part.nearby, s);
     limit.weight = sign;
-    const ContactSample other = make(next.nearby, s);
     std::vector<std::pair<int, Vec2>> by_master;  // derivatives of what is zero at the limit
     Vec2 by_point = limit.at.gap.gradient.head<2>();
-    for (const int end : {0, 1}) {
-      by_master.emplace_back(limit.node[2 + end], limit.at.gap.gradient.segment<2>(2 + 2 * end));
-      if (!same) by_master.emplace_back(other.node[2 + end], -other.at.gap.gradient.segment<2>(2 + 2 * end));
+    if (!same && meet(part.nearby, next.nearby)) {
+      by_point = end_normal(part.nearby.at_node ? next.nearby.segment : part.nearby.segment, stretch_.at(s), by_master);
+    } else {
+      const ContactSample other = make(next.nearby, s);
+      for (const int end : {0, 1}) {
+        by_master.emplace_back(limit.node[2 + end], limit.at.gap.gradient.segment<2>(2 + 2 * end));
+        if (!same) by_master.emplace_back(other.node[2 + end], -other.at.gap.gradient.segment<2>(2 + 2 * end));
+      }
+      if (!same) by_point -= other.at.gap.gradient.head<2>();
     }
-    if (!same) by_point -= other.at.gap.gradient.head<2>();
-    if (halves && !same) by_point = bisector(part.nearby.node(), stretch_.at(s), by_master);
     const double slope = by_point.dot(stretch_.along());
     if (!(std::abs(slope) > 1e-12 * stretch_.along().norm())) return;  // they touch, or are one line
     limit.moves = {{limit.node[0], -(1 - s) / slope * by_point}, {limit.node[1], -s / slope * by_point}};
@@ -104,16 +110,20 @@ class Sampler {
     result_.limits.push_back(std::move(limit));
   }
 
-  /// Derivatives of a point's distance past the bisector of a node, by the point and by the node and its neighbours.
-  Vec2 bisector(int node, const Vec2& point, std::vector<std::pair<int, Vec2>>& by_master) const {
+  /// Whether one is a segment and the other its second node.
+  bool meet(const Nearby& one, const Nearby& other) const {
+    if (one.at_node == other.at_node) return false;
+    const Nearby &fan = one.at_node ? one : other, &beside = one.at_node ? other : one;
+    return of_.master.index(beside.segment + 1) == of_.master.index(fan.segment);
+  }
+
+  /// Derivatives of a point's distance past the normal at the end of a segment, by the point and by both nodes.
+  Vec2 end_normal(int segment, const Vec2& point, std::vector<std::pair<int, Vec2>>& by_master) const {
     const PresentOutline& master = of_.master;
-    const Vec2 from = point - master.node(node), before = master.tangent(node - 1), after = master.tangent(node);
-    const Vec2 turning_before = (from - from.dot(before) * before) / master.length(node - 1),
-               turning_after = (from - from.dot(after) * after) / master.length(node);
-    by_master = {{master.index(node - 1), -turning_before},
-                 {master.index(node), turning_before - turning_after - before - after},
-                 {master.index(node + 1), turning_after}};
-    return before + after;
+    const Vec2 from = point - master.node(segment + 1), t = master.tangent(segment);
+    const Vec2 turning = (from - from.dot(t) * t) / master.length(segment);
+    by_master = {{master.index(segment), -turning}, {master.index(segment + 1), turning - t}};
+    return t;
   }
 
   const Sampling& of_;

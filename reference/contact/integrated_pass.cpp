@@ -110,9 +110,9 @@ class Pass {
     const Vec2 from = point - master.node(j), t = master.tangent(j);
     const double xi = from.dot(t) / master.length(j), height = from.dot(Vec2(t.y(), -t.x()));
     const Projection& now = sample.at;
-    if (sample.nearby.end == 0) return now.length * (now.xi - xi);
-    const double end = sample.nearby.end > 0 ? 1 : 0;
-    return sin(now.angle) * height - cos(now.angle) * now.length * (xi - end);
+    if (!sample.nearby.at_node) return now.length * (now.xi - xi);
+    const double side = now.gap.value * now.height.value < 0 ? -1 : 1;  // of the line, against that of the outline
+    return side * (sin(now.angle) * height - cos(now.angle) * now.length * xi);
   }
 
   void number_nodes() {

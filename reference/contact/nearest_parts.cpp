@@ -82,23 +82,35 @@ Nearby nearest(const PresentOutline& master, const std::vector<int>& segments, c
   double least = std::numeric_limits<double>::infinity();
   for (const int i : segments)
     if (const double distance = distance_to(master, i, point); distance < least) best = i, least = distance;
-  const double along = (point - master.node(best)).dot(master.tangent(best));
-  if (along >= 0 && along <= master.length(best)) return {best, 0};
-  int node = along < 0 ? best : best + 1;
-  if (master.closed() && node == master.count()) node = 0;  // one number for each
-  const Vec2 bisected = master.tangent(node - 1) + master.tangent(node);
-  return (point - master.node(node)).dot(bisected) >= 0 ? Nearby{node, -1} : Nearby{node - 1, 1};
+  const auto along = [&](int i) { return (point - master.node(i)).dot(master.tangent(i)); };
+  const auto beside = [&](int i) { return along(i) >= 0 && along(i) <= master.length(i); };
+  if (beside(best)) return {best, false};
+  // Close to the normal of a node its distance and that to the other segment are one number.
+  const int node = along(best) < 0 ? best : best + 1, other = along(best) < 0 ? best - 1 : best + 1;
+  if (beside(other)) return {other, false};
+  return {master.closed() && node == master.count() ? 0 : node, true};  // one number for each
 }
+
+}  // namespace
+
+bool is_outside(const PresentOutline& master, int node, const Vec2& point) {
+  const Vec2 from = point - master.node(node), before = master.tangent(node - 1), after = master.tangent(node);
+  const double over_before = from.dot(Vec2(before.y(), -before.x())), over_after = from.dot(Vec2(after.y(), -after.x()));
+  return (std::abs(over_before) > std::abs(over_after) ? over_before : over_after) > 0;
+}
+
+namespace {
 
 /// Outside everywhere by more than the reach.
 bool is_apart(const PresentOutline& master, const std::vector<int>& segments, const Stretch& stretch, double reach) {
   const Vec2 middle = stretch.at(0.5);
   const Nearby at = nearest(master, segments, middle);
-  const double height = Distances(master, stretch).height(at.segment, middle);
-  return height > 0 && distance_to(master, at.segment, middle) > reach + stretch.along().norm() / 2;
+  const bool outside = at.at_node ? is_outside(master, at.segment, middle)
+                                  : Distances(master, stretch).height(at.segment, middle) > 0;
+  return outside && distance_to(master, at.segment, middle) > reach + stretch.along().norm() / 2;
 }
 
-/// All places where the nearest may change: crossings of all distances, and ends of what a segment or half a node has.
+/// All places where the nearest may change: crossings of all distances, and ends of what a segment has.
 std::vector<double> all_cuts(const PresentOutline& master, const std::vector<int>& segments, const Stretch& stretch) {
   const Distances of(master, stretch);
   std::vector<double> cuts{0, 1};
@@ -107,7 +119,6 @@ std::vector<double> all_cuts(const PresentOutline& master, const std::vector<int
   const auto cut = [&](const Parabola& line) { add_root(line.c0, line.c1, cuts); };
   for (const int i : segments)
     for (const int end : {i, i + 1}) cut(of.along(end, master.tangent(i)));
-  for (const int k : nodes) cut(of.along(k, master.tangent(k - 1) + master.tangent(k)));
   for (const int i : segments) {
     const Parabola h = of.height(i);
     for (const int j : segments) {
@@ -135,15 +146,16 @@ void add_levels(const PresentOutline& master, const Stretch& stretch, const Part
                 std::vector<double>& cuts) {
   const Distances of(master, stretch);
   const Parabola height = of.height(part.nearby.segment);
+  const bool outside = is_outside(master, part.nearby.segment, stretch.at(part.middle()));
   for (const double level : levels)
-    if (part.nearby.end != 0 && level == 0) {
-      // A node between segments of one line may be passed right through.
-      const Parabola squared = of.squared(part.nearby.node());
-      add_root(squared.c1, 2 * squared.c2, cuts);
-    } else if (part.nearby.end == 0) {
+    if (!part.nearby.at_node) {
       add_root(height.c0 - level, height.c1, cuts);
-    } else if ((height.c0 + height.c1 * part.middle()) * level > 0) {
-      Parabola squared = of.squared(part.nearby.node());
+    } else if (level == 0) {
+      // A node between segments of one line may be passed right through.
+      const Parabola squared = of.squared(part.nearby.segment);
+      add_root(squared.c1, 2 * squared.c2, cuts);
+    } else if (outside == (level > 0)) {
+      Parabola squared = of.squared(part.nearby.segment);
       squared.c0 -= level * level;
       add_roots(squared, cuts);
     }

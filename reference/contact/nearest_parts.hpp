@@ -14,15 +14,16 @@ struct Stretch {
   Vec2 along() const { return second - first; }
 };
 
-/// What of the master is nearest: a segment, or one of its end nodes. A node's points belong to the segment on their
-/// side of the bisector.
+/// What of the master is nearest: a segment, or its first node.
 struct Nearby {
   int segment = 0;  ///< counted on as the outline does
-  int end = 0;      ///< -1: its first node, 0: the segment itself, 1: its second node
+  bool at_node = false;
   bool operator==(const Nearby&) const = default;
-  int node() const { return segment + (end > 0); }  ///< that is nearest where `end` is not 0
-  bool shares_node(const Nearby& other) const { return end != 0 && other.end != 0 && node() == other.node(); }
 };
+
+/// Whether a point that is nearest to a node is outside: as it is of that one of the node's segments whose line is
+/// further.
+bool is_outside(const PresentOutline& master, int node, const Vec2& point);
 
 /// A part of a stretch beside one place of the master.
 struct Part {

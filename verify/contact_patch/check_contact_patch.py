@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from fields import Stresses, along_outline, stresses_of
 from half_planes import pressures
-from pictures import COLOURS, MARKERS, draw_cells, legend, panels, save
+from pictures import COLOURS, MARKERS, draw_cells, panels, save
 from verification import FULL, Case, Label, Run, observed_order
 
 CASE = Case(__file__)
@@ -268,13 +268,13 @@ def draw_map(figure: Figure, axes: Axes, name: str, run: Run) -> None:
 
 
 def draw_rates(axes: Axes, segments: Statics, nodes: Statics) -> None:
-    for colour, marker, ratio in zip(COLOURS, MARKERS, FACES):
-        steps = [spacing(face) for face in all_faces(ratio)]
-        values = [middle_error(run) for run in nodes[ratio]]
-        axes.loglog(steps, values, marker=marker, markersize=4, color=colour, linewidth=1.1,
-                    label="nodes, 1:1" if ratio == "1:1" else f"nodes, {ratio}: {observed_order(steps, values):.2f}")
-        axes.loglog(steps[:len(FACES[ratio])], [middle_error(run) for run in segments[ratio]], ":", marker=marker,
-                    markersize=4, color=colour, linewidth=1.1, label="segments, all ratios" if ratio == "1:1" else None)
+    for name, runs, style in (("nodes", nodes, "-"), ("segments", segments, ":")):
+        for colour, marker, ratio in zip(COLOURS, MARKERS, FACES):
+            steps = [spacing(face) for face in all_faces(ratio)][:len(runs[ratio])]
+            values = [middle_error(run) for run in runs[ratio]]
+            order = f": {observed_order(steps, values):.2f}" if runs is nodes and ratio != "1:1" else ""
+            axes.loglog(steps, values, style, marker=marker, markersize=4, color=colour, linewidth=1.1,
+                        label=f"{name}, {ratio}{order}")
     h = np.array([2 / 64, 2 / 8])
     axes.loglog(h, 0.03 * np.sqrt(h / h[1]), "--", color=COLOURS[6], linewidth=1.0, label="slope 1/2")
     axes.axhline(PRESSURE / YOUNG, color="0.5", linewidth=0.8)
@@ -285,7 +285,7 @@ def draw_rates(axes: Axes, segments: Statics, nodes: Statics) -> None:
     axes.set_title("rms stress error in the middle, all depths", fontsize=10, loc="left")
     axes.set_xlabel("spacing of the coarser face")
     axes.set_ylabel("over the load")
-    legend(axes)
+    axes.legend(fontsize=8, frameon=False, ncols=2, loc="center", bbox_to_anchor=(0.5, 0.48))
 
 
 def test_picture(segments: Statics, nodes: Statics) -> None:
