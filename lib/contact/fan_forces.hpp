@@ -15,10 +15,10 @@ struct FanParts {
   Lanes counted_length;  ///< of the whole slave segment, m
 };
 
-/// Calls visit.in_fan(FanPoint) with forces and energies of such parts.
+/// Calls visit.in_fan(FanPoint) and where it has that, visit.in_fan_of(FanShape) for such parts.
 ///
 /// Normals turn from one side of a corner to the other, over no length at all where a segment passes close by: so what
-/// pressures a + b r do to hat functions is found in closed form, from those at two distances. With u along the segment
+/// tractions a + b r do to hat functions is found in closed form, from those at two distances. With u along the segment
 /// from the foot of the node and m its distance, r^2 = m^2 + u^2.
 template <class Visit>
 void visit_fan_forces(const FanParts& of, Visit& visit) {
@@ -43,12 +43,29 @@ void visit_fan_forces(const FanParts& of, Visit& visit) {
   const Lanes rn_x = mx * p0 + ex * p1, rn_y = my * p0 + ey * p1, urn_x = mx * p1 + ex * p2, urn_y = my * p1 + ey * p2;
   const Lanes scale = select(of.hit, 0.5 * of.counted_length / length, Lanes{}), inverse = 1.0 / length;
   const Lanes r_integral = 0.5 * (b * rb - a * ra + m2 * q0), r2_integral = m2 * p0 + p2;
-  // By the pressures at the first and the last of three distances, and the energies at all.
+  // Of n and of r times s and its square, as s = (u - u0)/length.
+  const Lanes ru = (rb * rb * rb - ra * ra * ra) * (1.0 / 3), r_times_s = (ru - u0 * r_integral) * inverse,
+              times_s = (p1 - u0 * p0) * inverse;
+  if constexpr (WantsFans<Visit>) {
+    const Lanes q3 = b * b * rb - a * a * ra - 2.0 * ru, twice = 2.0 * u0, square = u0 * u0, inverse2 = inverse * inverse;
+    FanShape shape{of.hit};
+    shape.weight[0] = scale * p0, shape.weight[1] = scale * times_s;
+    shape.weight[2] = scale * (p2 - twice * p1 + square * p0) * inverse2;
+    const auto times = [&](Lanes* to, Lanes n, Lanes un, Lanes uun) {
+      to[0] = scale * n, to[1] = scale * (un - u0 * n) * inverse;
+      to[2] = scale * (uun - twice * un + square * n) * inverse2;
+    };
+    times(shape.normal_x, n_x, un_x, mx * q2 + ex * q3);
+    times(shape.normal_y, n_y, un_y, my * q2 + ey * q3);
+    shape.gap = {scale * r_integral, scale * r_times_s};
+    visit.in_fan_of(shape);
+  }
+  // By the tractions at the first and the last of three distances, and the energies at all.
   const Lanes middle = 0.5 * (of.low + of.high), half = select(of.hit, 0.25 * (of.high - of.low), broadcast(1));
   for (const int k : {-1, 0, 1}) {
     const double to_p = k == 0 ? -1 : -k, to_q = k == 0 ? 1 : -2 * k;  // the other two, from this one
     const Lanes own = middle + k * half, p = own + to_p * half, q = own + to_q * half;
-    FanPoint point{{of.hit, {}, own, {}}, {}, {}, {}, {}, {}};
+    FanPoint point{of.hit, {}, own, {}, {}, {}, {}, {}, {}, {}};
     point.energy_weight = scale / ((to_p * to_q) * half * half) * (r2_integral - (p + q) * r_integral + p * q * p0);
     if (k != 0) {
       const Lanes factor = scale / (to_q * half);
@@ -56,6 +73,7 @@ void visit_fan_forces(const FanParts& of, Visit& visit) {
                   uy = factor * (q * un_y - urn_y);
       point.force_x[1] = (ux - u0 * x) * inverse, point.force_y[1] = (uy - u0 * y) * inverse;
       point.force_x[0] = x - point.force_x[1], point.force_y[0] = y - point.force_y[1];
+      point.of_limit = {factor * (q * p0 - r_integral), factor * (q * times_s - r_times_s)};
     }
     visit.in_fan(point);
   }

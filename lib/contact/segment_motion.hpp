@@ -64,11 +64,19 @@ class TangentialMotion {
   }
 
   Lanes beside(const QuadraturePoint& p) const { return along_.at(p.s); }
-  Lanes in_fan(const FanPoint& p) const {
-    // The direction of growing places, in the segment's frame.
-    const Lanes cosine = p.normal_x * tangent_y_ - p.normal_y * tangent_x_,
-                sine = p.normal_x * tangent_x_ + p.normal_y * tangent_y_;
-    return cosine * along_.at(p.s) - sine * height_.at(p.s);
+  /// Integrals over a part of a fan.
+  Moments in_fan(const FanShape& f) const {
+    // Of the direction of growing places, in the segment's frame, times powers of s.
+    Lanes cosine[3], sine[3];
+    for (int power = 0; power < 3; ++power)
+      cosine[power] = f.normal_x[power] * tangent_y_ - f.normal_y[power] * tangent_x_,
+      sine[power] = f.normal_x[power] * tangent_x_ + f.normal_y[power] * tangent_y_;
+    const Lanes along = along_.at1 - along_.at0, height = height_.at1 - height_.at0;
+    const auto times = [&](int power) {
+      return along_.at0 * cosine[power] + along * cosine[power + 1] - height_.at0 * sine[power] -
+             height * sine[power + 1];
+    };
+    return {times(0), times(1)};
   }
 
  private:

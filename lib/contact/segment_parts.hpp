@@ -13,12 +13,34 @@ struct QuadraturePoint {
   Lanes gap;     ///< signed distance to the master's outline, negative inside, m
   Lanes weight;  ///< length times 1/2, as each of the two passes has half, m
 };
-/// The same in the fans of nodes. In one outside forces and energies may have points of their own.
-struct FanPoint : QuadraturePoint {
-  Lanes normal_x, normal_y;      ///< of the master there, outward
+/// Integrals over the same parts of something, alone and times s.
+struct Moments {
+  Lanes plain{}, times_s{};
+  void add(Lanes value, Lanes s) { plain += value, times_s += s * value; }
+};
+
+/// A distance from a node at which a law is asked for its tractions in the node's fan, and what integrals over a part of
+/// the fan take from there.
+struct FanPoint {
+  LaneBits hit;
+  Lanes s, gap;                  ///< as of QuadraturePoint
+  Lanes weight;                  ///< of dashpots, m; 0 outside
+  Lanes normal_x, normal_y;      ///< of the master there, outward; of dashpots
   Lanes energy_weight;           ///< for energies, m
   Lanes force_x[2], force_y[2];  ///< of a unit pressure on the two nodes of the slave segment, m
+  Moments of_limit;              ///< of a unit shear limit, m
 };
+
+/// Integrals over a part of a fan that no law takes part in.
+struct FanShape {
+  LaneBits hit{};
+  Lanes weight[3]{};  ///< length times powers of s and 1/2, as each of the two passes has half, m
+  Lanes normal_x[3]{}, normal_y[3]{};  ///< the same of the normal's components
+  Moments gap{};                       ///< m2
+};
+
+template <class Visit>
+concept WantsFans = requires(Visit& visit, const FanShape& shape) { visit.in_fan_of(shape); };
 
 /// A range of gaps within which the tractions of a law are smooth, m. All of it is inside the master or outside.
 struct GapRange {

@@ -105,7 +105,8 @@ class TractionVisitor {
     if constexpr (Law::has_shear) {
       const Lanes first = p.weight * p.s;
       beside_[0] += p.weight, beside_[1] += first, beside_[2] += first * p.s;
-      add_shear(p, traction);
+      limit_.add(p.weight * traction.shear_limit, p.s);
+      gap_.add(p.weight * p.gap, p.s);
       if (at_.moved) way_.add(p.weight * motion_.beside(p), p.s);
     }
   }
@@ -116,14 +117,19 @@ class TractionVisitor {
     for (int end = 0; end < 2; ++end)
       in_fans_.x[end] += pressure * p.force_x[end], in_fans_.y[end] += pressure * p.force_y[end];
     stored_ += p.energy_weight * traction.energy, squares_ += p.energy_weight * pressure * pressure;
-    if constexpr (Law::has_shear) {
-      weight_.add(p.weight, p.s);
-      Lanes of_power = p.weight;
-      for (int power = 0; power < 3; ++power, of_power *= p.s)
-        shear_x_[power] -= of_power * p.normal_y, shear_y_[power] += of_power * p.normal_x;
-      add_shear(p, traction);
-      if (at_.moved) way_.add(p.weight * motion_.in_fan(p), p.s);
-    }
+    if constexpr (Law::has_shear)
+      limit_.plain += p.of_limit.plain * traction.shear_limit, limit_.times_s += p.of_limit.times_s * traction.shear_limit;
+  }
+
+  void in_fan_of(const FanShape& f)
+    requires(Law::has_shear)
+  {
+    weight_.plain += f.weight[0], weight_.times_s += f.weight[1];
+    for (int power = 0; power < 3; ++power) shear_x_[power] -= f.normal_y[power], shear_y_[power] += f.normal_x[power];
+    gap_.plain += f.gap.plain, gap_.times_s += f.gap.times_s;
+    if (!at_.moved) return;
+    const Moments way = motion_.in_fan(f);
+    way_.plain += way.plain, way_.times_s += way.times_s;
   }
 
   void end() {
@@ -134,14 +140,14 @@ class TractionVisitor {
     });
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
-    const HatSums beside = pressure_.hats();
+    const HatSums beside = HatSums(pressure_);
     const PairForces forces{{in_fans_.x[0] + tangent_y * beside.first, in_fans_.x[1] + tangent_y * beside.second},
                             {in_fans_.y[0] - tangent_x * beside.first, in_fans_.y[1] - tangent_x * beside.second}};
     if constexpr (Law::has_shear) {
       const Moments weight{weight_.plain + beside_[0], weight_.times_s + beside_[1]};
-      weight.hats().add_to(scratch_.sums.weight, *pairs_, hit_);
-      limit_.hats().add_to(scratch_.sums.shear_limit, *pairs_, hit_);
-      if (at_.moved) way_.hats().add_to(scratch_.sums.motion, *pairs_, hit_);
+      HatSums(weight).add_to(scratch_.sums.weight, *pairs_, hit_);
+      HatSums(limit_).add_to(scratch_.sums.shear_limit, *pairs_, hit_);
+      if (at_.moved) HatSums(way_).add_to(scratch_.sums.motion, *pairs_, hit_);
       if (scratch_.shearing.size() == scratch_.shearing_count) scratch_.shearing.emplace_back();
       ShearingPairs& s = scratch_.shearing[scratch_.shearing_count++];
       s.hit = hit_, s.slave = pairs_->slave, s.row = pairs_->row, s.xi = xi_, s.forces = forces, s.gap = gap_;
@@ -156,20 +162,17 @@ class TractionVisitor {
   }
 
  private:
-  Traction traction_at(const QuadraturePoint& p, Lanes normal_x, Lanes normal_y) {
+  template <class Point>
+  Traction traction_at(const Point& p, Lanes normal_x, Lanes normal_y) {
     hit_ |= p.hit;
     Traction traction = law_(p.gap);
     if constexpr (has_dashpot<Law>) add_damping(p, normal_x, normal_y, traction);
     return traction;
   }
 
-  void add_shear(const QuadraturePoint& p, const Traction& traction) {
-    limit_.add(p.weight * traction.shear_limit, p.s);
-    gap_.add(p.weight * p.gap, p.s);
-  }
-
   /// The dashpot's pressure, and what friction makes of it.
-  void add_damping(const QuadraturePoint& p, Lanes normal_x, Lanes normal_y, Traction& traction) {
+  template <class Point>
+  void add_damping(const Point& p, Lanes normal_x, Lanes normal_y, Traction& traction) {
     const Lanes rate = rates_.along(normal_x, normal_y, p.s, xi_.at(p.s));
     const Lanes damping = law_.damping_pressure(traction.pressure, p.gap, rate, at_.pass.damping, at_.pass.elapsed);
     add_pressure(law_, damping, traction);
@@ -250,7 +253,8 @@ double integrated_length(const PatchView& view) {
     Lanes sum{};
     void begin(const SegmentPairs&, const Linear&) {}
     void beside(const QuadraturePoint& p) { sum += p.weight; }
-    void in_fan(const FanPoint& p) { sum += p.weight; }
+    void in_fan(const FanPoint&) {}
+    void in_fan_of(const FanShape& f) { sum += f.weight[0]; }
     void end() {}
   } length;
   for_each_pass(view, runs_in_table(view.patch), [&](const Pass& pass, int) {

@@ -26,23 +26,30 @@ class NodeTractions {
       void begin(const SegmentPairs& now, const Linear&) { pairs = &now; }
       void end() {}
       void beside(const QuadraturePoint& p) {
-        const Lanes x = pairs->tangent_y, y = -pairs->tangent_x, first = (1.0 - p.s) * p.weight,
-                    second = p.s * p.weight;
-        in_fan({p, x, y, p.weight, {first * x, second * x}, {first * y, second * y}});
+        const Lanes x = pairs->tangent_y, y = -pairs->tangent_x, second = p.s * p.weight, first = p.weight - second;
+        const Lanes pressure = law(p.gap).pressure;
+        FanShape shape{p.hit, {p.weight, second, p.s * second}};
+        for (int power = 0; power < 3; ++power)
+          shape.normal_x[power] = x * shape.weight[power], shape.normal_y[power] = y * shape.weight[power];
+        shape.gap = {p.weight * p.gap, second * p.gap};
+        in_fan_of(shape);
+        add_forces(p.hit, pressure * first * x, pressure * second * x, pressure * first * y, pressure * second * y);
       }
       void in_fan(const FanPoint& p) {
         const Lanes pressure = law(p.gap).pressure;
-        const auto add = [&](std::vector<double>& sums, Lanes value) {
-          Moments of;
-          of.add(p.weight * value, p.s);
-          of.hats().add_to(sums, *pairs, p.hit);
-        };
-        add(of.weight, broadcast(1)), add(of.gap, p.gap);
-        add(of.normal_x, p.normal_x), add(of.normal_y, p.normal_y);
-        HatSums{pressure * p.force_x[0], pressure * p.force_x[1]}.add_to(of.force_x, *pairs, p.hit);
-        HatSums{pressure * p.force_y[0], pressure * p.force_y[1]}.add_to(of.force_y, *pairs, p.hit);
-        const Linear shear{gather(shears.data(), pairs->slave), gather(shears.data() + 1, pairs->slave)};
-        add(of.shear, shear.at(p.s));
+        add_forces(p.hit, pressure * p.force_x[0], pressure * p.force_x[1], pressure * p.force_y[0],
+                   pressure * p.force_y[1]);
+      }
+      void in_fan_of(const FanShape& f) {
+        const auto add = [&](std::vector<double>& sums, const Moments& of) { HatSums(of).add_to(sums, *pairs, f.hit); };
+        add(of.weight, {f.weight[0], f.weight[1]}), add(of.gap, f.gap);
+        add(of.normal_x, {f.normal_x[0], f.normal_x[1]}), add(of.normal_y, {f.normal_y[0], f.normal_y[1]});
+        const Lanes shear = gather(shears.data(), pairs->slave), change = gather(shears.data() + 1, pairs->slave) - shear;
+        add(of.shear, {shear * f.weight[0] + change * f.weight[1], shear * f.weight[1] + change * f.weight[2]});
+      }
+      void add_forces(LaneBits hit, Lanes first_x, Lanes second_x, Lanes first_y, Lanes second_y) {
+        HatSums(first_x, second_x).add_to(of.force_x, *pairs, hit);
+        HatSums(first_y, second_y).add_to(of.force_y, *pairs, hit);
       }
     } visitor{law, *this, shears};
     thread_quadrature().run(pass, window, gap_ranges(law, window.depth()), visitor);

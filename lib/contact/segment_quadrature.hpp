@@ -15,8 +15,8 @@ namespace pliant {
 /// form unless three points do as well.
 ///
 /// Pairs are taken eight at a time. For each eight: visit.begin(SegmentPairs, xi), then visit.beside(QuadraturePoint)
-/// or visit.in_fan(FanPoint) for some points, then visit.end(); xi: on the master's segment, linear in s; of nodes 0 or
-/// 1.
+/// for some points, or visit.in_fan(FanPoint) for some distances and, where it has that, visit.in_fan_of(FanShape) for
+/// parts of a fan, then visit.end(); xi: on the master's segment, linear in s; of nodes 0 or 1.
 class SegmentQuadrature {
  public:
   template <class Visit>
@@ -83,23 +83,36 @@ class SegmentQuadrature {
       // length (Trefethen 2008, doi 10.1137/060659831): 1e-8 at 21.6.
       const LaneBits wide =
           nodes.convex & (2.0 * (distance(part.span.low) + distance(part.span.high)) < 21.6 * way * whole);
+      FanShape shape{part.hit & ~wide};
       const auto point = [&](double share, double of_length) {
         const Lanes s = part.span.low + share * way, x = x0 + s * dx, y = y0 + s * dy, square = x * x + y * y;
         const LaneBits apart = square > 0.0;
         const Lanes outward = side * select(apart, inverse_sqrt(select(apart, square, broadcast(1))), Lanes{});
-        const Lanes weight = (0.5 * of_length) * way * slaves.length, normal_x = x * outward, normal_y = y * outward;
-        deepest_ = max(deepest_, select(part.hit, -square * outward, Lanes{}));
-        const Lanes energy_weight = select(wide, Lanes{}, weight), second = s * energy_weight,
-                    first = energy_weight - second;
-        visit.in_fan(FanPoint{{part.hit, s, square * outward, weight},
+        const Lanes weight = select(wide, Lanes{}, (0.5 * of_length) * way * slaves.length), gap = square * outward,
+                    normal_x = x * outward, normal_y = y * outward;
+        deepest_ = max(deepest_, select(part.hit, -gap, Lanes{}));
+        const Lanes second = s * weight, first = weight - second;
+        visit.in_fan(FanPoint{part.hit & ~wide,
+                              s,
+                              gap,
+                              weight,
                               normal_x,
                               normal_y,
-                              energy_weight,
+                              weight,
                               {first * normal_x, second * normal_x},
-                              {first * normal_y, second * normal_y}});
+                              {first * normal_y, second * normal_y},
+                              {weight, second}});
+        if constexpr (WantsFans<Visit>) {
+          shape.gap.add(weight * gap, s);
+          Lanes of_power = weight;
+          for (int power = 0; power < 3; ++power, of_power *= s)
+            shape.weight[power] += of_power, shape.normal_x[power] += of_power * normal_x,
+                shape.normal_y[power] += of_power * normal_y;
+        }
       };
       constexpr double gauss = 0.1127016653792583;  // 1/2 - sqrt(3/20)
       point(gauss, 5.0 / 18), point(0.5, 8.0 / 18), point(1 - gauss, 5.0 / 18);
+      if constexpr (WantsFans<Visit>) visit.in_fan_of(shape);
       const FanParts closed{part.hit & wide, part.span, part.low, part.high, x0, y0, dx, dy, slaves.length};
       if (any(closed.hit)) visit_fan_forces(closed, visit);
     }

@@ -10,6 +10,8 @@ namespace pliant {
 /// Integrals over parts of eight slave segments of something times the hat functions of their two nodes.
 struct HatSums {
   Lanes first, second;
+  HatSums(Lanes first, Lanes second) : first(first), second(second) {}
+  explicit HatSums(const Moments& of) : HatSums(of.plain - of.times_s, of.times_s) {}
   /// To a number of each node in the pass.
   void add_to(std::vector<double>& of_nodes, const SegmentPairs& pairs, LaneBits hit) const {
     for_each_lane(hit, [&](int lane) {
@@ -17,13 +19,6 @@ struct HatSums {
       at[0] += first[lane], at[1] += second[lane];
     });
   }
-};
-
-/// Integrals over the same parts of something, alone and times s.
-struct Moments {
-  Lanes plain{}, times_s{};
-  void add(Lanes value, Lanes s) { plain += value, times_s += s * value; }
-  HatSums hats() const { return {plain - times_s, times_s}; }
 };
 
 /// Of the nodes of a pass: integrals over all parts.

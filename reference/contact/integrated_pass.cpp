@@ -102,17 +102,18 @@ class Pass {
     return static_cast<std::size_t>(((i % count) + count) % count);
   }
 
-  /// From where the same point of the slave was over the same segment of the master, in that segment's present length.
+  /// From where the same point of the slave was over the same segment of the master: in that segment's present length,
+  /// or across the direction from its first node.
   Jet<6> motion_of(const ContactSample& sample, int segment) const {
     const auto& [slave, master] = *of_.past;
     const int j = sample.nearby.segment;
     const Vec2 point = (1 - sample.s) * slave.node(segment) + sample.s * slave.node(segment + 1) - of_.where.shift;
     const Vec2 from = point - master.node(j), t = master.tangent(j);
-    const double xi = from.dot(t) / master.length(j), height = from.dot(Vec2(t.y(), -t.x()));
+    const double along = from.dot(t), height = from.dot(Vec2(t.y(), -t.x()));
     const Projection& now = sample.at;
-    if (!sample.nearby.at_node) return now.length * (now.xi - xi);
+    if (!sample.nearby.at_node) return now.length * (now.xi - along / master.length(j));
     const double side = now.gap.value * now.height.value < 0 ? -1 : 1;  // of the line, against that of the outline
-    return side * (sin(now.angle) * height - cos(now.angle) * now.length * xi);
+    return side * (sin(now.angle) * height - cos(now.angle) * along);
   }
 
   void number_nodes() {
