@@ -16,7 +16,7 @@ CASE = Case(__file__)
 
 WEIGHT, FRICTION, STIFFNESS = 1.0, 0.3, 1000.0
 SETTLED = 1.0  # s, when the drive sets in
-LENGTH = 1.0  # in touch: the block's face
+LENGTH = 1.05  # in touch at nodes: (1.1 of the block + 1 of the floor)/2
 RESIDUE = np.exp(-30 * SETTLED)  # of the first oscillation: damping 60 /s, frequency 32.4 /s, so it decays by 30 /s
 ROUNDING = 1e-9  # positions near 1 with 2e-16 of rounding, stiffness 1000, forces of 0.3; Newton stops at 1e-10
 
