@@ -47,7 +47,8 @@ void visit_fan_forces(const FanParts& of, Visit& visit) {
   const Lanes ru = (rb * rb * rb - ra * ra * ra) * (1.0 / 3), r_times_s = (ru - u0 * r_integral) * inverse,
               times_s = (p1 - u0 * p0) * inverse;
   if constexpr (WantsFans<Visit>) {
-    const Lanes q3 = b * b * rb - a * a * ra - 2.0 * ru, twice = 2.0 * u0, square = u0 * u0, inverse2 = inverse * inverse;
+    const Lanes q3 = b * b * rb - a * a * ra - 2.0 * ru, twice = 2.0 * u0, square = u0 * u0,
+                inverse2 = inverse * inverse;
     FanShape shape{of.hit};
     shape.weight[0] = scale * p0, shape.weight[1] = scale * times_s;
     shape.weight[2] = scale * (p2 - twice * p1 + square * p0) * inverse2;

@@ -30,7 +30,8 @@ Lanes compression(const Law& law, Lanes gap) {
 std::vector<DeepNode> deep_nodes(const PatchView& view) {
   std::vector<DeepNode> nodes;
   const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Projection& p) {
-    const LaneBits deep = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
+    const LaneBits deep =
+        first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
     const Lanes stored = 0.5 * load_slaves(pass, i).tributary_length * compression(law, p.gap);
     for (int lane = 0; lane < lane_count; ++lane)
       if (deep[lane])

@@ -19,8 +19,8 @@ struct Moments {
   void add(Lanes value, Lanes s) { plain += value, times_s += s * value; }
 };
 
-/// A distance from a node at which a law is asked for its tractions in the node's fan, and what integrals over a part of
-/// the fan take from there.
+/// A distance from a node at which a law is asked for its tractions in the node's fan, and what integrals over a part
+/// of the fan take from there.
 struct FanPoint {
   LaneBits hit;
   Lanes s, gap;                  ///< as of QuadraturePoint
@@ -34,7 +34,7 @@ struct FanPoint {
 /// Integrals over a part of a fan that no law takes part in.
 struct FanShape {
   LaneBits hit{};
-  Lanes weight[3]{};  ///< length times powers of s and 1/2, as each of the two passes has half, m
+  Lanes weight[3]{};                   ///< length times powers of s and 1/2, as each of the two passes has half, m
   Lanes normal_x[3]{}, normal_y[3]{};  ///< the same of the normal's components
   Moments gap{};                       ///< m2
 };

@@ -118,7 +118,8 @@ class TractionVisitor {
       in_fans_.x[end] += pressure * p.force_x[end], in_fans_.y[end] += pressure * p.force_y[end];
     stored_ += p.energy_weight * traction.energy, squares_ += p.energy_weight * pressure * pressure;
     if constexpr (Law::has_shear)
-      limit_.plain += p.of_limit.plain * traction.shear_limit, limit_.times_s += p.of_limit.times_s * traction.shear_limit;
+      limit_.plain += p.of_limit.plain * traction.shear_limit,
+          limit_.times_s += p.of_limit.times_s * traction.shear_limit;
   }
 
   void in_fan_of(const FanShape& f)
@@ -196,8 +197,8 @@ class TractionVisitor {
   SpeedPast rates_;
 };
 
-/// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along, after half
-/// of the step, as forces of before and now do half of a step's work each.
+/// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along, after
+/// half of the step: forces of before and now do half of its work each.
 template <class Law>
 void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, ContactHistory& to, NodeSums& sums,
                  Totals& totals) {

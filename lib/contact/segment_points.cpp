@@ -44,7 +44,8 @@ class NodeTractions {
         const auto add = [&](std::vector<double>& sums, const Moments& of) { HatSums(of).add_to(sums, *pairs, f.hit); };
         add(of.weight, {f.weight[0], f.weight[1]}), add(of.gap, f.gap);
         add(of.normal_x, {f.normal_x[0], f.normal_x[1]}), add(of.normal_y, {f.normal_y[0], f.normal_y[1]});
-        const Lanes shear = gather(shears.data(), pairs->slave), change = gather(shears.data() + 1, pairs->slave) - shear;
+        const Lanes shear = gather(shears.data(), pairs->slave),
+                    change = gather(shears.data() + 1, pairs->slave) - shear;
         add(of.shear, {shear * f.weight[0] + change * f.weight[1], shear * f.weight[1] + change * f.weight[2]});
       }
       void add_forces(LaneBits hit, Lanes first_x, Lanes second_x, Lanes first_y, Lanes second_y) {

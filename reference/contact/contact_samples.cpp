@@ -85,16 +85,18 @@ class Sampler {
   }
 
   /// Where a part ends: by the place at which its gap and the next one's are equal, or its gap is at a level, or on the
-  /// normal at the end of a segment, from where on shear goes by the next segment. At its start nothing jumps.
+  /// normal at an end of a segment, beyond which shear and motion go by a node.
   void add_limit(const Part& part, const Part& next, double s, double sign) {
     const bool same = part.nearby == next.nearby;
-    if (!same && part.nearby.segment == next.nearby.segment) return;
     ContactSample limit = make(part.nearby, s);
     limit.weight = sign;
     std::vector<std::pair<int, Vec2>> by_master;  // derivatives of what is zero at the limit
     Vec2 by_point = limit.at.gap.gradient.head<2>();
     if (!same && meet(part.nearby, next.nearby)) {
-      by_point = end_normal(part.nearby.at_node ? next.nearby.segment : part.nearby.segment, stretch_.at(s), by_master);
+      const auto [node, segment] = part.nearby.at_node ? std::pair(part.nearby.segment, next.nearby.segment)
+                                                       : std::pair(next.nearby.segment, part.nearby.segment);
+      const bool at_end = of_.master.index(segment) != of_.master.index(node);
+      by_point = end_normal(segment, at_end, stretch_.at(s), by_master);
     } else {
       const ContactSample other = make(next.nearby, s);
       for (const int end : {0, 1}) {
@@ -110,19 +112,21 @@ class Sampler {
     result_.limits.push_back(std::move(limit));
   }
 
-  /// Whether one is a segment and the other its second node.
+  /// Whether one is a segment and the other a node of it.
   bool meet(const Nearby& one, const Nearby& other) const {
     if (one.at_node == other.at_node) return false;
     const Nearby &fan = one.at_node ? one : other, &beside = one.at_node ? other : one;
-    return of_.master.index(beside.segment + 1) == of_.master.index(fan.segment);
+    const int node = of_.master.index(fan.segment);
+    return of_.master.index(beside.segment) == node || of_.master.index(beside.segment + 1) == node;
   }
 
-  /// Derivatives of a point's distance past the normal at the end of a segment, by the point and by both nodes.
-  Vec2 end_normal(int segment, const Vec2& point, std::vector<std::pair<int, Vec2>>& by_master) const {
+  /// Derivatives of a point's distance past the normal at an end of a segment, by the point and by both nodes.
+  Vec2 end_normal(int segment, bool at_end, const Vec2& point, std::vector<std::pair<int, Vec2>>& by_master) const {
     const PresentOutline& master = of_.master;
-    const Vec2 from = point - master.node(segment + 1), t = master.tangent(segment);
+    const Vec2 from = point - master.node(segment + at_end), t = master.tangent(segment);
     const Vec2 turning = (from - from.dot(t) * t) / master.length(segment);
-    by_master = {{master.index(segment), -turning}, {master.index(segment + 1), turning - t}};
+    by_master = {{master.index(segment), -turning}, {master.index(segment + 1), turning}};
+    by_master[at_end].second -= t;
     return t;
   }
 

@@ -95,7 +95,8 @@ Nearby nearest(const PresentOutline& master, const std::vector<int>& segments, c
 
 bool is_outside(const PresentOutline& master, int node, const Vec2& point) {
   const Vec2 from = point - master.node(node), before = master.tangent(node - 1), after = master.tangent(node);
-  const double over_before = from.dot(Vec2(before.y(), -before.x())), over_after = from.dot(Vec2(after.y(), -after.x()));
+  const double over_before = from.dot(Vec2(before.y(), -before.x())),
+               over_after = from.dot(Vec2(after.y(), -after.x()));
   return (std::abs(over_before) > std::abs(over_after) ? over_before : over_after) > 0;
 }
 
@@ -105,8 +106,8 @@ namespace {
 bool is_apart(const PresentOutline& master, const std::vector<int>& segments, const Stretch& stretch, double reach) {
   const Vec2 middle = stretch.at(0.5);
   const Nearby at = nearest(master, segments, middle);
-  const bool outside = at.at_node ? is_outside(master, at.segment, middle)
-                                  : Distances(master, stretch).height(at.segment, middle) > 0;
+  const bool outside =
+      at.at_node ? is_outside(master, at.segment, middle) : Distances(master, stretch).height(at.segment, middle) > 0;
   return outside && distance_to(master, at.segment, middle) > reach + stretch.along().norm() / 2;
 }
 

@@ -97,7 +97,7 @@ std::vector<Law> reaching_laws() {
           {"cohesive", cohesive(100, 0.5, 0.02, 0.4)}};
 }
 
-// Outside, integrals in fans are in closed form, or three Gauss points are good enough. Inside these are off by rho^-6, rho
+// Outside, integrals in fans are in closed form, or three Gauss points will do. Inside these are off by rho^-6, rho
 // + 1/rho twice the distances of a part's ends from the node over the part's length: 3e-3 where one distance is five
 // times the other, unless the integrand is linear.
 constexpr double in_fans_outside = 1e-8, in_fans_inside = 3e-3;
