@@ -48,7 +48,8 @@ class Squeeze:
     def scene(self, case: Case) -> str:
         up = self.speeds()
         outline = OUTLINE[self.nodes]
-        return case.scene(SCENE, recipe=self.recipe, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
+        quadrature = "segments" if self.recipe == "t3" else "nodes"  # at nodes the light ones of t3 rattle
+        return case.scene(SCENE, recipe=self.recipe, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
                           damping=self.damping, angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
                           young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
                           up=up, down=[[t, -v] for t, v in up])

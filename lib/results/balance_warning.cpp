@@ -64,26 +64,26 @@ std::string against_free_motion(const Simulation& simulation, double error) {
                      safety_for(time, error), time.safety);
 }
 
-std::string against_step_doubling(const TimeSettings& time) {
+std::string against_step_doubling(const TimeSettings& time, bool feeds) {
   return fmt::format(
-      "step-doubling has no bound of stability and feeds vibrations at any target, at a smaller one than {:g} often "
+      "step-doubling has no bound of stability and {} vibrations at any target, at a smaller one than {:g} often "
       "more: take [time] integrator = \"verlet\" with safety = {:g}",
-      time.target, calm_safety);
+      feeds ? "feeds" : "damps", time.target, calm_safety);
 }
 
-std::string against_jumps(const Simulation& simulation) {
+std::string against_jumps(const Simulation& simulation, bool feeds) {
   const TimeSettings& time = simulation.model().scene.time;
   const StepStatistics& seen = simulation.statistics();
   if (seen.by_error > seen.by_stability)
     return fmt::format("the error limits most steps: take a smaller [time] tolerance than {:g}", time.tolerance);
   return fmt::format(
-      "contacts that open and close every few steps may feed vibrations: take [time] safety = {:g} instead of {:g} "
+      "contacts that open and close every few steps may {} vibrations: take [time] safety = {:g} instead of {:g} "
       "(docs/defaults.md, \"Safety and impacts\")",
-      time.safety > calm_safety ? calm_safety : time.safety / 2, time.safety);
+      feeds ? "feed" : "damp", time.safety > calm_safety ? calm_safety : time.safety / 2, time.safety);
 }
 
 /// The likeliest cause by what the run has met, and what to do.
-std::string diagnosis(const Simulation& simulation, double error) {
+std::string diagnosis(const Simulation& simulation, double error, bool feeds) {
   const StepStatistics& seen = simulation.statistics();
   const InitialOverlap& overlap = simulation.overlap();
   const Model& model = simulation.model();
@@ -91,8 +91,8 @@ std::string diagnosis(const Simulation& simulation, double error) {
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
-  if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time);
-  return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation);
+  if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time, feeds);
+  return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation, feeds);
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ void warn_of_balance(const Simulation& simulation, const Energies& energy) {
   if (error <= largest_error || std::abs(gained) <= rounding * energy_scale(simulation)) return;
   spdlog::warn("energy balance at t = {:.6g} s: {:.2g} J/m {} without cause, {:.3g} % of what came in; {}",
                simulation.state().time, std::abs(gained), gained > 0 ? "gained" : "lost", 100 * error,
-               diagnosis(simulation, error));
+               diagnosis(simulation, error, gained > 0));
 }
 
 }  // namespace pliant

@@ -57,7 +57,7 @@ class Sampler {
     sample.nearby = nearby;
     sample.at = project(stretch_.at(s), of_.master.node(j), of_.master.node(j + 1));
     // The segment's other side, where the outline turns at the node by more than a right angle.
-    if (nearby.at_node && is_outside(of_.master, j, stretch_.at(s)) != sample.at.gap.value > 0)
+    if (nearby.at_node && is_outside(of_.master, j, stretch_.at(s)) != (sample.at.gap.value > 0))
       sample.at.gap = -sample.at.gap;
     return sample;
   }

@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// A law without tension, with a normal dashpot while g < 0 (docs/method.md 4). All nodes of a pair in touch, of total
-/// length L, share the dashpot 2 z sqrt(kn L m) of a reduced mass m by their lengths: c = root_damping / sqrt(L) a unit
+/// A law without tension, with a normal dashpot while g < 0 (docs/method.md 4). All that touches of a pair, of total
+/// length L, shares the dashpot 2 z sqrt(kn L m) of a reduced mass m: c = root_damping / sqrt(L) a unit
 /// length. So a flat face that lands at once bounces with the asked restitution, and any other contact keeps the
 /// damping ratio z of its present stiffness.
 template <class Law>
