@@ -56,7 +56,7 @@ Range segments_beside(const PresentOutline& outline, const Extent& other) {
   const Extent one = extent_of(outline);
   const double turn = outline.turn_shift(), middle = (one.low.x() + one.high.x()) / 2;
   const auto [low, high] =
-      std::minmax(std::lround((other.low.x() - middle) / turn), std::lround((other.high.x() - middle) / turn));
+      std::minmax({std::lround((other.low.x() - middle) / turn), std::lround((other.high.x() - middle) / turn)});
   return {static_cast<int>(low - 1) * outline.count(), static_cast<int>(high - low + 3) * outline.count()};
 }
 
