@@ -133,9 +133,9 @@ void find_rough_arcs(const Model& model, const Side& a, Side& b, Box box_a, Box 
 
 /// The shortest run of entries marked so far.
 struct Span {
-  int begin = 1 << 30, end = -1;
+  int begin = 1 << 30, end = -(1 << 30);
   void add(int i) { begin = std::min(begin, i), end = std::max(end, i + 1); }
-  Arc arc(int origin) const { return end < 0 ? Arc{} : Arc{origin + begin, end - begin}; }
+  Arc arc() const { return end < begin ? Arc{} : Arc{begin, end - begin}; }
 };
 
 /// Distance of eight nodes to a segment, negative below its line.
@@ -152,15 +152,43 @@ Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
 struct Margins {
   double reach;  ///< of the law, and a skin
   double skin;
+  double depth;  ///< to which contact sees below the master's segments
+};
+
+/// Which nodes or segments of an outline are near, and the arc that holds them. Of a closed outline the shortest, so
+/// that it does not depend on the arc that boxes let in; but where a body touches itself, within the arc looked at.
+class Near {
+ public:
+  Near(const OutlineShape& shape, bool itself, std::vector<char>& flags)
+      : closed_(shape.turn_shift == 0 && !itself), flags_(flags) {
+    if (closed_) flags_.assign(static_cast<std::size_t>(shape.count), 0);
+  }
+  void add(int i) {
+    if (closed_) {
+      const int n = static_cast<int>(flags_.size());
+      flags_[static_cast<std::size_t>(i - turn_of(i, n) * n)] = 1;
+    } else {
+      span_.add(i);
+    }
+  }
+  Arc arc() const { return closed_ ? covering_arc(flags_) : span_.arc(); }
+
+ private:
+  bool closed_;
+  std::vector<char>& flags_;
+  Span span_;
 };
 
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to
 /// a depth of the skin, one inside a skin deeper; to find which face is nearest then, all within two skins of the
-/// present reach must be known.
-void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window, int first_segment,
-            const Margins& margins, Arc& nodes, Arc& segments) {
-  Span near_nodes, near_segments;
+/// present reach must be known. Returns the least distance between a node and a segment.
+double narrow(const Side& slave, const Side& master, const Arc& candidates, const MasterWindow& window,
+              int first_segment, const Margins& margins, Arc& nodes, Arc& segments) {
+  thread_local std::vector<char> node_flags, segment_flags;  // so that their memory is found once
+  const bool itself = &slave == &master;
+  Near near_nodes(*slave.shape, itself, node_flags), near_segments(*master.shape, itself, segment_flags);
   const int n = slave.shape->count;
+  Lanes least = broadcast(1e300);
   for (int i = 0; i < candidates.count; i += lane_count) {
     const int index = candidates.begin + i, turn = turn_of(index, n), node = index - turn * n;
     const Lanes px = load(slave.x + node) + (slave.shift + turn * slave.shape->turn_shift), py = load(slave.y + node);
@@ -169,18 +197,20 @@ void narrow(const Side& slave, const Arc& candidates, const MasterWindow& window
       const Lanes distance = signed_distance(window[row], px, py);
       nearest = select(abs(distance) <= abs(nearest), distance, nearest);
     }
-    const Lanes limit = select(nearest < 0.0, broadcast(std::max(margins.reach, window.depth() + margins.skin)),
+    const Lanes limit = select(nearest < 0.0, broadcast(std::max(margins.reach, margins.depth + margins.skin)),
                                broadcast(margins.reach));
-    const LaneBits chosen = first_lanes(candidates.count - i) & (abs(nearest) <= limit);
+    const LaneBits active = first_lanes(candidates.count - i), chosen = active & (abs(nearest) <= limit);
+    least = select(active, min(least, abs(nearest)), least);
     if (!any(chosen)) continue;
     for (int lane = 0; lane < lane_count; ++lane)
-      if (chosen[lane]) near_nodes.add(i + lane);
+      if (chosen[lane]) near_nodes.add(candidates.begin + i + lane);
     const Lanes reach = max(-nearest, broadcast(margins.reach)) + 2 * margins.skin;
     for (int row = 0; row < window.count(); ++row)
-      if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(row);
+      if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(first_segment + row);
   }
-  nodes = near_nodes.arc(candidates.begin);
-  segments = near_segments.arc(first_segment);
+  nodes = near_nodes.arc();
+  segments = near_segments.arc();
+  return -largest(-least);
 }
 
 /// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same
@@ -220,6 +250,16 @@ Arc with_medial_neighbours(const OutlineShape& shape, const Arc& segments) {
   return result;
 }
 
+/// Counts a closed outline's segments from the turn that makes one short arc of them and its nodes.
+void bring_together(const OutlineShape& shape, const Arc& nodes, Arc& segments) {
+  if (shape.turn_shift != 0 || nodes.count == 0 || segments.count == 0) return;
+  const Arc here = segments;
+  for (const int turn : {-1, 1})
+    if (const Arc there{here.begin + turn * shape.count, here.count};
+        hull(nodes, there).count < hull(nodes, segments).count)
+      segments = there;
+}
+
 /// Segments of a side that can touch: with a node near the other outline, or near a node of that. Slaves count once.
 void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patch& patch) {
   Arc &nodes = patch.nodes[side], &segments = patch.segments[side];
@@ -237,8 +277,8 @@ void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patc
 
 }  // namespace
 
-void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
-               MasterWindow& scratch) {
+double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
+                 MasterWindow& scratch, double look) {
   const double shift = patch.images * model.scene.period.value_or(0);
   Side sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
   const Box box_a = bounding_box(model, outlines, patch.first);
@@ -246,23 +286,28 @@ void find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, d
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
-  const Margins margins{margin, skin};
-  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch, std::max(margin, longest + 2 * skin) + 2 * skin,
-                  rough);
-  if (rough[0].count == 0 || rough[1].count == 0) return;
+  double gap = std::max({look, margin + 2 * skin, longest + 4 * skin});  // at least, of what is not in rough arcs
+  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch, gap, rough);
+  if (rough[0].count == 0 || rough[1].count == 0) return gap;
   const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
     const Side& master = sides[1 - slave];
     const Arc segments = segments_at(master, rough[1 - slave], two_walls);
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
-    narrow(sides[slave], rough[slave], scratch, segments.begin, margins, patch.nodes[slave], patch.segments[1 - slave]);
+    // The depth is that of the whole outline: what boxes let in of it depends on the axes.
+    const Margins margins{margin, skin, master.longest_segment + skin};
+    const double least = narrow(sides[slave], master, rough[slave], scratch, segments.begin, margins,
+                                patch.nodes[slave], patch.segments[1 - slave]);
+    gap = std::min(gap, least);
     // Walls meet along the whole period: one image of each node is enough. A body as wide as the period may stand on
     // two.
     if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
   }
+  for (int side = 0; side < 2; ++side) bring_together(*sides[side].shape, patch.nodes[side], patch.segments[side]);
   for (int side = 0; side < 2; ++side) patch.window[side] = patch.segments[side];
   if (patch.integrated)
     for (int side = 0; side < 2; ++side) widen_to_segments(*sides[side].shape, two_walls, side, patch);
+  return gap;
 }
 
 void find_self_patches(const Model& model, const OutlineField& outlines, const Patch& of_body, double margin,
@@ -277,8 +322,8 @@ void find_self_patches(const Model& model, const OutlineField& outlines, const P
     scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
     Patch patch = of_body;
     patch.part = begin;
-    const Margins margins{margin, skin};
-    narrow(side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
+    const Margins margins{margin, skin, scratch.depth()};
+    narrow(side, side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
     patch.window[1] = patch.segments[1];
     if (patch.nodes[0].count == 0) continue;
     if (patch.integrated) {

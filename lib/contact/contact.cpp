@@ -150,8 +150,9 @@ std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.integrated = integrates(pair.first, pair.second, patch.law);
     patch.found = refreshes_;
-    find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_, thread_scratch());
-    watch_.searched(pairs[i], found_at_.position);
+    const double gap = find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_,
+                                 thread_scratch(), watch_.margin());
+    watch_.searched(pairs[i], found_at_.position, gap);
   });
   pairs_searched_ += static_cast<long>(found.size());
   return found;

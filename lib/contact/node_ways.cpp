@@ -14,29 +14,28 @@ namespace {
 /// Outline nodes up to which ways are kept node by node.
 constexpr int small_outline = 512;
 
-/// A box that grows by eight points at once.
-class GrowingBox {
- public:
-  void add(Lanes x, Lanes y) {
-    x_min_ = min(x_min_, x), x_max_ = max(x_max_, x);
-    y_min_ = min(y_min_, y), y_max_ = max(y_max_, y);
+/// Mean of four nodes' ways, way(node): it turns with the axes.
+template <class Way>
+WayDisc about_four(int count, Way&& way) {
+  WayDisc disc{0, 0, 0};
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const auto [x, y] = way(quarter * count / 4);
+    disc.x += 0.25 * x, disc.y += 0.25 * y;
   }
-  Box box() const { return {-largest(-x_min_), largest(x_max_), -largest(-y_min_), largest(y_max_)}; }
+  return disc;
+}
 
- private:
-  Lanes x_min_ = broadcast(1e300), x_max_ = -x_min_, y_min_ = x_min_, y_max_ = x_max_;
-};
-
-/// Of the ways of an outline's nodes, eight at once from node i on. The last lanes may reach into the cyclic copies,
-/// which move as their originals.
+/// Makes a disc hold the ways of an outline's nodes, ways(i) of eight at once from node i on. The last lanes may reach
+/// into the cyclic copies, which move as their originals.
 template <class Ways>
-Box box_of(int count, Ways&& ways) {
-  GrowingBox result;
+WayDisc widened(WayDisc disc, int count, Ways&& ways) {
+  Lanes square{};
   for (int i = 0; i < count; i += lane_count) {
-    const auto [dx, dy] = ways(i);
-    result.add(dx, dy);
+    const auto [x, y] = ways(i);
+    square = max(square, (x - disc.x) * (x - disc.x) + (y - disc.y) * (y - disc.y));
   }
-  return result.box();
+  disc.radius = std::sqrt(largest(square));
+  return disc;
 }
 
 using Floats = float __attribute__((vector_size(4 * lane_count)));
@@ -52,45 +51,36 @@ void store_ways(float* to, Lanes value) {
   std::memcpy(to, &rounded_ways, sizeof rounded_ways);
 }
 
+/// Of one node.
+std::pair<double, double> way_at(const OutlineField& now, const OutlineField& reference, int node) {
+  return {now.x[node] - reference.x[node], now.y[node] - reference.y[node]};
+}
+
 /// Of eight nodes.
 std::pair<Lanes, Lanes> ways_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {load(&now.x[node]) - load(&reference.x[node]), load(&now.y[node]) - load(&reference.y[node])};
 }
 
-/// Ways from one motion to another of the same body.
-Box between(const Box& from, const Box& to) {
-  return {to.x_min - from.x_max, to.x_max - from.x_min, to.y_min - from.y_max, to.y_max - from.y_min};
-}
-
-/// From where nothing is known of the way.
-constexpr double far_off = 1e150;
-constexpr Box unknown{-far_off, far_off, -far_off, far_off};
-/// New references move a box that is not known by little.
-bool is_known(const Box& box) { return box.x_min > 0.5 * unknown.x_min; }
+/// New references move a disc that is not known by little.
+bool is_known(const WayDisc& disc) { return disc.radius < 0.5 * unknown_way.radius; }
 
 }  // namespace
 
-Box box_of_ways(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
-  return box_of(model.outline_of(body).count,
-                [&](int i) { return ways_at(now, reference, model.outline_offset[body] + i); });
+WayDisc disc_of_ways(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
+  const int first = model.outline_offset[body], count = model.outline_of(body).count;
+  const WayDisc middle = about_four(count, [&](int i) { return way_at(now, reference, first + i); });
+  return widened(middle, count, [&](int i) { return ways_at(now, reference, first + i); });
 }
 
-MotionBoxes motion_boxes(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
-  GrowingBox ways, place;
-  const int begin = model.outline_offset[body], end = model.outline_end(body);
-  for (int i = begin; i < end; i += lane_count) {
-    const Lanes x = load(&now.x[i]), y = load(&now.y[i]);
-    ways.add(x - load(&reference.x[i]), y - load(&reference.y[i]));
-    place.add(x, y);
-  }
-  return {ways.box(), place.box()};
+WayDisc way_between(const WayDisc& from, const WayDisc& to) {
+  return {to.x - from.x, to.y - from.y, from.radius + to.radius};
 }
 
-double change_of_shape(const Box& ways) { return std::max(ways.x_max - ways.x_min, ways.y_max - ways.y_min); }
+double change_of_shape(const WayDisc& ways) { return 2 * ways.radius; }
 
-double relative_way(const Box& a, const Box& b) {
-  const double dx = std::max(a.x_max - b.x_min, b.x_max - a.x_min), dy = std::max(a.y_max - b.y_min, b.y_max - a.y_min);
-  return std::sqrt(dx * dx + dy * dy);
+double relative_way(const WayDisc& a, const WayDisc& b) {
+  const double dx = a.x - b.x, dy = a.y - b.y;
+  return std::sqrt(dx * dx + dy * dy) + a.radius + b.radius;
 }
 
 NodeWays::Common NodeWays::way_of_first(int body, const WaysSoFar& ways) const {
@@ -114,7 +104,7 @@ void NodeWays::lay_out(int first) {
 
 void NodeWays::set_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
-  start_.assign(body_.size(), unknown);
+  start_.assign(body_.size(), unknown_way);
   lay_out(0);
 }
 
@@ -129,7 +119,7 @@ void NodeWays::restore_bodies(std::vector<int> bodies) {
 
 void NodeWays::append(int body) {
   body_.push_back(body);
-  start_.push_back(unknown);
+  start_.push_back(unknown_way);
   lay_out(count() - 1);
 }
 
@@ -143,45 +133,55 @@ void NodeWays::copy_entry(int entry, const NodeWays& from, int old_entry) {
 }
 
 void NodeWays::look(int entry, const WaysSoFar& ways) {
-  const int b = body_[entry];
+  const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry] = way_of_first(b, ways);
   const bool keeps = keeps_nodes(entry);
-  start_[entry] = box_of(model_->outline_of(b).count, [&](int i) {
-    const auto [x, y] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
+  const WayDisc middle = about_four(count, [&](int i) { return way_at(ways.now, ways.reference, first + i); });
+  start_[entry] = widened(middle, count, [&](int i) {
+    const auto [x, y] = ways_at(ways.now, ways.reference, first + i);
     if (keeps) store_ways(&x_[at_[entry] + i], x - common.x), store_ways(&y_[at_[entry] + i], y - common.y);
     return std::pair(x, y);
   });
 }
 
-Box NodeWays::rough_way(int entry, const WaysSoFar& ways) const {
-  return between(start_[entry], ways.boxes[body_[entry]]);
+WayDisc NodeWays::rough_way(int entry, const WaysSoFar& ways) const {
+  return way_between(start_[entry], ways.discs[body_[entry]]);
 }
 
-Box NodeWays::way(int entry, const WaysSoFar& ways) const {
+WayDisc NodeWays::way(int entry, const WaysSoFar& ways) const {
   if (!is_known(start_[entry]) || !keeps_nodes(entry)) return rough_way(entry, ways);
-  const int b = body_[entry];
+  const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry];
-  return box_of(model_->outline_of(b).count, [&](int i) {
-    const auto [x, y] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    return std::pair(x - common.x - load_ways(&x_[at_[entry] + i]), y - common.y - load_ways(&y_[at_[entry] + i]));
+  const float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
+  const WayDisc middle = about_four(count, [&](int i) {
+    const auto [x, y] = way_at(ways.now, ways.reference, first + i);
+    return std::pair(x - common.x - x_then[i], y - common.y - y_then[i]);
+  });
+  return widened(middle, count, [&](int i) {
+    const auto [x, y] = ways_at(ways.now, ways.reference, first + i);
+    return std::pair(x - common.x - load_ways(x_then + i), y - common.y - load_ways(y_then + i));
   });
 }
 
 void NodeWays::take_new_reference(int entry, const WaysSoFar& ways) {
-  Box& start = start_[entry];
-  const int b = body_[entry];
+  WayDisc& start = start_[entry];
+  const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   if (!is_known(start)) return;
   if (!keeps_nodes(entry)) {
-    start = between(box_of_ways(*model_, b, ways.now, ways.reference), start);
+    start = way_between(disc_of_ways(*model_, b, ways.now, ways.reference), start);
     return;
   }
   const Common back = way_of_first(b, ways);
   Common& common = common_[entry];
-  start = box_of(model_->outline_of(b).count, [&](int i) {
-    const auto [dx, dy] = ways_at(ways.now, ways.reference, model_->outline_offset[b] + i);
-    const Lanes back_x = load_ways(&x_[at_[entry] + i]) - (dx - back.x),
-                back_y = load_ways(&y_[at_[entry] + i]) - (dy - back.y);
-    store_ways(&x_[at_[entry] + i], back_x), store_ways(&y_[at_[entry] + i], back_y);
+  float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
+  const WayDisc middle = about_four(count, [&](int i) {
+    const auto [dx, dy] = way_at(ways.now, ways.reference, first + i);
+    return std::pair(common.x - back.x + (x_then[i] - (dx - back.x)), common.y - back.y + (y_then[i] - (dy - back.y)));
+  });
+  start = widened(middle, count, [&](int i) {
+    const auto [dx, dy] = ways_at(ways.now, ways.reference, first + i);
+    const Lanes back_x = load_ways(x_then + i) - (dx - back.x), back_y = load_ways(y_then + i) - (dy - back.y);
+    store_ways(x_then + i, back_x), store_ways(y_then + i, back_y);
     return std::pair(common.x - back.x + back_x, common.y - back.y + back_y);
   });
   common = {common.x - back.x, common.y - back.y};

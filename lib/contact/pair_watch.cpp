@@ -1,7 +1,7 @@
 #include "contact/pair_watch.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/archive.hpp"
@@ -19,15 +19,35 @@ constexpr double kept = 0.75;
 /// Rounding of ways that are kept, of some skins, over the skin, many times over.
 constexpr double rounded = 1e-4;
 
-constexpr double endless = 1e300;  ///< m
-/// Before the broad phase has looked: all have come out of it.
-constexpr Box empty{endless, -endless, endless, -endless};
-
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   std::vector<int> bodies;
   bodies.reserve(2 * pairs.size());
   for (const BodyPair& pair : pairs) bodies.push_back(pair.first), bodies.push_back(pair.second);
   return bodies;
+}
+
+/// The mean of a closed outline's nodes and how far they are from it at most; of its segments' lines the least distance,
+/// negative where it does not see all of them from inside.
+Place place_of(const Model& model, int body, const OutlineField& outlines) {
+  const int begin = model.outline_offset[body], count = model.outline_of(body).count;
+  const double first_x = outlines.x[begin], first_y = outlines.y[begin];
+  Lanes sum_x{}, sum_y{};
+  for (int i = 0; i < count; i += lane_count) {
+    const LaneBits own = first_lanes(count - i);
+    sum_x += select(own, load(&outlines.x[begin + i]) - first_x, Lanes{});
+    sum_y += select(own, load(&outlines.y[begin + i]) - first_y, Lanes{});
+  }
+  const double x = first_x + sum(sum_x) / count, y = first_y + sum(sum_y) / count;
+  Lanes farthest{}, nearest = broadcast(1e300);
+  for (int i = 0; i < count; i += lane_count) {
+    const int at = begin + i;
+    const LaneBits own = first_lanes(count - i);
+    const Lanes ax = load(&outlines.x[at]) - x, ay = load(&outlines.y[at]) - y;
+    const Lanes dx = load(&outlines.x[at + 1]) - x - ax, dy = load(&outlines.y[at + 1]) - y - ay;
+    farthest = max(farthest, select(own, ax * ax + ay * ay, Lanes{}));
+    nearest = select(own, min(nearest, (ax * dy - ay * dx) / sqrt(dx * dx + dy * dy)), nearest);
+  }
+  return {x, y, std::sqrt(largest(farthest)), -largest(-nearest)};
 }
 
 }  // namespace
@@ -47,33 +67,56 @@ void PairWatch::forget() {
   pairs_.clear();
   use_.clear();
   excess_.clear();
+  gap_.clear(), watched_.clear();
   pair_ways_.set_bodies({});
-  swept_at_.assign(model_.bodies.size(), empty);
+  since_sweep_.assign(model_.bodies.size(), unknown_way);
+  swept_at_.assign(model_.bodies.size(), Place{0, 0, 0, -1});
 }
 
 void PairWatch::loaded() {
   pair_ways_.restore_bodies(both_bodies(pairs_));
-  if (swept_at_.size() != motion_.size()) throw ArchiveError("bounding boxes are those of other bodies");
-  if (excess_.size() != pairs_.size()) throw ArchiveError("ways are those of other pairs");
+  if (swept_at_.size() != motion_.size() || since_sweep_.size() != motion_.size())
+    throw ArchiveError("ways are those of other bodies");
+  if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
+    throw ArchiveError("ways are those of other pairs");
   use_.assign(pairs_.size(), all);
 }
 
-/// Finds motion_, and returns how far bounding boxes have come out of those that the broad phase saw, all of these
-/// moved along with the middle of the bodies, m: only what bodies move against each other can bring pairs together that
-/// it left out. A wall lies in wait along all x, whatever its own way in x.
+/// Finds motion_, and returns how far bodies have come from where the broad phase saw them, all of these places moved
+/// along with the mean of the bodies, m: only what bodies move against each other can bring pairs together that it left
+/// out. A wall lies in wait along all x, whatever its own way in x. All of it is the same along all axes, as all that
+/// says when pairs are searched must be: the stable step depends on where they were.
 double PairWatch::measure(const OutlineField& now) {
-  const std::array<double, 4> out = parallel_max<4>(count_of_bodies(), -endless, [&](int b) {
-    const auto [ways, box] = motion_boxes(model_, b, now, reference_);
-    const Box& then = swept_at_[b];
-    motion_[b] = ways;
+  parallel_for(count_of_bodies(), [&](int b) { motion_[b] = disc_of_ways(model_, b, now, reference_); });
+  double x = 0, y = 0;
+  int free = 0;
+  for (int b = 0; b < count_of_bodies(); ++b) {
+    if (model_.bodies[b].wall) continue;
+    const WayDisc way = way_between(since_sweep_[b], motion_[b]);
+    x += way.x, y += way.y, ++free;
+  }
+  if (free > 0) x /= free, y /= free;
+  double farthest = 0;
+  for (int b = 0; b < count_of_bodies(); ++b) {
+    const WayDisc way = way_between(since_sweep_[b], motion_[b]);
     const bool wall = model_.bodies[b].wall;
-    return std::array{wall ? -endless : then.x_min - box.x_min, wall ? -endless : box.x_max - then.x_max,
-                      then.y_min - box.y_min, box.y_max - then.y_max};
-  });
-  return 0.5 * std::max(out[0] + out[1], out[2] + out[3]);
+    const double dx = wall ? 0.0 : way.x - x, dy = way.y - y, from_mean = std::sqrt(dx * dx + dy * dy) + way.radius;
+    if (from_mean > farthest) farthest = std::max(farthest, come_out_of_place(b, from_mean, x, y, now));
+  }
+  return farthest;
 }
 
-/// By the boxes of their nodes' ways: at little cost, but blurred.
+/// What spins comes out of nothing where it is round: from the disc within its outline as it was to the one around it.
+double PairWatch::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
+                                    const OutlineField& now) const {
+  const Place& then = swept_at_[body];
+  if (from_mean < kept * own_skin_ || then.inner < 0) return from_mean;
+  const Place place = place_of(model_, body, now);
+  const double dx = place.x - then.x - drift_x, dy = place.y - then.y - drift_y;
+  return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
+}
+
+/// By the discs of their nodes' ways: at little cost, but blurred.
 double PairWatch::rough_way(int pair, const OutlineField& now) const {
   return relative_way(pair_ways_.rough_way(2 * pair, ways(now)), pair_ways_.rough_way(2 * pair + 1, ways(now)));
 }
@@ -91,7 +134,8 @@ bool PairWatch::is_used_up(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
-    // Below the skin by boxes a pair holds, and what is likely will do.
+    if (!watched_[p]) return use_[p] = little, false;
+    // Below the skin by discs a pair holds, and what is likely will do.
     const double rough = rough_way(p, now), likely = rough < skin_ ? rough - excess_[p] : way(p, now);
     use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
@@ -108,13 +152,15 @@ void PairWatch::take_new_references(const OutlineField& here, const OutlineField
   parallel_for(count_of_bodies(), [&](int b) {
     if (!is_due(b)) return;
     const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
+    since_sweep_[b] = way_between(disc_of_ways(model_, b, here, reference_), since_sweep_[b]);
     std::copy_n(&here.x[first], nodes, &reference_.x[first]);
     std::copy_n(&here.y[first], nodes, &reference_.y[first]);
-    motion_[b] = box_of_ways(model_, b, trial, reference_);
+    motion_[b] = disc_of_ways(model_, b, trial, reference_);
   });
 }
 
 bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
+  just_swept_ = false;
   const bool forgotten = reference_.x.empty();
   if (forgotten) {
     reference_ = here;
@@ -122,23 +168,51 @@ bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
     take_new_references(here, trial);
     if (come_out_ < kept * own_skin_) return false;
   }
-  parallel_for(count_of_bodies(), [&](int b) { swept_at_[b] = bounding_box(model_, here, b); });
-  follow(broad_phase(model_, swept_at_, margin_));
+  just_swept_ = true;
+  std::vector<Box> boxes(model_.bodies.size());
+  parallel_for(count_of_bodies(), [&](int b) {
+    boxes[b] = bounding_box(model_, here, b);
+    since_sweep_[b] = disc_of_ways(model_, b, here, reference_);
+    if (!model_.bodies[b].wall) swept_at_[b] = place_of(model_, b, here);
+  });
+  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_);
+  std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair); });
+  follow(std::move(found), here);
   is_used_up(trial);
   return true;
 }
 
-/// What is known of pairs that were watched before stays known.
-void PairWatch::follow(std::vector<BodyPair> found) {
+/// Discs around their outlines are further from each other than the margin, where the broad phase saw them. Of pairs of
+/// grains that boxes alone let in this leaves few to be searched.
+bool PairWatch::discs_are_apart(const BodyPair& pair) const {
+  if (model_.bodies[pair.first].wall || model_.bodies[pair.second].wall) return false;
+  const Place &a = swept_at_[pair.first], &b = swept_at_[pair.second];
+  const double dx = b.x + pair.images * model_.scene.period.value_or(0) - a.x, dy = b.y - a.y,
+               reach = a.outer + b.outer + margin_;
+  return dx * dx + dy * dy > reach * reach;
+}
+
+/// What is known of pairs that were found before stays known, unless they may have come from beyond the margin or gone
+/// there: which of them boxes let in depends on the axes.
+void PairWatch::follow(std::vector<BodyPair> found, const OutlineField& here) {
+  std::vector<char> stays(pairs_.size());
+  parallel_for(count(), [&](int p) {
+    if (watched_[p])
+      stays[p] = gap_[p] <= margin_ - skin_ || gap_[p] + way(p, here) <= margin_;
+    else
+      stays[p] = gap_[p] - way(p, here) > margin_;
+  });
   const std::vector<BodyPair> before = std::exchange(pairs_, std::move(found));
   const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
+  const std::vector<double> old_gap = std::exchange(gap_, std::vector<double>(pairs_.size(), 0.0));
+  const std::vector<char> was_watched = std::exchange(watched_, std::vector<char>(pairs_.size(), 1));
   const NodeWays old_ways = std::exchange(pair_ways_, NodeWays(model_));
   pair_ways_.set_bodies(both_bodies(pairs_));
   std::size_t old = 0;
   for (int p = 0; p < count(); ++p) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
-    if (old == before.size() || before[old] != pairs_[p]) continue;
-    excess_[p] = old_excess[old];
+    if (old == before.size() || before[old] != pairs_[p] || !stays[old]) continue;
+    excess_[p] = old_excess[old], gap_[p] = old_gap[old], watched_[p] = was_watched[old];
     for (int side = 0; side < 2; ++side)
       pair_ways_.copy_entry(2 * p + side, old_ways, 2 * static_cast<int>(old) + side);
   }
@@ -158,20 +232,22 @@ std::vector<int> PairWatch::used_up(const OutlineField& here) {
 }
 
 bool PairWatch::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
-  return come_out_ < own_skin_ && std::ranges::all_of(pairs, [&](int p) { return stays_within(p, skin_, trial); });
+  return come_out_ < own_skin_ &&
+         std::ranges::all_of(pairs, [&](int p) { return !watched_[p] || stays_within(p, skin_, trial); });
 }
 
-void PairWatch::searched(int pair, const OutlineField& now) {
-  excess_[pair] = 0;
+void PairWatch::searched(int pair, const OutlineField& now, double gap) {
+  excess_[pair] = 0, gap_[pair] = gap;
+  watched_[pair] = !(just_swept_ && gap > margin_);
   for (int side = 0; side < 2; ++side) pair_ways_.look(2 * pair + side, ways(now));
 }
 
 void PairWatch::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(little);
-  excess_.push_back(0);
+  excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);
   for (int body : {pair.first, pair.second}) pair_ways_.append(body);
-  searched(count() - 1, now);
+  searched(count() - 1, now, 0);
 }
 
 }  // namespace pliant

@@ -8,9 +8,16 @@
 
 namespace pliant {
 
+/// Where a body is.
+struct Place {
+  double x, y;
+  double outer, inner;  ///< radii of discs about it, the one around its outline and the one within; negative: none
+};
+
 /// The pairs of bodies that may come to touch, and bounds of how far they have moved against each other since it was
 /// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
-/// pair by pair, but their bounding boxes together. Ways are from place to place: what only vibrates goes nowhere.
+/// pair by pair, but all together, and so those that turn out to be further apart than their boxes. Ways are from place
+/// to place: what only vibrates goes nowhere.
 class PairWatch {
  public:
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
@@ -31,8 +38,11 @@ class PairWatch {
   std::vector<int> used_up(const OutlineField& here);
   /// Whether pairs that were searched hold on trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
-  /// What a pair's bodies can touch was searched there.
-  void searched(int pair, const OutlineField& now);
+  /// Gap beyond which pairs that the broad phase just found need no watching, m.
+  double margin() const { return margin_; }
+  /// What a pair's bodies can touch was searched there. `gap`: between their outlines; where it is more than the margin,
+  /// anything between.
+  void searched(int pair, const OutlineField& now, double gap = 0);
   /// A pair that the broad phase does not find, searched just now.
   void add(const BodyPair& pair, const OutlineField& now);
 
@@ -40,7 +50,8 @@ class PairWatch {
   void visit(Visitor&& visitor) {
     visitor("reference", reference_);
     visitor("pairs", pairs_), visitor("excess", excess_);
-    visitor("pair_ways", pair_ways_), visitor("swept_at", swept_at_);
+    visitor("gap", gap_), visitor("watched", watched_);
+    visitor("pair_ways", pair_ways_), visitor("since_sweep", since_sweep_), visitor("swept_at", swept_at_);
   }
   void loaded();
 
@@ -48,26 +59,32 @@ class PairWatch {
   WaysSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   double measure(const OutlineField& now);
+  double come_out_of_place(int body, double from_mean, double drift_x, double drift_y, const OutlineField& now) const;
   double rough_way(int pair, const OutlineField& now) const;
   double way(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
   void take_new_references(const OutlineField& here, const OutlineField& trial);
-  void follow(std::vector<BodyPair> found);
+  bool discs_are_apart(const BodyPair& pair) const;
+  void follow(std::vector<BodyPair> found, const OutlineField& here);
 
   const Model& model_;
   double skin_, own_skin_, margin_;
   OutlineField reference_;  ///< where each body was at some time; empty: all is to be searched
   // On trial:
-  std::vector<Box> motion_;  ///< [bodies], box of the outline nodes' ways from the reference
-  double come_out_ = 0;      ///< of measure, m
+  std::vector<WayDisc> motion_;  ///< [bodies], of the outline nodes' ways from the reference
+  double come_out_ = 0;          ///< of measure, m
+  bool just_swept_ = false;      ///< the broad phase looked, in the last update
   enum Use : char { little, much, all };
   std::vector<Use> use_;  ///< [pairs], of the skin, when somebody asked last
   std::vector<BodyPair> pairs_;
-  /// [pairs] by how much boxes told more than nodes when both were last asked, m: what boxes tell below the skin is
+  /// [pairs] by how much discs told more than nodes when both were last asked, m: what discs tell below the skin is
   /// taken to be too much by as much, so that few pairs are asked node by node.
   std::vector<double> excess_;
-  NodeWays pair_ways_;         ///< [pairs][sides], since each was searched
-  std::vector<Box> swept_at_;  ///< [bodies], bounding boxes when the broad phase looked
+  std::vector<double> gap_;           ///< [pairs] when each was searched, m
+  std::vector<char> watched_;         ///< [pairs] 0: far apart when the broad phase looked
+  NodeWays pair_ways_;                ///< [pairs][sides], since each was searched
+  std::vector<WayDisc> since_sweep_;  ///< [bodies], ways from the reference when the broad phase looked
+  std::vector<Place> swept_at_;       ///< [bodies], where it saw them; of walls nothing
 };
 
 }  // namespace pliant

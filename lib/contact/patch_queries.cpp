@@ -97,7 +97,7 @@ void add_pass_stiffness(const PatchView& view, int slave_side, const double (&fa
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(view.window, nodes.x, nodes.y, outward);
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      if (!p.hit[lane]) continue;
+      if (!p.hit[lane] || p.gap[lane] > outward) continue;  // beyond an end: only some of them are in the arc
       const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
       entries[pass.slave_force + i + lane] += factor[slave_side] * k;
       add_beside(p, lane, view.skin, factor[1 - slave_side] * k, carried);

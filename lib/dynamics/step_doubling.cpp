@@ -204,7 +204,7 @@ double StepDoubling::region_error(const Region& region) const {
       Lanes worst{}, any_nan{};
       for (int slot = region.first; slot < region.last; ++slot) {
         const LanePair u = displacement_at(slot);
-        worst = max(worst, max(abs(u.x), abs(u.y)) * (1 / nodes.nodal_distance[slot]));
+        worst = max(worst, sqrt(u.x * u.x + u.y * u.y) * (1 / nodes.nodal_distance[slot]));
         any_nan += u.x + u.y;
       }
       return std::isfinite(sum(any_nan)) ? largest(worst) : std::numeric_limits<double>::infinity();
@@ -219,7 +219,7 @@ double StepDoubling::region_error(const Region& region) const {
   return largest_of([&](int slot) { return displacement(rows, shape, reinterpret_cast<const double*>(d), slot); });
 }
 
-/// Componentwise difference of the outline nodes between the two ends u1 and u2.
+/// Largest difference of the outline nodes between the two ends u1 and u2.
 double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) const {
   const RigidBody& body = model_.rigid_bodies[r];
   double change[3], end[3];
@@ -237,10 +237,10 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
   for (const Vec2& p : model_.outlines[body.outline].points) {
     const double dx = change[0] + (c2 - c1) * p.x() - (s2 - s1) * p.y(),
                  dy = change[1] + (s2 - s1) * p.x() + (c2 - c1) * p.y();
-    worst = std::max({worst, std::abs(dx), std::abs(dy)});
+    worst = std::max(worst, dx * dx + dy * dy);
   }
   if (!std::isfinite(change[0] + change[1] + change[2])) return std::numeric_limits<double>::infinity();
-  return worst / model_.outlines[body.outline].spacing;
+  return std::sqrt(worst) / model_.outlines[body.outline].spacing;
 }
 
 double StepDoubling::error(const State& state, double dt) {

@@ -168,23 +168,28 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Lanes upper_inverse_density =
       with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
-    Lanes worst{}, any_nan{};
-    for (int i = 2 * region.first; i < 2 * region.last; ++i) {
-      const auto inverse_unit_mass = nodes.inverse_unit_mass[i / 2];
-      velocity[i] =
-          old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
-      Lanes change = force[i] - old_force[i];
-      if (batch.mass_damped) {
-        const Lanes coefficient = drag * nodes.unit_mass[i / 2];
-        velocity[i] += z * (0.5 * old_velocity[i] - mean[i]);
-        change -= coefficient * old_velocity[i];
-        force[i] -= coefficient * velocity[i];
+    Lanes worst{}, any_nan{};  // squares
+    for (int slot = region.first; slot < region.last; ++slot) {
+      const auto inverse_unit_mass = nodes.inverse_unit_mass[slot];
+      Lanes square{};
+      for (int i = 2 * slot; i < 2 * slot + 2; ++i) {
+        velocity[i] =
+            old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
+        Lanes change = force[i] - old_force[i];
+        if (batch.mass_damped) {
+          const Lanes coefficient = drag * nodes.unit_mass[slot];
+          velocity[i] += z * (0.5 * old_velocity[i] - mean[i]);
+          change -= coefficient * old_velocity[i];
+          force[i] -= coefficient * velocity[i];
+        }
+        square += change * change;
       }
-      const Lanes error = inverse_unit_mass / nodes.nodal_distance[i / 2] * abs(change);
+      const auto scale = inverse_unit_mass / nodes.nodal_distance[slot];
+      const Lanes error = scale * scale * square;
       worst = max(worst, error);
       any_nan += error;
     }
-    const double result = largest(worst * upper_inverse_density);
+    const double result = largest(sqrt(worst) * upper_inverse_density);
     change_[r] = std::isfinite(sum(any_nan)) ? result : std::numeric_limits<double>::infinity();
   });
 }
@@ -205,13 +210,13 @@ void Verlet::finish_rigid(const State& state, double dt, int r) {
     return change * dof.inverse_mass_at(state.time);
   };
   const double x = finish_dof(0), y = finish_dof(1), angle = finish_dof(2);
-  const double worst = std::max(x, y) + body.max_radius * angle;
+  const double worst = std::sqrt(x * x + y * y) + body.max_radius * angle;
   change_[model_.regions.size() + static_cast<std::size_t>(r)] = std::isfinite(x + y + angle)
                                                                      ? worst / model_.outlines[body.outline].spacing
                                                                      : std::numeric_limits<double>::infinity();
 }
 
-/// max of dt^2 |a_new - a_old| / (6 d) over all components.
+/// max of dt^2 |a_new - a_old| / (6 d) over all nodes, along no axis in particular.
 double Verlet::error(double dt) const {
   double worst = 0;
   for (double change : change_) worst = std::max(change, worst);

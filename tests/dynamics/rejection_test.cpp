@@ -25,6 +25,15 @@ bool same_bits(const Dofs& a, const Dofs& b) {
   return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid);
 }
 
+double largest_difference(const Dofs& a, const Dofs& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.rigid.size(); ++i) largest = std::max(largest, std::abs(a.rigid[i] - b.rigid[i]));
+  for (std::size_t i = 0; i < a.compliant.size(); ++i)
+    for (int lane = 0; lane < lane_count; ++lane)
+      largest = std::max(largest, std::abs(a.compliant[i][lane] - b.compliant[i][lane]));
+  return largest;
+}
+
 /// Arc coordinates and slips of the nodes that slip, in an order of their own: a refresh may move records, and know
 /// more or fewer nodes that are near but not in touch.
 std::vector<std::pair<double, double>> records(const ContactHistory& history) {
@@ -95,9 +104,12 @@ Scene fast_slide(Integrator integrator) {
 void expect_equal(const Twins& twins) {
   EXPECT_EQ(twins.retried.time, twins.direct.time) << "EXACT";
   EXPECT_TRUE(same_bits(twins.retried.position, twins.direct.position)) << "EXACT, t = " << twins.direct.time;
-  EXPECT_TRUE(same_bits(twins.retried.reduced_momentum, twins.direct.reduced_momentum))
+  // After a refresh nodes stand in other lanes, in which energies, and so what contacts repay, are added up.
+  const double rounding = twins.refreshed ? 1e-14 : 0;
+  EXPECT_LE(largest_difference(twins.retried.reduced_momentum, twins.direct.reduced_momentum), rounding)
       << "EXACT, t = " << twins.direct.time;
-  EXPECT_TRUE(same_bits(twins.retried.force, twins.direct.force)) << "EXACT, t = " << twins.direct.time;
+  EXPECT_LE(largest_difference(twins.retried.force, twins.direct.force), rounding)
+      << "EXACT, t = " << twins.direct.time;
   const auto retried = records(twins.retried.memory.contact), direct = records(twins.direct.memory.contact);
   ASSERT_EQ(retried.size(), direct.size()) << "EXACT, t = " << twins.direct.time;
   for (std::size_t i = 0; i < direct.size(); ++i) {

@@ -90,7 +90,7 @@ double largest_difference(const Model& model, const Dofs& one, const Dofs& two) 
   for (const Body& body : model.bodies) {
     const Points a = nodes_of(model, body, one), b = nodes_of(model, body, two);
     for (std::size_t k = 0; k < a.size(); ++k)
-      largest = std::max(largest, (b[k] - a[k]).cwiseAbs().maxCoeff() / distance_at(model, body, k));
+      largest = std::max(largest, (b[k] - a[k]).norm() / distance_at(model, body, k));
   }
   return largest;
 }
