@@ -49,7 +49,8 @@ struct RigidMotion {
 };
 
 /// Of each body of a batch after a step, K - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, J/m; of a
-/// spread one, lanes add up to it.
+/// spread one, lanes add up to it. The last terms are those of ways and forces beside the body's mean: its mean motion
+/// keeps to the first two, and with its own terms debts would depend on who looks on.
 Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial& before, const State& state,
                             double dt) {
   const Lanes *y = &state.reduced_momentum.compliant[batch.offset], *f = &state.force.compliant[batch.offset],
@@ -59,12 +60,25 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   thread_local std::vector<Lanes> impulse, less, scratch;  // their memory is found once
   impulse.resize(size), less.resize(size), scratch.resize(size);
   return with_nodes(model, batch, [&](const auto& nodes) {
+    Lanes mass{}, way[2]{}, old_mean[2]{};
+    for (int slot = 0; slot < batch.slots; ++slot) {
+      mass += nodes.unit_mass[slot];
+      for (int c = 0; c < 2; ++c) {
+        const int i = 2 * slot + c;
+        way[c] += nodes.unit_mass[slot] * (q[i] - old_q[i]), old_mean[c] += old_f[i];
+      }
+    }
+    mass = sum_over_body(batch, mass);
+    for (int c = 0; c < 2; ++c) {
+      way[c] = sum_over_body(batch, way[c]) / mass;
+      old_mean[c] = sum_over_body(batch, old_mean[c]) / mass;
+    }
     Lanes change{};
     for (std::size_t i = 0; i < size; ++i) {
       const Lanes half_step = 0.5 * dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density);
       impulse[i] = half_step * f[i];
-      less[i] = half_step * (f[i] - 2.0 / 3 * old_f[i]);
-      change += (q[i] - old_q[i]) * (f[i] - old_f[i]);
+      less[i] = half_step * (f[i] - 2.0 / 3 * (old_f[i] - nodes.unit_mass[i / 2] * old_mean[i % 2]));
+      change += (q[i] - old_q[i] - way[i % 2]) * (f[i] - old_f[i]);
     }
     const auto product = [&](const Lanes* a, const Lanes* b) {  // of reduced momenta, by the mass
       if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();
