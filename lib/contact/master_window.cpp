@@ -52,7 +52,7 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
     put(tangent_x, now.tangent_x), put(tangent_y, now.tangent_y);
     put(length, now.length), put(inverse_length, now.inverse_length);
     put(bisector_x, along_x), put(bisector_y, along_y);
-    put(bisector_at, (shifted_x - origin.x()) * along_x + (now.y - origin.y()) * along_y);
+    put(bisector_at, (shifted_x - origin.x()) * along_x + (now.y - origin.y()) * along_y - ties_up_to * now.length);
     longest = max(longest, select(first_lanes(rows - w), now.length, Lanes{}));
     last_tx = now.tangent_x, last_ty = now.tangent_y;
   }

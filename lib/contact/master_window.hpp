@@ -9,6 +9,10 @@
 
 namespace pliant {
 
+/// Over a segment's length, about twice how far before a bisector nodes count as beyond it: what stands on one by
+/// symmetry falls to the segment after it, not to that which rounding says.
+constexpr double ties_up_to = 1e-9;
+
 /// What contact needs to know of one segment.
 struct MasterSegment {
   double x, y;  ///< its first node, m

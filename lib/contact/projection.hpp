@@ -73,10 +73,11 @@ inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes r
   p.height = rx * p.tangent_y - ry * p.tangent_x;
   p.hit = p.hit & (p.height <= outward);
   const Lanes along = rx * p.tangent_x + ry * p.tangent_y;
-  p.xi = min(max(along * p.inverse_length, Lanes{}), broadcast(1));
+  const Lanes xi = along * p.inverse_length;
+  p.xi = min(max(xi, Lanes{}), broadcast(1));
   p.gap = p.height;
   p.normal_x = p.tangent_y, p.normal_y = -p.tangent_x;
-  if (const LaneBits beyond = p.hit & ((along < 0.0) | (along > p.length)); any(beyond)) {
+  if (const LaneBits beyond = p.hit & ((xi < -ties_up_to) | (xi > 1 + ties_up_to)); any(beyond)) {
     const Lanes over = along - p.xi * p.length;
     const Lanes distance = sqrt(over * over + p.height * p.height);
     const LaneBits radial = beyond & (distance > 0.0);
