@@ -86,10 +86,11 @@ Scene crowded_floor(const ContactRule& rule) {
 
 /// INDEPENDENT: what all pairs owe grows by what the mean of all nodes' forces at the ends of a step does, less what
 /// the contacts' energies lose. But for rounding, four units in the last place of energies, and of places in each
-/// force's work: the floor's nodes beyond its seam stand a period off.
+/// force's work: the floor's nodes beyond its seam stand a period off. And but for what pairs that have parted drop as
+/// rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
 void expect_debts_to_be_work(const ContactRule& rule) {
   const Scene scene = crowded_floor(rule);
-  const double period = *scene.period, rounding = 4 * std::numeric_limits<double>::epsilon();
+  const double period = *scene.period, rounding = 4 * std::numeric_limits<double>::epsilon(), dropped = 1e-17;
   const Model model = build_model(scene);
   Simulation simulation(model);
   int searched = 0, seen = 0;
@@ -110,7 +111,7 @@ void expect_debts_to_be_work(const ContactRule& rule) {
         size += 0.5 * (before.contact_force.at(i).norm() + after.contact_force.at(i).norm()) * (place.norm() + period);
       }
     const double lost = before.contact_energy - after.contact_energy - (after.dissipated - before.dissipated);
-    EXPECT_NEAR(owed(simulation) - debt, work - lost, rounding * size) << "step " << step;
+    EXPECT_NEAR(owed(simulation) - debt, work - lost, rounding * size + dropped) << "step " << step;
     searched += simulation.forces().contact().refreshes() != refreshes;
     seen += work != 0;
   }
