@@ -26,8 +26,8 @@ std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   return bodies;
 }
 
-/// The mean of a closed outline's nodes and how far they are from it at most; of its segments' lines the least distance,
-/// negative where it does not see all of them from inside.
+/// The mean of a closed outline's nodes and how far they are from it at most; of its segments' lines the least
+/// distance, negative where it does not see all of them from inside.
 Place place_of(const Model& model, int body, const OutlineField& outlines) {
   const int begin = model.outline_offset[body], count = model.outline_of(body).count;
   const double first_x = outlines.x[begin], first_y = outlines.y[begin];

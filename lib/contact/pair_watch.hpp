@@ -40,8 +40,8 @@ class PairWatch {
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
   /// Gap beyond which pairs that the broad phase just found need no watching, m.
   double margin() const { return margin_; }
-  /// What a pair's bodies can touch was searched there. `gap`: between their outlines; where it is more than the margin,
-  /// anything between.
+  /// What a pair's bodies can touch was searched there. `gap`: between their outlines; where it is more than the
+  /// margin, anything between.
   void searched(int pair, const OutlineField& now, double gap = 0);
   /// A pair that the broad phase does not find, searched just now.
   void add(const BodyPair& pair, const OutlineField& now);

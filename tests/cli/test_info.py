@@ -117,7 +117,15 @@ def test_a_small_change_is_found_and_located(half) -> None:
     largest, scale = largest_difference(half, "out", "two", "bodies/000001/velocity")
     assert absolute == pytest.approx(largest, rel=1e-3) and relative == pytest.approx(largest / scale, rel=1e-3)
     assert re.search(r"\* frames bodies/velocity .* t = \S+ s", text)
-    compared(half, 0, "out", "two", "--tolerance", "1e-3")
+
+
+def test_a_small_change_is_within_a_tolerance(desk) -> None:
+    """Of steps of one length: where errors govern them, they end at other times."""
+    scene = TWO_DISCS.replace("[time]", "[time]\ntolerance = 1")
+    for folder, speed in (("out", "20 m/s"), ("two", "20.00001 m/s")):
+        desk.write(scene.replace("20 m/s", speed))
+        assert desk.run("--out", folder, "--until", "10 ns", "--quiet", "--threads", "1").returncode == 0
+    compared(desk, 0, "out", "two", "--tolerance", "1e-3")
 
 
 def test_other_times_and_columns_are_told(half) -> None:

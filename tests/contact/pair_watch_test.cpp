@@ -90,7 +90,7 @@ std::vector<Seen> searches_along(double angle) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(100)};
   for (int i = 0; i < 30; ++i) {
-    const Vec2 place(0.75 * (i % 6) + random.uniform(0, 0.1), 0.75 * (i / 6) + random.uniform(0, 0.1));
+    const Vec2 place{0.75 * (i % 6) + random.uniform(0, 0.1), 0.75 * (i / 6) + random.uniform(0, 0.1)};
     const Points outline = i % 3 == 0   ? regular(8 + i % 7, 0.35, 0.1 * i)
                            : i % 3 == 1 ? refined({{-0.45, -0.1}, {0.45, -0.1}, {0.45, 0.1}, {-0.45, 0.1}}, 0.1)
                                         : refined({{-0.3, -0.3}, {0.3, -0.3}, {0.3, 0.3}, {-0.3, 0.3}}, 0.1);
@@ -101,14 +101,15 @@ std::vector<Seen> searches_along(double angle) {
   std::vector<double> spin;
   const double skin = rig.contact.skin();
   for (int i = 0; i < 30; ++i) {
-    velocity.emplace_back(skin * random.uniform(-0.1, 0.1), skin * random.uniform(-0.1, 0.1));
+    velocity.push_back({skin * random.uniform(-0.1, 0.1), skin * random.uniform(-0.1, 0.1)});
     spin.push_back(skin * random.uniform(-0.2, 0.2));
   }
   StiffnessBound bound(rig.model);
   std::vector<Seen> result;
   for (int step = 0; step < 300; ++step) {
     for (int i = 0; i < 30; ++i) {
-      rig.move(i, turned * (velocity[i] + skin * Vec2(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1))));
+      const Vec2 shake{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
+      rig.move(i, turned * (velocity[i] + skin * shake));
       rig.turn(i, spin[i]);
     }
     Seen seen{rig.evaluate(), rig.totals.contacts, 0, {}};

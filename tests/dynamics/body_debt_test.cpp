@@ -156,8 +156,8 @@ Scene two_discs_meet(MaterialLaw law) {
   return scene;
 }
 
-/// Of each body of a batch, (dt^2 sum F F_before/m - sum dx dF)/12, ways and forces without the body's mean: what a body
-/// owes for whose forces the work of their mean is what they store, J/m. It is the same whoever looks on.
+/// Of each body of a batch, (dt^2 sum F F_before/m - sum dx dF)/12, ways and forces without the body's mean: what a
+/// body owes for whose forces the work of their mean is what they store, J/m. It is the same whoever looks on.
 Lanes owed_by_linear(const Bench& bench, const Trial& before, const Batch& batch, double dt) {
   Dofs kick = before.force, response;
   Lanes way[2]{};

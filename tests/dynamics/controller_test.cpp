@@ -44,7 +44,7 @@ TEST(Controller, error_is_the_documented_estimate) {
   double expected = 0;
   for (int i = 0; i < static_cast<int>(masses.size()); ++i) {
     const Vec2 change = node_value(model, disc, simulation.state().force, i) - node_value(model, disc, before, i);
-    expected = std::max(expected, report.dt * report.dt * change.cwiseAbs().maxCoeff() / masses[i] / (6 * distance[i]));
+    expected = std::max(expected, report.dt * report.dt * change.norm() / masses[i] / (6 * distance[i]));
   }
   EXPECT_GT(expected, 0);
   EXPECT_NEAR(report.error, expected, 1e-12 * expected) << "EXACT";
