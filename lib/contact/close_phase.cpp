@@ -4,132 +4,12 @@
 #include <cmath>
 
 #include "contact/pass.hpp"
+#include "contact/rough_arcs.hpp"
 #include "contact/self_contact.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {
 namespace {
-
-/// One body of a pair as the other sees it.
-struct Side {
-  const OutlineShape* shape;
-  const double* x;
-  const double* y;
-  double shift;               ///< added to x
-  int first_turn, last_turn;  ///< turns of the outline that matter: 0 to 0 for a closed one
-  double longest_segment;
-
-  Vec2 point(int turn, int i) const { return {x[i] + shift + turn * shape->turn_shift, y[i]}; }
-};
-
-double longest_segment(const OutlineShape& shape, const double* x, const double* y) {
-  double square = 0;
-  for (int i = 0; i < shape.count; ++i) {
-    const double dx = x[i + 1] - x[i], dy = y[i + 1] - y[i];
-    square = std::max(square, dx * dx + dy * dy);
-  }
-  return std::sqrt(square);
-}
-
-Box inflated(Box box, double by) { return {box.x_min - by, box.x_max + by, box.y_min - by, box.y_max + by}; }
-
-bool inside(const Box& box, const Vec2& p) {
-  return p.x() >= box.x_min && p.x() <= box.x_max && p.y() >= box.y_min && p.y() <= box.y_max;
-}
-
-/// Which turns of a wall's outline reach over [x_min, x_max].
-void find_turns(Side& side, const Box& own, const Box& target) {
-  side.first_turn = side.last_turn = 0;
-  if (side.shape->turn_shift == 0) return;
-  const double period = std::abs(side.shape->turn_shift);
-  const int low = static_cast<int>(std::floor((target.x_min - own.x_max) / period));
-  const int high = static_cast<int>(std::ceil((target.x_max - own.x_min) / period));
-  const bool reversed = side.shape->turn_shift < 0;
-  side.first_turn = reversed ? -high : low;
-  side.last_turn = reversed ? -low : high;
-}
-
-/// Least and largest coordinate along d of the side's nodes inside a box; empty: least > largest.
-std::pair<double, double> extent(const Side& side, const Box& box, const Vec2& d) {
-  std::pair<double, double> result{1e300, -1e300};
-  for (int turn = side.first_turn; turn <= side.last_turn; ++turn)
-    for (int i = 0; i < side.shape->count; ++i)
-      if (const Vec2 p = side.point(turn, i); inside(box, p)) {
-        result.first = std::min(result.first, p.dot(d));
-        result.second = std::max(result.second, p.dot(d));
-      }
-  return result;
-}
-
-/// The shortest cyclic run that holds all flagged nodes of a closed outline.
-Arc covering_arc(const std::vector<char>& flags) {
-  const int n = static_cast<int>(flags.size());
-  int best_gap = 0, best_end = 0, gap = 0;
-  for (int i = 0; i < 2 * n; ++i) {
-    gap = flags[i < n ? i : i - n] ? 0 : gap + 1;
-    if (gap > best_gap) best_gap = gap, best_end = i + 1;
-  }
-  if (best_gap >= n) return {};
-  return {best_end % n, n - best_gap};
-}
-
-/// Nodes inside the box with coordinate along d of at least `least`, as one arc.
-Arc select_arc(const Side& side, const Box& box, const Vec2& d, double least) {
-  const int n = side.shape->count;
-  if (side.shape->turn_shift == 0) {
-    thread_local std::vector<char> flags;  // so that its memory is found once
-    flags.resize(static_cast<std::size_t>(n));
-    for (int i = 0; i < n; ++i) {
-      const double x = side.x[i] + side.shift, y = side.y[i];
-      flags[i] =
-          (x >= box.x_min) & (x <= box.x_max) & (y >= box.y_min) & (y <= box.y_max) & (x * d.x() + y * d.y() >= least);
-    }
-    return covering_arc(flags);
-  }
-  int begin = 0, end = -1;
-  for (int turn = side.first_turn; turn <= side.last_turn; ++turn)
-    for (int i = 0; i < n; ++i) {
-      const Vec2 p = side.point(turn, i);
-      if (!inside(box, p) || p.dot(d) < least) continue;
-      if (end < begin) begin = turn * n + i;
-      end = turn * n + i;
-    }
-  return {begin, end - begin + 1};
-}
-
-Side make_side(const Model& model, const OutlineField& outlines, int body, double shift) {
-  const OutlineShape& shape = model.outline_of(body);
-  Side side{&shape, &outlines.x[model.outline_offset[body]], &outlines.y[model.outline_offset[body]], shift, 0, 0, 0};
-  side.longest_segment = longest_segment(shape, side.x, side.y);
-  return side;
-}
-
-Vec2 direction(const Model& model, const Patch& pair, const Box& a, const Box& b) {
-  const double dy = b.y_min + b.y_max - a.y_min - a.y_max;
-  if (model.bodies[pair.second].wall || model.bodies[pair.first].wall) return {0, dy > 0 ? 1.0 : -1.0};
-  const Vec2 d(b.x_min + b.x_max - a.x_min - a.x_max, dy);
-  return d.norm() > 0 ? d.normalized() : Vec2(1, 0);
-}
-
-/// Arcs that hold everything near, by boxes and the planes that bound the bodies across the line of centres.
-void find_rough_arcs(const Model& model, const Side& a, Side& b, Box box_a, Box box_b, const Patch& pair, double margin,
-                     Arc (&arcs)[2]) {
-  arcs[0] = arcs[1] = {};
-  // A segment more, because the end of a touched segment that lies beyond the plane may be the far one.
-  const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
-  find_turns(b, box_b, inflated(box_a, reach_b));
-  const Box region_a = model.bodies[pair.second].wall ? Box{-1e300, 1e300, box_b.y_min - reach_a, box_b.y_max + reach_a}
-                                                      : inflated(box_b, reach_a);
-  const Box region_b = inflated(box_a, reach_b);
-  const Vec2 d = direction(model, pair, box_a, box_b);
-  const Box everywhere{-1e300, 1e300, -1e300, 1e300};
-  const auto extent_a = extent(a, everywhere, d);
-  const auto extent_b =
-      extent(b, model.bodies[pair.second].wall ? inflated(region_b, b.longest_segment) : everywhere, d);
-  if (extent_b.first > extent_b.second) return;
-  arcs[0] = select_arc(a, region_a, d, extent_b.first - margin);
-  arcs[1] = select_arc(b, region_b, -d, -(extent_a.second + margin));
-}
 
 /// The shortest run of entries marked so far.
 struct Span {
@@ -182,7 +62,7 @@ class Near {
 /// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to
 /// a depth of the skin, one inside a skin deeper; to find which face is nearest then, all within two skins of the
 /// present reach must be known. Returns the least distance between a node and a segment.
-double narrow(const Side& slave, const Side& master, const Arc& candidates, const MasterWindow& window,
+double narrow(const ContactSide& slave, const ContactSide& master, const Arc& candidates, const MasterWindow& window,
               int first_segment, const Margins& margins, Arc& nodes, Arc& segments) {
   thread_local std::vector<char> node_flags, segment_flags;  // so that their memory is found once
   const bool itself = &slave == &master;
@@ -215,7 +95,7 @@ double narrow(const Side& slave, const Side& master, const Arc& candidates, cons
 
 /// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same
 /// on both sides.
-Arc segments_at(const Side& side, const Arc& nodes, bool two_walls) {
+Arc segments_at(const ContactSide& side, const Arc& nodes, bool two_walls) {
   const int more = two_walls ? lane_count : 0;
   const Arc all{nodes.begin - 1 - more, nodes.count + 1 + 2 * more};
   return side.shape->turn_shift == 0 && all.count > side.shape->count ? Arc{nodes.begin, side.shape->count} : all;
@@ -280,7 +160,7 @@ void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patc
 double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
                  MasterWindow& scratch, double look) {
   const double shift = patch.images * model.scene.period.value_or(0);
-  Side sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
+  ContactSide sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
   const Box box_a = bounding_box(model, outlines, patch.first);
   Box box_b = bounding_box(model, outlines, patch.second);
   box_b.x_min += shift, box_b.x_max += shift;
@@ -291,7 +171,7 @@ double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch,
   if (rough[0].count == 0 || rough[1].count == 0) return gap;
   const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
-    const Side& master = sides[1 - slave];
+    const ContactSide& master = sides[1 - slave];
     const Arc segments = segments_at(master, rough[1 - slave], two_walls);
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
     // The depth is that of the whole outline: what boxes let in of it depends on the axes.
@@ -312,7 +192,7 @@ double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch,
 
 void find_self_patches(const Model& model, const OutlineField& outlines, const Patch& of_body, double margin,
                        double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
-  const Side side = make_side(model, outlines, of_body.first, 0);
+  const ContactSide side = make_side(model, outlines, of_body.first, 0);
   const int n = side.shape->count;
   constexpr int together = 2, unseen = 2;
   for (int begin = 0; begin < n; begin += together) {

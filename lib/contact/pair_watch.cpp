@@ -28,7 +28,7 @@ std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
 
 /// The mean of a closed outline's nodes and how far they are from it at most; of its segments' lines the least
 /// distance, negative where it does not see all of them from inside.
-Place place_of(const Model& model, int body, const OutlineField& outlines) {
+BodyPlace place_of(const Model& model, int body, const OutlineField& outlines) {
   const int begin = model.outline_offset[body], count = model.outline_of(body).count;
   const double first_x = outlines.x[begin], first_y = outlines.y[begin];
   Lanes sum_x{}, sum_y{};
@@ -70,7 +70,7 @@ void PairWatch::forget() {
   gap_.clear(), watched_.clear();
   pair_ways_.set_bodies({});
   since_sweep_.assign(model_.bodies.size(), unknown_way);
-  swept_at_.assign(model_.bodies.size(), Place{0, 0, 0, -1});
+  swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
 }
 
 void PairWatch::loaded() {
@@ -109,9 +109,9 @@ double PairWatch::measure(const OutlineField& now) {
 /// What spins comes out of nothing where it is round: from the disc within its outline as it was to the one around it.
 double PairWatch::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
                                     const OutlineField& now) const {
-  const Place& then = swept_at_[body];
+  const BodyPlace& then = swept_at_[body];
   if (from_mean < kept * own_skin_ || then.inner < 0) return from_mean;
-  const Place place = place_of(model_, body, now);
+  const BodyPlace place = place_of(model_, body, now);
   const double dx = place.x - then.x - drift_x, dy = place.y - then.y - drift_y;
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
 }
@@ -186,7 +186,7 @@ bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
 /// grains that boxes alone let in this leaves few to be searched.
 bool PairWatch::discs_are_apart(const BodyPair& pair) const {
   if (model_.bodies[pair.first].wall || model_.bodies[pair.second].wall) return false;
-  const Place &a = swept_at_[pair.first], &b = swept_at_[pair.second];
+  const BodyPlace &a = swept_at_[pair.first], &b = swept_at_[pair.second];
   const double dx = b.x + pair.images * model_.scene.period.value_or(0) - a.x, dy = b.y - a.y,
                reach = a.outer + b.outer + margin_;
   return dx * dx + dy * dy > reach * reach;

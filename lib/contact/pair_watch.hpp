@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// Where a body is.
-struct Place {
+struct BodyPlace {
   double x, y;
   double outer, inner;  ///< radii of discs about it, the one around its outline and the one within; negative: none
 };
@@ -84,7 +84,7 @@ class PairWatch {
   std::vector<char> watched_;         ///< [pairs] 0: far apart when the broad phase looked
   NodeWays pair_ways_;                ///< [pairs][sides], since each was searched
   std::vector<WayDisc> since_sweep_;  ///< [bodies], ways from the reference when the broad phase looked
-  std::vector<Place> swept_at_;       ///< [bodies], where it saw them; of walls nothing
+  std::vector<BodyPlace> swept_at_;   ///< [bodies], where it saw them; of walls nothing
 };
 
 }  // namespace pliant

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "contact/patch.hpp"
+
+namespace pliant {
+
+/// One body of a pair as the other sees it.
+struct ContactSide {
+  const OutlineShape* shape;
+  const double* x;
+  const double* y;
+  double shift;               ///< added to x
+  int first_turn, last_turn;  ///< turns of the outline that matter: 0 to 0 for a closed one
+  double longest_segment;
+
+  Vec2 point(int turn, int i) const { return {x[i] + shift + turn * shape->turn_shift, y[i]}; }
+};
+
+ContactSide make_side(const Model& model, const OutlineField& outlines, int body, double shift);
+
+/// Arcs that hold everything near, by boxes and the planes that bound the bodies across the line of centres.
+void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b, const Patch& pair,
+                     double margin, Arc (&arcs)[2]);
+
+/// The shortest cyclic run that holds all flagged nodes of a closed outline.
+Arc covering_arc(const std::vector<char>& flags);
+
+}  // namespace pliant
