@@ -13,7 +13,23 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
   const PatchStep way{known ? &step->position : nullptr, last_.forces};
-  PatchTotals now = compute_patch(view, known ? &way : nullptr, from, to, forces);
+  const auto compute = [&](const PatchView& as) { return compute_patch(as, known ? &way : nullptr, from, to, forces); };
+  // What is left when a pair parts is repaid by the forces of a law that still reaches it.
+  const auto compute_apart = [&] {
+    Patch near = view.patch;
+    near.law = parting_law(near.law, skin_);
+    return compute(PatchView{model_, view.outlines, near, skin_, view.window, view.elapsed});
+  };
+
+  PatchTotals now, repaying;
+  // Of a pair that was apart these forces tell as well whether it still is.
+  const bool was_apart = known && owed != 0 && before.contacts == 0 && reach_of(view.patch.law) == 0;
+  if (was_apart) repaying = compute_apart();
+  const bool still_apart = was_apart && repaying.deepest == 0;
+  if (still_apart)
+    now.mean_work = repaying.mean_work - 0.5 * repaying.work;
+  else
+    now = compute(view);
   // What a dashpot takes depends on the step: what it seems to owe, it does not.
   if (is_damped(view.patch.law)) return now;
   if (known) owed += now.mean_work - (before.stored - now.stored - now.dissipated);
@@ -21,11 +37,7 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
     if (step) repaid = repayment(owed, most_repaid_, before, now);
     scale_forces(view.patch, 1 + repaid, forces);
   } else if (owed != 0) {
-    // What is left when a pair parts: by the forces of a law that still reaches it.
-    Patch near = view.patch;
-    near.law = parting_law(near.law, skin_);
-    const PatchView parting{model_, view.outlines, near, skin_, view.window, view.elapsed};
-    const PatchTotals repaying = compute_patch(parting, known ? &way : nullptr, from, to, forces);
+    if (!still_apart) repaying = compute_apart();
     now.work = repaying.work;
     if (step && repaying.contacts > 0 && is_rounding(owed, repaying)) owed = 0;
     if (step) repaid = repayment(owed, most_repaid_, before, repaying);
