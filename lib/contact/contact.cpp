@@ -177,7 +177,7 @@ void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory
   make_room(last_);
   if (!keeps_debts()) return;
   make_room(trial_);
-  last_.number = before.number, last_.refreshes = before.refreshes;
+  last_.number = before.number, last_.refreshes = before.refreshes, last_.elapsed = before.elapsed;
   auto from = old.begin();
   for (int p = 0; p < table_.count(); ++p) {
     while (from != old.end() && comes_before(*from, patches()[p])) ++from;
@@ -236,6 +236,7 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
     accept(from);
     trial_.number = step ? ++to.evaluation : 0;
     trial_.refreshes = refreshes_;
+    trial_.elapsed = step ? step->elapsed : 0;
   }
   Evaluated& now = keeps_debts() ? trial_ : last_;
   const OutlineField* moved = step && may_integrate_ ? find_ways(outlines.position, step->position) : nullptr;

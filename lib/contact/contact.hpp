@@ -9,6 +9,7 @@
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "contact/contact_laws.hpp"
+#include "contact/energy_debt.hpp"
 #include "contact/history.hpp"
 #include "contact/inherited.hpp"
 #include "contact/pair_watch.hpp"
@@ -25,8 +26,9 @@ struct RunClock {
 
 /// Where a step began.
 struct StepStart {
-  const OutlineField& position;  ///< of outlines, with their copies
-  double elapsed;                ///< since then, s
+  const OutlineField& position;                  ///< of outlines, with their copies
+  double elapsed;                                ///< since then, s
+  const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null where no debts are kept
 };
 
 /// What an evaluation leaves behind.
@@ -35,11 +37,12 @@ struct Evaluated {
   std::vector<PatchTotals> totals;  ///< [patches]
   std::int64_t number = 0;          ///< ContactHistory::evaluation; 0: of no step
   long refreshes = 0;               ///< before it
+  double elapsed = 0;               ///< in the step that led to it, s
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("forces", forces), visitor("totals", totals);
-    visitor("number", number), visitor("refreshes", refreshes);
+    visitor("number", number), visitor("refreshes", refreshes), visitor("elapsed", elapsed);
   }
 };
 

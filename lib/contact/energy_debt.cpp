@@ -24,9 +24,8 @@ void carry_forces(const Model& model, const Patch& old, const PatchForces& from,
   }
 }
 
-double repayment(double debt, double most, const PatchTotals& before, const PatchTotals& now) {
-  // Where motions turn back, the next way may be many times the last.
-  const double square = std::max(now.work * now.work, before.work * before.work);
+double repayment(double debt, double most, const PatchTotals& now, double work_before) {
+  const double square = std::max(now.work * now.work, work_before * work_before);
   if (square == 0 || now.squares == 0) return 0;
   const double limit = most / now.squares;
   return -std::clamp(debt / square, -limit, limit) * now.work;

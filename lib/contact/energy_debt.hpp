@@ -24,17 +24,34 @@ namespace pliant {
 /// of it one was (docs/defaults.md).
 inline double most_repaid(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
 
+/// A rigid body in a step.
+struct RigidStep {
+  Vec2 from, to;             ///< its centre, m
+  double turn;               ///< rad
+  Vec2 acceleration;         ///< by forces at the start, m/s2
+  double spin_acceleration;  ///< likewise, 1/s2
+};
+
 /// Of a patch, the step that led to an evaluation.
 struct PatchStep {
   const OutlineField* before;        ///< outlines at its start, with their copies
   const PatchForces& forces_before;  ///< then
+  const RigidStep* rigid[2];         ///< by side; null: compliant
 };
+
+/// What the kinetic energy grows by in a step by these forces and those before, J/m, but for dt^2 F^2/(8 m), which comes
+/// back unless the step changes: what it then keeps of rigid bodies counts. Compliant ones keep books of it. `before`:
+/// the step before, s.
+inline double gain(const PatchTotals& now, double dt, double before) {
+  return 0.5 * (now.work_before + now.work) - 0.125 * (dt * dt - before * before) * now.pull;
+}
 
 /// The forces of a patch that was searched or laid out anew go with its nodes to where they stand now.
 void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to);
 
-/// What forces of a patch are multiplied by to repay a debt, J/m: -c W. `before`: totals of the last step.
-double repayment(double debt, double most, const PatchTotals& before, const PatchTotals& now);
+/// What forces of a patch are multiplied by to repay a debt, J/m: -c W. `work_before`: of the same law's forces in the
+/// last step. Where motions turn back, the next way may be many times this one.
+double repayment(double debt, double most, const PatchTotals& now, double work_before = 0);
 /// Whether so little is owed that it may be the rounding of energies: each settlement halves a debt or so, which would
 /// never end. `now`: of parting_law(), whose gaps are those of half a spacing or so.
 inline bool is_rounding(double debt, const PatchTotals& now) { return std::abs(debt) < 1e-15 * now.squares; }

@@ -97,9 +97,10 @@ struct PatchTotals {
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< nodes in touch
   // See energy_debt.hpp; 0 without:
-  double mean_work = 0;  ///< of the mean of these forces and those before over the way between them, J/m
-  double work = 0;       ///< the same of these forces alone
-  double squares = 0;    ///< of pressures over kn, times lengths, J/m
+  double work_before = 0;  ///< of the forces before over the way between them and these, J/m
+  double work = 0;         ///< of these forces over the same way
+  double pull = 0;         ///< of the forces before on rigid bodies, times the accelerations then, W/(m s)
+  double squares = 0;      ///< of pressures over kn, times lengths, J/m
 
   /// Another patch's, but for what belongs to one alone.
   void add(const PatchTotals& other) {
@@ -111,7 +112,7 @@ struct PatchTotals {
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts);
-    visitor("mean_work", mean_work), visitor("work", work), visitor("squares", squares);
+    visitor("work_before", work_before), visitor("work", work), visitor("pull", pull), visitor("squares", squares);
   }
 };
 

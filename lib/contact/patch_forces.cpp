@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "contact/encounter.hpp"
 #include "contact/energy_debt.hpp"
@@ -159,32 +160,57 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRun
   return result;
 }
 
-/// Of forces over the way of a step, J/m.
-struct StepWork {
-  double mean = 0, now = 0;  ///< of the mean of both ends', of those now
+/// Work of a side's forces over the way of a step, of those before and those now: the rest of PatchTotals.
+class StepWork {
+ public:
+  StepWork(const PatchView& view, const PatchStep& step, int side)
+      : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {}
+
+  /// A vector of nodes from `node` on, whose entries in buffers of forces begin at `entry`, and their forces now.
+  void add(std::size_t node, std::size_t entry, Lanes x, Lanes y) {
+    const Lanes old_x = load(&step_.forces_before.x[entry]), old_y = load(&step_.forces_before.y[entry]);
+    const Lanes x0 = load(&step_.before->x[node]), y0 = load(&step_.before->y[node]), x1 = load(&now_.x[node]),
+                y1 = load(&now_.y[node]);
+    if (!rigid_) {
+      const Lanes way_x = x1 - x0, way_y = y1 - y0;
+      add_in_order(old_x * way_x + old_y * way_y, before_);
+      add_in_order(x * way_x + y * way_y, now_work_);
+      return;
+    }
+    const RigidStep& r = *rigid_;
+    const double way_x = r.to.x() - r.from.x(), way_y = r.to.y() - r.from.y();
+    const Lanes arm_x = x0 - r.from.x(), arm_y = y0 - r.from.y();
+    add_in_order(old_x * (way_x - r.turn * arm_y) + old_y * (way_y + r.turn * arm_x), before_);
+    add_in_order(x * (way_x - r.turn * (y1 - r.to.y())) + y * (way_y + r.turn * (x1 - r.to.x())), now_work_);
+    add_in_order(old_x * (r.acceleration.x() - r.spin_acceleration * arm_y) +
+                     old_y * (r.acceleration.y() + r.spin_acceleration * arm_x),
+                 pull_);
+  }
+  void add_to(PatchTotals& totals) const {
+    totals.work_before += before_, totals.work += now_work_, totals.pull += pull_;
+  }
+
+ private:
+  const OutlineField& now_;
+  const PatchStep& step_;
+  const RigidStep* rigid_;
+  double before_ = 0, now_work_ = 0, pull_ = 0;
 };
 
-/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. Returns their work;
-/// 0 where nobody asks.
-StepWork put_out(const PatchView& view, const PatchStep* step, int side, const ForceRun& run, const PatchForces& near,
-                 PatchForces& forces) {
+/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. `work`: null where
+/// nobody asks.
+void put_out(const PatchView& view, StepWork* work, int side, const ForceRun& run, const PatchForces& near,
+             PatchForces& forces) {
   const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
             offset = view.model.outline_offset[body];
   int node = run.arc.begin;
-  double twice = 0, now_work = 0;
   for (int i = 0; i < run.arc.count; i += lane_count, node += lane_count) {
     const Lanes x = load(&near.x[run.begin + i]), y = load(&near.y[run.begin + i]);
     store(&forces.x[entry + i], x), store(&forces.y[entry + i], y);
-    if (!step) continue;
+    if (!work) continue;
     node -= turn_of(node, n) * n;
-    const OutlineField &now = view.outlines.position, &before = *step->before;
-    const PatchForces& old = step->forces_before;
-    const int at = offset + node;
-    const Lanes way_x = load(&now.x[at]) - load(&before.x[at]), way_y = load(&now.y[at]) - load(&before.y[at]);
-    add_in_order((x + load(&old.x[entry + i])) * way_x + (y + load(&old.y[entry + i])) * way_y, twice);
-    add_in_order(x * way_x + y * way_y, now_work);
+    work->add(static_cast<std::size_t>(offset + node), static_cast<std::size_t>(entry + i), x, y);
   }
-  return {0.5 * twice, now_work};
 }
 
 }  // namespace
@@ -204,8 +230,10 @@ PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const Co
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
   // last.
   for (const int side : {1, 0}) {
-    const StepWork work = put_out(view, step, side, runs[side], near, forces);
-    totals.mean_work += work.mean, totals.work += work.now;
+    std::optional<StepWork> work;
+    if (step) work.emplace(view, *step, side);
+    put_out(view, work ? &*work : nullptr, side, runs[side], near, forces);
+    if (work) work->add_to(totals);
   }
   return totals;
 }

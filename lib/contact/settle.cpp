@@ -12,7 +12,11 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
   // Parts of a body that touches itself are others after a search.
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.patch.of_itself() || view.patch.found <= last_.refreshes);
-  const PatchStep way{known ? &step->position : nullptr, last_.forces};
+  const auto rigid = [&](int side) {
+    const int number = model_.bodies[view.body(side)].rigid;
+    return known && number >= 0 ? &step->rigid[number] : nullptr;
+  };
+  const PatchStep way{known ? &step->position : nullptr, last_.forces, {rigid(0), rigid(1)}};
   const auto compute = [&](const PatchView& as) { return compute_patch(as, known ? &way : nullptr, from, to, forces); };
   // What is left when a pair parts is repaid by the forces of a law that still reaches it.
   const auto compute_apart = [&] {
@@ -27,20 +31,20 @@ PatchTotals ContactSystem::settle(const PatchView& view, int patch, const StepSt
   if (was_apart) repaying = compute_apart();
   const bool still_apart = was_apart && repaying.deepest == 0;
   if (still_apart)
-    now.mean_work = repaying.mean_work - 0.5 * repaying.work;
+    now.work_before = repaying.work_before, now.pull = repaying.pull;
   else
     now = compute(view);
   // What a dashpot takes depends on the step: what it seems to owe, it does not.
   if (is_damped(view.patch.law)) return now;
-  if (known) owed += now.mean_work - (before.stored - now.stored - now.dissipated);
+  if (known) owed += gain(now, step->elapsed, last_.elapsed) - (before.stored - now.stored - now.dissipated);
   if (now.contacts > 0) {
-    if (step) repaid = repayment(owed, most_repaid_, before, now);
+    if (step) repaid = repayment(owed, most_repaid_, now, before.contacts > 0 ? before.work : 0);
     scale_forces(view.patch, 1 + repaid, forces);
-  } else if (owed != 0) {
+  } else if (owed != 0 || still_apart) {
     if (!still_apart) repaying = compute_apart();
     now.work = repaying.work;
     if (step && repaying.contacts > 0 && is_rounding(owed, repaying)) owed = 0;
-    if (step) repaid = repayment(owed, most_repaid_, before, repaying);
+    if (step) repaid = repayment(owed, most_repaid_, repaying);
     scale_forces(view.patch, repaid, forces);
   }
   if (known) owed += 0.5 * repaid * now.work;

@@ -46,7 +46,7 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   Evaluation result;
   phases_.enter(Phase::contact);
   if (from.outlines) {
-    const StepStart step{*from.outlines, from.elapsed};
+    const StepStart step{*from.outlines, from.elapsed, from.rigid};
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force, &step);
   } else {
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);

@@ -7,6 +7,7 @@
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "bodies/point_law.hpp"
+#include "contact/energy_debt.hpp"
 #include "contact/history.hpp"
 
 namespace pliant {
@@ -23,11 +24,13 @@ struct Memory {
   }
 };
 
-/// A memory, how long ago it was, and where the outlines were then, if contact may know.
+/// A memory, how long ago it was, and, if contact may know, where the outlines were then and what rigid bodies have done
+/// since.
 struct Recall {
   const Memory& memory;
   double elapsed = 0;  ///< s
   const OutlineField* outlines = nullptr;
+  const RigidStep* rigid = nullptr;  ///< see StepStart
 };
 
 /// Before anything has happened.

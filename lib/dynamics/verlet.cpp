@@ -75,7 +75,7 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
   const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
-  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position},
+  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position, rigid_steps(state)},
                                        {trial_.force, trial_.contact_force, trial_.memory},
                                        {std::cref(of_region), std::cref(of_rigid)});
   report.evaluation.sound &= candidates.hold;
@@ -93,6 +93,24 @@ Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& 
   const double jerk = std::max(state.jerk, state.jerk_before);
   const double next_dt = wish * controller_factor(jerk * wish * wish * wish, tolerance);
   return {true, std::min(next_dt, proposal.largest_dt)};
+}
+
+/// What rigid bodies do in the step, for what contacts owe.
+const RigidStep* Verlet::rigid_steps(const State& state) {
+  if (!model_.scene.keeps_energy_debts()) return nullptr;
+  rigid_steps_.resize(model_.rigid_bodies.size());
+  for (std::size_t r = 0; r < rigid_steps_.size(); ++r) {
+    const double *from = &state.position.rigid[3 * r], *to = &trial_.position.rigid[3 * r];
+    const auto acceleration = [&](std::size_t c) {
+      return model_.rigid_bodies[r].dof[c].inverse_mass_at(state.time) * state.force.rigid[3 * r + c];
+    };
+    rigid_steps_[r] = {{from[0], from[1]},
+                       {to[0], to[1]},
+                       to[2] - from[2],
+                       {acceleration(0), acceleration(1)},
+                       acceleration(2)};
+  }
+  return rigid_steps_.data();
 }
 
 /// Positions at the end of the step and, for forces that depend on them, velocities there.

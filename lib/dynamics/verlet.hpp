@@ -27,6 +27,7 @@ class Verlet {
   Trial& trial() { return trial_; }
 
   // What benchmarks time alone:
+  const RigidStep* rigid_steps(const State& state);
   void predict(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
 
@@ -53,6 +54,7 @@ class Verlet {
   TimeStepBound bound_;
   BodyDebts debts_;
   Trial trial_;
+  std::vector<RigidStep> rigid_steps_;
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
   Dofs end_velocity_;           ///< that forces see at the end of the step, where needed
   Dofs moving_velocity_;        ///< scratch: of reduced momenta, with corrected mass

@@ -14,18 +14,12 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-/// Two rigid discs that meet off their line of centres and must not turn.
+/// Two rigid discs that meet off their line of centres.
 Scene glancing_blow(const ContactRule& rule) {
   Scene scene = empty_scene(1000);
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("left", "disc", BodyKind::rigid, {{0, 0}}, moving({0.02, 0})),
-                  grains("right", "disc", BodyKind::rigid, {{1.8, 0.95}}, moving({-0.02, 0}))};
-  for (const Grains& all : scene.grains) {
-    BoundaryCondition upright;
-    upright.grains = all.name;
-    upright.angle = {Drive::Mode::velocity, constant(0)};
-    scene.boundary.push_back(upright);
-  }
+                  grains("right", "disc", BodyKind::rigid, {{1.8, 0.95}}, moving({-0.02, 0}, 0.01))};
   scene.contacts = {rule};
   without_error_control(scene, 0.8);
   return scene;
@@ -50,21 +44,23 @@ double owed(const Simulation& simulation) {
 }
 
 /// INDEPENDENT: debts grow by what the energies of bodies and contacts gain in a step, but for the term that velocity
-/// Verlet gives and takes, dt^2 sum F^2/m / 8. To rounding.
+/// Verlet gives and takes, dt^2 sum F^2/m / 8 with the step before each force. Steps change, and bodies turn. To
+/// rounding.
 void expect_debts_to_be_gains(const ContactRule& rule) {
   const Model model = build_model(glancing_blow(rule));
   Simulation simulation(model);
-  double debts = 0, left = 0;
+  double debts = 0, left = 0, dt_before = 0;
   for (int step = 0;; ++step) {
     const State before = simulation.state();
     const double energy = gained(simulation), debt = owed(simulation);
-    simulation.step(1000);
+    simulation.step(step % 3 == 0 ? simulation.state().time + 0.7 * dt_before + 1e-3 : 1000);
     if (simulation.state().time > 1 && simulation.forces().contact().patches().empty()) break;  // out of sight
     const State& after = simulation.state();
     const double dt = after.time - before.time, grown = owed(simulation) - debt;
-    const double gain =
-        gained(simulation) - energy - dt * dt / 8 * (squares(model, after.force) - squares(model, before.force));
+    const double gain = gained(simulation) - energy - dt * dt / 8 * squares(model, after.force) +
+                        dt_before * dt_before / 8 * squares(model, before.force);
     EXPECT_NEAR(grown, gain, 1e-13) << "step " << step;
+    dt_before = dt;
     debts += std::abs(grown), left = std::abs(owed(simulation));
   }
   EXPECT_GT(debts, 1e-5) << "or there is nothing to see";
@@ -84,8 +80,47 @@ Scene crowded_floor(const ContactRule& rule) {
   return scene;
 }
 
-/// INDEPENDENT: what all pairs owe grows by what the mean of all nodes' forces at the ends of a step does, less what
-/// the contacts' energies lose. But for rounding, four units in the last place of energies, and of places in each
+/// Work of contact forces on a body over a step, J/m, and their length times that of the way, for rounding.
+struct Work {
+  double before = 0, after = 0, size = 0;
+};
+
+/// Over the ways of nodes, of a rigid body over those of its centre and its turn.
+Work work_on(const Model& model, int body, const State& before, const State& after, double room) {
+  Work result;
+  const int rigid = model.bodies[body].rigid;
+  for (int i = model.outline_offset[body]; i < model.outline_end(body); ++i) {
+    const auto of = [&](const State& at) {
+      const Vec2 force = at.contact_force.at(i), place = at.outlines.position.at(i);
+      result.size += 0.5 * force.norm() * (place.norm() + room);
+      if (rigid < 0) return force.dot(after.outlines.position.at(i) - before.outlines.position.at(i));
+      const double *from = &before.position.rigid[3 * rigid], *to = &after.position.rigid[3 * rigid],
+                   *centre = &at.position.rigid[3 * rigid];
+      const double moment = (place.x() - centre[0]) * force.y() - (place.y() - centre[1]) * force.x();
+      return force.x() * (to[0] - from[0]) + force.y() * (to[1] - from[1]) + moment * (to[2] - from[2]);
+    };
+    result.before += of(before), result.after += of(after);
+  }
+  return result;
+}
+
+/// Sum of F.a over a rigid body, of contact forces and the acceleration by all; 0 for a compliant one, W/(m s).
+double pull_on(const Model& model, int body, const State& at) {
+  const int rigid = model.bodies[body].rigid;
+  if (rigid < 0) return 0;
+  double sum = 0;
+  const double* centre = &at.position.rigid[3 * rigid];
+  for (int i = model.outline_offset[body]; i < model.outline_end(body); ++i) {
+    const Vec2 force = at.contact_force.at(i), arm = at.outlines.position.at(i) - Vec2(centre[0], centre[1]);
+    const double of[] = {force.x(), force.y(), arm.x() * force.y() - arm.y() * force.x()};
+    for (int c = 0; c < 3; ++c)
+      sum += of[c] * at.force.rigid[3 * rigid + c] * model.rigid_bodies[rigid].dof[c].inverse_mass;
+  }
+  return sum;
+}
+
+/// INDEPENDENT: what all pairs owe grows by what the mean of all forces at the ends of a step does, less what the
+/// contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four units in the last place of energies, and of places in each
 /// force's work: the floor's nodes beyond its seam stand a period off. And but for what pairs that have parted drop as
 /// rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
 void expect_debts_to_be_work(const ContactRule& rule) {
@@ -94,6 +129,7 @@ void expect_debts_to_be_work(const ContactRule& rule) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   int searched = 0, seen = 0;
+  double dt_before = 0;
   for (int step = 0; step < 3000; ++step) {
     const State before = simulation.state();
     const double debt = owed(simulation);
@@ -101,15 +137,15 @@ void expect_debts_to_be_work(const ContactRule& rule) {
     const long refreshes = simulation.forces().contact().refreshes();
     simulation.step(1e9);
     const State& after = simulation.state();
+    const double dt = after.time - before.time, change = (dt * dt - dt_before * dt_before) / 8;
+    dt_before = dt;
     if (step == 0 || simulation.forces().contact().table().laid_out() != layout) continue;  // pairs came or went
     double work = 0, size = std::abs(before.contact_energy) + std::abs(after.contact_energy);
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
-      for (int i = model.outline_offset[b]; i < model.outline_end(static_cast<int>(b)); ++i) {
-        const Vec2 force = before.contact_force.at(i) + after.contact_force.at(i),
-                   place = after.outlines.position.at(i), way = place - before.outlines.position.at(i);
-        work += 0.5 * force.dot(way);
-        size += 0.5 * (before.contact_force.at(i).norm() + after.contact_force.at(i).norm()) * (place.norm() + period);
-      }
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+      const Work on_body = work_on(model, b, before, after, period);
+      const double pull = change * pull_on(model, b, before);
+      work += 0.5 * (on_body.before + on_body.after) - pull, size += on_body.size + std::abs(pull);
+    }
     const double lost = before.contact_energy - after.contact_energy - (after.dissipated - before.dissipated);
     EXPECT_NEAR(owed(simulation) - debt, work - lost, rounding * size + dropped) << "step " << step;
     searched += simulation.forces().contact().refreshes() != refreshes;
@@ -225,7 +261,7 @@ TEST(EnergyDebt, bounces_of_rigid_bodies_are_exact) {
   EXPECT_GT(flat_bounces(0.01, false), 0.05) << "or there is nothing to see";
   EXPECT_LT(flat_bounces(0.01, true), 1e-12);
   EXPECT_LT(flat_bounces(0.03, true), 1e-12);
-  EXPECT_LT(flat_bounces(0.2, true), flat_bounces(0.2, false));
+  EXPECT_LT(flat_bounces(0.2, true), 1e-12);
 }
 
 /// Largest relative change of the energy of rigid discs that fly to and fro between two walls, when nothing touches.
