@@ -26,8 +26,8 @@ struct RunClock {
 
 /// Where a step began.
 struct StepStart {
-  const OutlineField& position;                  ///< of outlines, with their copies
-  double elapsed;                                ///< since then, s
+  const OutlineField& position;      ///< of outlines, with their copies
+  double elapsed;                    ///< since then, s
   const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null where no debts are kept
 };
 

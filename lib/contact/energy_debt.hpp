@@ -39,9 +39,9 @@ struct PatchStep {
   const RigidStep* rigid[2];         ///< by side; null: compliant
 };
 
-/// What the kinetic energy grows by in a step by these forces and those before, J/m, but for dt^2 F^2/(8 m), which comes
-/// back unless the step changes: what it then keeps of rigid bodies counts. Compliant ones keep books of it. `before`:
-/// the step before, s.
+/// What the kinetic energy grows by in a step by these forces and those before, J/m, but for dt^2 F^2/(8 m), which
+/// comes back unless the step changes: what it then keeps of rigid bodies counts. Compliant ones keep books of it.
+/// `before`: the step before, s.
 inline double gain(const PatchTotals& now, double dt, double before) {
   return 0.5 * (now.work_before + now.work) - 0.125 * (dt * dt - before * before) * now.pull;
 }

@@ -7,15 +7,18 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
 #include "boundary/loads.hpp"
+#include "materials/with_law.hpp"
 
 namespace pliant {
 namespace {
 
+/// Whether nothing on it dissipates or does work but contacts and a potential.
 bool keeps_debts(const Model& model, int body) {
   const Batch& batch = model.batches[model.bodies[body].batch];
   const auto on_body = [&](const auto& condition) { return condition.body == body; };
-  return model.groups[batch.group].law != MaterialLaw::neo_hookean_maxwell &&
-         batch.viscosity[model.bodies[body].lane] == 0 && !has_drag(model, model.bodies[body]) &&
+  const bool law_dissipates = with_law_type<double>(model.groups[batch.group].law,
+                                                    []<class Law>(std::type_identity<Law>) { return dissipates<Law>; });
+  return !law_dissipates && batch.viscosity[model.bodies[body].lane] == 0 && !has_drag(model, model.bodies[body]) &&
          std::ranges::none_of(model.pressures, on_body) && std::ranges::none_of(model.supports, on_body);
 }
 

@@ -24,8 +24,8 @@ struct Memory {
   }
 };
 
-/// A memory, how long ago it was, and, if contact may know, where the outlines were then and what rigid bodies have done
-/// since.
+/// A memory, how long ago it was, and, if contact may know, where the outlines were then and what rigid bodies have
+/// done since.
 struct Recall {
   const Memory& memory;
   double elapsed = 0;  ///< s

@@ -75,9 +75,9 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
   const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
-  report.evaluation = forces_.evaluate(motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position, rigid_steps(state)},
-                                       {trial_.force, trial_.contact_force, trial_.memory},
-                                       {std::cref(of_region), std::cref(of_rigid)});
+  report.evaluation = forces_.evaluate(
+      motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position, rigid_steps(state)},
+      {trial_.force, trial_.contact_force, trial_.memory}, {std::cref(of_region), std::cref(of_rigid)});
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
   report.error = report.evaluation.sound ? error(proposal.dt) : std::numeric_limits<double>::infinity();
@@ -104,11 +104,8 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
     const auto acceleration = [&](std::size_t c) {
       return model_.rigid_bodies[r].dof[c].inverse_mass_at(state.time) * state.force.rigid[3 * r + c];
     };
-    rigid_steps_[r] = {{from[0], from[1]},
-                       {to[0], to[1]},
-                       to[2] - from[2],
-                       {acceleration(0), acceleration(1)},
-                       acceleration(2)};
+    rigid_steps_[r] = {
+        {from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {acceleration(0), acceleration(1)}, acceleration(2)};
   }
   return rigid_steps_.data();
 }

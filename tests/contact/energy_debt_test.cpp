@@ -120,9 +120,9 @@ double pull_on(const Model& model, int body, const State& at) {
 }
 
 /// INDEPENDENT: what all pairs owe grows by what the mean of all forces at the ends of a step does, less what the
-/// contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four units in the last place of energies, and of places in each
-/// force's work: the floor's nodes beyond its seam stand a period off. And but for what pairs that have parted drop as
-/// rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
+/// contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four units in the
+/// last place of energies, and of places in each force's work: the floor's nodes beyond its seam stand a period off.
+/// And but for what pairs that have parted drop as rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
 void expect_debts_to_be_work(const ContactRule& rule) {
   const Scene scene = crowded_floor(rule);
   const double period = *scene.period, rounding = 4 * std::numeric_limits<double>::epsilon(), dropped = 1e-17;
