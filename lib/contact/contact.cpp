@@ -49,7 +49,7 @@ ContactSystem::ContactSystem(const Model& model)
       laws_(model),
       skin_(skin_of(model)),
       may_integrate_(some_may_be_integrated(model)),
-      watch_(model, skin_, laws_.max_reach()),
+      verlet_list_(model, skin_, laws_.max_reach()),
       table_(model),
       most_repaid_(most_repaid(model.scene.time.safety)) {}
 
@@ -63,7 +63,7 @@ PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
-  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !watch_.is_used_up(position);
+  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !verlet_list_.skin_is_exceeded(position);
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {
@@ -73,7 +73,8 @@ bool ContactSystem::period_is_over(const RunClock& clock) const {
 }
 
 void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
-  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !watch_.is_used_up(position)) return;
+  if (warned_ || !fresh_ || !has_fixed_refresh(model_.scene.contact) || !verlet_list_.skin_is_exceeded(position))
+    return;
   warned_ = true;
   spdlog::warn(
       "bodies move further than the contact skin, {:.3g} m, from one contact refresh to the next: contacts can be "
@@ -83,7 +84,7 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
 
 void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   warn_of_missed_contacts(outlines.position);
-  watch_.forget();
+  verlet_list_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far apart
   take_over_patches(outlines, outlines.position, history, clock);
   if (start && !starts_from_a_state()) refuse_self_overlap();
@@ -98,7 +99,7 @@ bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
   const bool pair_by_pair = fresh_ && !has_fixed_refresh(model_.scene.contact) && !model_.scene.contact.self_contact &&
                             laws_.era(clock.time) == laws_.era(refreshed_.time);
   if (pair_by_pair) {
-    if (!trial) watch_.is_used_up(asked);
+    if (!trial) verlet_list_.skin_is_exceeded(asked);
     return take_over_patches(outlines, asked, history, clock);
   }
   find_candidates(outlines, history, clock);
@@ -112,7 +113,7 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
   found_at_.position.x.resize(outlines.position.x.size());
   found_at_.position.y.resize(outlines.position.x.size());
   std::vector<char> is_searched(model_.bodies.size(), model_.scene.contact.self_contact);
-  for (int p : pairs) is_searched[watch_[p].first] = is_searched[watch_[p].second] = 1;
+  for (int p : pairs) is_searched[verlet_list_[p].first] = is_searched[verlet_list_[p].second] = 1;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     if (!is_searched[b]) return;
     const int first = model_.outline_offset[b], count = model_.outline_offset[b + 1] - first;
@@ -121,38 +122,38 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
   });
 }
 
-/// Candidates at these outlines, of whatever is used up, and the history with them. Whether they hold on trial.
+/// Candidates at these outlines, of whatever exceeds its skin, and the history with them. Whether they hold on trial.
 bool ContactSystem::take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                       const RunClock& clock) {
   accept(history);
   if (laws_.era(clock.time) != laws_.era(refreshed_.time)) last_.number = 0;  // of other laws
   refreshed_ = clock;
   ++refreshes_;
-  const bool same_pairs = !watch_.update(outlines.position, trial);
-  const std::vector<int> used_up = watch_.used_up(outlines.position);
-  remember(outlines, used_up);
-  const std::vector<Patch> found = search(used_up);
-  found_ = used_up;  // patches stand in the order of the pairs, unless bodies touch themselves
+  const bool same_pairs = !verlet_list_.update(outlines.position, trial);
+  const std::vector<int> exceeded = verlet_list_.exceeded(outlines.position);
+  remember(outlines, exceeded);
+  const std::vector<Patch> found = search(exceeded);
+  found_ = exceeded;  // patches stand in the order of the pairs, unless bodies touch themselves
   const auto carry = [&](const Patch& old, const Patch& now) {
     if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
   };
-  if (!same_pairs || !table_.replace(used_up, found, history, carry)) lay_out_anew(found, history);
+  if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
   parallel_for(static_cast<int>(found_.size()), [&](int i) { locate_newcomers(view(patches()[found_[i]]), history); });
-  return watch_.hold(used_up, trial);
+  return verlet_list_.hold(exceeded, trial);
 }
 
 std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
   std::vector<Patch> found(pairs.size());
   parallel_for_uneven(static_cast<int>(found.size()), 4, [&](int i) {
-    const BodyPair& pair = watch_[pairs[i]];
+    const BodyPair& pair = verlet_list_[pairs[i]];
     Patch& patch = found[i];
     patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
     patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
     patch.integrated = integrates(pair.first, pair.second, patch.law);
     patch.found = refreshes_;
     const double gap = find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_,
-                                 thread_scratch(), watch_.margin());
-    watch_.searched(pairs[i], found_at_.position, gap);
+                                 thread_scratch(), verlet_list_.margin());
+    verlet_list_.searched(pairs[i], found_at_.position, gap);
   });
   pairs_searched_ += static_cast<long>(found.size());
   return found;
@@ -161,11 +162,11 @@ std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
 /// A patch for each pair, one just found or that of before.
 void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory& history) {
   std::vector<Patch> all;
-  all.reserve(static_cast<std::size_t>(watch_.count()));
+  all.reserve(static_cast<std::size_t>(verlet_list_.count()));
   auto next = found.begin();
-  for (int p = 0; p < watch_.count(); ++p) {
-    const bool just_found = next != found.end() && next->pair() == watch_[p];
-    all.push_back(just_found ? *next++ : *table_.find(watch_[p]));
+  for (int p = 0; p < verlet_list_.count(); ++p) {
+    const bool just_found = next != found.end() && next->pair() == verlet_list_[p];
+    all.push_back(just_found ? *next++ : *table_.find(verlet_list_[p]));
   }
   if (model_.scene.contact.self_contact) add_self_patches(all);
   const std::vector<Patch> old = patches();
@@ -282,7 +283,8 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
 void ContactSystem::add_self_patches(std::vector<Patch>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
-    watch_.add({b, b, 0}, found_at_.position);  // as any pair: the body's parts may move by the skin against each other
+    // as any pair: the body's parts may move by the skin against each other
+    verlet_list_.add({b, b, 0}, found_at_.position);
     Patch of_body;
     of_body.first = of_body.second = b;
     of_body.law = laws_.between(b, b, refreshed_.time);

@@ -12,9 +12,9 @@
 #include "contact/energy_debt.hpp"
 #include "contact/history.hpp"
 #include "contact/inherited.hpp"
-#include "contact/pair_watch.hpp"
 #include "contact/patch.hpp"
 #include "contact/patch_table.hpp"
+#include "contact/verlet_list.hpp"
 
 namespace pliant {
 
@@ -46,7 +46,7 @@ struct Evaluated {
   }
 };
 
-/// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have used up its
+/// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have exceeded its
 /// skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
 /// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its
@@ -64,7 +64,7 @@ class ContactSystem {
   /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
   /// Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
-  /// The same, but patches of pairs that have used up less than three fourths of their skin stay as they are. Returns
+  /// The same, but patches that have used less than three fourths of their skin stay as they are. Returns
   /// whether all hold on trial, where they were last asked whether they do; without one, where they are.
   bool renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {},
                         const OutlineField* trial = nullptr);
@@ -107,7 +107,7 @@ class ContactSystem {
   /// What a refresh leaves behind; the layout follows from the patches.
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("watch", watch_);
+    visitor("watch", verlet_list_);
     visitor("table", table_);
     visitor("found_at", found_at_);
     visitor("fresh", fresh_);
@@ -149,7 +149,7 @@ class ContactSystem {
   ContactLaws laws_;
   double skin_;
   bool may_integrate_;
-  PairWatch watch_;
+  VerletList verlet_list_;
   PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
   double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what is not accepted

@@ -17,7 +17,7 @@
 
 namespace pliant::fuzz {
 
-/// What a fuzzer gave, taken from the front; zeros when it is used up.
+/// What a fuzzer gave, taken from the front; zeros when it ends.
 class Input {
  public:
   Input(const std::uint8_t* bytes, std::size_t count) : bytes_(bytes), count_(count) {}

@@ -18,24 +18,24 @@ struct BodyPlace {
 /// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
 /// pair by pair, but all together, and so those that turn out to be further apart than their boxes. Ways are from place
 /// to place: what only vibrates goes nowhere.
-class PairWatch {
+class VerletList {
  public:
   /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
-  PairWatch(const Model& model, double skin, double reach);
+  VerletList(const Model& model, double skin, double reach);
 
-  /// Whether some pair, or what the broad phase left out, may have used up its skin where all outlines are now: on
+  /// Whether some pair, or what the broad phase left out, may have exceeded its skin where all outlines are now: on
   /// trial, when pairs are then searched.
-  bool is_used_up(const OutlineField& now);
+  bool skin_is_exceeded(const OutlineField& now);
   /// All pairs are to be searched, those that the broad phase finds.
   void forget();
-  /// After is_used_up(trial), before pairs are searched with all outlines here: takes new references, and the broad
-  /// phase, if it is due. Pairs have other numbers then, and true is returned.
+  /// After skin_is_exceeded(trial), before pairs are searched with all outlines here: takes new references, and the
+  /// broad phase, if it is due. Pairs have other numbers then, and true is returned.
   bool update(const OutlineField& here, const OutlineField& trial);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
   /// Once after each update: the pairs of which what was found may not stay. All others hold on trial.
-  std::vector<int> used_up(const OutlineField& here);
+  std::vector<int> exceeded(const OutlineField& here);
   /// Whether pairs that were searched hold on trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
   /// Gap beyond which pairs that the broad phase just found need no watching, m.

@@ -1,4 +1,4 @@
-#include "contact/pair_watch.hpp"
+#include "contact/verlet_list.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ BodyPlace place_of(const Model& model, int body, const OutlineField& outlines) {
 
 }  // namespace
 
-PairWatch::PairWatch(const Model& model, double skin, double reach)
+VerletList::VerletList(const Model& model, double skin, double reach)
     : model_(model),
       skin_(skin),
       own_skin_(0.5 * (1 + extra_skins) * skin),
@@ -62,7 +62,7 @@ PairWatch::PairWatch(const Model& model, double skin, double reach)
   forget();
 }
 
-void PairWatch::forget() {
+void VerletList::forget() {
   reference_ = {};
   pairs_.clear();
   use_.clear();
@@ -73,7 +73,7 @@ void PairWatch::forget() {
   swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
 }
 
-void PairWatch::loaded() {
+void VerletList::loaded() {
   pair_ways_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size() || since_sweep_.size() != motion_.size())
     throw ArchiveError("ways are those of other bodies");
@@ -86,7 +86,7 @@ void PairWatch::loaded() {
 /// along with the mean of the bodies, m: only what bodies move against each other can bring pairs together that it left
 /// out. A wall lies in wait along all x, whatever its own way in x. All of it is the same along all axes, as all that
 /// says when pairs are searched must be: the stable step depends on where they were.
-double PairWatch::measure(const OutlineField& now) {
+double VerletList::measure(const OutlineField& now) {
   parallel_for(count_of_bodies(), [&](int b) { motion_[b] = disc_of_ways(model_, b, now, reference_); });
   double x = 0, y = 0;
   int free = 0;
@@ -107,8 +107,8 @@ double PairWatch::measure(const OutlineField& now) {
 }
 
 /// What spins comes out of nothing where it is round: from the disc within its outline as it was to the one around it.
-double PairWatch::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
-                                    const OutlineField& now) const {
+double VerletList::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
+                                     const OutlineField& now) const {
   const BodyPlace& then = swept_at_[body];
   if (from_mean < kept * own_skin_ || then.inner < 0) return from_mean;
   const BodyPlace place = place_of(model_, body, now);
@@ -117,20 +117,20 @@ double PairWatch::come_out_of_place(int body, double from_mean, double drift_x, 
 }
 
 /// By the discs of their nodes' ways: at little cost, but blurred.
-double PairWatch::rough_way(int pair, const OutlineField& now) const {
+double VerletList::rough_way(int pair, const OutlineField& now) const {
   return relative_way(pair_ways_.rough_way(2 * pair, ways(now)), pair_ways_.rough_way(2 * pair + 1, ways(now)));
 }
 
 /// By each node's own way.
-double PairWatch::way(int pair, const OutlineField& now) const {
+double VerletList::way(int pair, const OutlineField& now) const {
   return relative_way(pair_ways_.way(2 * pair, ways(now)), pair_ways_.way(2 * pair + 1, ways(now)));
 }
 
-bool PairWatch::stays_within(int pair, double limit, const OutlineField& now) const {
+bool VerletList::stays_within(int pair, double limit, const OutlineField& now) const {
   return rough_way(pair, now) < limit || way(pair, now) < (1 - rounded) * limit;
 }
 
-bool PairWatch::is_used_up(const OutlineField& now) {
+bool VerletList::skin_is_exceeded(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
@@ -144,7 +144,7 @@ bool PairWatch::is_used_up(const OutlineField& now) {
 }
 
 /// A body that has changed its shape or turned since its reference would blur the ways of all its pairs.
-void PairWatch::take_new_references(const OutlineField& here, const OutlineField& trial) {
+void VerletList::take_new_references(const OutlineField& here, const OutlineField& trial) {
   const auto is_due = [&](int b) { return change_of_shape(motion_[b]) >= blurred * skin_; };
   parallel_for(pair_ways_.count(), [&](int e) {
     if (is_due(pair_ways_.body(e))) pair_ways_.take_new_reference(e, ways(here));
@@ -159,7 +159,7 @@ void PairWatch::take_new_references(const OutlineField& here, const OutlineField
   });
 }
 
-bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
+bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
   just_swept_ = false;
   const bool forgotten = reference_.x.empty();
   if (forgotten) {
@@ -178,13 +178,13 @@ bool PairWatch::update(const OutlineField& here, const OutlineField& trial) {
   std::vector<BodyPair> found = broad_phase(model_, boxes, margin_);
   std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair); });
   follow(std::move(found), here);
-  is_used_up(trial);
+  skin_is_exceeded(trial);
   return true;
 }
 
 /// Discs around their outlines are further from each other than the margin, where the broad phase saw them. Of pairs of
 /// grains that boxes alone let in this leaves few to be searched.
-bool PairWatch::discs_are_apart(const BodyPair& pair) const {
+bool VerletList::discs_are_apart(const BodyPair& pair) const {
   if (model_.bodies[pair.first].wall || model_.bodies[pair.second].wall) return false;
   const BodyPlace &a = swept_at_[pair.first], &b = swept_at_[pair.second];
   const double dx = b.x + pair.images * model_.scene.period.value_or(0) - a.x, dy = b.y - a.y,
@@ -194,7 +194,7 @@ bool PairWatch::discs_are_apart(const BodyPair& pair) const {
 
 /// What is known of pairs that were found before stays known, unless they may have come from beyond the margin or gone
 /// there: which of them boxes let in depends on the axes.
-void PairWatch::follow(std::vector<BodyPair> found, const OutlineField& here) {
+void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   std::vector<char> stays(pairs_.size());
   parallel_for(count(), [&](int p) {
     if (watched_[p])
@@ -218,7 +218,7 @@ void PairWatch::follow(std::vector<BodyPair> found, const OutlineField& here) {
   }
 }
 
-std::vector<int> PairWatch::used_up(const OutlineField& here) {
+std::vector<int> VerletList::exceeded(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
     if (use_[p] != much) return;
     const double exact = way(p, here);
@@ -231,18 +231,18 @@ std::vector<int> PairWatch::used_up(const OutlineField& here) {
   return result;
 }
 
-bool PairWatch::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
+bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
   return come_out_ < own_skin_ &&
          std::ranges::all_of(pairs, [&](int p) { return !watched_[p] || stays_within(p, skin_, trial); });
 }
 
-void PairWatch::searched(int pair, const OutlineField& now, double gap) {
+void VerletList::searched(int pair, const OutlineField& now, double gap) {
   excess_[pair] = 0, gap_[pair] = gap;
   watched_[pair] = !(just_swept_ && gap > margin_);
   for (int side = 0; side < 2; ++side) pair_ways_.look(2 * pair + side, ways(now));
 }
 
-void PairWatch::add(const BodyPair& pair, const OutlineField& now) {
+void VerletList::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(little);
   excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);

@@ -1,5 +1,5 @@
 // How far bodies have moved against each other since something was found of them.
-#include "contact/pair_watch.hpp"
+#include "contact/verlet_list.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,9 +32,9 @@ Scene two_rows() {
 
 /// EXACT: bodies that shake and spin where they are do not make the broad phase look again, however often references
 /// of theirs are renewed; one that leaves does.
-TEST(PairWatch, sweeps_no_more_for_what_shakes_and_spins) {
+TEST(VerletList, sweeps_no_more_for_what_shakes_and_spins) {
   ContactRig rig(two_rows());
-  PairWatch watch(rig.model, rig.contact.skin(), 0);
+  VerletList watch(rig.model, rig.contact.skin(), 0);
   rig.show();
   EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
   for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
@@ -42,23 +42,23 @@ TEST(PairWatch, sweeps_no_more_for_what_shakes_and_spins) {
   for (int step = 0; step < 400; ++step) {
     for (int body = 0; body < 12; ++body) rig.turn(body, body % 2 == 0 ? 0.3 : (step % 4 < 2 ? 0.05 : -0.05));
     rig.show();
-    watch.is_used_up(rig.outlines.position);
+    watch.skin_is_exceeded(rig.outlines.position);
     EXPECT_FALSE(watch.update(rig.outlines.position, rig.outlines.position));
-    for (int pair : watch.used_up(rig.outlines.position)) watch.searched(pair, rig.outlines.position), ++searched;
-    EXPECT_FALSE(watch.is_used_up(rig.outlines.position));
+    for (int pair : watch.exceeded(rig.outlines.position)) watch.searched(pair, rig.outlines.position), ++searched;
+    EXPECT_FALSE(watch.skin_is_exceeded(rig.outlines.position));
   }
   EXPECT_GT(searched, 1000) << "the pairs of those that spin";
   rig.move(11, {6 * rig.contact.skin(), 0});
   rig.show();
-  EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
+  EXPECT_TRUE(watch.skin_is_exceeded(rig.outlines.position));
   EXPECT_TRUE(watch.update(rig.outlines.position, rig.outlines.position));
 }
 
 /// EXACT: pairs that are searched where a step begins hold at its end if they go less than a skin in it.
-TEST(PairWatch, tells_whether_what_was_searched_holds_on_trial) {
+TEST(VerletList, tells_whether_what_was_searched_holds_on_trial) {
   ContactRig rig(two_rows());
   for (const double way : {0.7, 1.3}) {
-    PairWatch watch(rig.model, rig.contact.skin(), 0);
+    VerletList watch(rig.model, rig.contact.skin(), 0);
     rig.show();
     watch.update(rig.outlines.position, rig.outlines.position);
     for (int pair = 0; pair < watch.count(); ++pair) watch.searched(pair, rig.outlines.position);
@@ -67,9 +67,9 @@ TEST(PairWatch, tells_whether_what_was_searched_holds_on_trial) {
     const OutlineField begin = rig.outlines.position;
     rig.move(11, {way * rig.contact.skin(), 0});
     rig.show();
-    EXPECT_TRUE(watch.is_used_up(rig.outlines.position));
+    EXPECT_TRUE(watch.skin_is_exceeded(rig.outlines.position));
     EXPECT_FALSE(watch.update(begin, rig.outlines.position));
-    const std::vector<int> pairs = watch.used_up(begin);
+    const std::vector<int> pairs = watch.exceeded(begin);
     EXPECT_FALSE(pairs.empty());
     for (int pair : pairs) watch.searched(pair, begin);
     EXPECT_EQ(watch.hold(pairs, rig.outlines.position), way < 1);
@@ -128,7 +128,7 @@ std::vector<Seen> searches_along(double angle) {
 /// EXACT: when candidates are searched, and what they may bear at most, does not depend on the axes: the stable step
 /// depends on both. Coordinates of 5 gather errors of 300 times 1e-15, shares of segments of 0.1 ten times as much, and
 /// some hundred nodes add up such shares of their stiffness, 100 times 0.1.
-TEST(PairWatch, searches_along_no_axes) {
+TEST(VerletList, searches_along_no_axes) {
   const std::vector<Seen> plain = searches_along(0);
   const auto searches = std::ranges::count_if(plain, [](const Seen& seen) { return seen.searched; });
   EXPECT_GT(searches, 20);
@@ -174,9 +174,9 @@ TEST(NodeWays, are_known_however_far_bodies_drift) {
 }
 
 /// EXACT: what a checkpoint has of other pairs is refused.
-TEST(PairWatch, of_other_pairs_is_refused) {
+TEST(VerletList, of_other_pairs_is_refused) {
   ContactRig rig(two_rows());
-  PairWatch watch(rig.model, rig.contact.skin(), 0);
+  VerletList watch(rig.model, rig.contact.skin(), 0);
   rig.show();
   watch.update(rig.outlines.position, rig.outlines.position);
   EXPECT_NO_THROW(watch.loaded());
