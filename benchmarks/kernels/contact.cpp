@@ -15,7 +15,7 @@ using enum ContactLawKind;
 
 void count_contacts(benchmark::State& state, const ContactSystem& contact, int contacts) {
   state.counters["contacts"] = contacts;
-  state.counters["pairs"] = static_cast<double>(contact.patches().size());
+  state.counters["pairs"] = static_cast<double>(contact.contact_pairs().size());
 }
 
 void contact_forces(benchmark::State& state, ContactLawKind law,
@@ -110,11 +110,11 @@ BENCHMARK_CAPTURE(plain_contact_from_dofs, cohesive, cohesive)
     ->Name("baseline/contact/cohesive_and_outlines")
     ->Apply(one_and_two_threads);
 
-/// Boxes of all outlines, and of each pair's arcs: outlines are read, patches and history written. Comparisons are no
-/// flops.
+/// Boxes of all outlines, and of each pair's arcs: outlines are read, contact pairs and history written. Comparisons
+/// are no flops.
 Work searching(const ContactScene& scene) {
   return {0, 2 * sizeof(double) * outline_nodes(scene.model) + 32 * records(scene.contact) +
-                 sizeof(Patch) * static_cast<double>(scene.contact.patches().size())};
+                 sizeof(ContactPair) * static_cast<double>(scene.contact.contact_pairs().size())};
 }
 
 void find_candidates(benchmark::State& state) {
@@ -123,7 +123,7 @@ void find_candidates(benchmark::State& state) {
   ContactSystem contact(scene.model);
   ContactHistory history;
   for (auto _ : state) contact.find_candidates(scene.outlines, history);
-  report(state, "pair", static_cast<double>(contact.patches().size()), searching(scene));
+  report(state, "pair", static_cast<double>(contact.contact_pairs().size()), searching(scene));
 }
 BENCHMARK(find_candidates)->Name("candidates/find")->Apply(one_and_two_threads);
 
@@ -133,7 +133,7 @@ void plain_find_candidates(benchmark::State& state) {
   PlainScene plain(scene);
   const Threads threads(state);
   for (auto _ : state) plain.contact.find_candidates(plain.bodies);
-  count_lists(state, plain, "pair", static_cast<double>(scene.contact.patches().size()));
+  count_lists(state, plain, "pair", static_cast<double>(scene.contact.contact_pairs().size()));
 }
 BENCHMARK(plain_find_candidates)->Name("baseline/candidates/find")->Apply(one_and_two_threads);
 
@@ -151,7 +151,7 @@ void renew_candidates(benchmark::State& state) {
   for (auto _ : state) contact.renew_candidates(*place[next = 1 - next], history);
   state.counters["searched"] =
       benchmark::Counter(static_cast<double>(contact.pairs_searched() - searched), benchmark::Counter::kAvgIterations);
-  report(state, "pair", static_cast<double>(contact.patches().size()), searching(scene));
+  report(state, "pair", static_cast<double>(contact.contact_pairs().size()), searching(scene));
 }
 BENCHMARK(renew_candidates)->Name("candidates/renew")->Apply(one_and_two_threads);
 

@@ -61,7 +61,8 @@ double outline_nodes(const Model& model) {
 }
 double records(const ContactSystem& contact) {
   double count = 0;
-  for (const Patch& patch : contact.patches()) count += patch.nodes[0].count + patch.nodes[1].count;
+  for (const ContactPair& contact_pair : contact.contact_pairs())
+    count += contact_pair.nodes[0].count + contact_pair.nodes[1].count;
   return count;
 }
 
@@ -117,15 +118,15 @@ Work update(const Model& model) {
 
 /// A segment of a window: 14 flops for length, tangent and bisector. A record: 4 flops at each bisector, and some 70
 /// for the projection, the slip, the law, its force and the reaction; its place and slip are read and written.
-/// Outlines and tributary lengths are read, forces on them written; buffers of the patches are written and read.
+/// Outlines and tributary lengths are read, forces on them written; buffers of the contact pairs are written and read.
 Work contact_forces(const Model& model, const ContactSystem& contact) {
   Work work{0, outline_nodes(model) * (2 * vector + number)};
-  for (const Patch& patch : contact.patches())
+  for (const ContactPair& contact_pair : contact.contact_pairs())
     for (int side = 0; side < 2; ++side) {
-      const double slaves = patch.nodes[side].count, segments = patch.segments[1 - side].count;
+      const double slaves = contact_pair.nodes[side].count, segments = contact_pair.segments[1 - side].count;
       if (slaves == 0) continue;
       work = work + Work{14 * segments + slaves * (4 * (segments + 1) + 70),
-                         2 * vector * slaves + 2 * vector * patch.forces(side).count};
+                         2 * vector * slaves + 2 * vector * contact_pair.forces(side).count};
     }
   return work;
 }

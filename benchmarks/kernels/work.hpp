@@ -11,7 +11,7 @@ namespace pliant::kernels {
 double integration_points(const Model& model);
 double field_nodes(const Model& model);        ///< of compliant bodies
 double outline_nodes(const Model& model);      ///< of all bodies
-double records(const ContactSystem& contact);  ///< slave nodes of all patches, without padding
+double records(const ContactSystem& contact);  ///< slave nodes of all contact pairs, without padding
 
 namespace work {
 Work internal_forces(const Model& model);

@@ -139,7 +139,7 @@ void print_shapes(const Model& model) {
     print_row("", fmt::format("and {} more shapes", model.shapes.size() - most_shown));
 }
 
-std::string describe(const ContactPair& pair, double pressure) {
+std::string describe(const PairEstimate& pair, double pressure) {
   std::string text = fmt::format("{:<24} {:<13} {:>9.3g} Pa/m {:<6} h {:<8}", pair.first + " - " + pair.second,
                                  pair.law, pair.stiffness, pair.automatic ? "auto" : "given", si(pair.spacing, "m"));
   if (pair.shear_stiffness > 0 && pair.shear_stiffness != pair.stiffness)
@@ -156,11 +156,12 @@ std::string describe(const ContactPair& pair, double pressure) {
 
 void print_contacts(const Model& model, const ContactSystem& contact) {
   const char* heading = "contact";
-  for (const ContactPair& pair : contact_pairs(model, contact.laws())) {
+  for (const PairEstimate& pair : pair_estimates(model, contact.laws())) {
     print_row(heading, describe(pair, largest_pressure(model.scene)));
     heading = "";
   }
-  const auto close = std::ranges::count_if(contact.patches(), [](const Patch& patch) { return !patch.is_empty(); });
+  const auto close = std::ranges::count_if(contact.contact_pairs(),
+                                           [](const ContactPair& contact_pair) { return !contact_pair.is_empty(); });
   print_row(heading, fmt::format("pairs of bodies close at the start: {}; skin {}", close, si(contact.skin(), "m")));
 }
 

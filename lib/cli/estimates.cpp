@@ -70,16 +70,16 @@ std::string material_label(const Model& model, const Body& body) {
 /// Outlines made alike differ by rounding.
 bool same(double a, double b) { return std::abs(a - b) <= 1e-3 * std::max(std::abs(a), std::abs(b)); }
 
-bool alike(const ContactPair& a, const ContactPair& b) {
+bool alike(const PairEstimate& a, const PairEstimate& b) {
   const bool names = a.first == b.first && a.second == b.second;
   return names && a.friction == b.friction && same(a.stiffness, b.stiffness) && same(a.spacing, b.spacing) &&
          same(a.curvature, b.curvature);
 }
 
-ContactPair make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
+PairEstimate make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
   const Body &a = model.bodies[first], &b = model.bodies[second];
   const ContactLaw law = laws.between(first, second);
-  ContactPair pair;
+  PairEstimate pair;
   pair.first = material_label(model, a), pair.second = material_label(model, b);
   if (!b.wall && (a.wall || pair.second < pair.first)) std::swap(pair.first, pair.second);
   pair.law = std::visit([](const auto& l) { return l.name; }, law);
@@ -144,23 +144,23 @@ double largest_pressure(const Scene& scene) {
   return largest;
 }
 
-double ContactPair::penetration(double pressure) const {
+double PairEstimate::penetration(double pressure) const {
   if (curvature == 0) return pressure / stiffness;
   return std::pow(3 * pressure * width / (4 * stiffness * std::sqrt(2 / curvature)), 2.0 / 3.0);
 }
 
-std::vector<ContactPair> contact_pairs(const Model& model, const ContactLaws& laws) {
+std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& laws) {
   const std::vector<std::vector<int>> parties = representatives(model, laws);
-  std::vector<ContactPair> pairs;
-  const auto is_known = [&](const ContactPair& pair) {
-    return std::any_of(pairs.begin(), pairs.end(), [&](const ContactPair& other) { return alike(other, pair); });
+  std::vector<PairEstimate> pairs;
+  const auto is_known = [&](const PairEstimate& pair) {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const PairEstimate& other) { return alike(other, pair); });
   };
   const auto add = [&](int first, int second) {
     const Body &a = model.bodies[first], &b = model.bodies[second];
     if (a.wall && b.wall) return;
     // A body as wide as the period touches its own image.
     if (first == second && !(model.scene.period && width_of(model, a) >= *model.scene.period)) return;
-    const ContactPair pair = make_pair_of(model, laws, first, second);
+    const PairEstimate pair = make_pair_of(model, laws, first, second);
     if (!is_known(pair)) pairs.push_back(pair);
   };
   for (auto i = parties.begin(); i != parties.end(); ++i)

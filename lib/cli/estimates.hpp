@@ -12,7 +12,7 @@ namespace pliant {
 double largest_pressure(const Scene& scene);
 
 /// How two kinds of body touch.
-struct ContactPair {
+struct PairEstimate {
   std::string first, second;  ///< materials; "soft (rigid)" for rigid grains of what could be compliant, "wall of hard"
   std::string law;            ///< as in scene files
   bool automatic = false;     ///< the stiffness
@@ -33,7 +33,7 @@ struct ContactPair {
 
 /// The pairs of the scene that can meet, each once but for rounding: walls do not meet each other, nor a single body
 /// itself.
-std::vector<ContactPair> contact_pairs(const Model& model, const ContactLaws& laws);
+std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& laws);
 
 /// Files of a run, in bytes.
 struct OutputSize {

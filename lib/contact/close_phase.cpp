@@ -141,8 +141,8 @@ void bring_together(const OutlineShape& shape, const Arc& nodes, Arc& segments) 
 }
 
 /// Segments of a side that can touch: with a node near the other outline, or near a node of that. Slaves count once.
-void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patch& patch) {
-  Arc &nodes = patch.nodes[side], &segments = patch.segments[side];
+void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, ContactPair& contact_pair) {
+  Arc &nodes = contact_pair.nodes[side], &segments = contact_pair.segments[side];
   if (nodes.count > 0) {
     const Arc beside{nodes.begin - 1, nodes.count + 1};
     segments = segments.count == 0 ? beside : hull(beside, segments);
@@ -151,25 +151,26 @@ void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Patc
   const int slaves = two_walls ? std::min(segments.count, shape.count) : segments.count;
   const bool whole = slaves == shape.count && (two_walls || shape.turn_shift == 0);
   nodes = {segments.begin, slaves == 0 ? 0 : whole ? slaves : slaves + 1};
-  patch.slave_segments[side] = slaves;
-  patch.window[side] = with_medial_neighbours(shape, segments);
+  contact_pair.slave_segments[side] = slaves;
+  contact_pair.window[side] = with_medial_neighbours(shape, segments);
 }
 
 }  // namespace
 
-double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch, double margin, double skin,
-                 MasterWindow& scratch, double look) {
-  const double shift = patch.images * model.scene.period.value_or(0);
-  ContactSide sides[2] = {make_side(model, outlines, patch.first, 0), make_side(model, outlines, patch.second, shift)};
-  const Box box_a = bounding_box(model, outlines, patch.first);
-  Box box_b = bounding_box(model, outlines, patch.second);
+double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
+                 double skin, MasterWindow& scratch, double look) {
+  const double shift = contact_pair.images * model.scene.period.value_or(0);
+  ContactSide sides[2] = {make_side(model, outlines, contact_pair.first, 0),
+                          make_side(model, outlines, contact_pair.second, shift)};
+  const Box box_a = bounding_box(model, outlines, contact_pair.first);
+  Box box_b = bounding_box(model, outlines, contact_pair.second);
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
   double gap = std::max({look, margin + 2 * skin, longest + 4 * skin});  // at least, of what is not in rough arcs
-  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, patch, gap, rough);
+  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, contact_pair, gap, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return gap;
-  const bool two_walls = model.bodies[patch.first].wall && model.bodies[patch.second].wall;
+  const bool two_walls = model.bodies[contact_pair.first].wall && model.bodies[contact_pair.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
     const ContactSide& master = sides[1 - slave];
     const Arc segments = segments_at(master, rough[1 - slave], two_walls);
@@ -177,21 +178,23 @@ double find_arcs(const Model& model, const OutlineField& outlines, Patch& patch,
     // The depth is that of the whole outline: what boxes let in of it depends on the axes.
     const Margins margins{margin, skin, master.longest_segment + skin};
     const double least = narrow(sides[slave], master, rough[slave], scratch, segments.begin, margins,
-                                patch.nodes[slave], patch.segments[1 - slave]);
+                                contact_pair.nodes[slave], contact_pair.segments[1 - slave]);
     gap = std::min(gap, least);
     // Walls meet along the whole period: one image of each node is enough. A body as wide as the period may stand on
     // two.
-    if (two_walls) patch.nodes[slave].count = std::min(patch.nodes[slave].count, sides[slave].shape->count);
+    if (two_walls)
+      contact_pair.nodes[slave].count = std::min(contact_pair.nodes[slave].count, sides[slave].shape->count);
   }
-  for (int side = 0; side < 2; ++side) bring_together(*sides[side].shape, patch.nodes[side], patch.segments[side]);
-  for (int side = 0; side < 2; ++side) patch.window[side] = patch.segments[side];
-  if (patch.integrated)
-    for (int side = 0; side < 2; ++side) widen_to_segments(*sides[side].shape, two_walls, side, patch);
+  for (int side = 0; side < 2; ++side)
+    bring_together(*sides[side].shape, contact_pair.nodes[side], contact_pair.segments[side]);
+  for (int side = 0; side < 2; ++side) contact_pair.window[side] = contact_pair.segments[side];
+  if (contact_pair.integrated)
+    for (int side = 0; side < 2; ++side) widen_to_segments(*sides[side].shape, two_walls, side, contact_pair);
   return gap;
 }
 
-void find_self_patches(const Model& model, const OutlineField& outlines, const Patch& of_body, double margin,
-                       double skin, std::vector<Patch>& patches, MasterWindow& scratch) {
+void find_self_pairs(const Model& model, const OutlineField& outlines, const ContactPair& of_body, double margin,
+                     double skin, std::vector<ContactPair>& contact_pairs, MasterWindow& scratch) {
   const ContactSide side = make_side(model, outlines, of_body.first, 0);
   const int n = side.shape->count;
   constexpr int together = 2, unseen = 2;
@@ -200,17 +203,17 @@ void find_self_patches(const Model& model, const OutlineField& outlines, const P
     const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
     if (segments.count <= 0) continue;
     scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
-    Patch patch = of_body;
-    patch.part = begin;
+    ContactPair contact_pair = of_body;
+    contact_pair.part = begin;
     const Margins margins{margin, skin, scratch.depth()};
-    narrow(side, side, nodes, scratch, segments.begin, margins, patch.nodes[0], patch.segments[1]);
-    patch.window[1] = patch.segments[1];
-    if (patch.nodes[0].count == 0) continue;
-    if (patch.integrated) {
-      patch.nodes[0] = nodes, patch.slave_segments[0] = nodes.count - 1;
-      patch.window[1] = with_medial_neighbours(*side.shape, patch.segments[1]);
+    narrow(side, side, nodes, scratch, segments.begin, margins, contact_pair.nodes[0], contact_pair.segments[1]);
+    contact_pair.window[1] = contact_pair.segments[1];
+    if (contact_pair.nodes[0].count == 0) continue;
+    if (contact_pair.integrated) {
+      contact_pair.nodes[0] = nodes, contact_pair.slave_segments[0] = nodes.count - 1;
+      contact_pair.window[1] = with_medial_neighbours(*side.shape, contact_pair.segments[1]);
     }
-    patches.push_back(patch);
+    contact_pairs.push_back(contact_pair);
   }
 }
 

@@ -10,8 +10,8 @@
 #include <spdlog/spdlog.h>
 
 #include "contact/close_phase.hpp"
-#include "contact/patch_forces.hpp"
-#include "contact/patch_queries.hpp"
+#include "contact/pair_forces.hpp"
+#include "contact/pair_queries.hpp"
 #include "contact/self_contact.hpp"
 #include "core/parallel.hpp"
 #include "core/prefetch.hpp"
@@ -59,7 +59,9 @@ bool ContactSystem::integrates(int first, int second, const ContactLaw& law) con
   return model_.scene.contact.quadrature == ContactQuadrature::segments || has_corners(first) || has_corners(second);
 }
 
-PatchView ContactSystem::view(const Patch& patch) const { return {model_, found_at_, patch, skin_, thread_scratch()}; }
+PairView ContactSystem::view(const ContactPair& contact_pair) const {
+  return {model_, found_at_, contact_pair, skin_, thread_scratch()};
+}
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
@@ -86,10 +88,10 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   warn_of_missed_contacts(outlines.position);
   verlet_list_.forget();
   const bool start = !fresh_;  // an empty history would not tell: bodies may have been far apart
-  take_over_patches(outlines, outlines.position, history, clock);
+  take_over_pairs(outlines, outlines.position, history, clock);
   if (start && !starts_from_a_state()) refuse_self_overlap();
-  const auto begin = [&](const Patch& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
-  if (start) parallel_for(table_.count(), [&](int p) { begin(patches()[p]); });
+  const auto begin = [&](const ContactPair& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
+  if (start) parallel_for(table_.count(), [&](int p) { begin(contact_pairs()[p]); });
   fresh_ = true;
 }
 
@@ -100,7 +102,7 @@ bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
                             laws_.era(clock.time) == laws_.era(refreshed_.time);
   if (pair_by_pair) {
     if (!trial) verlet_list_.skin_is_exceeded(asked);
-    return take_over_patches(outlines, asked, history, clock);
+    return take_over_pairs(outlines, asked, history, clock);
   }
   find_candidates(outlines, history, clock);
   return candidates_hold(asked, clock);
@@ -123,8 +125,8 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
 }
 
 /// Candidates at these outlines, of whatever exceeds its skin, and the history with them. Whether they hold on trial.
-bool ContactSystem::take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
-                                      const RunClock& clock) {
+bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                                    const RunClock& clock) {
   accept(history);
   if (laws_.era(clock.time) != laws_.era(refreshed_.time)) last_.number = 0;  // of other laws
   refreshed_ = clock;
@@ -132,26 +134,27 @@ bool ContactSystem::take_over_patches(const Outlines& outlines, const OutlineFie
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
   const std::vector<int> exceeded = verlet_list_.exceeded(outlines.position);
   remember(outlines, exceeded);
-  const std::vector<Patch> found = search(exceeded);
-  found_ = exceeded;  // patches stand in the order of the pairs, unless bodies touch themselves
-  const auto carry = [&](const Patch& old, const Patch& now) {
+  const std::vector<ContactPair> found = search(exceeded);
+  found_ = exceeded;  // contact pairs stand in the order of the pairs, unless bodies touch themselves
+  const auto carry = [&](const ContactPair& old, const ContactPair& now) {
     if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
   };
   if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
-  parallel_for(static_cast<int>(found_.size()), [&](int i) { locate_newcomers(view(patches()[found_[i]]), history); });
+  parallel_for(static_cast<int>(found_.size()),
+               [&](int i) { locate_newcomers(view(contact_pairs()[found_[i]]), history); });
   return verlet_list_.hold(exceeded, trial);
 }
 
-std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
-  std::vector<Patch> found(pairs.size());
+std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
+  std::vector<ContactPair> found(pairs.size());
   parallel_for_uneven(static_cast<int>(found.size()), 4, [&](int i) {
     const BodyPair& pair = verlet_list_[pairs[i]];
-    Patch& patch = found[i];
-    patch.first = pair.first, patch.second = pair.second, patch.images = pair.images;
-    patch.law = laws_.between(pair.first, pair.second, refreshed_.time);
-    patch.integrated = integrates(pair.first, pair.second, patch.law);
-    patch.found = refreshes_;
-    const double gap = find_arcs(model_, found_at_.position, patch, reach_of(patch.law) + skin_, skin_,
+    ContactPair& contact_pair = found[i];
+    contact_pair.first = pair.first, contact_pair.second = pair.second, contact_pair.images = pair.images;
+    contact_pair.law = laws_.between(pair.first, pair.second, refreshed_.time);
+    contact_pair.integrated = integrates(pair.first, pair.second, contact_pair.law);
+    contact_pair.found = refreshes_;
+    const double gap = find_arcs(model_, found_at_.position, contact_pair, reach_of(contact_pair.law) + skin_, skin_,
                                  thread_scratch(), verlet_list_.margin());
     verlet_list_.searched(pairs[i], found_at_.position, gap);
   });
@@ -159,21 +162,21 @@ std::vector<Patch> ContactSystem::search(const std::vector<int>& pairs) {
   return found;
 }
 
-/// A patch for each pair, one just found or that of before.
-void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory& history) {
-  std::vector<Patch> all;
+/// The contact pair of each pair of bodies, one just found or that of before.
+void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history) {
+  std::vector<ContactPair> all;
   all.reserve(static_cast<std::size_t>(verlet_list_.count()));
   auto next = found.begin();
   for (int p = 0; p < verlet_list_.count(); ++p) {
     const bool just_found = next != found.end() && next->pair() == verlet_list_[p];
     all.push_back(just_found ? *next++ : *table_.find(verlet_list_[p]));
   }
-  if (model_.scene.contact.self_contact) add_self_patches(all);
-  const std::vector<Patch> old = patches();
+  if (model_.scene.contact.self_contact) add_self_pairs(all);
+  const std::vector<ContactPair> old = contact_pairs();
   table_.lay_out(std::move(all), laws_.remembered(), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
-    if (patches()[p].found == refreshes_) found_.push_back(p);
+    if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
   const Evaluated before = std::exchange(last_, {});
   make_room(last_);
   if (!keeps_debts()) return;
@@ -181,10 +184,10 @@ void ContactSystem::lay_out_anew(const std::vector<Patch>& found, ContactHistory
   last_.number = before.number, last_.refreshes = before.refreshes, last_.elapsed = before.elapsed;
   auto from = old.begin();
   for (int p = 0; p < table_.count(); ++p) {
-    while (from != old.end() && comes_before(*from, patches()[p])) ++from;
-    if (from == old.end() || comes_before(patches()[p], *from)) continue;  // it did not touch
+    while (from != old.end() && comes_before(*from, contact_pairs()[p])) ++from;
+    if (from == old.end() || comes_before(contact_pairs()[p], *from)) continue;  // it did not touch
     last_.totals[p] = before.totals[from - old.begin()];
-    carry_forces(model_, *from, before.forces, patches()[p], last_.forces);
+    carry_forces(model_, *from, before.forces, contact_pairs()[p], last_.forces);
   }
 }
 
@@ -192,7 +195,7 @@ void ContactSystem::make_room(Evaluated& evaluated) const {
   const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // by whole lanes
   evaluated.forces.x.assign(looked_at, 0.0);
   evaluated.forces.y.assign(looked_at, 0.0);
-  evaluated.totals.assign(patches().size(), {});
+  evaluated.totals.assign(contact_pairs().size(), {});
   evaluated.number = 0;
 }
 
@@ -200,22 +203,23 @@ void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
-/// Asks for what a patch looks at and what it writes: there are many, each on places of its own. A write that waits for
-/// its place holds up all that follow it, and what is read back from them.
-void ContactSystem::prefetch(const Patch& patch, const OutlineField& position, const StepStart* step,
-                             const ContactHistory& from, const ContactHistory& to, const PatchForces& forces) const {
+/// Asks for what a contact pair looks at and what it writes: there are many, each on places of its own. A write that
+/// waits for its place holds up all that follow it, and what is read back from them.
+void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
+                             const ContactHistory& from, const ContactHistory& to,
+                             const PairForceBuffer& forces) const {
   for (int side = 0; side < 2; ++side) {
-    const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
-    const Arc arc = patch.forces(side);
+    const int body = side == 0 ? contact_pair.first : contact_pair.second, n = model_.outline_of(body).count;
+    const Arc arc = contact_pair.forces(side);
     const int node = model_.outline_offset[body] + arc.begin - turn_of(arc.begin, n) * n;
     prefetch_run(position, node, arc.count);
-    const int record = patch.record[side], numbers = padded(patch.nodes[side].count) * from.columns;
+    const int record = contact_pair.record[side], numbers = padded(contact_pair.nodes[side].count) * from.columns;
     prefetch_run(reinterpret_cast<const double*>(from.at(record)), numbers);
     prefetch_run<Access::write>(reinterpret_cast<const double*>(to.at(record)), numbers);
-    prefetch_run<Access::write>(forces, patch.entry[side], arc.count);
+    prefetch_run<Access::write>(forces, contact_pair.entry[side], arc.count);
     if (!keeps_debts() || !step) continue;
     prefetch_run(step->position, node, arc.count);
-    prefetch_run(last_.forces, patch.entry[side], arc.count);
+    prefetch_run(last_.forces, contact_pair.entry[side], arc.count);
   }
 }
 
@@ -229,9 +233,9 @@ const OutlineField* ContactSystem::find_ways(const OutlineField& now, const Outl
   return &moved_;
 }
 
-PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
-                                  OutlineField& force, const StepStart* step) {
-  table_.follow(from, to);  // also in what no patch writes: states are compared by their bits
+PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
+                                 OutlineField& force, const StepStart* step) {
+  table_.follow(from, to);  // also in what no contact pair writes: states are compared by their bits
   to.evaluation = from.evaluation;
   if (keeps_debts()) {
     accept(from);
@@ -244,15 +248,16 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
-    if (p + 1 < table_.count()) prefetch(patches()[p + 1], outlines.position, step, from, to, now.forces);
-    const PatchView view{model_, outlines, patches()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0, moved};
-    PatchTotals& totals = now.totals[p];
-    if (view.patch.is_empty())
+    if (p + 1 < table_.count()) prefetch(contact_pairs()[p + 1], outlines.position, step, from, to, now.forces);
+    const PairView view{model_, outlines, contact_pairs()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0,
+                        moved};
+    PairTotals& totals = now.totals[p];
+    if (view.contact_pair.is_empty())
       totals = {};
     else if (keeps_debts())
       totals = settle(view, p, step, from, to, now.forces);
     else
-      totals = compute_patch(view, nullptr, from, to, now.forces);
+      totals = compute_pair(view, nullptr, from, to, now.forces);
   });
   const int bodies = static_cast<int>(model_.bodies.size());
   const auto gather = [&](int b) {
@@ -268,29 +273,29 @@ PatchTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory
       add_run(&now.forces.y[entry], count, y + node);
     });
   };
-  constexpr std::size_t block = 256;  // of patches, however many threads there are
+  constexpr std::size_t block = 256;  // of contact pairs, however many threads there are
   block_totals_.assign((now.totals.size() + block - 1) / block, {});
   const auto add_up = [&](int b) {
     const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, now.totals.size());
     for (std::size_t p = begin; p < end; ++p) block_totals_[static_cast<std::size_t>(b)].add(now.totals[p]);
   };
   parallel_for(bodies, gather, static_cast<int>(block_totals_.size()), add_up);
-  PatchTotals total;
-  for (const PatchTotals& of_block : block_totals_) total.add(of_block);
+  PairTotals total;
+  for (const PairTotals& of_block : block_totals_) total.add(of_block);
   return total;
 }
 
-void ContactSystem::add_self_patches(std::vector<Patch>& all) {
+void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     // as any pair: the body's parts may move by the skin against each other
     verlet_list_.add({b, b, 0}, found_at_.position);
-    Patch of_body;
+    ContactPair of_body;
     of_body.first = of_body.second = b;
     of_body.law = laws_.between(b, b, refreshed_.time);
     of_body.integrated = integrates(b, b, of_body.law);
     of_body.found = refreshes_;
-    find_self_patches(model_, found_at_.position, of_body, reach_of(of_body.law) + skin_, skin_, all, thread_scratch());
+    find_self_pairs(model_, found_at_.position, of_body, reach_of(of_body.law) + skin_, skin_, all, thread_scratch());
   }
 }
 

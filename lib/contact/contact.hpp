@@ -9,11 +9,11 @@
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "contact/contact_laws.hpp"
+#include "contact/contact_pair.hpp"
 #include "contact/energy_debt.hpp"
 #include "contact/history.hpp"
 #include "contact/inherited.hpp"
-#include "contact/patch.hpp"
-#include "contact/patch_table.hpp"
+#include "contact/pair_table.hpp"
 #include "contact/verlet_list.hpp"
 
 namespace pliant {
@@ -33,11 +33,11 @@ struct StepStart {
 
 /// What an evaluation leaves behind.
 struct Evaluated {
-  PatchForces forces;
-  std::vector<PatchTotals> totals;  ///< [patches]
-  std::int64_t number = 0;          ///< ContactHistory::evaluation; 0: of no step
-  long refreshes = 0;               ///< before it
-  double elapsed = 0;               ///< in the step that led to it, s
+  PairForceBuffer forces;
+  std::vector<PairTotals> totals;  ///< [contact pairs]
+  std::int64_t number = 0;         ///< ContactHistory::evaluation; 0: of no step
+  long refreshes = 0;              ///< before it
+  double elapsed = 0;              ///< in the step that led to it, s
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -46,8 +46,8 @@ struct Evaluated {
   }
 };
 
-/// Contact between the outlines of all bodies: keeps the patches, refreshes them when some pair may have exceeded its
-/// skin, and computes the forces on outline nodes. The history belongs to the caller's state.
+/// Contact between the outlines of all bodies: keeps the contact pairs, refreshes them when some pair may have exceeded
+/// its skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
 /// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its
 /// stretch of the forces on them, which the bodies gather afterwards. Between the two is the seam where a body's
@@ -61,10 +61,10 @@ class ContactSystem {
   /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
   /// ContactLaws::era.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
-  /// Rebuilds the patches and carries the history, that of these outlines, over to them; newcomers get their places.
-  /// Throws InputError when a body that may touch itself does so at the start.
+  /// Rebuilds the contact pairs and carries the history, that of these outlines, over to them; newcomers get their
+  /// places. Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
-  /// The same, but patches that have used less than three fourths of their skin stay as they are. Returns
+  /// The same, but contact pairs that have used less than three fourths of their skin stay as they are. Returns
   /// whether all hold on trial, where they were last asked whether they do; without one, where they are.
   bool renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {},
                         const OutlineField* trial = nullptr);
@@ -77,8 +77,8 @@ class ContactSystem {
 
   /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
   /// was, so that contacts may repay what they owe. Without it, as at the start, all stands still.
-  PatchTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
-                     const StepStart* step = nullptr);
+  PairTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
+                    const StepStart* step = nullptr);
 
   /// A trial whose history is that of the state now was accepted.
   void accept(const ContactHistory& history);
@@ -92,11 +92,11 @@ class ContactSystem {
 
   const ContactLaws& laws() const { return laws_; }
   /// Of all pairs that are watched: some are empty.
-  const std::vector<Patch>& patches() const { return table_.patches(); }
-  const PatchTable& table() const { return table_; }
-  /// A patch that was found last, where it was.
-  PatchView view(const Patch& patch) const;
-  /// Places in the table of the patches that were found at the last refresh.
+  const std::vector<ContactPair>& contact_pairs() const { return table_.contact_pairs(); }
+  const PairTable& table() const { return table_; }
+  /// A contact pair that was found last, where it was.
+  PairView view(const ContactPair& contact_pair) const;
+  /// Places in the table of the contact pairs that were found at the last refresh.
   const std::vector<int>& found() const { return found_; }
   /// Whether contact of some pairs is integrated over segments.
   bool may_integrate() const { return may_integrate_; }
@@ -104,7 +104,7 @@ class ContactSystem {
   long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
   double skin() const { return skin_; }
 
-  /// What a refresh leaves behind; the layout follows from the patches.
+  /// What a refresh leaves behind; the layout follows from the contact pairs.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("watch", verlet_list_);
@@ -119,44 +119,44 @@ class ContactSystem {
     visitor("last", last_);
   }
   void loaded() {
-    table_.set_laws([&](const Patch& p) { return laws_.between(p.first, p.second, refreshed_.time); });
+    table_.set_laws([&](const ContactPair& p) { return laws_.between(p.first, p.second, refreshed_.time); });
     make_room(keeps_debts() ? trial_ : last_);
   }
 
  private:
-  bool take_over_patches(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
-                         const RunClock& clock);
+  bool take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                       const RunClock& clock);
   void remember(const Outlines& outlines, const std::vector<int>& pairs);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  std::vector<Patch> search(const std::vector<int>& pairs);
-  void lay_out_anew(const std::vector<Patch>& found, ContactHistory& history);
+  std::vector<ContactPair> search(const std::vector<int>& pairs);
+  void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
   bool integrates(int first, int second, const ContactLaw& law) const;
   const OutlineField* find_ways(const OutlineField& now, const OutlineField& before);
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
-  PatchTotals settle(const PatchView& view, int patch, const StepStart* step, const ContactHistory& from,
-                     ContactHistory& to, PatchForces& forces);
-  void add_self_patches(std::vector<Patch>& all);
+  PairTotals settle(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
+                    ContactHistory& to, PairForceBuffer& forces);
+  void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
   bool starts_from_a_state() const { return laws_before_.count > 0; }
-  bool keeps_law(const Patch& patch) const;  ///< of the state that it starts from; false: there is none
+  bool keeps_law(const ContactPair& contact_pair) const;  ///< of the state that it starts from; false: there is none
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
-  void prefetch(const Patch& patch, const OutlineField& position, const StepStart* step, const ContactHistory& from,
-                const ContactHistory& to, const PatchForces& forces) const;
+  void prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
+                const ContactHistory& from, const ContactHistory& to, const PairForceBuffer& forces) const;
 
   const Model& model_;
   ContactLaws laws_;
   double skin_;
   bool may_integrate_;
   VerletList verlet_list_;
-  PatchTable table_;        ///< in the order of the pairs, unless bodies touch themselves
+  PairTable table_;         ///< in the order of the pairs, unless bodies touch themselves
   double most_repaid_;      ///< see energy_debt.hpp
   Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what is not accepted
-  std::vector<PatchTotals> block_totals_;  ///< scratch
-  OutlineField moved_;                     ///< scratch, in a step, m
-  Outlines found_at_;                      ///< of each body, where some candidates of its were found last
-  std::vector<int> found_;                 ///< see found()
+  std::vector<PairTotals> block_totals_;  ///< scratch
+  OutlineField moved_;                    ///< scratch, in a step, m
+  Outlines found_at_;                     ///< of each body, where some candidates of its were found last
+  std::vector<int> found_;                ///< see found()
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< when the candidates were found
   long refreshes_ = 0, pairs_searched_ = 0;

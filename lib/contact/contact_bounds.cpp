@@ -4,7 +4,7 @@
 
 #include "contact/contact.hpp"
 #include "contact/master_window.hpp"
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -15,8 +15,8 @@ std::vector<double> ContactSystem::damping_ratios() const {
   std::vector<double> ratio(model_.bodies.size(), 0.0);
   if (!laws_.damps()) return ratio;
   std::vector<int> contacts(model_.bodies.size(), 0);
-  for (const Patch& patch : patches())
-    if (!patch.is_empty()) ++contacts[patch.first], ++contacts[patch.second];
+  for (const ContactPair& contact_pair : contact_pairs())
+    if (!contact_pair.is_empty()) ++contacts[contact_pair.first], ++contacts[contact_pair.second];
   for (std::size_t b = 0; b < ratio.size(); ++b) {
     if (model_.bodies[b].rigid < 0) continue;
     const RigidBody& body = model_.rigid_bodies[model_.bodies[b].rigid];
@@ -29,17 +29,17 @@ std::vector<double> ContactSystem::damping_ratios() const {
 std::vector<double> ContactSystem::least_remembered(const ContactHistory& history, std::string_view name,
                                                     double none) const {
   std::vector<double> least(static_cast<std::size_t>(model_.outline_offset.back()), none);
-  for (const Patch& patch : patches()) {
-    const std::span<const Remembered> all = remembered_of(patch.law);
+  for (const ContactPair& contact_pair : contact_pairs()) {
+    const std::span<const Remembered> all = remembered_of(contact_pair.law);
     const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
     if (found == all.end()) continue;
     const int column = ContactHistory::first_of_law + static_cast<int>(found - all.begin());
     for (int side = 0; side < 2; ++side) {
-      const int body = side == 0 ? patch.first : patch.second, n = model_.outline_of(body).count;
-      for (int i = 0; i < patch.nodes[side].count; ++i) {
-        const int node = patch.nodes[side].begin + i;
+      const int body = side == 0 ? contact_pair.first : contact_pair.second, n = model_.outline_of(body).count;
+      for (int i = 0; i < contact_pair.nodes[side].count; ++i) {
+        const int node = contact_pair.nodes[side].begin + i;
         double& value = least[model_.outline_offset[body] + node - turn_of(node, n) * n];
-        value = std::min(value, history.number(patch.record[side] + i, column));
+        value = std::min(value, history.number(contact_pair.record[side] + i, column));
       }
     }
   }

@@ -21,8 +21,8 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
                  now);
 }
 
-std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHistory& history) {
-  if (view.patch.integrated) return inspect_integrated(view, history);
+std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const ContactHistory& history) {
+  if (view.contact_pair.integrated) return inspect_integrated(view, history);
   std::vector<ContactPoint> points;
   const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
@@ -46,7 +46,7 @@ std::vector<ContactPoint> inspect_patch(const PatchView& view, const ContactHist
       [&](const auto& law) {
         for_each_beside(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
       },
-      view.patch.law);
+      view.contact_pair.law);
   return points;
 }
 
@@ -62,10 +62,11 @@ Vec2 TouchingPair::normal() const {
 std::vector<TouchingPair> inspect_contacts(const Model& model, const ContactSystem& contact, const Outlines& outlines,
                                            const ContactHistory& history) {
   std::vector<TouchingPair> pairs;
-  for (const Patch& patch : contact.patches()) {
+  for (const ContactPair& contact_pair : contact.contact_pairs()) {
     std::vector<ContactPoint> points =
-        inspect_patch({model, outlines, patch, contact.skin(), thread_scratch()}, history);
-    if (!points.empty()) pairs.push_back({patch.first, patch.second, patch.images, std::move(points)});
+        inspect_contact_pair({model, outlines, contact_pair, contact.skin(), thread_scratch()}, history);
+    if (!points.empty())
+      pairs.push_back({contact_pair.first, contact_pair.second, contact_pair.images, std::move(points)});
   }
   return pairs;
 }

@@ -32,8 +32,8 @@ struct TouchingPair {
   Vec2 normal() const;
 };
 
-/// All pairs in touch at an accepted state, in the order of the patches: the same projection and laws as in a step,
-/// with the committed history. For outputs; never called in a step.
+/// All pairs in touch at an accepted state, in the order of the contact pairs: the same projection and laws as in a
+/// step, with the committed history. For outputs; never called in a step.
 std::vector<TouchingPair> inspect_contacts(const Model& model, const ContactSystem& contact, const Outlines& outlines,
                                            const ContactHistory& history);
 

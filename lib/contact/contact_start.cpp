@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "contact/contact.hpp"
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 #include "core/errors.hpp"
 
 namespace pliant {
@@ -36,22 +36,23 @@ void require_fit(const PairLaws& laws, std::size_t bodies) {
 }  // namespace
 
 InheritedContact ContactSystem::leave(const ContactHistory& history) const {
-  return {patches(), pair_laws(laws_, static_cast<int>(model_.bodies.size())), history};
+  return {contact_pairs(), pair_laws(laws_, static_cast<int>(model_.bodies.size())), history};
 }
 
 void ContactSystem::inherit(const InheritedContact& from, ContactHistory& history) {
   require_fit(from.laws, model_.bodies.size());
   laws_before_ = from.laws;
-  table_.take(from.patches, from.history.records());
-  std::vector<Patch> kept;
-  std::ranges::copy_if(from.patches, std::back_inserter(kept), [&](const Patch& patch) { return keeps_law(patch); });
+  table_.take(from.contact_pairs, from.history.records());
+  std::vector<ContactPair> kept;
+  std::ranges::copy_if(from.contact_pairs, std::back_inserter(kept),
+                       [&](const ContactPair& contact_pair) { return keeps_law(contact_pair); });
   table_.take(std::move(kept), from.history.records());
   make_room(last_);
   history = {};
   history.set_columns(static_cast<int>(laws_.remembered()));
   history.resize(from.history.records());
   history.clear(0, history.records());
-  if (keeps_debts()) history.set_debts(patches().size());
+  if (keeps_debts()) history.set_debts(contact_pairs().size());
   const int fields = std::min(history.fields(), from.history.fields());
   for (int record = 0; record < history.records(); record += lane_count) {
     Lanes* to = history.at(record);
@@ -61,18 +62,19 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   }
 }
 
-bool ContactSystem::keeps_law(const Patch& patch) const {
-  return starts_from_a_state() && laws_before_.kind(patch.first, patch.second) == laws_.kind(patch.first, patch.second);
+bool ContactSystem::keeps_law(const ContactPair& contact_pair) const {
+  return starts_from_a_state() && laws_before_.kind(contact_pair.first, contact_pair.second) ==
+                                      laws_.kind(contact_pair.first, contact_pair.second);
 }
 
 /// A limb thinner than contact sees would press its own far side out.
 void ContactSystem::refuse_self_overlap() const {
-  for (const Patch& patch : patches())
-    if (patch.of_itself() && overlaps(view(patch)))
+  for (const ContactPair& contact_pair : contact_pairs())
+    if (contact_pair.of_itself() && overlaps(view(contact_pair)))
       throw InputError(fmt::format(
           "'{}' overlaps itself at the start, or is thinner somewhere than contact sees into it, a segment and a skin: "
           "{:.3g} m; give it a finer outline, or leave [contact] self_contact out",
-          model_.bodies[patch.first].name, model_.outline_of(patch.first).spacing + skin_));
+          model_.bodies[contact_pair.first].name, model_.outline_of(contact_pair.first).spacing + skin_));
 }
 
 }  // namespace pliant

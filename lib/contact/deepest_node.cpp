@@ -149,9 +149,9 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
   });
 }
 
-/// Of the nodes of a patch of a body with itself, as contact sees them.
-void look_at_itself(const PatchView& view, DeepestNode& deepest) {
-  const int body = view.patch.first;
+/// Of the nodes of a contact pair of a body with itself, as contact sees them.
+void look_at_itself(const PairView& view, DeepestNode& deepest) {
+  const int body = view.contact_pair.first;
   const OutlineShape& shape = view.model.outline_of(body);
   for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
@@ -219,11 +219,11 @@ DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const
 DeepestNode deepest_contact(const Model& model, const Outlines& outlines, const ContactSystem& contact) {
   std::vector<BodyPair> pairs;
   DeepestNode of_itself;
-  for (const Patch& patch : contact.patches())
-    if (patch.of_itself())
-      look_at_itself({model, outlines, patch, contact.skin(), thread_scratch()}, of_itself);
+  for (const ContactPair& contact_pair : contact.contact_pairs())
+    if (contact_pair.of_itself())
+      look_at_itself({model, outlines, contact_pair, contact.skin(), thread_scratch()}, of_itself);
     else
-      pairs.push_back(patch.pair());
+      pairs.push_back(contact_pair.pair());
   const DeepestNode of_two = deepest_node(model, outlines.position, pairs);
   return is_deeper(of_itself, of_two) ? of_itself : of_two;
 }

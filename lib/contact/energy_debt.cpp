@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
-#include "contact/patch_table.hpp"
+#include "contact/pair_table.hpp"
 
 namespace pliant {
 
-void carry_forces(const Model& model, const Patch& old, const PatchForces& from, const Patch& now, PatchForces& to) {
-  thread_local PatchForces aside[2];  // their memory is found once
+void carry_forces(const Model& model, const ContactPair& old, const PairForceBuffer& from, const ContactPair& now,
+                  PairForceBuffer& to) {
+  thread_local PairForceBuffer aside[2];  // their memory is found once
   for (int side = 0; side < 2; ++side) {
     const int begin = old.entry[side], end = begin + old.forces(side).count;
     aside[side].x.assign(from.x.begin() + begin, from.x.begin() + end);
@@ -24,17 +25,18 @@ void carry_forces(const Model& model, const Patch& old, const PatchForces& from,
   }
 }
 
-double repayment(double debt, double most, const PatchTotals& now, double work_before) {
+double repayment(double debt, double most, const PairTotals& now, double work_before) {
   const double square = std::max(now.work * now.work, work_before * work_before);
   if (square == 0 || now.squares == 0) return 0;
   const double limit = most / now.squares;
   return -std::clamp(debt / square, -limit, limit) * now.work;
 }
 
-void scale_forces(const Patch& patch, double factor, PatchForces& forces) {
+void scale_forces(const ContactPair& contact_pair, double factor, PairForceBuffer& forces) {
   if (factor == 1) return;
   for (int side = 0; side < 2; ++side)
-    for (int i = patch.entry[side]; i < patch.entry[side] + padded(patch.forces(side).count); i += lane_count)
+    for (int i = contact_pair.entry[side]; i < contact_pair.entry[side] + padded(contact_pair.forces(side).count);
+         i += lane_count)
       for (double* force : {&forces.x[i], &forces.y[i]}) store(force, factor * load(force));
 }
 

@@ -25,12 +25,12 @@ struct ContactHistory {
 
   std::vector<Lanes> numbers;  ///< [eights of records][columns]
   std::int32_t columns = first_of_law;
-  std::vector<double> owed;  ///< [patches] where debts are kept: what they owe, J/m
-  /// [patches] likewise, see energy_debt.hpp: of the forces that repaid there, besides all that stays.
+  std::vector<double> owed;  ///< [contact pairs] where debts are kept: what they owe, J/m
+  /// [contact pairs] likewise, see energy_debt.hpp: of the forces that repaid there, besides all that stays.
   std::vector<double> repaid;
   /// Which evaluation of the forces left it behind, where debts are kept; 0: none.
   std::int64_t evaluation = 0;
-  /// Where records stand (patch_table.hpp): histories with the same number have each node's at the same place.
+  /// Where records stand (pair_table.hpp): histories with the same number have each node's at the same place.
   std::int64_t layout = 0;
 
   /// Columns for so many numbers of laws, and none of the records.
@@ -38,9 +38,9 @@ struct ContactHistory {
     columns = first_of_law + fields;
     numbers.clear();
   }
-  void set_debts(std::size_t patches) { owed.assign(patches, 0.0), repaid.assign(patches, 0.0); }
-  void copy_debt(const ContactHistory& from, int old_patch, int patch) {
-    owed[patch] = from.owed[old_patch], repaid[patch] = from.repaid[old_patch];
+  void set_debts(std::size_t contact_pairs) { owed.assign(contact_pairs, 0.0), repaid.assign(contact_pairs, 0.0); }
+  void copy_debt(const ContactHistory& from, int old_contact_pair, int contact_pair) {
+    owed[contact_pair] = from.owed[old_contact_pair], repaid[contact_pair] = from.repaid[old_contact_pair];
   }
   void resize(int records) { numbers.resize(static_cast<std::size_t>(records / lane_count * columns)); }
   int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }

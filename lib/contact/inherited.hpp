@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/contact_pair.hpp"
 #include "contact/history.hpp"
-#include "contact/patch.hpp"
 
 namespace pliant {
 
@@ -23,13 +23,13 @@ struct PairLaws {
 
 /// What contact remembers at the end of a run, for another one of the same bodies.
 struct InheritedContact {
-  std::vector<Patch> patches;
+  std::vector<ContactPair> contact_pairs;
   PairLaws laws;
-  ContactHistory history;  ///< whose records the patches name
+  ContactHistory history;  ///< whose records the contact pairs name
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("patches", patches), visitor("laws", laws), visitor("history", history);
+    visitor("contact_pairs", contact_pairs), visitor("laws", laws), visitor("history", history);
   }
 };
 

@@ -18,7 +18,7 @@ constexpr double least_depth_share = 1e-9;
 /// A node below the other body's outline.
 struct DeepNode {
   double depth, share, stored;  ///< m, -, J/m
-  Vec2 normal;                  ///< unit, from the first body of the patch to the second
+  Vec2 normal;                  ///< unit, from the first body of the contact pair to the second
 };
 
 /// What compression stores at a gap below 0, J/m2: all but cohesion's share, which is there at gap 0 too.
@@ -27,7 +27,7 @@ Lanes compression(const Law& law, Lanes gap) {
   return law(gap).energy - law(Lanes{}).energy;
 }
 
-std::vector<DeepNode> deep_nodes(const PatchView& view) {
+std::vector<DeepNode> deep_nodes(const PairView& view) {
   std::vector<DeepNode> nodes;
   const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Projection& p) {
     const LaneBits deep =
@@ -41,7 +41,7 @@ std::vector<DeepNode> deep_nodes(const PatchView& view) {
   const auto look = [&](const auto& law) {
     for_each_beside(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
   };
-  std::visit(look, view.patch.law);
+  std::visit(look, view.contact_pair.law);
   return nodes;
 }
 
@@ -68,9 +68,10 @@ bool on_one_lattice(const Model& model, int first, int second) {
 }
 
 /// Of a lattice: neighbours move apart in proportion to their distance.
-double growth_of(const Model& model, const Patch& patch, double separation, const Vec2& normal) {
-  const Vec2 image(patch.images * model.scene.period.value_or(0), 0);
-  const double distance = (model.bodies[patch.second].centre + image - model.bodies[patch.first].centre).dot(normal);
+double growth_of(const Model& model, const ContactPair& contact_pair, double separation, const Vec2& normal) {
+  const Vec2 image(contact_pair.images * model.scene.period.value_or(0), 0);
+  const double distance =
+      (model.bodies[contact_pair.second].centre + image - model.bodies[contact_pair.first].centre).dot(normal);
   return distance > separation ? 1 + separation / distance : 1;
 }
 
@@ -85,19 +86,20 @@ double rounded_up(double length) {
 InitialOverlap initial_overlap(const Model& model, const ContactSystem& contact, const Outlines& outlines) {
   InitialOverlap overlap;
   std::pair<int, int> last{-1, -1};
-  for (const Patch& patch : contact.patches()) {
-    const std::vector<DeepNode> nodes = deep_nodes({model, outlines, patch, contact.skin(), thread_scratch()});
+  for (const ContactPair& contact_pair : contact.contact_pairs()) {
+    const std::vector<DeepNode> nodes = deep_nodes({model, outlines, contact_pair, contact.skin(), thread_scratch()});
     if (nodes.empty()) continue;
-    const std::pair<int, int> pair{patch.first, patch.second};  // patches with several images stand side by side
+    // contact pairs with several images stand side by side
+    const std::pair<int, int> pair{contact_pair.first, contact_pair.second};
     overlap.pairs += pair != last;
     last = pair;
     const DeepNode& deepest = deepest_of(nodes);
     const double separation = separation_along(deepest.normal, nodes);
-    if (on_one_lattice(model, patch.first, patch.second))
-      overlap.growth = std::max(overlap.growth, growth_of(model, patch, separation, deepest.normal));
+    if (on_one_lattice(model, contact_pair.first, contact_pair.second))
+      overlap.growth = std::max(overlap.growth, growth_of(model, contact_pair, separation, deepest.normal));
     for (const DeepNode& node : nodes) overlap.stored += node.stored;
     if (deepest.depth <= overlap.depth) continue;
-    overlap.first = patch.first, overlap.second = patch.second;
+    overlap.first = contact_pair.first, overlap.second = contact_pair.second;
     overlap.depth = deepest.depth, overlap.share = deepest.share, overlap.separation = separation;
   }
   return overlap;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bodies/outline.hpp"
-#include "contact/patch.hpp"
+#include "contact/contact_pair.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {

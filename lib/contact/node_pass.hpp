@@ -8,10 +8,10 @@ namespace pliant {
 /// Calls visit(pass, slave side, i, projection) where some of eight slave nodes, from position i of the pass on, are
 /// beside the master, at most `outward` off, m.
 template <class Visit>
-void for_each_beside(const PatchView& view, double outward, Visit&& visit) {
-  const ForceRuns runs = runs_in_table(view.patch);
+void for_each_beside(const PairView& view, double outward, Visit&& visit) {
+  const ForceRuns runs = runs_in_table(view.contact_pair);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (view.patch.nodes[slave_side].count == 0) continue;
+    if (view.contact_pair.nodes[slave_side].count == 0) continue;
     const Pass pass = make_pass(view, slave_side, runs);
     fill_window(view, 1 - slave_side);
     for (int i = 0; i < pass.nodes.count; i += lane_count) {

@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "contact/contact_pair.hpp"
 #include "contact/master_window.hpp"
-#include "contact/patch.hpp"
 
 namespace pliant {
 
@@ -24,7 +24,7 @@ struct Pass {
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
-  double elapsed = 0;  ///< PatchView's
+  double elapsed = 0;  ///< PairView's
 };
 
 struct SlaveNodes {
@@ -46,36 +46,37 @@ struct ForceRun {
   int begin;
 };
 using ForceRuns = std::array<ForceRun, 2>;  ///< [sides]
-/// As they stand in the buffers of all patches.
-inline ForceRuns runs_in_table(const Patch& patch) {
-  return {{{patch.forces(0), patch.entry[0]}, {patch.forces(1), patch.entry[1]}}};
+/// As they stand in the buffers of all contact pairs.
+inline ForceRuns runs_in_table(const ContactPair& contact_pair) {
+  return {{{contact_pair.forces(0), contact_pair.entry[0]}, {contact_pair.forces(1), contact_pair.entry[1]}}};
 }
 
 /// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
-inline Pass make_pass(const PatchView& view, int slave_side, const ForceRuns& runs) {
+inline Pass make_pass(const PairView& view, int slave_side, const ForceRuns& runs) {
   const Model& model = view.model;
-  const Patch& patch = view.patch;
+  const ContactPair& contact_pair = view.contact_pair;
   const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
   const std::vector<double>& present = view.outlines.tributary_length;
   return {&model.outline_of(slave),
           &model.outline_of(view.body(master_side)),
           &view.outlines.position.x[offset],
           &view.outlines.position.y[offset],
-          patch.nodes[slave_side],
-          patch.slave_segments[slave_side],
+          contact_pair.nodes[slave_side],
+          contact_pair.slave_segments[slave_side],
           view.shift(slave_side),
-          patch.record[slave_side],
-          runs[slave_side].begin + patch.nodes[slave_side].begin - runs[slave_side].arc.begin,
-          runs[master_side].begin + patch.window[master_side].begin - runs[master_side].arc.begin,
-          {patch.segments[master_side].begin - patch.window[master_side].begin, patch.segments[master_side].count},
+          contact_pair.record[slave_side],
+          runs[slave_side].begin + contact_pair.nodes[slave_side].begin - runs[slave_side].arc.begin,
+          runs[master_side].begin + contact_pair.window[master_side].begin - runs[master_side].arc.begin,
+          {contact_pair.segments[master_side].begin - contact_pair.window[master_side].begin,
+           contact_pair.segments[master_side].count},
           present.empty() ? model.outline_of(slave).tributary_length.data() : &present[offset],
           !present.empty()};
 }
 
-inline void fill_window(const PatchView& view, int master_side) {
+inline void fill_window(const PairView& view, int master_side) {
   const int master = view.body(master_side), offset = view.model.outline_offset[master];
   view.window.fill(view.model.outline_of(master), &view.outlines.position.x[offset], &view.outlines.position.y[offset],
-                   view.patch.window[master_side], view.shift(master_side), view.skin);
+                   view.contact_pair.window[master_side], view.shift(master_side), view.skin);
 }
 
 }  // namespace pliant

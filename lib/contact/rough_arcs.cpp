@@ -69,7 +69,7 @@ Arc select_arc(const ContactSide& side, const Box& box, const Vec2& d, double le
   return {begin, end - begin + 1};
 }
 
-Vec2 direction(const Model& model, const Patch& pair, const Box& a, const Box& b) {
+Vec2 direction(const Model& model, const ContactPair& pair, const Box& a, const Box& b) {
   const double dy = b.y_min + b.y_max - a.y_min - a.y_max;
   if (model.bodies[pair.second].wall || model.bodies[pair.first].wall) return {0, dy > 0 ? 1.0 : -1.0};
   const Vec2 d(b.x_min + b.x_max - a.x_min - a.x_max, dy);
@@ -97,8 +97,8 @@ Arc covering_arc(const std::vector<char>& flags) {
   return {best_end % n, n - best_gap};
 }
 
-void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b, const Patch& pair,
-                     double margin, Arc (&arcs)[2]) {
+void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b,
+                     const ContactPair& pair, double margin, Arc (&arcs)[2]) {
   arcs[0] = arcs[1] = {};
   // A segment more, because the end of a touched segment that lies beyond the plane may be the far one.
   const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "contact/patch.hpp"
+#include "contact/contact_pair.hpp"
 
 namespace pliant {
 
@@ -21,8 +21,8 @@ struct ContactSide {
 ContactSide make_side(const Model& model, const OutlineField& outlines, int body, double shift);
 
 /// Arcs that hold everything near, by boxes and the planes that bound the bodies across the line of centres.
-void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b, const Patch& pair,
-                     double margin, Arc (&arcs)[2]);
+void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b,
+                     const ContactPair& pair, double margin, Arc (&arcs)[2]);
 
 /// The shortest cyclic run that holds all flagged nodes of a closed outline.
 Arc covering_arc(const std::vector<char>& flags);

@@ -8,11 +8,11 @@ namespace pliant {
 struct PairMotion {
   ArcField slave_x, slave_y, master_x, master_y;
 
-  void fill(const PatchView& view, const OutlineField& field, int slave_side) {
+  void fill(const PairView& view, const OutlineField& field, int slave_side) {
     const int slave = view.body(slave_side), master = view.body(1 - slave_side);
     const OutlineShape &of_slave = view.model.outline_of(slave), &of_master = view.model.outline_of(master);
-    const Arc segments{view.patch.nodes[slave_side].begin, view.patch.slave_segments[slave_side]},
-        window = view.patch.window[1 - slave_side];
+    const Arc segments{view.contact_pair.nodes[slave_side].begin, view.contact_pair.slave_segments[slave_side]},
+        window = view.contact_pair.window[1 - slave_side];
     slave_x.fill(&field.x[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
     slave_y.fill(&field.y[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
     master_x.fill(&field.x[view.model.outline_offset[master]], window, of_master, 0, 0);

@@ -19,7 +19,7 @@ struct SegmentPass {
   const MasterWindow& window;
   const PairMotion* moved;   ///< in the step; null: not known
   const PairMotion* speeds;  ///< now; null: nobody asks
-  PatchForces& forces;
+  PairForceBuffer& forces;
 };
 
 struct Totals {
@@ -249,7 +249,7 @@ void integrate_pass(const Law& law, const SegmentPass& at, const ContactHistory&
 
 }  // namespace
 
-double integrated_length(const PatchView& view) {
+double integrated_length(const PairView& view) {
   struct Length {
     Lanes sum{};
     void begin(const SegmentPairs&, const Linear&) {}
@@ -258,14 +258,14 @@ double integrated_length(const PatchView& view) {
     void in_fan_of(const FanShape& f) { sum += f.weight[0]; }
     void end() {}
   } length;
-  for_each_pass(view, runs_in_table(view.patch), [&](const Pass& pass, int) {
+  for_each_pass(view, runs_in_table(view.contact_pair), [&](const Pass& pass, int) {
     thread_quadrature().run(pass, view.window, gap_ranges(Frictionless{}, view.window.depth()), length);
   });
   return sum(length.sum);
 }
 
-PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const ContactHistory& from,
-                            ContactHistory& to, PatchForces& forces) {
+PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const ContactHistory& from, ContactHistory& to,
+                          PairForceBuffer& forces) {
   Totals totals;
   const auto both_passes = [&]<class Law>(const Law& law) {
     if constexpr (!remembers<Law>) {
@@ -283,9 +283,9 @@ PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const 
       });
     }
   };
-  std::visit(both_passes, view.patch.law);
-  PatchTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};
-  result.squares = totals.squares / normal_stiffness_of(view.patch.law);
+  std::visit(both_passes, view.contact_pair.law);
+  PairTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};
+  result.squares = totals.squares / normal_stiffness_of(view.contact_pair.law);
   return result;
 }
 

@@ -8,15 +8,15 @@
 
 namespace pliant {
 
-/// Forces of one patch whose contact is integrated over segments (docs/method.md 4), added to buffers of these runs,
-/// from one history into another.
-PatchTotals integrate_patch(const PatchView& view, const ForceRuns& runs, const ContactHistory& from,
-                            ContactHistory& to, PatchForces& forces);
+/// Forces of one contact pair whose contact is integrated over segments (docs/method.md 4), added to buffers of these
+/// runs, from one history into another.
+PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const ContactHistory& from, ContactHistory& to,
+                          PairForceBuffer& forces);
 
-/// Length of both sides of such a patch inside the other, each pass with weight 1/2, m.
-double integrated_length(const PatchView& view);
+/// Length of both sides of such a contact pair inside the other, each pass with weight 1/2, m.
+double integrated_length(const PairView& view);
 
-/// Of such a patch the slave nodes in touch: mean gaps, tractions and slip over their part of the contact.
-std::vector<ContactPoint> inspect_integrated(const PatchView& view, const ContactHistory& history);
+/// Of such a contact pair the slave nodes in touch: mean gaps, tractions and slip over their part of the contact.
+std::vector<ContactPoint> inspect_integrated(const PairView& view, const ContactHistory& history);
 
 }  // namespace pliant

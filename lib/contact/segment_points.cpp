@@ -70,7 +70,7 @@ std::vector<double> shears_of(const Law& law, const Pass& pass, const ContactHis
   return shears;
 }
 
-void add_points(const PatchView& view, const Pass& pass, int side, const NodeTractions& found,
+void add_points(const PairView& view, const Pass& pass, int side, const NodeTractions& found,
                 const ContactHistory& history, std::vector<ContactPoint>& points) {
   for (int i = 0; i < pass.nodes.count; ++i) {
     const double weight = found.weight[i];
@@ -93,17 +93,17 @@ void add_points(const PatchView& view, const Pass& pass, int side, const NodeTra
 
 }  // namespace
 
-std::vector<ContactPoint> inspect_integrated(const PatchView& view, const ContactHistory& history) {
+std::vector<ContactPoint> inspect_integrated(const PairView& view, const ContactHistory& history) {
   std::vector<ContactPoint> points;
   NodeTractions found;
   const auto both_passes = [&]<class Law>(const Law& law) {
     if constexpr (!remembers<Law>)
-      for_each_pass(view, runs_in_table(view.patch), [&](const Pass& pass, int side) {
+      for_each_pass(view, runs_in_table(view.contact_pair), [&](const Pass& pass, int side) {
         found.find(law, pass, view.window, shears_of(law, pass, history));
         add_points(view, pass, side, found, history, points);
       });
   };
-  std::visit(both_passes, view.patch.law);
+  std::visit(both_passes, view.contact_pair.law);
   return points;
 }
 

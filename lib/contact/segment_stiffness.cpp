@@ -28,10 +28,11 @@ Span8 within_reach(const SlaveSegments& slaves, const MasterSegment& m, double r
   return part;
 }
 
-void add_pass(const PatchView& view, const Pass& pass, int slave_side, const double (&factor)[2],
+void add_pass(const PairView& view, const Pass& pass, int slave_side, const double (&factor)[2],
               std::vector<double>& entries) {
   const MasterWindow& window = view.window;
-  const double stiffness = 0.5 * stiffness_of(view.patch.law), reach = reach_of(view.patch.law), skin = view.skin;
+  const double stiffness = 0.5 * stiffness_of(view.contact_pair.law), reach = reach_of(view.contact_pair.law),
+               skin = view.skin;
   thread_local SlaveArc arc;
   arc.fill(pass);
   for (int i = 0; i < pass.segments; i += lane_count) {
@@ -71,8 +72,8 @@ void add_pass(const PatchView& view, const Pass& pass, int slave_side, const dou
 
 }  // namespace
 
-void add_integrated_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
-  for_each_pass(view, runs_in_table(view.patch),
+void add_integrated_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries) {
+  for_each_pass(view, runs_in_table(view.contact_pair),
                 [&](const Pass& pass, int slave_side) { add_pass(view, pass, slave_side, factor, entries); });
 }
 

@@ -57,9 +57,9 @@ struct SlaveArc {
 
 /// Calls visit(pass, slave side) for both passes, with the master's window filled.
 template <class Visit>
-void for_each_pass(const PatchView& view, const ForceRuns& runs, Visit&& visit) {
+void for_each_pass(const PairView& view, const ForceRuns& runs, Visit&& visit) {
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (view.patch.slave_segments[slave_side] == 0) continue;
+    if (view.contact_pair.slave_segments[slave_side] == 0) continue;
     Pass pass = make_pass(view, slave_side, runs);
     fill_window(view, 1 - slave_side);
     visit(pass, slave_side);

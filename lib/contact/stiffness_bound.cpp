@@ -2,51 +2,52 @@
 
 #include <algorithm>
 
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 
 /// Patches that were weighed keep what they had: weighed where they are now, they would miss what they can still reach
 /// before they are searched again.
-void StiffnessBound::follow_layout(const PatchTable& table) {
+void StiffnessBound::follow_layout(const PairTable& table) {
   std::vector<double> entries(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
   auto old = weighed_.begin();
-  for (const Patch& patch : table.patches()) {
-    if (patch.found > seen_) continue;
-    while (comes_before(*old, patch)) ++old;
+  for (const ContactPair& contact_pair : table.contact_pairs()) {
+    if (contact_pair.found > seen_) continue;
+    while (comes_before(*old, contact_pair)) ++old;
     for (int side = 0; side < 2; ++side)
-      std::copy_n(entries_.data() + old->entry[side], patch.forces(side).count, entries.data() + patch.entry[side]);
+      std::copy_n(entries_.data() + old->entry[side], contact_pair.forces(side).count,
+                  entries.data() + contact_pair.entry[side]);
   }
   entries_ = std::move(entries);
-  weighed_ = table.patches();
+  weighed_ = table.contact_pairs();
 }
 
 std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std::vector<double>& compliance) {
-  const PatchTable& table = contact.table();
+  const PairTable& table = contact.table();
   const bool all = layout_ != table.laid_out();
   if (all) follow_layout(table);
   std::vector<int> found;
   std::vector<char> changed(model_.bodies.size(), all);
   const auto note = [&](int p) {
-    const Patch& patch = table.patches()[p];
-    if (patch.found <= seen_) return;
+    const ContactPair& contact_pair = table.contact_pairs()[p];
+    if (contact_pair.found <= seen_) return;
     found.push_back(p);
-    weighed_[p] = patch;
-    changed[patch.first] = changed[patch.second] = 1;
+    weighed_[p] = contact_pair;
+    changed[contact_pair.first] = changed[contact_pair.second] = 1;
   };
   if (all || contact.refreshes() != seen_ + 1)
     for (int p = 0; p < table.count(); ++p) note(p);
   else
     for (int p : contact.found()) note(p);
   parallel_for(static_cast<int>(found.size()), [&](int i) {
-    const Patch& patch = table.patches()[found[i]];
+    const ContactPair& contact_pair = table.contact_pairs()[found[i]];
     for (int side = 0; side < 2; ++side)
-      std::fill_n(entries_.data() + patch.entry[side], padded(patch.forces(side).count), 0.0);
-    const double a = compliance[patch.first], b = compliance[patch.second];
+      std::fill_n(entries_.data() + contact_pair.entry[side], padded(contact_pair.forces(side).count), 0.0);
+    const double a = compliance[contact_pair.first], b = compliance[contact_pair.second];
     // (u - v)^2 <= (1 + s) u^2 + (1 + 1/s) v^2; s = b/a gives either body the same bound a + b.
     const double factor[2] = {a > 0 ? 1 + b / a : 0, b > 0 ? 1 + a / b : 0};
-    if (!patch.is_empty()) add_patch_stiffness(contact.view(patch), factor, entries_);
+    if (!contact_pair.is_empty()) add_patch_stiffness(contact.view(contact_pair), factor, entries_);
   });
   layout_ = table.laid_out(), seen_ = contact.refreshes();
   std::vector<int> bodies;

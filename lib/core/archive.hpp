@@ -12,10 +12,10 @@
 
 namespace pliant {
 
-/// What persists enumerates itself: `template <class V> void visit(V&& v) { v("time", time_); v("patches", patches_);
-/// }`, each member once, in any order that stays. Members are plain values, arrays of them, strings, or enumerate
-/// themselves, or are arrays of what does. A class that derives more from what it enumerates has loaded(), which is
-/// called after its members have been read. Save, load, hash and comparison are then one mechanism.
+/// What persists enumerates itself: `template <class V> void visit(V&& v) { v("time", time_); v("contact pairs",
+/// patches_); }`, each member once, in any order that stays. Members are plain values, arrays of them, strings, or
+/// enumerate themselves, or are arrays of what does. A class that derives more from what it enumerates has loaded(),
+/// which is called after its members have been read. Save, load, hash and comparison are then one mechanism.
 template <class T>
 concept Enumerates = requires(T& object) { object.visit([](const char*, auto&) {}); };
 

@@ -14,7 +14,7 @@ namespace pliant {
 
 /// What one force evaluation found.
 struct Evaluation {
-  PatchTotals contact;
+  PairTotals contact;
   double damping_power = 0;  ///< what materials and the dashpots of contacts and supports dissipate, W/m
   double least_jacobian = 1e300;
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected

@@ -17,7 +17,7 @@ struct StepStatistics {
   std::int64_t by_stability = 0;  ///< ... and the bound of stability
 
   void add(const StepReport& report, double time) {
-    const PatchTotals& contact = report.evaluation.contact;
+    const PairTotals& contact = report.evaluation.contact;
     if (contact.deepest > deepest) deepest = contact.deepest, deepest_time = time;
     contacts = std::max<std::int64_t>(contacts, contact.contacts);
     by_error += report.governed_by[0] == 'e';

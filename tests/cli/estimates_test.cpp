@@ -38,7 +38,7 @@ TEST(LargestPressure, IsThatOfTheWallsUntilTheEnd) {
 TEST(Penetration, OfRigidDiscsCarriesTheForceOfItsSegment) {
   // INDEPENDENT: pressure kn (depth - curvature x^2 / 2), summed by the midpoint rule over the overlap of two
   // parabolas.
-  ContactPair pair;
+  PairEstimate pair;
   pair.stiffness = 3e9;
   pair.curvature = 2 / 0.05 + 2 / 0.08;
   pair.width = 0.05;
@@ -106,23 +106,23 @@ TEST(ContactPairs, AreThoseThatCanMeet) {
   scene.contacts.push_back(testing::mohr_coulomb(50, 0.3));
   scene.contacts[1].first = "hard", scene.contacts[1].second = "soft";
   const Model model = build_model(scene);
-  const std::vector<ContactPair> pairs = contact_pairs(model, ContactLaws(model));
+  const std::vector<PairEstimate> pairs = pair_estimates(model, ContactLaws(model));
   // EXACT: the only soft disc does not meet itself, and the wall no wall.
   ASSERT_EQ(pairs.size(), 4U);
   const auto find = [&](const std::string& first, const std::string& second) {
-    for (const ContactPair& pair : pairs)
+    for (const PairEstimate& pair : pairs)
       if (pair.first == first && pair.second == second) return pair;
     ADD_FAILURE() << first << " - " << second;
-    return ContactPair{};
+    return PairEstimate{};
   };
-  const ContactPair mixed = find("hard", "soft");
+  const PairEstimate mixed = find("hard", "soft");
   EXPECT_EQ(mixed.law, "mohr-coulomb");
   EXPECT_FALSE(mixed.automatic);
   EXPECT_EQ(mixed.stiffness, 50);
   EXPECT_EQ(mixed.shear_stiffness, 50);
   EXPECT_EQ(mixed.curvature, 0) << "the soft disc flattens";
   find("soft", "wall of hard");
-  const ContactPair hard = find("hard", "hard");
+  const PairEstimate hard = find("hard", "hard");
   EXPECT_TRUE(hard.automatic);
   EXPECT_EQ(hard.shear_stiffness, 0);
   EXPECT_DOUBLE_EQ(hard.curvature, 4);

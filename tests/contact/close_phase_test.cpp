@@ -28,12 +28,12 @@ struct Pair {
   const ContactRig& rig;
   BodyPair bodies;
   double margin;
-  Patch patch;
+  ContactPair contact_pair;
 
   Pair(const ContactRig& r, const BodyPair& b, double m) : rig(r), bodies(b), margin(m) {
-    patch.first = b.first, patch.second = b.second, patch.images = b.images;
+    contact_pair.first = b.first, contact_pair.second = b.second, contact_pair.images = b.images;
     MasterWindow scratch;
-    find_arcs(rig.model, rig.outlines.position, patch, margin, 0.5 * margin, scratch);
+    find_arcs(rig.model, rig.outlines.position, contact_pair, margin, 0.5 * margin, scratch);
   }
   int body(int side) const { return side == 0 ? bodies.first : bodies.second; }
   const OutlineShape& shape(int side) const { return rig.model.outlines[rig.model.bodies[body(side)].outline]; }
@@ -56,7 +56,7 @@ int missed(const Pair& pair, int turns) {
         const double distance =
             distance_to_segment(pair.node(side, k), pair.node(1 - side, s), pair.node(1 - side, s + 1));
         if (distance > pair.margin * (1 - 1e-12)) continue;
-        const Arc &own = pair.patch.nodes[side], &other = pair.patch.segments[1 - side];
+        const Arc &own = pair.contact_pair.nodes[side], &other = pair.contact_pair.segments[1 - side];
         result += !holds(pair.shape(side), own.begin, own.count, k) ||
                   !holds(pair.shape(1 - side), other.begin, other.count, s);
       }
@@ -85,7 +85,7 @@ TEST(ClosePhase, MissesNothingOnRandomOutlines) {
     ContactRig rig(scene);
     press_together(rig, random, random.uniform(-0.1, 0.1));
     const Pair pair(rig, {0, 1, 0}, random.uniform(0.01, 0.15));
-    near += pair.patch.nodes[0].count > 0;
+    near += pair.contact_pair.nodes[0].count > 0;
     EXPECT_EQ(missed(pair, 0), 0);
   }
   EXPECT_GT(near, 1500);
@@ -121,7 +121,7 @@ TEST(ClosePhase, ArcsAreShort) {
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
   for (int side = 0; side < 2; ++side)
-    for (const Arc& arc : {pair.patch.nodes[side], pair.patch.segments[side]}) {
+    for (const Arc& arc : {pair.contact_pair.nodes[side], pair.contact_pair.segments[side]}) {
       EXPECT_GT(arc.count, 5);
       EXPECT_LT(arc.count, 15);
     }
@@ -135,8 +135,8 @@ TEST(ClosePhase, NothingBetweenBodiesApart) {
   const ContactRig rig(scene);
   const Pair pair(rig, {0, 1, 0}, 0.05);
   for (int side = 0; side < 2; ++side) {
-    EXPECT_EQ(pair.patch.nodes[side].count, 0);
-    EXPECT_EQ(pair.patch.segments[side].count, 0);
+    EXPECT_EQ(pair.contact_pair.nodes[side].count, 0);
+    EXPECT_EQ(pair.contact_pair.segments[side].count, 0);
   }
 }
 

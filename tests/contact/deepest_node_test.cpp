@@ -14,8 +14,8 @@ namespace {
 DeepestNode deepest_in(const Scene& scene) {
   const Bench bench(scene);
   std::vector<BodyPair> pairs;
-  for (const Patch& patch : bench.forces.contact().patches())
-    pairs.push_back({patch.first, patch.second, patch.images});
+  for (const ContactPair& contact_pair : bench.forces.contact().contact_pairs())
+    pairs.push_back({contact_pair.first, contact_pair.second, contact_pair.images});
   return deepest_node(bench.model, bench.state.outlines.position, pairs);
 }
 

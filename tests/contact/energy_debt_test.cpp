@@ -54,7 +54,7 @@ void expect_debts_to_be_gains(const ContactRule& rule) {
     const State before = simulation.state();
     const double energy = gained(simulation), debt = owed(simulation);
     simulation.step(step % 3 == 0 ? simulation.state().time + 0.7 * dt_before + 1e-3 : 1000);
-    if (simulation.state().time > 1 && simulation.forces().contact().patches().empty()) break;  // out of sight
+    if (simulation.state().time > 1 && simulation.forces().contact().contact_pairs().empty()) break;  // out of sight
     const State& after = simulation.state();
     const double dt = after.time - before.time, grown = owed(simulation) - debt;
     const double gain = gained(simulation) - energy - dt * dt / 8 * squares(model, after.force) +
@@ -185,24 +185,25 @@ TEST(EnergyDebt, is_what_bodies_and_contacts_gain) {
   expect_debts_to_be_gains(cohesive(100, 1, 0.03, 1));
 }
 
-/// What a patch does to each node of a side, however often it shows the node, N/m.
-std::vector<double> on_nodes(const Model& model, const Patch& patch, int side, const PatchForces& forces) {
+/// What a contact pair does to each node of a side, however often it shows the node, N/m.
+std::vector<double> on_nodes(const Model& model, const ContactPair& contact_pair, int side,
+                             const PairForceBuffer& forces) {
   const int n = model.outline_of(side).count;
   std::vector<double> sum(static_cast<std::size_t>(n));
-  for (int i = 0; i < patch.forces(side).count; ++i)
-    sum[(patch.forces(side).begin + i + 2 * n) % n] += forces.x[patch.entry[side] + i];
+  for (int i = 0; i < contact_pair.forces(side).count; ++i)
+    sum[(contact_pair.forces(side).begin + i + 2 * n) % n] += forces.x[contact_pair.entry[side] + i];
   return sum;
 }
 
-/// EXACT: a patch that goes all the way around a body and further shows some nodes twice. Laid out anew, with other
-/// nodes twice, it did to each node what it did before.
+/// EXACT: a contact pair that goes all the way around a body and further shows some nodes twice. Laid out anew, with
+/// other nodes twice, it did to each node what it did before.
 TEST(EnergyDebt, forces_go_along_with_their_nodes) {
   const Model model = build_model(glancing_blow(frictionless(100)));
   const int n = model.outline_of(0).count, room = 2 * n;
-  Patch old, now;
-  for (Patch* patch : {&old, &now}) patch->second = 1, patch->entry[1] = room;
+  ContactPair old, now;
+  for (ContactPair* contact_pair : {&old, &now}) contact_pair->second = 1, contact_pair->entry[1] = room;
   for (int side : {0, 1}) old.segments[side] = {-1, n + 2}, now.segments[side] = {-4, n + 3};
-  PatchForces before{LinedNumbers(2 * room), LinedNumbers(2 * room)}, after = before;
+  PairForceBuffer before{LinedNumbers(2 * room), LinedNumbers(2 * room)}, after = before;
   std::iota(before.x.begin(), before.x.end(), 1.0);
   carry_forces(model, old, before, now, after);
   for (int side : {0, 1}) EXPECT_EQ(on_nodes(model, now, side, after), on_nodes(model, old, side, before));

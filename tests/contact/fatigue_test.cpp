@@ -82,10 +82,10 @@ constexpr double length = 0.5 * (9 * 0.11 + 2 * 0.105 + 11 * 0.1);
 
 int bonded_nodes(const ContactRig& rig) {
   int nodes = 0;
-  for (const Patch& patch : rig.contact.patches())
+  for (const ContactPair& contact_pair : rig.contact.contact_pairs())
     for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < patch.nodes[side].count; ++i)
-        nodes += rig.committed.number(patch.record[side] + i, ContactHistory::first_of_law) < 1;
+      for (int i = 0; i < contact_pair.nodes[side].count; ++i)
+        nodes += rig.committed.number(contact_pair.record[side] + i, ContactHistory::first_of_law) < 1;
   return nodes;
 }
 
@@ -260,7 +260,7 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
 TEST(Fatigue, BodiesFromAfarHaveNoBonds) {
   ContactRig rig(block_on_bar(bond_rule(), 2));
   rig.step();
-  for (const Patch& patch : rig.contact.patches()) ASSERT_TRUE(patch.is_empty());
+  for (const ContactPair& contact_pair : rig.contact.contact_pairs()) ASSERT_TRUE(contact_pair.is_empty());
   rig.move(1, {0, -2 + 0.0005});
   rig.step();
   ASSERT_EQ(rig.committed.fields(), 3);

@@ -187,30 +187,30 @@ TEST(ContactHistory, refuses_other_columns) {
 }
 
 /// EXACT: so are contacts that no search leaves behind, before anything follows from them.
-TEST(PatchTable, refuses_other_bodies) {
+TEST(PairTable, refuses_other_bodies) {
   Scene scene = nodal_scene();
   scene.contacts = {frictionless(100)};
   for (int i = 0; i < 2; ++i) add_body(scene, outline_shape("", regular(12, 0.2, 0)), BodyKind::rigid, {0.41 * i, 0});
   ContactRig rig(scene);
   rig.refresh();
   const auto with = [&](auto&& change) {
-    PatchTable table = rig.contact.table();
+    PairTable table = rig.contact.table();
     table.visit([&](const char*, auto& value) {
       if constexpr (requires { value.front().segments; }) change(value.front());
     });
     return table;
   };
-  EXPECT_NO_THROW(with([](Patch&) {}).loaded());
-  const auto far = [](Patch& p) { p.nodes[0].begin += 12 << 24, p.segments[0].begin += 12 << 24; };
+  EXPECT_NO_THROW(with([](ContactPair&) {}).loaded());
+  const auto far = [](ContactPair& p) { p.nodes[0].begin += 12 << 24, p.segments[0].begin += 12 << 24; };
   EXPECT_NO_THROW(with(far).loaded()) << "as along a wall, periods away";
-  EXPECT_THROW(with([](Patch& p) { p.second = 2; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.first = -1; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.first = 1, p.second = 0; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.images = 1 << 30; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.nodes[0].begin = 1660944399; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.segments[1].count = -1; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.record[1] = 1 << 20; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](Patch& p) { p.entry[0] = 3; }).loaded(), ArchiveError) << "not at an eight";
+  EXPECT_THROW(with([](ContactPair& p) { p.second = 2; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.first = -1; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.first = 1, p.second = 0; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.images = 1 << 30; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.nodes[0].begin = 1660944399; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.segments[1].count = -1; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.record[1] = 1 << 20; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.entry[0] = 3; }).loaded(), ArchiveError) << "not at an eight";
 }
 
 }  // namespace

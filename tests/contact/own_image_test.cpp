@@ -177,7 +177,7 @@ TEST(OwnImages, count_as_in_twice_the_period) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(fabric[i], twice[i], 1e-9) << "EXACT: the mean over alike pairs";
 }
 
-/// EXACT: self-contact looks at one outline, images at two: neither takes the other's patches for its own.
+/// EXACT: self-contact looks at one outline, images at two: neither takes the other's contact pairs for its own.
 TEST(OwnImages, are_no_self_contact) {
   const auto end = [](bool self_contact) {
     Scene scene = ellipses(BodyKind::compliant, 1, mohr_coulomb(100, 0.4));

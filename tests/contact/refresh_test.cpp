@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "contact/master_window.hpp"
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "support/contact_rig.hpp"
 
@@ -106,7 +106,7 @@ TEST(Refresh, searches_pairs_that_moved) {
   ContactRig rig(two_rows(random, {}, false));
   rig.evaluate();
   const long at_first = rig.contact.pairs_searched();
-  const std::vector<Patch> patches = rig.contact.patches();
+  const std::vector<ContactPair> contact_pairs = rig.contact.contact_pairs();
   long refreshes = 0;
   for (int step = 0; step < 100; ++step) {
     rig.move(11, {0.002, 0});
@@ -114,13 +114,13 @@ TEST(Refresh, searches_pairs_that_moved) {
   }
   EXPECT_GT(refreshes, 3);
   EXPECT_GT(rig.contact.pairs_searched(), at_first);
-  for (const Patch& patch : patches) {
-    if (patch.second == 11) continue;
-    const auto same = std::ranges::find_if(rig.contact.patches(), [&](const Patch& other) {
-      return other.first == patch.first && other.second == patch.second;
+  for (const ContactPair& contact_pair : contact_pairs) {
+    if (contact_pair.second == 11) continue;
+    const auto same = std::ranges::find_if(rig.contact.contact_pairs(), [&](const ContactPair& other) {
+      return other.first == contact_pair.first && other.second == contact_pair.second;
     });
-    ASSERT_NE(same, rig.contact.patches().end());
-    EXPECT_TRUE(same->nodes[0] == patch.nodes[0] && same->segments[1] == patch.segments[1]);
+    ASSERT_NE(same, rig.contact.contact_pairs().end());
+    EXPECT_TRUE(same->nodes[0] == contact_pair.nodes[0] && same->segments[1] == contact_pair.segments[1]);
   }
   EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "no more than it has others";
 }
@@ -139,8 +139,9 @@ TEST(Refresh, does_not_search_what_only_shakes) {
   }
   EXPECT_GT(refreshes, 6);
   EXPECT_LE(rig.contact.pairs_searched() - at_first, 11 * refreshes) << "pairs of the one that moves";
-  for (const Patch& patch : rig.contact.patches())
-    if (patch.second < 10) EXPECT_EQ(patch.found, 1) << patch.first << " and " << patch.second;
+  for (const ContactPair& contact_pair : rig.contact.contact_pairs())
+    if (contact_pair.second < 10)
+      EXPECT_EQ(contact_pair.found, 1) << contact_pair.first << " and " << contact_pair.second;
 }
 
 /// What is remembered of a node, by its body, side, number and the other body.
@@ -148,13 +149,14 @@ using Memories = std::map<std::tuple<int, int, int, int>, std::pair<double, doub
 
 Memories memories(const ContactRig& rig) {
   Memories all;
-  for (const Patch& patch : rig.contact.patches())
+  for (const ContactPair& contact_pair : rig.contact.contact_pairs())
     for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < patch.nodes[side].count; ++i) {
-        const int body = side == 0 ? patch.first : patch.second, n = rig.count(body), at = patch.nodes[side].begin + i;
-        all[{patch.first, patch.second, side, at - turn_of(at, n) * n}] = {
-            rig.committed.number(patch.record[side] + i, ContactHistory::place),
-            rig.committed.number(patch.record[side] + i, ContactHistory::slip)};
+      for (int i = 0; i < contact_pair.nodes[side].count; ++i) {
+        const int body = side == 0 ? contact_pair.first : contact_pair.second, n = rig.count(body),
+                  at = contact_pair.nodes[side].begin + i;
+        all[{contact_pair.first, contact_pair.second, side, at - turn_of(at, n) * n}] = {
+            rig.committed.number(contact_pair.record[side] + i, ContactHistory::place),
+            rig.committed.number(contact_pair.record[side] + i, ContactHistory::slip)};
       }
   return all;
 }
@@ -176,7 +178,7 @@ void follow_history(int sample, Carried& carried) {
     rig.show();
     if (!rig.contact.candidates_hold(rig.outlines.position)) {
       const Memories before = memories(rig);
-      const std::vector<Patch> old = rig.contact.patches();
+      const std::vector<ContactPair> old = rig.contact.contact_pairs();
       const auto layout = rig.contact.table().laid_out();
       rig.contact.renew_candidates(rig.outlines, rig.committed);
       for (const auto& [node, now] : memories(rig)) {
@@ -189,7 +191,7 @@ void follow_history(int sample, Carried& carried) {
       }
       if (layout == rig.contact.table().laid_out())
         for (std::size_t p = 0; p < old.size(); ++p)
-          carried.moved += old[p].record[0] != rig.contact.patches()[p].record[0];
+          carried.moved += old[p].record[0] != rig.contact.contact_pairs()[p].record[0];
       else
         ++carried.layouts;
     }
@@ -197,8 +199,8 @@ void follow_history(int sample, Carried& carried) {
   }
 }
 
-/// EXACT: nodes keep what is remembered of them, whether their patch was searched, grew out of its place or all were
-/// laid out anew; nodes that were apart remember nothing.
+/// EXACT: nodes keep what is remembered of them, whether their contact pair was searched, grew out of its place or all
+/// were laid out anew; nodes that were apart remember nothing.
 TEST(Refresh, carries_the_history_along) {
   Carried carried;
   for (int sample = 0; sample < 5; ++sample) follow_history(sample, carried);
@@ -232,7 +234,7 @@ TEST(Refresh, bound_of_stiffness_follows) {
   EXPECT_NE(bound.of_body(rig.contact, 11), before);
 }
 
-/// INDEPENDENT: whatever patches were searched, replaced or laid out anew, no body touches over a length of more
+/// INDEPENDENT: whatever contact pairs were searched, replaced or laid out anew, no body touches over a length of more
 /// stiffness than its bound, in which each record counts for both bodies with twice its own.
 TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
   int touching = 0, layouts = 0;
@@ -243,7 +245,7 @@ TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
     ContactRig rig(scene);
     StiffnessBound bound(rig.model);
     const std::vector<double> compliance(rig.model.bodies.size(), 1.0);
-    // Up and down by about a skin, so that patches are kept that go far from where others were laid out.
+    // Up and down by about a skin, so that contact pairs are kept that go far from where others were laid out.
     double speed[12], swing[12], height[12] = {};
     for (double& v : speed) v = random.uniform(0.05, 0.5);
     for (double& v : swing) v = random.uniform(0.3, 1.5) * rig.contact.skin();
@@ -257,11 +259,11 @@ TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
       layouts += layout != rig.contact.table().laid_out();
       layout = rig.contact.table().laid_out();
       std::vector<double> felt(rig.model.bodies.size());
-      for (const Patch& patch : rig.contact.patches()) {
-        if (patch.is_empty()) continue;
-        const double all = stiffness_of(patch.law) *
-                           touching_length({rig.model, rig.outlines, patch, rig.contact.skin(), thread_scratch()});
-        felt[patch.first] += all, felt[patch.second] += all;
+      for (const ContactPair& contact_pair : rig.contact.contact_pairs()) {
+        if (contact_pair.is_empty()) continue;
+        const double all = stiffness_of(contact_pair.law) * touching_length({rig.model, rig.outlines, contact_pair,
+                                                                             rig.contact.skin(), thread_scratch()});
+        felt[contact_pair.first] += all, felt[contact_pair.second] += all;
       }
       for (int body = 0; body < 12; ++body) {
         const std::vector<double> most = bound.of_body(rig.contact, body);

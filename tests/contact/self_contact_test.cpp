@@ -114,7 +114,7 @@ TEST(SelfContact, an_overlap_later_is_a_contact) {
   scene.contact.quadrature = ContactQuadrature::nodes;  // over segments the deepest place may be between nodes
   testing::ContactRig rig(scene);
   rig.step();
-  ASSERT_TRUE(rig.contact.patches().empty());
+  ASSERT_TRUE(rig.contact.contact_pairs().empty());
   const Body& body = rig.model.bodies[0];
   for (int i = 0; i < rig.model.shape_of(body).nodes(); ++i) {
     const std::size_t at = rig.model.batches[body.batch].offset + 2 * i;

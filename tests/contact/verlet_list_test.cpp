@@ -119,7 +119,7 @@ std::vector<Seen> searches_along(double angle) {
       const std::vector<double> of_nodes = bound.of_body(rig.contact, i);
       seen.stiffness.push_back(std::accumulate(of_nodes.begin(), of_nodes.end(), 0.0));
     }
-    for (const Patch& patch : rig.contact.patches()) seen.pairs += !patch.is_empty();
+    for (const ContactPair& contact_pair : rig.contact.contact_pairs()) seen.pairs += !contact_pair.is_empty();
     result.push_back(seen);
   }
   return result;

@@ -21,7 +21,7 @@ Counts count(const Scene& scene, double from, double until) {
   Counts counts;
   while (simulation.state().time < until) {
     simulation.step(until);
-    counts.pairs = std::max(counts.pairs, static_cast<double>(contact.patches().size()) / bodies);
+    counts.pairs = std::max(counts.pairs, static_cast<double>(contact.contact_pairs().size()) / bodies);
     counts.records =
         std::max(counts.records, static_cast<double>(simulation.state().memory.contact.records()) / bodies);
   }

@@ -96,7 +96,7 @@ TEST_P(AStart, goes_on_as_the_run_did) {
   EXPECT_EQ(next.state().dissipated, 0);
   EXPECT_EQ(next.overlap().pairs, 0) << "contact at the start is no overlap of a packing";
   EXPECT_NEAR(next.audit().energy.mechanical(), whole.audit().energy.mechanical(), 1e-13) << "EXACT";
-  start.contact.patches = {}, start.contact.history = {};
+  start.contact.contact_pairs = {}, start.contact.history = {};
   Simulation forgetful(model, &start);
   step_evenly(whole, after), step_evenly(next, after), step_evenly(forgetful, after);
   EXPECT_EQ(whole.state().time, (before + after) * dt);
@@ -177,7 +177,7 @@ TEST(StartPoint, pairs_with_another_law_begin_anew) {
   lifted.position.rigid[1] += 2;
   EXPECT_LT(wholeness(3, lifted, 3).first, 1) << "EXACT: bonds of a law that is new to them reach so far";
   const StartPoint far_apart = wholeness(1e-30, lifted).second;
-  ASSERT_TRUE(far_apart.contact.patches.empty());
+  ASSERT_TRUE(far_apart.contact.contact_pairs.empty());
   EXPECT_EQ(wholeness(3, far_apart, 3).first, 1) << "EXACT: nor where the pair was too far apart to be watched";
 }
 

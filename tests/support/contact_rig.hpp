@@ -85,7 +85,7 @@ class ContactRig {
   OutlineField forces;
   ContactSystem contact;
   ContactHistory committed, trial;
-  PatchTotals totals;
+  PairTotals totals;
   double dissipated = 0;
 };
 

@@ -32,7 +32,7 @@ inline Arc hull(const Arc& a, const Arc& b) {
 /// Two bodies, or a body and its own periodic image, that come close, and the parts of their outlines that may touch
 /// before they are searched again. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
 /// and segments far from them along the outline, as those of the second.
-struct Patch {
+struct ContactPair {
   int first = 0, second = 0;  ///< bodies, first <= second
   int images = 0;             ///< periods to add to x of the second to see it from the first
   int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
@@ -63,34 +63,34 @@ struct Patch {
     visitor("record", record), visitor("entry", entry), visitor("found", found);
   }
 
-  /// Outline nodes that this patch puts forces on.
+  /// Outline nodes that this contact pair puts forces on.
   Arc forces(int side) const {
     const Arc n = nodes[side], s{segments[side].begin, segments[side].count == 0 ? 0 : segments[side].count + 1};
     return n.count == 0 ? s : s.count == 0 ? n : hull(n, s);
   }
 };
 
-/// The order in which patches stand.
-inline bool comes_before(const Patch& a, const Patch& b) {
+/// The order in which contact pairs stand.
+inline bool comes_before(const ContactPair& a, const ContactPair& b) {
   return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part);
 }
 
-/// A patch with all that work on it looks at.
-struct PatchView {
+/// A contact pair with all that work on it looks at.
+struct PairView {
   const Model& model;
   const Outlines& outlines;  ///< in motion
-  const Patch& patch;
+  const ContactPair& contact_pair;
   double skin;                          ///< m
   MasterWindow& window;                 ///< scratch: of the pass at hand
   double elapsed = 0;                   ///< in the step that led here, s; 0: not known
   const OutlineField* moved = nullptr;  ///< ways of outline nodes in that step, m; null: none
-  int body(int side) const { return side == 0 ? patch.first : patch.second; }
+  int body(int side) const { return side == 0 ? contact_pair.first : contact_pair.second; }
   /// Periods to add to x of one side's body, m.
-  double shift(int side) const { return side == 0 ? 0.0 : patch.images * model.scene.period.value_or(0); }
+  double shift(int side) const { return side == 0 ? 0.0 : contact_pair.images * model.scene.period.value_or(0); }
 };
 
-/// What the two passes of a patch add up to.
-struct PatchTotals {
+/// What the two passes of a contact pair add up to.
+struct PairTotals {
   double stored = 0;         ///< normal and elastic tangential energy, J/m
   double dissipated = 0;     ///< work of slip and damage since the last accepted step, J/m
   double damping_power = 0;  ///< of dashpots, W/m
@@ -102,8 +102,8 @@ struct PatchTotals {
   double pull = 0;         ///< of the forces before on rigid bodies, times the accelerations then, W/(m s)
   double squares = 0;      ///< of pressures over kn, times lengths, J/m
 
-  /// Another patch's, but for what belongs to one alone.
-  void add(const PatchTotals& other) {
+  /// Another contact pair's, but for what belongs to one alone.
+  void add(const PairTotals& other) {
     stored += other.stored, dissipated += other.dissipated, damping_power += other.damping_power;
     deepest = deepest > other.deepest ? deepest : other.deepest;
     contacts += other.contacts;
@@ -116,9 +116,9 @@ struct PatchTotals {
   }
 };
 
-/// Where the forces of all patches go: each arc has its own stretch, in whole lanes, 0 beyond its last node, gathered
-/// later by its body in a fixed order.
-struct PatchForces {
+/// Where the forces of all contact pairs go: each arc has its own stretch, in whole lanes, 0 beyond its last node,
+/// gathered later by its body in a fixed order.
+struct PairForceBuffer {
   LinedNumbers x, y;  ///< N/m
 
   template <class Visitor>

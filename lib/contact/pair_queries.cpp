@@ -1,4 +1,4 @@
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-double touching_length(const PatchView& view) {
-  if (view.patch.integrated) return integrated_length(view);
+double touching_length(const PairView& view) {
+  if (view.contact_pair.integrated) return integrated_length(view);
   Lanes length{};
   for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0);
@@ -20,16 +20,17 @@ double touching_length(const PatchView& view) {
   return sum(length);
 }
 
-void locate_newcomers(const PatchView& view, ContactHistory& history) {
-  const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.patch.law);
-  if (!shears || view.patch.integrated) return;
-  for_each_beside(view, reach_of(view.patch.law) + view.skin, [&](const Pass& pass, int, int i, const Projection& p) {
-    Lanes& place = history.at(pass.record + i)[ContactHistory::place];
-    place = select(p.hit & (place != place), place_of(p), place);
-  });
+void locate_newcomers(const PairView& view, ContactHistory& history) {
+  const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.contact_pair.law);
+  if (!shears || view.contact_pair.integrated) return;
+  for_each_beside(view, reach_of(view.contact_pair.law) + view.skin,
+                  [&](const Pass& pass, int, int i, const Projection& p) {
+                    Lanes& place = history.at(pass.record + i)[ContactHistory::place];
+                    place = select(p.hit & (place != place), place_of(p), place);
+                  });
 }
 
-void start_records(const PatchView& view, ContactHistory& history) {
+void start_records(const PairView& view, ContactHistory& history) {
   const auto start = [&]<class Law>(const Law& law) {
     if constexpr (remembers<Law>)
       for_each_beside(view, law.start_reach(), [&](const Pass& pass, int, int i, const Projection& p) {
@@ -37,11 +38,11 @@ void start_records(const PatchView& view, ContactHistory& history) {
         store_record(history, pass.record + i, law.at_start(p.gap, beside));
       });
   };
-  std::visit(start, view.patch.law);
+  std::visit(start, view.contact_pair.law);
 }
 
-bool overlaps(const PatchView& view) {
-  if (view.patch.integrated) return touching_length(view) > 0;
+bool overlaps(const PairView& view) {
+  if (view.contact_pair.integrated) return touching_length(view) > 0;
   bool found = false;
   for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
     found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
@@ -86,10 +87,9 @@ void add_beside(const Projection& p, int lane, double skin, double stiffness, Ca
 }
 
 /// Of one pass: half the tributary lengths times the stiffness.
-void add_pass_stiffness(const PatchView& view, int slave_side, const double (&factor)[2],
-                        std::vector<double>& entries) {
-  const double stiffness = stiffness_of(view.patch.law), outward = reach_of(view.patch.law) + view.skin;
-  const Pass pass = make_pass(view, slave_side, runs_in_table(view.patch));
+void add_pass_stiffness(const PairView& view, int slave_side, const double (&factor)[2], std::vector<double>& entries) {
+  const double stiffness = stiffness_of(view.contact_pair.law), outward = reach_of(view.contact_pair.law) + view.skin;
+  const Pass pass = make_pass(view, slave_side, runs_in_table(view.contact_pair));
   fill_window(view, 1 - slave_side);
   thread_local Carried carried;
   carried.clear(view.window.count() + 1);
@@ -108,10 +108,10 @@ void add_pass_stiffness(const PatchView& view, int slave_side, const double (&fa
 
 }  // namespace
 
-void add_patch_stiffness(const PatchView& view, const double (&factor)[2], std::vector<double>& entries) {
-  if (view.patch.integrated) return add_integrated_stiffness(view, factor, entries);
+void add_patch_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries) {
+  if (view.contact_pair.integrated) return add_integrated_stiffness(view, factor, entries);
   for (int slave_side = 0; slave_side < 2; ++slave_side)
-    if (view.patch.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);
+    if (view.contact_pair.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);
 }
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "contact/patch_forces.hpp"
+#include "contact/pair_forces.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,14 +8,14 @@
 #include "contact/encounter.hpp"
 #include "contact/energy_debt.hpp"
 #include "contact/node_pass.hpp"
-#include "contact/patch_queries.hpp"
+#include "contact/pair_queries.hpp"
 #include "contact/reactions.hpp"
 #include "contact/segment_pass.hpp"
 
 namespace pliant {
 namespace {
 
-/// PatchTotals before the lanes are added up.
+/// PairTotals before the lanes are added up.
 struct LaneTotals {
   Lanes stored{}, dissipated{}, damping_power{}, squares{}, deepest{};
   int contacts = 0;
@@ -72,16 +72,16 @@ Force force_on(const Projection& p, Lanes weight, Lanes pressure, Lanes shear) {
           couple};
 }
 
-/// What the passes of a patch go on from and add to.
+/// What the passes of a contact pair go on from and add to.
 struct Accounts {
   const ContactHistory& from;
   ContactHistory& to;
-  PatchForces& forces;
+  PairForceBuffer& forces;
   LaneTotals totals = {};
 };
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accounts& accounts) {
+void compute_pass(const Law& law, const Pass& pass, const PairView& view, Accounts& accounts) {
   auto& [from, to, forces, totals] = accounts;
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
@@ -127,7 +127,7 @@ void compute_pass(const Law& law, const Pass& pass, const PatchView& view, Accou
   reactions.add_to(&forces.x[pass.master_force], &forces.y[pass.master_force]);
 }
 
-void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
+void look_up_velocities(const PairView& view, int slave_side, Pass& pass) {
   const OutlineField& velocity = view.outlines.velocity;
   const int slave = view.model.outline_offset[view.body(slave_side)],
             master = view.model.outline_offset[view.body(1 - slave_side)];
@@ -135,14 +135,14 @@ void look_up_velocities(const PatchView& view, int slave_side, Pass& pass) {
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
-/// Both passes of a patch. What a law does not need is neither kept nor added up.
+/// Both passes of a contact pair. What a law does not need is neither kept nor added up.
 template <class Law>
-PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRuns& runs, Accounts accounts) {
+PairTotals compute_passes(const Law& law, const PairView& view, const ForceRuns& runs, Accounts accounts) {
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
-    if (view.patch.nodes[slave_side].count == 0) continue;
+    if (view.contact_pair.nodes[slave_side].count == 0) continue;
     Pass pass = make_pass(view, slave_side, runs);
     if constexpr (has_dashpot<Law>) {
       look_up_velocities(view, slave_side, pass);
@@ -154,16 +154,16 @@ PatchTotals compute_passes(const Law& law, const PatchView& view, const ForceRun
   const LaneTotals& totals = accounts.totals;
   double damping_power = 0;
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
-  PatchTotals result{sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest),
-                     totals.contacts};
+  PairTotals result{sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest),
+                    totals.contacts};
   result.squares = sum(totals.squares) / law.normal_stiffness;
   return result;
 }
 
-/// Work of a side's forces over the way of a step, of those before and those now: the rest of PatchTotals.
+/// Work of a side's forces over the way of a step, of those before and those now: the rest of PairTotals.
 class StepWork {
  public:
-  StepWork(const PatchView& view, const PatchStep& step, int side)
+  StepWork(const PairView& view, const PairStep& step, int side)
       : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {}
 
   /// A vector of nodes from `node` on, whose entries in buffers of forces begin at `entry`, and their forces now.
@@ -186,22 +186,22 @@ class StepWork {
                      old_y * (r.acceleration.y() + r.spin_acceleration * arm_x),
                  pull_);
   }
-  void add_to(PatchTotals& totals) const {
+  void add_to(PairTotals& totals) const {
     totals.work_before += before_, totals.work += now_work_, totals.pull += pull_;
   }
 
  private:
   const OutlineField& now_;
-  const PatchStep& step_;
+  const PairStep& step_;
   const RigidStep* rigid_;
   double before_ = 0, now_work_ = 0, pull_ = 0;
 };
 
-/// Copies one side's forces into the buffer of all patches, in whole lanes, 0 beyond the last node. `work`: null where
-/// nobody asks.
-void put_out(const PatchView& view, StepWork* work, int side, const ForceRun& run, const PatchForces& near,
-             PatchForces& forces) {
-  const int entry = view.patch.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
+/// Copies one side's forces into the buffer of all contact pairs, in whole lanes, 0 beyond the last node. `work`: null
+/// where nobody asks.
+void put_out(const PairView& view, StepWork* work, int side, const ForceRun& run, const PairForceBuffer& near,
+             PairForceBuffer& forces) {
+  const int entry = view.contact_pair.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
             offset = view.model.outline_offset[body];
   int node = run.arc.begin;
   for (int i = 0; i < run.arc.count; i += lane_count, node += lane_count) {
@@ -215,18 +215,19 @@ void put_out(const PatchView& view, StepWork* work, int side, const ForceRun& ru
 
 }  // namespace
 
-PatchTotals compute_patch(const PatchView& view, const PatchStep* step, const ContactHistory& from, ContactHistory& to,
-                          PatchForces& forces) {
+PairTotals compute_pair(const PairView& view, const PairStep* step, const ContactHistory& from, ContactHistory& to,
+                        PairForceBuffer& forces) {
   // Both passes add to both sides: near at hand, and what comes of it goes out once.
-  thread_local PatchForces near;
-  const Patch& patch = view.patch;
-  ForceRuns runs = runs_in_table(patch);
+  thread_local PairForceBuffer near;
+  const ContactPair& contact_pair = view.contact_pair;
+  ForceRuns runs = runs_in_table(contact_pair);
   runs[0].begin = 0, runs[1].begin = padded(runs[0].arc.count) + lane_count;
   const std::size_t size = static_cast<std::size_t>(runs[1].begin + padded(runs[1].arc.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
   const auto passes = [&](const auto& law) { return compute_passes(law, view, runs, Accounts{from, to, near}); };
-  PatchTotals totals = patch.integrated ? integrate_patch(view, runs, from, to, near) : std::visit(passes, patch.law);
+  PairTotals totals =
+      contact_pair.integrated ? integrate_pair(view, runs, from, to, near) : std::visit(passes, contact_pair.law);
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
   // last.
   for (const int side : {1, 0}) {

@@ -1,0 +1,208 @@
+#include "contact/pair_table.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <span>
+#include <utility>
+
+#include "contact/contact_laws.hpp"
+#include "core/archive.hpp"
+#include "core/parallel.hpp"
+
+namespace pliant {
+namespace {
+
+/// Room beyond what a new layout needs, for contact pairs that outgrow their places until the next.
+int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
+
+/// As of nodes that met nothing yet.
+void forget_all(const ContactPair& contact_pair, int side, ContactHistory& history) {
+  const int begin = contact_pair.record[side], count = padded(contact_pair.nodes[side].count);
+  history.clear(begin, count);
+  const std::span<const Remembered> remembered = remembered_of(contact_pair.law);
+  for (int record = begin; record < begin + count; record += lane_count)
+    for (std::size_t k = 0; k < remembered.size(); ++k)
+      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(remembered[k].at_first);
+}
+
+/// The records of one side's nodes, from where another contact pair of the same bodies has them.
+void carry(const Model& model, const ContactPair& from, const ContactHistory& old, const ContactPair& to, int side,
+           ContactHistory& history) {
+  forget_all(to, side, history);
+  for_each_shared(model, to, side, from.nodes[side], to.nodes[side], [&](int old_at, int at, int count) {
+    for (int i = 0; i < count; ++i) history.copy_record(old, from.record[side] + old_at + i, to.record[side] + at + i);
+  });
+}
+
+/// Whole eights of records.
+void copy_eights(const ContactHistory& from, int first, int count, ContactHistory& to, int at) {
+  std::copy_n(from.at(first), count / lane_count * from.columns, to.at(at));
+}
+
+/// The records of a contact pair alone, on which another may come to stand; none is left where they were.
+void take_aside(ContactHistory& history, ContactPair& contact_pair, ContactHistory& aside) {
+  const int size[2] = {padded(contact_pair.nodes[0].count), padded(contact_pair.nodes[1].count)};
+  aside.columns = history.columns;
+  aside.resize(size[0] + size[1]);
+  for (int side = 0; side < 2; ++side) {
+    const int from = contact_pair.record[side], to = side * size[0];
+    copy_eights(history, from, size[side], aside, to);
+    history.clear(from, size[side]);
+    contact_pair.record[side] = to;
+  }
+}
+
+/// Space for one side's numbers: where they were if they fit, else behind all others. False without room there.
+bool find_room(int wanted, int had, int room, int& used, int& at) {
+  if (wanted <= had) return true;
+  if (used + wanted > room) return false;
+  at = used;
+  used += wanted;
+  return true;
+}
+
+}  // namespace
+
+const ContactPair* PairTable::find(const BodyPair& pair, int part) const {
+  const auto at = std::partition_point(contact_pairs_.begin(), contact_pairs_.end(), [&](const ContactPair& p) {
+    return std::pair(p.pair(), p.part) < std::pair(pair, part);
+  });
+  return at == contact_pairs_.end() || at->pair() != pair || at->part != part ? nullptr : &*at;
+}
+
+void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fields, ContactHistory& history) {
+  std::sort(contact_pairs.begin(), contact_pairs.end(), comes_before);
+  records_ = entries_ = 0;
+  for (ContactPair& contact_pair : contact_pairs)
+    for (int side = 0; side < 2; ++side) {
+      contact_pair.record[side] = std::exchange(records_, records_ + padded(contact_pair.nodes[side].count));
+      contact_pair.entry[side] = std::exchange(entries_, entries_ + padded(contact_pair.forces(side).count));
+    }
+  record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
+  ContactHistory next;
+  next.set_columns(static_cast<int>(fields));
+  next.resize(record_room_);
+  next.clear(0, record_room_);
+  next.evaluation = history.evaluation;
+  if (model_.scene.keeps_energy_debts()) next.set_debts(contact_pairs.size());
+  parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
+    const ContactPair& contact_pair = contact_pairs[p];
+    const ContactPair* from = find(contact_pair.pair(), contact_pair.part);
+    for (int side = 0; side < 2; ++side)
+      if (from)
+        carry(model_, *from, history, contact_pair, side, next);
+      else
+        forget_all(contact_pair, side, next);
+    if (from && !next.owed.empty()) next.copy_debt(history, static_cast<int>(from - contact_pairs_.data()), p);
+  });
+  history = std::move(next);
+  history.layout = laid_out_ = ++layout_;
+  moved_from_ = none;
+  contact_pairs_ = std::move(contact_pairs);
+  index();
+}
+
+void PairTable::take(std::vector<ContactPair> contact_pairs, int records) {
+  contact_pairs_ = std::move(contact_pairs);
+  records_ = record_room_ = records;
+  entries_ = 0;
+  for (ContactPair& contact_pair : contact_pairs_)
+    for (int side = 0; side < 2; ++side)
+      contact_pair.entry[side] = std::exchange(entries_, entries_ + padded(contact_pair.forces(side).count));
+  entry_room_ = entries_;
+  loaded();
+}
+
+/// Where the numbers of new contact pairs go. False, and nothing taken, where there is no room.
+bool PairTable::take_room(const std::vector<int>& at, std::vector<ContactPair>& now, ContactHistory& history) {
+  int records = records_, entries = entries_;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const ContactPair& old = contact_pairs_[at[i]];
+    ContactPair& contact_pair = now[i];
+    for (int side = 0; side < 2; ++side) {
+      contact_pair.record[side] = old.record[side], contact_pair.entry[side] = old.entry[side];
+      if (!find_room(padded(contact_pair.nodes[side].count), padded(old.nodes[side].count), record_room_, records,
+                     contact_pair.record[side]) ||
+          !find_room(padded(contact_pair.forces(side).count), padded(old.forces(side).count), entry_room_, entries,
+                     contact_pair.entry[side]))
+        return false;
+    }
+  }
+  records_ = records, entries_ = entries;
+  history.layout = ++layout_;
+  return true;
+}
+
+void PairTable::note_moves(const std::vector<int>& at, const std::vector<ContactPair>& now) {
+  moved_.clear();
+  moved_from_ = layout_ - 1;
+  for (std::size_t i = 0; i < at.size(); ++i)
+    for (int side = 0; side < 2; ++side) {
+      const ContactPair& old = contact_pairs_[at[i]];
+      moved_.push_back({old.record[side], padded(old.nodes[side].count)});
+      if (now[i].record[side] != old.record[side])
+        moved_.push_back({now[i].record[side], padded(now[i].nodes[side].count)});
+    }
+}
+
+void PairTable::follow(const ContactHistory& from, ContactHistory& to) const {
+  if (to.layout == from.layout && to.records() == from.records()) return;
+  if (to.layout != moved_from_ || from.layout != layout_ || to.records() != from.records()) {
+    to = from;
+    return;
+  }
+  parallel_for(static_cast<int>(moved_.size()),
+               [&](int i) { copy_eights(from, moved_[i][0], moved_[i][1], to, moved_[i][0]); });
+  to.owed = from.owed, to.repaid = from.repaid;
+  to.evaluation = from.evaluation;
+  to.layout = from.layout;
+}
+
+void PairTable::move_history(const ContactPair& old, const ContactPair& now, ContactHistory& history) const {
+  thread_local ContactHistory aside;  // its memory is found once
+  ContactPair there = old;
+  take_aside(history, there, aside);
+  for (int side = 0; side < 2; ++side) carry(model_, there, aside, now, side, history);
+}
+
+ArcEntries PairTable::arc_of(const ContactPair& contact_pair, int side) const {
+  const Arc arc = contact_pair.forces(side);
+  return {arc.begin, arc.count, contact_pair.entry[side]};
+}
+
+/// What no search leaves behind, as in a checkpoint of something else.
+void PairTable::refuse_others() const {
+  constexpr int far = 1 << 29;  // nodes along a wall, or periods: sums of them do not overflow
+  const int bodies = static_cast<int>(model_.bodies.size());
+  const auto is_arc = [](const Arc& arc) { return std::abs(arc.begin) < far && arc.count >= 0 && arc.count < far; };
+  const auto fits = [](int at, int count, int room) { return at >= 0 && at % lane_count == 0 && at <= room - count; };
+  const auto is_one = [&](const ContactPair& contact_pair) {
+    bool good = contact_pair.first >= 0 && contact_pair.first <= contact_pair.second && contact_pair.second < bodies &&
+                contact_pair.images > -far && contact_pair.images < far;
+    for (int side = 0; good && side < 2; ++side)
+      good = is_arc(contact_pair.nodes[side]) && is_arc(contact_pair.segments[side]) &&
+             is_arc(contact_pair.window[side]) &&
+             fits(contact_pair.record[side], padded(contact_pair.nodes[side].count), record_room_) &&
+             fits(contact_pair.entry[side], padded(contact_pair.forces(side).count), entry_room_);
+    return good;
+  };
+  const bool sound = 0 <= records_ && records_ <= record_room_ && 0 <= entries_ && entries_ <= entry_room_;
+  if (!sound || !std::ranges::all_of(contact_pairs_, is_one)) throw ArchiveError("contacts are those of other bodies");
+}
+
+void PairTable::index() {
+  arc_begin_.assign(model_.bodies.size() + 1, 0);
+  for (const ContactPair& contact_pair : contact_pairs_)
+    ++arc_begin_[contact_pair.first + 1], ++arc_begin_[contact_pair.second + 1];
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) arc_begin_[b + 1] += arc_begin_[b];
+  std::vector<int> next(arc_begin_.begin(), arc_begin_.end() - 1);
+  arcs_.resize(2 * contact_pairs_.size());
+  slot_.resize(contact_pairs_.size());
+  for (std::size_t p = 0; p < contact_pairs_.size(); ++p)
+    for (int side = 0; side < 2; ++side) {
+      slot_[p][side] = next[side == 0 ? contact_pairs_[p].first : contact_pairs_[p].second]++;
+      arcs_[slot_[p][side]] = arc_of(contact_pairs_[p], side);
+    }
+}
+
+}  // namespace pliant
