@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/pass.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/rough_arcs.hpp"
 #include "contact/self_contact.hpp"
 #include "core/lanes.hpp"

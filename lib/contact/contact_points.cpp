@@ -24,7 +24,7 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
 std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const ContactHistory& history) {
   if (view.contact_pair.integrated) return inspect_integrated(view, history);
   std::vector<ContactPoint> points;
-  const auto add_points = [&]<class Law>(const Law& law, const Pass& pass, int side, int i, const Projection& p) {
+  const auto add_points = [&]<class Law>(const Law& law, const HalfPass& pass, int side, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     const SlaveNodes nodes = load_slaves(pass, i);
     Record<Law> now;

@@ -29,7 +29,7 @@ Lanes compression(const Law& law, Lanes gap) {
 
 std::vector<DeepNode> deep_nodes(const PairView& view) {
   std::vector<DeepNode> nodes;
-  const auto add_nodes = [&](const auto& law, const Pass& pass, int side, int i, const Projection& p) {
+  const auto add_nodes = [&](const auto& law, const HalfPass& pass, int side, int i, const Projection& p) {
     const LaneBits deep =
         first_lanes(pass.nodes.count - i) & p.hit & (p.gap < -least_depth_share * view.window.longest());
     const Lanes stored = 0.5 * load_slaves(pass, i).tributary_length * compression(law, p.gap);

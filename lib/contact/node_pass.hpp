@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/pass.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/projection.hpp"
 
 namespace pliant {
@@ -12,7 +12,7 @@ void for_each_beside(const PairView& view, double outward, Visit&& visit) {
   const ForceRuns runs = runs_in_table(view.contact_pair);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.contact_pair.nodes[slave_side].count == 0) continue;
-    const Pass pass = make_pass(view, slave_side, runs);
+    const HalfPass pass = make_half_pass(view, slave_side, runs);
     fill_window(view, 1 - slave_side);
     for (int i = 0; i < pass.nodes.count; i += lane_count) {
       const SlaveNodes nodes = load_slaves(pass, i);

@@ -35,7 +35,7 @@ void forget(Lanes* to) {
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
 /// on.
-Lanes gap_rate(const Pass& pass, int i, const Projection& p, LaneBits touching) {
+Lanes gap_rate(const HalfPass& pass, int i, const Projection& p, LaneBits touching) {
   const int index = pass.nodes.begin + i, node = index - turn_of(index, pass.slave->count) * pass.slave->count;
   Lanes rate{};
   for (unsigned left = bits(touching); left != 0; left &= left - 1) {
@@ -51,7 +51,7 @@ Lanes gap_rate(const Pass& pass, int i, const Projection& p, LaneBits touching) 
 
 /// Adds the dashpot's pressure and what friction makes of it. Returns its power on the weights, W/m.
 template <class Law>
-Lanes add_damping(const Law& law, const Pass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
+Lanes add_damping(const Law& law, const HalfPass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
                   Traction& traction) {
   const Lanes rate = gap_rate(pass, i, p, touching);
   const Lanes damping = law.damping_pressure(traction.pressure, p.gap, rate, pass.damping, pass.elapsed);
@@ -81,7 +81,7 @@ struct Accounts {
 };
 
 template <class Law>
-void compute_pass(const Law& law, const Pass& pass, const PairView& view, Accounts& accounts) {
+void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& view, Accounts& accounts) {
   auto& [from, to, forces, totals] = accounts;
   const MasterWindow& window = view.window;
   thread_local Reactions reactions;
@@ -127,7 +127,7 @@ void compute_pass(const Law& law, const Pass& pass, const PairView& view, Accoun
   reactions.add_to(&forces.x[pass.master_force], &forces.y[pass.master_force]);
 }
 
-void look_up_velocities(const PairView& view, int slave_side, Pass& pass) {
+void look_up_velocities(const PairView& view, int slave_side, HalfPass& pass) {
   const OutlineField& velocity = view.outlines.velocity;
   const int slave = view.model.outline_offset[view.body(slave_side)],
             master = view.model.outline_offset[view.body(1 - slave_side)];
@@ -137,19 +137,19 @@ void look_up_velocities(const PairView& view, int slave_side, Pass& pass) {
 
 /// Both passes of a contact pair. What a law does not need is neither kept nor added up.
 template <class Law>
-PairTotals compute_passes(const Law& law, const PairView& view, const ForceRuns& runs, Accounts accounts) {
+PairTotals compute_half_passes(const Law& law, const PairView& view, const ForceRuns& runs, Accounts accounts) {
   double damping = 0;
   if constexpr (has_dashpot<Law>)
     if (const double length = touching_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.contact_pair.nodes[slave_side].count == 0) continue;
-    Pass pass = make_pass(view, slave_side, runs);
+    HalfPass pass = make_half_pass(view, slave_side, runs);
     if constexpr (has_dashpot<Law>) {
       look_up_velocities(view, slave_side, pass);
       pass.damping = damping, pass.elapsed = view.elapsed;
     }
     fill_window(view, 1 - slave_side);
-    compute_pass(law, pass, view, accounts);
+    compute_half_pass(law, pass, view, accounts);
   }
   const LaneTotals& totals = accounts.totals;
   double damping_power = 0;
@@ -225,7 +225,7 @@ PairTotals compute_pair(const PairView& view, const PairStep* step, const Contac
   const std::size_t size = static_cast<std::size_t>(runs[1].begin + padded(runs[1].arc.count) + lane_count);
   clear(near.x, size);
   clear(near.y, size);
-  const auto passes = [&](const auto& law) { return compute_passes(law, view, runs, Accounts{from, to, near}); };
+  const auto passes = [&](const auto& law) { return compute_half_passes(law, view, runs, Accounts{from, to, near}); };
   PairTotals totals =
       contact_pair.integrated ? integrate_pair(view, runs, from, to, near) : std::visit(passes, contact_pair.law);
   // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes

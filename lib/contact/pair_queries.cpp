@@ -13,7 +13,7 @@ namespace pliant {
 double touching_length(const PairView& view) {
   if (view.contact_pair.integrated) return integrated_length(view);
   Lanes length{};
-  for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
+  for_each_beside(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0);
     length += select(touching, 0.5 * load_slaves(pass, i).tributary_length, Lanes{});
   });
@@ -24,7 +24,7 @@ void locate_newcomers(const PairView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.contact_pair.law);
   if (!shears || view.contact_pair.integrated) return;
   for_each_beside(view, reach_of(view.contact_pair.law) + view.skin,
-                  [&](const Pass& pass, int, int i, const Projection& p) {
+                  [&](const HalfPass& pass, int, int i, const Projection& p) {
                     Lanes& place = history.at(pass.record + i)[ContactHistory::place];
                     place = select(p.hit & (place != place), place_of(p), place);
                   });
@@ -33,7 +33,7 @@ void locate_newcomers(const PairView& view, ContactHistory& history) {
 void start_records(const PairView& view, ContactHistory& history) {
   const auto start = [&]<class Law>(const Law& law) {
     if constexpr (remembers<Law>)
-      for_each_beside(view, law.start_reach(), [&](const Pass& pass, int, int i, const Projection& p) {
+      for_each_beside(view, law.start_reach(), [&](const HalfPass& pass, int, int i, const Projection& p) {
         const LaneBits beside = first_lanes(pass.nodes.count - i) & p.hit;
         store_record(history, pass.record + i, law.at_start(p.gap, beside));
       });
@@ -44,7 +44,7 @@ void start_records(const PairView& view, ContactHistory& history) {
 bool overlaps(const PairView& view) {
   if (view.contact_pair.integrated) return touching_length(view) > 0;
   bool found = false;
-  for_each_beside(view, 0, [&](const Pass& pass, int, int i, const Projection& p) {
+  for_each_beside(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
     found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
   });
   return found;
@@ -89,7 +89,7 @@ void add_beside(const Projection& p, int lane, double skin, double stiffness, Ca
 /// Of one pass: half the tributary lengths times the stiffness.
 void add_pass_stiffness(const PairView& view, int slave_side, const double (&factor)[2], std::vector<double>& entries) {
   const double stiffness = stiffness_of(view.contact_pair.law), outward = reach_of(view.contact_pair.law) + view.skin;
-  const Pass pass = make_pass(view, slave_side, runs_in_table(view.contact_pair));
+  const HalfPass pass = make_half_pass(view, slave_side, runs_in_table(view.contact_pair));
   fill_window(view, 1 - slave_side);
   thread_local Carried carried;
   carried.clear(view.window.count() + 1);

@@ -14,8 +14,8 @@ namespace pliant {
 namespace {
 
 /// What a pass needs besides the law.
-struct SegmentPass {
-  const Pass& pass;
+struct SegmentHalfPass {
+  const HalfPass& pass;
   const MasterWindow& window;
   const PairMotion* moved;   ///< in the step; null: not known
   const PairMotion* speeds;  ///< now; null: nobody asks
@@ -29,7 +29,7 @@ struct Totals {
 
 /// Puts forces on the nodes of both bodies; the reaction of what acts at s goes to both nodes of the master's segment
 /// by xi. `turn`: of the couple of shears, added to the second of these and taken from the first.
-void add_forces(const SegmentPass& at, LaneBits slave, LaneBits row, LaneBits hit, const PairForces& f,
+void add_forces(const SegmentHalfPass& at, LaneBits slave, LaneBits row, LaneBits hit, const PairForces& f,
                 const Linear& xi, Lanes turn_x, Lanes turn_y) {
   const Lanes all_x = f.x[0] + f.x[1], all_y = f.y[0] + f.y[1], change = xi.at1 - xi.at0;
   const Lanes far_x = xi.at0 * all_x + change * f.x[1] - turn_x, far_y = xi.at0 * all_y + change * f.y[1] - turn_y;
@@ -55,7 +55,7 @@ struct ShearingPairs {
   Moments gap;                   ///< m2
 
   /// With shears at both ends, linear between them.
-  void put_out(const SegmentPass& at, Lanes shear0, Lanes shear1) const {
+  void put_out(const SegmentHalfPass& at, Lanes shear0, Lanes shear1) const {
     const Lanes change = shear1 - shear0;
     const Lanes all_x = shear0 * shear_x[0] + change * shear_x[1], all_y = shear0 * shear_y[0] + change * shear_y[1],
                 second_x = shear0 * shear_x[1] + change * shear_x[2],
@@ -80,7 +80,7 @@ struct PassScratch {
 template <class Law>
 class TractionVisitor {
  public:
-  TractionVisitor(const Law& law, const SegmentPass& at, PassScratch& scratch, Totals& totals)
+  TractionVisitor(const Law& law, const SegmentHalfPass& at, PassScratch& scratch, Totals& totals)
       : law_(law), at_(at), scratch_(scratch), totals_(totals) {
     scratch_.touched.assign(static_cast<std::size_t>(at.pass.segments), 0);
     if constexpr (Law::has_shear) scratch_.sums.clear(at.pass.nodes.count), scratch_.shearing_count = 0;
@@ -181,7 +181,7 @@ class TractionVisitor {
   }
 
   const Law& law_;
-  const SegmentPass& at_;
+  const SegmentHalfPass& at_;
   PassScratch& scratch_;
   Totals& totals_;
   // Of the eight pairs at hand:
@@ -200,7 +200,7 @@ class TractionVisitor {
 /// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along, after
 /// half of the step: forces of before and now do half of its work each.
 template <class Law>
-void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, ContactHistory& to, NodeSums& sums,
+void slide_nodes(const Law& law, const HalfPass& pass, const ContactHistory& from, ContactHistory& to, NodeSums& sums,
                  Totals& totals) {
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const Lanes* before = from.at(pass.record + i);
@@ -227,10 +227,10 @@ void slide_nodes(const Law& law, const Pass& pass, const ContactHistory& from, C
 }
 
 template <class Law>
-void integrate_pass(const Law& law, const SegmentPass& at, const ContactHistory& from, ContactHistory& to,
-                    Totals& totals) {
+void integrate_half_pass(const Law& law, const SegmentHalfPass& at, const ContactHistory& from, ContactHistory& to,
+                         Totals& totals) {
   thread_local PassScratch scratch;
-  const Pass& pass = at.pass;
+  const HalfPass& pass = at.pass;
   TractionVisitor<Law> visitor(law, at, scratch, totals);
   SegmentQuadrature& quadrature = thread_quadrature();
   quadrature.run(pass, at.window, gap_ranges(law, at.window.depth()), visitor);
@@ -258,7 +258,7 @@ double integrated_length(const PairView& view) {
     void in_fan_of(const FanShape& f) { sum += f.weight[0]; }
     void end() {}
   } length;
-  for_each_pass(view, runs_in_table(view.contact_pair), [&](const Pass& pass, int) {
+  for_each_half_pass(view, runs_in_table(view.contact_pair), [&](const HalfPass& pass, int) {
     thread_quadrature().run(pass, view.window, gap_ranges(Frictionless{}, view.window.depth()), length);
   });
   return sum(length.sum);
@@ -273,13 +273,13 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
       if constexpr (has_dashpot<Law>)
         if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
       thread_local PairMotion moved, speeds;
-      for_each_pass(view, runs, [&](Pass& pass, int slave_side) {
+      for_each_half_pass(view, runs, [&](HalfPass& pass, int slave_side) {
         pass.damping = damping, pass.elapsed = view.elapsed;
-        SegmentPass at{pass, view.window, nullptr, nullptr, forces};
+        SegmentHalfPass at{pass, view.window, nullptr, nullptr, forces};
         if constexpr (Law::has_shear)
           if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
         if constexpr (has_dashpot<Law>) speeds.fill(view, view.outlines.velocity, slave_side), at.speeds = &speeds;
-        integrate_pass(law, at, from, to, totals);
+        integrate_half_pass(law, at, from, to, totals);
       });
     }
   };

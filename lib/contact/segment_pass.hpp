@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "contact/contact_points.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/history.hpp"
-#include "contact/pass.hpp"
 
 namespace pliant {
 

@@ -15,7 +15,7 @@ class NodeTractions {
 
   /// `shears`: of nodes, Pa, on one behind the last as well.
   template <class Law>
-  void find(const Law& law, const Pass& pass, const MasterWindow& window, const std::vector<double>& shears) {
+  void find(const Law& law, const HalfPass& pass, const MasterWindow& window, const std::vector<double>& shears) {
     const auto all = {&weight, &gap, &normal_x, &normal_y, &force_x, &force_y, &shear};
     for (std::vector<double>* of : all) of->assign(static_cast<std::size_t>(pass.nodes.count) + 1, 0.0);
     struct Visitor {
@@ -61,7 +61,7 @@ class NodeTractions {
 
 /// Of the nodes of a pass, and of the first one again behind the last.
 template <class Law>
-std::vector<double> shears_of(const Law& law, const Pass& pass, const ContactHistory& history) {
+std::vector<double> shears_of(const Law& law, const HalfPass& pass, const ContactHistory& history) {
   std::vector<double> shears(static_cast<std::size_t>(pass.nodes.count) + 1, 0.0);
   if constexpr (Law::has_shear)
     for (int i = 0; i <= pass.nodes.count; ++i)
@@ -70,7 +70,7 @@ std::vector<double> shears_of(const Law& law, const Pass& pass, const ContactHis
   return shears;
 }
 
-void add_points(const PairView& view, const Pass& pass, int side, const NodeTractions& found,
+void add_points(const PairView& view, const HalfPass& pass, int side, const NodeTractions& found,
                 const ContactHistory& history, std::vector<ContactPoint>& points) {
   for (int i = 0; i < pass.nodes.count; ++i) {
     const double weight = found.weight[i];
@@ -98,7 +98,7 @@ std::vector<ContactPoint> inspect_integrated(const PairView& view, const Contact
   NodeTractions found;
   const auto both_passes = [&]<class Law>(const Law& law) {
     if constexpr (!remembers<Law>)
-      for_each_pass(view, runs_in_table(view.contact_pair), [&](const Pass& pass, int side) {
+      for_each_half_pass(view, runs_in_table(view.contact_pair), [&](const HalfPass& pass, int side) {
         found.find(law, pass, view.window, shears_of(law, pass, history));
         add_points(view, pass, side, found, history, points);
       });

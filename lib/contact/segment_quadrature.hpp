@@ -20,7 +20,7 @@ namespace pliant {
 class SegmentQuadrature {
  public:
   template <class Visit>
-  void run(const Pass& pass, const MasterWindow& window, const GapRanges& ranges, Visit&& visit) {
+  void run(const HalfPass& pass, const MasterWindow& window, const GapRanges& ranges, Visit&& visit) {
     deepest_ = Lanes{};
     slaves_.fill(pass);
     candidates_.find(slaves_, window, pass.rows, ranges);

@@ -28,7 +28,7 @@ Span8 within_reach(const SlaveSegments& slaves, const MasterSegment& m, double r
   return part;
 }
 
-void add_pass(const PairView& view, const Pass& pass, int slave_side, const double (&factor)[2],
+void add_pass(const PairView& view, const HalfPass& pass, int slave_side, const double (&factor)[2],
               std::vector<double>& entries) {
   const MasterWindow& window = view.window;
   const double stiffness = 0.5 * stiffness_of(view.contact_pair.law), reach = reach_of(view.contact_pair.law),
@@ -73,8 +73,8 @@ void add_pass(const PairView& view, const Pass& pass, int slave_side, const doub
 }  // namespace
 
 void add_integrated_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries) {
-  for_each_pass(view, runs_in_table(view.contact_pair),
-                [&](const Pass& pass, int slave_side) { add_pass(view, pass, slave_side, factor, entries); });
+  for_each_half_pass(view, runs_in_table(view.contact_pair),
+                     [&](const HalfPass& pass, int slave_side) { add_pass(view, pass, slave_side, factor, entries); });
 }
 
 }  // namespace pliant

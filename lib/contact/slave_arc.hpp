@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "contact/pass.hpp"
+#include "contact/half_pass.hpp"
 
 namespace pliant {
 
 /// Index in a slave's outline, whose numbers are those of its arrays, of position i of the pass.
-inline int slave_index(const Pass& pass, int i) {
+inline int slave_index(const HalfPass& pass, int i) {
   const int index = pass.nodes.begin + i;
   return index - turn_of(index, pass.slave->count) * pass.slave->count;
 }
@@ -38,7 +38,7 @@ struct SlaveArc {
   ArcField x, y;                ///< of nodes, m
   std::vector<double> lengths;  ///< that count, of the reference outline or the present one, m
 
-  void fill(const Pass& pass) {
+  void fill(const HalfPass& pass) {
     segments = pass.segments;
     const Arc arc{pass.nodes.begin, segments};
     x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift, pass.slave->turn_shift);
@@ -55,12 +55,12 @@ struct SlaveArc {
   }
 };
 
-/// Calls visit(pass, slave side) for both passes, with the master's window filled.
+/// Calls visit(pass, slave side) for both half passes, with the master's window filled.
 template <class Visit>
-void for_each_pass(const PairView& view, const ForceRuns& runs, Visit&& visit) {
+void for_each_half_pass(const PairView& view, const ForceRuns& runs, Visit&& visit) {
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.contact_pair.slave_segments[slave_side] == 0) continue;
-    Pass pass = make_pass(view, slave_side, runs);
+    HalfPass pass = make_half_pass(view, slave_side, runs);
     fill_window(view, 1 - slave_side);
     visit(pass, slave_side);
   }

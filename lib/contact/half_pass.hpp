@@ -8,7 +8,7 @@
 namespace pliant {
 
 /// One pass: the slave's nodes and the buffers of both sides.
-struct Pass {
+struct HalfPass {
   const OutlineShape *slave, *master;
   const double* slave_x;
   const double* slave_y;
@@ -32,7 +32,7 @@ struct SlaveNodes {
 };
 
 /// Eight consecutive slave nodes from position i of the arc.
-inline SlaveNodes load_slaves(const Pass& pass, int i) {
+inline SlaveNodes load_slaves(const HalfPass& pass, int i) {
   const int index = pass.nodes.begin + i;
   const int turn = turn_of(index, pass.slave->count);
   const int node = index - turn * pass.slave->count;
@@ -51,8 +51,8 @@ inline ForceRuns runs_in_table(const ContactPair& contact_pair) {
   return {{{contact_pair.forces(0), contact_pair.entry[0]}, {contact_pair.forces(1), contact_pair.entry[1]}}};
 }
 
-/// Pass 0: the first body's nodes on the second's segments; pass 1: the other way round.
-inline Pass make_pass(const PairView& view, int slave_side, const ForceRuns& runs) {
+/// HalfPass 0: the first body's nodes on the second's segments; pass 1: the other way round.
+inline HalfPass make_half_pass(const PairView& view, int slave_side, const ForceRuns& runs) {
   const Model& model = view.model;
   const ContactPair& contact_pair = view.contact_pair;
   const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
