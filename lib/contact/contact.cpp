@@ -224,7 +224,7 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
 }
 
 /// Of all outline nodes.
-const OutlineField* ContactSystem::find_ways(const OutlineField& now, const OutlineField& before) {
+const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
   moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
@@ -244,7 +244,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
     trial_.elapsed = step ? step->elapsed : 0;
   }
   Evaluated& now = keeps_debts() ? trial_ : last_;
-  const OutlineField* moved = step && may_integrate_ ? find_ways(outlines.position, step->position) : nullptr;
+  const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {

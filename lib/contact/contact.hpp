@@ -133,7 +133,7 @@ class ContactSystem {
   void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
   void make_room(Evaluated& evaluated) const;
   bool integrates(int first, int second, const ContactLaw& law) const;
-  const OutlineField* find_ways(const OutlineField& now, const OutlineField& before);
+  const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
   bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
   PairTotals settle(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
                     ContactHistory& to, PairForceBuffer& forces);

@@ -11,12 +11,12 @@ namespace pliant {
 namespace {
 
 constexpr double extra_skins = 4;
-/// Share of the skin by which a body may change its shape before its ways are counted from another place.
+/// Share of the skin by which a body may change its shape before its displacements are counted from another place.
 constexpr double blurred = 0.25;
 /// Share of the skin up to which a pair need not be searched when others are; of the broad phase's likewise. Few pairs
 /// move by much more than the others (docs/defaults.md).
 constexpr double kept = 0.75;
-/// Rounding of ways that are kept, of some skins, over the skin, many times over.
+/// Rounding of displacements that are kept, of some skins, over the skin, many times over.
 constexpr double rounded = 1e-4;
 
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
@@ -58,7 +58,7 @@ VerletList::VerletList(const Model& model, double skin, double reach)
       own_skin_(0.5 * (1 + extra_skins) * skin),
       margin_(reach + (1 + extra_skins) * skin),
       motion_(model.bodies.size()),
-      pair_ways_(model) {
+      pair_displacements_(model) {
   forget();
 }
 
@@ -68,13 +68,13 @@ void VerletList::forget() {
   use_.clear();
   excess_.clear();
   gap_.clear(), watched_.clear();
-  pair_ways_.set_bodies({});
+  pair_displacements_.set_bodies({});
   since_sweep_.assign(model_.bodies.size(), unknown_way);
   swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
 }
 
 void VerletList::loaded() {
-  pair_ways_.restore_bodies(both_bodies(pairs_));
+  pair_displacements_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size() || since_sweep_.size() != motion_.size())
     throw ArchiveError("ways are those of other bodies");
   if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
@@ -84,21 +84,21 @@ void VerletList::loaded() {
 
 /// Finds motion_, and returns how far bodies have come from where the broad phase saw them, all of these places moved
 /// along with the mean of the bodies, m: only what bodies move against each other can bring pairs together that it left
-/// out. A wall lies in wait along all x, whatever its own way in x. All of it is the same along all axes, as all that
-/// says when pairs are searched must be: the stable step depends on where they were.
+/// out. A wall lies in wait along all x, whatever its own displacement in x. All of it is the same along all axes, as
+/// all that says when pairs are searched must be: the stable step depends on where they were.
 double VerletList::measure(const OutlineField& now) {
-  parallel_for(count_of_bodies(), [&](int b) { motion_[b] = disc_of_ways(model_, b, now, reference_); });
+  parallel_for(count_of_bodies(), [&](int b) { motion_[b] = displacement_disc(model_, b, now, reference_); });
   double x = 0, y = 0;
   int free = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
     if (model_.bodies[b].wall) continue;
-    const WayDisc way = way_between(since_sweep_[b], motion_[b]);
+    const DisplacementDisc way = way_between(since_sweep_[b], motion_[b]);
     x += way.x, y += way.y, ++free;
   }
   if (free > 0) x /= free, y /= free;
   double farthest = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
-    const WayDisc way = way_between(since_sweep_[b], motion_[b]);
+    const DisplacementDisc way = way_between(since_sweep_[b], motion_[b]);
     const bool wall = model_.bodies[b].wall;
     const double dx = wall ? 0.0 : way.x - x, dy = way.y - y, from_mean = std::sqrt(dx * dx + dy * dy) + way.radius;
     if (from_mean > farthest) farthest = std::max(farthest, come_out_of_place(b, from_mean, x, y, now));
@@ -116,18 +116,19 @@ double VerletList::come_out_of_place(int body, double from_mean, double drift_x,
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
 }
 
-/// By the discs of their nodes' ways: at little cost, but blurred.
-double VerletList::rough_way(int pair, const OutlineField& now) const {
-  return relative_way(pair_ways_.rough_way(2 * pair, ways(now)), pair_ways_.rough_way(2 * pair + 1, ways(now)));
+/// By the discs of their nodes' displacements: at little cost, but blurred.
+double VerletList::displacement_bound(int pair, const OutlineField& now) const {
+  return relative_way(pair_displacements_.displacement_bound(2 * pair, ways(now)),
+                      pair_displacements_.displacement_bound(2 * pair + 1, ways(now)));
 }
 
-/// By each node's own way.
+/// By each node's own displacement.
 double VerletList::way(int pair, const OutlineField& now) const {
-  return relative_way(pair_ways_.way(2 * pair, ways(now)), pair_ways_.way(2 * pair + 1, ways(now)));
+  return relative_way(pair_displacements_.way(2 * pair, ways(now)), pair_displacements_.way(2 * pair + 1, ways(now)));
 }
 
 bool VerletList::stays_within(int pair, double limit, const OutlineField& now) const {
-  return rough_way(pair, now) < limit || way(pair, now) < (1 - rounded) * limit;
+  return displacement_bound(pair, now) < limit || way(pair, now) < (1 - rounded) * limit;
 }
 
 bool VerletList::skin_is_exceeded(const OutlineField& now) {
@@ -136,26 +137,26 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   const bool some = parallel_any(count(), [&](int p) {
     if (!watched_[p]) return use_[p] = little, false;
     // Below the skin by discs a pair holds, and what is likely will do.
-    const double rough = rough_way(p, now), likely = rough < skin_ ? rough - excess_[p] : way(p, now);
+    const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : way(p, now);
     use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
   });
   return some || !(come_out_ < own_skin_);
 }
 
-/// A body that has changed its shape or turned since its reference would blur the ways of all its pairs.
-void VerletList::take_new_references(const OutlineField& here, const OutlineField& trial) {
-  const auto is_due = [&](int b) { return change_of_shape(motion_[b]) >= blurred * skin_; };
-  parallel_for(pair_ways_.count(), [&](int e) {
-    if (is_due(pair_ways_.body(e))) pair_ways_.take_new_reference(e, ways(here));
+/// A body that has changed its shape or turned since its reference would blur the displacements of all its pairs.
+void VerletList::reset_references(const OutlineField& here, const OutlineField& trial) {
+  const auto is_due = [&](int b) { return displacement_spread(motion_[b]) >= blurred * skin_; };
+  parallel_for(pair_displacements_.count(), [&](int e) {
+    if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, ways(here));
   });
   parallel_for(count_of_bodies(), [&](int b) {
     if (!is_due(b)) return;
     const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
-    since_sweep_[b] = way_between(disc_of_ways(model_, b, here, reference_), since_sweep_[b]);
+    since_sweep_[b] = way_between(displacement_disc(model_, b, here, reference_), since_sweep_[b]);
     std::copy_n(&here.x[first], nodes, &reference_.x[first]);
     std::copy_n(&here.y[first], nodes, &reference_.y[first]);
-    motion_[b] = disc_of_ways(model_, b, trial, reference_);
+    motion_[b] = displacement_disc(model_, b, trial, reference_);
   });
 }
 
@@ -165,14 +166,14 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
   if (forgotten) {
     reference_ = here;
   } else {
-    take_new_references(here, trial);
+    reset_references(here, trial);
     if (come_out_ < kept * own_skin_) return false;
   }
   just_swept_ = true;
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(count_of_bodies(), [&](int b) {
     boxes[b] = bounding_box(model_, here, b);
-    since_sweep_[b] = disc_of_ways(model_, b, here, reference_);
+    since_sweep_[b] = displacement_disc(model_, b, here, reference_);
     if (!model_.bodies[b].wall) swept_at_[b] = place_of(model_, b, here);
   });
   std::vector<BodyPair> found = broad_phase(model_, boxes, margin_);
@@ -206,15 +207,15 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
   const std::vector<double> old_gap = std::exchange(gap_, std::vector<double>(pairs_.size(), 0.0));
   const std::vector<char> was_watched = std::exchange(watched_, std::vector<char>(pairs_.size(), 1));
-  const NodeWays old_ways = std::exchange(pair_ways_, NodeWays(model_));
-  pair_ways_.set_bodies(both_bodies(pairs_));
+  const NodeDisplacements old_displacements = std::exchange(pair_displacements_, NodeDisplacements(model_));
+  pair_displacements_.set_bodies(both_bodies(pairs_));
   std::size_t old = 0;
   for (int p = 0; p < count(); ++p) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
     if (old == before.size() || before[old] != pairs_[p] || !stays[old]) continue;
     excess_[p] = old_excess[old], gap_[p] = old_gap[old], watched_[p] = was_watched[old];
     for (int side = 0; side < 2; ++side)
-      pair_ways_.copy_entry(2 * p + side, old_ways, 2 * static_cast<int>(old) + side);
+      pair_displacements_.copy_entry(2 * p + side, old_displacements, 2 * static_cast<int>(old) + side);
   }
 }
 
@@ -222,7 +223,7 @@ std::vector<int> VerletList::exceeded(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
     if (use_[p] != much) return;
     const double exact = way(p, here);
-    excess_[p] = std::max(0.0, rough_way(p, here) - exact);
+    excess_[p] = std::max(0.0, displacement_bound(p, here) - exact);
     if (exact < kept * skin_) use_[p] = little;
   });
   std::vector<int> result;
@@ -239,14 +240,14 @@ bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {
   excess_[pair] = 0, gap_[pair] = gap;
   watched_[pair] = !(just_swept_ && gap > margin_);
-  for (int side = 0; side < 2; ++side) pair_ways_.look(2 * pair + side, ways(now));
+  for (int side = 0; side < 2; ++side) pair_displacements_.look(2 * pair + side, ways(now));
 }
 
 void VerletList::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(little);
   excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);
-  for (int body : {pair.first, pair.second}) pair_ways_.append(body);
+  for (int body : {pair.first, pair.second}) pair_displacements_.append(body);
   searched(count() - 1, now, 0);
 }
 

@@ -4,7 +4,7 @@
 
 #include "bodies/model.hpp"
 #include "contact/broad_phase.hpp"
-#include "contact/node_ways.hpp"
+#include "contact/node_displacements.hpp"
 
 namespace pliant {
 
@@ -20,7 +20,7 @@ struct BodyPlace {
 /// to place: what only vibrates goes nowhere.
 class VerletList {
  public:
-  /// `skin`: way after which a pair must be searched; `reach`: gap from which on nothing acts, m.
+  /// `skin`: displacement after which a pair must be searched; `reach`: gap from which on nothing acts, m.
   VerletList(const Model& model, double skin, double reach);
 
   /// Whether some pair, or what the broad phase left out, may have exceeded its skin where all outlines are now: on
@@ -51,19 +51,19 @@ class VerletList {
     visitor("reference", reference_);
     visitor("pairs", pairs_), visitor("excess", excess_);
     visitor("gap", gap_), visitor("watched", watched_);
-    visitor("pair_ways", pair_ways_), visitor("since_sweep", since_sweep_), visitor("swept_at", swept_at_);
+    visitor("pair_ways", pair_displacements_), visitor("since_sweep", since_sweep_), visitor("swept_at", swept_at_);
   }
   void loaded();
 
  private:
-  WaysSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
+  DisplacementsSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   double measure(const OutlineField& now);
   double come_out_of_place(int body, double from_mean, double drift_x, double drift_y, const OutlineField& now) const;
-  double rough_way(int pair, const OutlineField& now) const;
+  double displacement_bound(int pair, const OutlineField& now) const;
   double way(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
-  void take_new_references(const OutlineField& here, const OutlineField& trial);
+  void reset_references(const OutlineField& here, const OutlineField& trial);
   bool discs_are_apart(const BodyPair& pair) const;
   void follow(std::vector<BodyPair> found, const OutlineField& here);
 
@@ -71,20 +71,21 @@ class VerletList {
   double skin_, own_skin_, margin_;
   OutlineField reference_;  ///< where each body was at some time; empty: all is to be searched
   // On trial:
-  std::vector<WayDisc> motion_;  ///< [bodies], of the outline nodes' ways from the reference
-  double come_out_ = 0;          ///< of measure, m
-  bool just_swept_ = false;      ///< the broad phase looked, in the last update
+  std::vector<DisplacementDisc> motion_;  ///< [bodies], of the outline nodes' displacements from the reference
+  double come_out_ = 0;                   ///< of measure, m
+  bool just_swept_ = false;               ///< the broad phase looked, in the last update
   enum Use : char { little, much, all };
   std::vector<Use> use_;  ///< [pairs], of the skin, when somebody asked last
   std::vector<BodyPair> pairs_;
   /// [pairs] by how much discs told more than nodes when both were last asked, m: what discs tell below the skin is
   /// taken to be too much by as much, so that few pairs are asked node by node.
   std::vector<double> excess_;
-  std::vector<double> gap_;           ///< [pairs] when each was searched, m
-  std::vector<char> watched_;         ///< [pairs] 0: far apart when the broad phase looked
-  NodeWays pair_ways_;                ///< [pairs][sides], since each was searched
-  std::vector<WayDisc> since_sweep_;  ///< [bodies], ways from the reference when the broad phase looked
-  std::vector<BodyPlace> swept_at_;   ///< [bodies], where it saw them; of walls nothing
+  std::vector<double> gap_;               ///< [pairs] when each was searched, m
+  std::vector<char> watched_;             ///< [pairs] 0: far apart when the broad phase looked
+  NodeDisplacements pair_displacements_;  ///< [pairs][sides], since each was searched
+  /// [bodies], displacements from the reference when the broad phase looked
+  std::vector<DisplacementDisc> since_sweep_;
+  std::vector<BodyPlace> swept_at_;  ///< [bodies], where it saw them; of walls nothing
 };
 
 }  // namespace pliant

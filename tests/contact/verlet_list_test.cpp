@@ -146,29 +146,29 @@ TEST(VerletList, searches_along_no_axes) {
   }
 }
 
-/// EXACT: of two bodies that drift together the ways against each other are kept to a ten-thousandth of the skin,
-/// however far they come and however often their references are renewed.
-TEST(NodeWays, are_known_however_far_bodies_drift) {
+/// EXACT: of two bodies that drift together the displacements against each other are kept to a ten-thousandth of the
+/// skin, however far they come and however often their references are renewed.
+TEST(NodeDisplacements, are_known_however_far_bodies_drift) {
   ContactRig rig(two_rows());
   const double skin = rig.contact.skin();
   rig.show();
   OutlineField reference = rig.outlines.position;
-  std::vector<WayDisc> discs(rig.model.bodies.size());
+  std::vector<DisplacementDisc> discs(rig.model.bodies.size());
   const auto look = [&] {
     rig.show();
-    for (int b = 0; b < 2; ++b) discs[b] = disc_of_ways(rig.model, b, rig.outlines.position, reference);
-    return WaysSoFar{rig.outlines.position, reference, discs};
+    for (int b = 0; b < 2; ++b) discs[b] = displacement_disc(rig.model, b, rig.outlines.position, reference);
+    return DisplacementsSoFar{rig.outlines.position, reference, discs};
   };
-  NodeWays ways(rig.model);
+  NodeDisplacements ways(rig.model);
   ways.set_bodies({0, 1});
   for (int entry = 0; entry < 2; ++entry) ways.look(entry, look());
   for (int step = 1; step <= 100; ++step) {
     for (int body = 0; body < 2; ++body) rig.move(body, {1e4, -1e4});
     rig.move(1, {0, 0.005 * skin});
-    const WaysSoFar now = look();
+    const DisplacementsSoFar now = look();
     EXPECT_NEAR(relative_way(ways.way(0, now), ways.way(1, now)), 0.005 * step * skin, 1e-4 * skin) << step;
     if (step % 3 > 0) continue;
-    for (int entry = 0; entry < 2; ++entry) ways.take_new_reference(entry, now);
+    for (int entry = 0; entry < 2; ++entry) ways.reset_reference(entry, now);
     reference = rig.outlines.position;
   }
 }
@@ -187,9 +187,9 @@ TEST(VerletList, of_other_pairs_is_refused) {
 }
 
 /// EXACT: what a checkpoint has of other bodies is refused.
-TEST(NodeWays, of_other_bodies_are_refused) {
+TEST(NodeDisplacements, of_other_bodies_are_refused) {
   ContactRig rig(two_rows());
-  NodeWays ways(rig.model);
+  NodeDisplacements ways(rig.model);
   ways.set_bodies({0, 1});
   EXPECT_NO_THROW(ways.restore_bodies({2, 3}));
   EXPECT_THROW(ways.restore_bodies({0, 12}), ArchiveError) << "there are twelve";

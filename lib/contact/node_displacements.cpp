@@ -1,4 +1,4 @@
-#include "contact/node_ways.hpp"
+#include "contact/node_displacements.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@
 namespace pliant {
 namespace {
 
-/// Outline nodes up to which ways are kept node by node.
+/// Outline nodes up to which displacements are kept node by node.
 constexpr int small_outline = 512;
 
-/// Mean of four nodes' ways, way(node): it turns with the axes.
+/// Mean of four nodes' displacements, displacement(node): it turns with the axes.
 template <class Way>
-WayDisc about_four(int count, Way&& way) {
-  WayDisc disc{0, 0, 0};
+DisplacementDisc about_four(int count, Way&& way) {
+  DisplacementDisc disc{0, 0, 0};
   for (int quarter = 0; quarter < 4; ++quarter) {
     const auto [x, y] = way(quarter * count / 4);
     disc.x += 0.25 * x, disc.y += 0.25 * y;
@@ -25,10 +25,10 @@ WayDisc about_four(int count, Way&& way) {
   return disc;
 }
 
-/// Makes a disc hold the ways of an outline's nodes, ways(i) of eight at once from node i on. The last lanes may reach
-/// into the cyclic copies, which move as their originals.
+/// Makes a disc hold the displacements of an outline's nodes, displacements(i) of eight at once from node i on. The
+/// last lanes may reach into the cyclic copies, which move as their originals.
 template <class Ways>
-WayDisc widened(WayDisc disc, int count, Ways&& ways) {
+DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& ways) {
   Lanes square{};
   for (int i = 0; i < count; i += lane_count) {
     const auto [x, y] = ways(i);
@@ -46,7 +46,7 @@ Lanes load_ways(const float* from) {
   return __builtin_convertvector(value, Lanes);
 }
 
-void store_ways(float* to, Lanes value) {
+void store_displacements(float* to, Lanes value) {
   const Floats rounded_ways = __builtin_convertvector(value, Floats);
   std::memcpy(to, &rounded_ways, sizeof rounded_ways);
 }
@@ -62,36 +62,37 @@ std::pair<Lanes, Lanes> ways_at(const OutlineField& now, const OutlineField& ref
 }
 
 /// New references move a disc that is not known by little.
-bool is_known(const WayDisc& disc) { return disc.radius < 0.5 * unknown_way.radius; }
+bool is_known(const DisplacementDisc& disc) { return disc.radius < 0.5 * unknown_way.radius; }
 
 }  // namespace
 
-WayDisc disc_of_ways(const Model& model, int body, const OutlineField& now, const OutlineField& reference) {
+DisplacementDisc displacement_disc(const Model& model, int body, const OutlineField& now,
+                                   const OutlineField& reference) {
   const int first = model.outline_offset[body], count = model.outline_of(body).count;
-  const WayDisc middle = about_four(count, [&](int i) { return way_at(now, reference, first + i); });
+  const DisplacementDisc middle = about_four(count, [&](int i) { return way_at(now, reference, first + i); });
   return widened(middle, count, [&](int i) { return ways_at(now, reference, first + i); });
 }
 
-WayDisc way_between(const WayDisc& from, const WayDisc& to) {
+DisplacementDisc way_between(const DisplacementDisc& from, const DisplacementDisc& to) {
   return {to.x - from.x, to.y - from.y, from.radius + to.radius};
 }
 
-double change_of_shape(const WayDisc& ways) { return 2 * ways.radius; }
+double displacement_spread(const DisplacementDisc& ways) { return 2 * ways.radius; }
 
-double relative_way(const WayDisc& a, const WayDisc& b) {
+double relative_way(const DisplacementDisc& a, const DisplacementDisc& b) {
   const double dx = a.x - b.x, dy = a.y - b.y;
   return std::sqrt(dx * dx + dy * dy) + a.radius + b.radius;
 }
 
-NodeWays::Common NodeWays::way_of_first(int body, const WaysSoFar& ways) const {
+NodeDisplacements::Common NodeDisplacements::way_of_first(int body, const DisplacementsSoFar& ways) const {
   const int node = model_->outline_offset[body];
   return {ways.now.x[node] - ways.reference.x[node], ways.now.y[node] - ways.reference.y[node]};
 }
 
-bool NodeWays::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
+bool NodeDisplacements::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
 
 /// Room for the nodes of all entries from one on.
-void NodeWays::lay_out(int first) {
+void NodeDisplacements::lay_out(int first) {
   at_.resize(body_.size());
   common_.resize(body_.size());
   std::size_t at = first == 0 ? 0 : x_.size();
@@ -102,13 +103,13 @@ void NodeWays::lay_out(int first) {
   x_.resize(at), y_.resize(at);
 }
 
-void NodeWays::set_bodies(std::vector<int> bodies) {
+void NodeDisplacements::set_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
   start_.assign(body_.size(), unknown_way);
   lay_out(0);
 }
 
-void NodeWays::restore_bodies(std::vector<int> bodies) {
+void NodeDisplacements::restore_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
   const int all = static_cast<int>(model_->bodies.size());
   const bool fits =
@@ -117,13 +118,13 @@ void NodeWays::restore_bodies(std::vector<int> bodies) {
   lay_out(0);
 }
 
-void NodeWays::append(int body) {
+void NodeDisplacements::append(int body) {
   body_.push_back(body);
   start_.push_back(unknown_way);
   lay_out(count() - 1);
 }
 
-void NodeWays::copy_entry(int entry, const NodeWays& from, int old_entry) {
+void NodeDisplacements::copy_entry(int entry, const NodeDisplacements& from, int old_entry) {
   start_[entry] = from.start_[old_entry];
   common_[entry] = from.common_[old_entry];
   if (!keeps_nodes(entry)) return;
@@ -132,28 +133,29 @@ void NodeWays::copy_entry(int entry, const NodeWays& from, int old_entry) {
   std::copy_n(&from.y_[from.at_[old_entry]], nodes, &y_[at_[entry]]);
 }
 
-void NodeWays::look(int entry, const WaysSoFar& ways) {
+void NodeDisplacements::look(int entry, const DisplacementsSoFar& ways) {
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry] = way_of_first(b, ways);
   const bool keeps = keeps_nodes(entry);
-  const WayDisc middle = about_four(count, [&](int i) { return way_at(ways.now, ways.reference, first + i); });
+  const DisplacementDisc middle = about_four(count, [&](int i) { return way_at(ways.now, ways.reference, first + i); });
   start_[entry] = widened(middle, count, [&](int i) {
     const auto [x, y] = ways_at(ways.now, ways.reference, first + i);
-    if (keeps) store_ways(&x_[at_[entry] + i], x - common.x), store_ways(&y_[at_[entry] + i], y - common.y);
+    if (keeps)
+      store_displacements(&x_[at_[entry] + i], x - common.x), store_displacements(&y_[at_[entry] + i], y - common.y);
     return std::pair(x, y);
   });
 }
 
-WayDisc NodeWays::rough_way(int entry, const WaysSoFar& ways) const {
+DisplacementDisc NodeDisplacements::displacement_bound(int entry, const DisplacementsSoFar& ways) const {
   return way_between(start_[entry], ways.discs[body_[entry]]);
 }
 
-WayDisc NodeWays::way(int entry, const WaysSoFar& ways) const {
-  if (!is_known(start_[entry]) || !keeps_nodes(entry)) return rough_way(entry, ways);
+DisplacementDisc NodeDisplacements::way(int entry, const DisplacementsSoFar& ways) const {
+  if (!is_known(start_[entry]) || !keeps_nodes(entry)) return displacement_bound(entry, ways);
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry];
   const float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
-  const WayDisc middle = about_four(count, [&](int i) {
+  const DisplacementDisc middle = about_four(count, [&](int i) {
     const auto [x, y] = way_at(ways.now, ways.reference, first + i);
     return std::pair(x - common.x - x_then[i], y - common.y - y_then[i]);
   });
@@ -163,25 +165,25 @@ WayDisc NodeWays::way(int entry, const WaysSoFar& ways) const {
   });
 }
 
-void NodeWays::take_new_reference(int entry, const WaysSoFar& ways) {
-  WayDisc& start = start_[entry];
+void NodeDisplacements::reset_reference(int entry, const DisplacementsSoFar& ways) {
+  DisplacementDisc& start = start_[entry];
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   if (!is_known(start)) return;
   if (!keeps_nodes(entry)) {
-    start = way_between(disc_of_ways(*model_, b, ways.now, ways.reference), start);
+    start = way_between(displacement_disc(*model_, b, ways.now, ways.reference), start);
     return;
   }
   const Common back = way_of_first(b, ways);
   Common& common = common_[entry];
   float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
-  const WayDisc middle = about_four(count, [&](int i) {
+  const DisplacementDisc middle = about_four(count, [&](int i) {
     const auto [dx, dy] = way_at(ways.now, ways.reference, first + i);
     return std::pair(common.x - back.x + (x_then[i] - (dx - back.x)), common.y - back.y + (y_then[i] - (dy - back.y)));
   });
   start = widened(middle, count, [&](int i) {
     const auto [dx, dy] = ways_at(ways.now, ways.reference, first + i);
     const Lanes back_x = load_ways(x_then + i) - (dx - back.x), back_y = load_ways(y_then + i) - (dy - back.y);
-    store_ways(x_then + i, back_x), store_ways(y_then + i, back_y);
+    store_displacements(x_then + i, back_x), store_displacements(y_then + i, back_y);
     return std::pair(common.x - back.x + back_x, common.y - back.y + back_y);
   });
   common = {common.x - back.x, common.y - back.y};
