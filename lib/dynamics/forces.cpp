@@ -41,8 +41,8 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
   return {true, hold};
 }
 
-Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
-                            const Afterwards& afterwards) {
+Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from,
+                            const Output& to, const PostForceHooks& hooks) {
   Evaluation result;
   phases_.enter(Phase::contact);
   if (from.outlines) {
@@ -62,14 +62,14 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   to.memory.material.resize(model_.material_memory);
   const auto of_batch = [&](int b) {
     lane_forces(b, motion, *on_outlines, from, to);
-    if (afterwards.region) afterwards.region(b);
+    if (hooks.region) hooks.region(b);
   };
   const auto of_rigid = [&](int r) {
     rigid_forces(r, motion, outlines.position, *on_outlines, to.force);
-    if (afterwards.rigid) afterwards.rigid(r);
+    if (hooks.rigid) hooks.rigid(r);
   };
   parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
-  if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, afterwards);
+  if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, hooks);
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -78,7 +78,7 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
 }
 
 /// What the points of a batch go through from a memory on.
-BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const Recall& from, Memory& to) const {
+BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const PreviousHistory& from, Memory& to) const {
   BatchMotion step = motion_of(batch, motion.position, from.memory);
   if (batch.viscous) step.velocity = &motion.velocity.compliant[batch.offset];
   step.elapsed = from.elapsed;
@@ -87,7 +87,7 @@ BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const Reca
 }
 
 /// All forces on the bodies of a batch that stand one a lane.
-void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const Recall& from,
+void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
                          const Output& to) {
   const Batch& batch = model_.batches[b];
   const Region& region = model_.regions[b];
@@ -115,8 +115,8 @@ void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& posit
 }
 
 /// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
-void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                           const Afterwards& afterwards) {
+void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
+                           const Output& to, const PostForceHooks& hooks) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
@@ -134,7 +134,7 @@ void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_spread_forces(model_, region, stresses_of(region.batch), f);
-    if (afterwards.region) afterwards.region(r);
+    if (hooks.region) hooks.region(r);
   });
 }
 

@@ -23,7 +23,7 @@ struct Evaluation {
 /// What an integrator does with new forces while they are in the cache: those of a region, by its index in
 /// Model::regions, and of a rigid body. Called by several threads at once. Give it std::cref of closures: copies would
 /// be allocated, at every step.
-struct Afterwards {
+struct PostForceHooks {
   std::function<void(int region)> region;
   std::function<void(int rigid)> rigid;
 };
@@ -49,10 +49,10 @@ class Forces {
     OutlineField& contact_force;  ///< N/m
     Memory& memory;               ///< that goes with these positions
   };
-  /// All forces of a motion, whose outlines these are, from a memory on. `afterwards`, if any, follows the forces of
+  /// All forces of a motion, whose outlines these are, from a memory on. `hooks`, if any, follows the forces of
   /// each region and rigid body.
-  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const Recall& from, const Output& to,
-                      const Afterwards& afterwards = {});
+  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from, const Output& to,
+                      const PostForceHooks& hooks = {});
 
   /// What the last trial left behind belongs to this state, if that was it.
   void accept(const State& state) { contact_.accept(state.memory.contact); }
@@ -74,12 +74,13 @@ class Forces {
   }
 
  private:
-  BatchMotion step_of(const Batch& batch, const Motion& motion, const Recall& from, Memory& to) const;
-  void lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to);
+  BatchMotion step_of(const Batch& batch, const Motion& motion, const PreviousHistory& from, Memory& to) const;
+  void lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
+                   const Output& to);
   void rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
                     Dofs& force);
-  void spread_forces(const Motion& motion, const OutlineField& on_outlines, const Recall& from, const Output& to,
-                     const Afterwards& afterwards);
+  void spread_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
+                     const Output& to, const PostForceHooks& hooks);
 
   const Model& model_;
   ContactSystem contact_;

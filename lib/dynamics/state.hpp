@@ -26,7 +26,7 @@ struct Memory {
 
 /// A memory, how long ago it was, and, if contact may know, where the outlines were then and what rigid bodies have
 /// done since.
-struct Recall {
+struct PreviousHistory {
   const Memory& memory;
   double elapsed = 0;  ///< s
   const OutlineField* outlines = nullptr;

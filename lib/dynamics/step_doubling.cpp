@@ -148,7 +148,7 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
 }
 
 /// Returns whether the forces are sound.
-bool StepDoubling::evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report) {
+bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
   add_drag(model_, at, trial_.reduced_momentum, trial_.force);

@@ -42,7 +42,7 @@ class StepDoubling {
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
   Forces::Candidates show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);
-  bool evaluate(const Instant& at, const Recall& from, Memory& to, StepReport& report);
+  bool evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);
   void find_difference(const Region& region, double dt);
