@@ -84,7 +84,7 @@ class BatchMaker {
                                                     }));
     batch.memory = model_.material_memory;
     with_law_type<Lanes>(model_.groups[batch.group].law, [&]<class Law>(std::type_identity<Law>) {
-      model_.material_memory += remembered_count<Law> * static_cast<std::size_t>(batch.points);
+      model_.material_memory += internal_variable_count<Law> * static_cast<std::size_t>(batch.points);
     });
   }
 

@@ -41,14 +41,15 @@ auto with_point_law(const Model& model, const Batch& batch, const BatchMotion& m
 template <class Law>
 Record<Law> load_record(const Batch& batch, const BatchMotion& motion, int point) {
   Record<Law> record;
-  if constexpr (remembers<Law>)
+  if constexpr (has_internal_variables<Law>)
     for (int k = 0; k < static_cast<int>(record.size()); ++k)
-      record[k] = motion.memory ? motion.memory[k * batch.points + point] : broadcast(Law::remembered[k].at_first);
+      record[k] =
+          motion.memory ? motion.memory[k * batch.points + point] : broadcast(Law::internal_variables[k].at_first);
   return record;
 }
 template <class Law>
 void store_record(const Batch& batch, const BatchMotion& motion, int point, const Record<Law>& record) {
-  if constexpr (remembers<Law>)
+  if constexpr (has_internal_variables<Law>)
     if (motion.new_memory)
       for (int k = 0; k < static_cast<int>(record.size()); ++k) motion.new_memory[k * batch.points + point] = record[k];
 }

@@ -55,7 +55,7 @@ ContactSystem::ContactSystem(const Model& model)
 
 /// A bond is one of a node: laws that remember are collocated.
 bool ContactSystem::integrates(int first, int second, const ContactLaw& law) const {
-  if (!may_integrate_ || !remembered_of(law).empty()) return false;
+  if (!may_integrate_ || !internal_variables_of(law).empty()) return false;
   return model_.scene.contact.quadrature == ContactQuadrature::segments || has_corners(first) || has_corners(second);
 }
 
@@ -173,7 +173,7 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
   }
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   const std::vector<ContactPair> old = contact_pairs();
-  table_.lay_out(std::move(all), laws_.remembered(), history);
+  table_.lay_out(std::move(all), laws_.internal_variables(), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);

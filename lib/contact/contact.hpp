@@ -88,7 +88,7 @@ class ContactSystem {
   std::vector<double> damping_ratios() const;
 
   /// [outline nodes] least of what laws remember by this name over each node's contacts; `none` where no law does.
-  std::vector<double> least_remembered(const ContactHistory& history, std::string_view name, double none) const;
+  std::vector<double> least_internal_variable(const ContactHistory& history, std::string_view name, double none) const;
 
   const ContactLaws& laws() const { return laws_; }
   /// Of all pairs that are watched: some are empty.

@@ -26,12 +26,12 @@ std::vector<double> ContactSystem::damping_ratios() const {
   return ratio;
 }
 
-std::vector<double> ContactSystem::least_remembered(const ContactHistory& history, std::string_view name,
-                                                    double none) const {
+std::vector<double> ContactSystem::least_internal_variable(const ContactHistory& history, std::string_view name,
+                                                           double none) const {
   std::vector<double> least(static_cast<std::size_t>(model_.outline_offset.back()), none);
   for (const ContactPair& contact_pair : contact_pairs()) {
-    const std::span<const Remembered> all = remembered_of(contact_pair.law);
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Remembered& r) { return r.name == name; });
+    const std::span<const InternalVariable> all = internal_variables_of(contact_pair.law);
+    const auto found = std::find_if(all.begin(), all.end(), [&](const InternalVariable& r) { return r.name == name; });
     if (found == all.end()) continue;
     const int column = ContactHistory::first_of_law + static_cast<int>(found - all.begin());
     for (int side = 0; side < 2; ++side) {

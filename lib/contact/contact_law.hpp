@@ -38,10 +38,10 @@ inline bool is_damped(const ContactLaw& law) {
   return std::visit([]<class Law>(const Law&) { return has_dashpot<Law>; }, law);
 }
 /// What the law remembers of a node.
-inline std::span<const Remembered> remembered_of(const ContactLaw& law) {
+inline std::span<const InternalVariable> internal_variables_of(const ContactLaw& law) {
   return std::visit(
-      []<class Law>(const Law&) -> std::span<const Remembered> {
-        if constexpr (remembers<Law>) return Law::remembered;
+      []<class Law>(const Law&) -> std::span<const InternalVariable> {
+        if constexpr (has_internal_variables<Law>) return Law::internal_variables;
         return {};
       },
       law);

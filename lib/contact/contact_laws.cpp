@@ -136,7 +136,7 @@ void ContactLaws::look_at_extremes() {
         if (!rule(first, second)) continue;
         const ContactLaw law = make_law(first, second);
         max_reach_ = std::max(max_reach_, reach_of(law));
-        remembered_ = std::max(remembered_, remembered_of(law).size());
+        internal_variables_ = std::max(internal_variables_, internal_variables_of(law).size());
         damps_ |= damping_ratio(first, second) > 0;
       }
 }

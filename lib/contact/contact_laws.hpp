@@ -30,10 +30,11 @@ class ContactLaws {
     return found ? static_cast<std::int32_t>(found->law) : -1;
   }
 
-  double max_reach() const { return max_reach_; }             ///< of any pair, m
-  double largest_stiffness(int body) const;                   ///< of any pair with this body, Pa/m
-  double largest_damping_ratio(int body) const;               ///< likewise; 0: no dashpot
-  std::size_t remembered() const { return remembered_; }      ///< numbers that any law remembers of a node at most
+  double max_reach() const { return max_reach_; }  ///< of any pair, m
+  double largest_stiffness(int body) const;        ///< of any pair with this body, Pa/m
+  double largest_damping_ratio(int body) const;    ///< likewise; 0: no dashpot
+  /// numbers that any law remembers of a node at most
+  std::size_t internal_variables() const { return internal_variables_; }
   bool damps() const { return damps_; }                       ///< some law has a dashpot
   int party(int body) const { return bodies_[body].party; }   ///< number of the body's party
   double spacing(int body) const { return bodies_[body].h; }  ///< of its outline, m
@@ -80,7 +81,7 @@ class ContactLaws {
   std::vector<std::vector<double>> era_inverse_masses_;  ///< [eras][bodies]; empty: one era, those of bodies_
   std::vector<int> pair_rule_;  ///< [parties x parties], index in rules_; -1: the pair never meets
   double largest_auto_ = 0, max_reach_ = 0;
-  std::size_t remembered_ = 0;
+  std::size_t internal_variables_ = 0;
   bool damps_ = false;
 };
 

@@ -17,8 +17,8 @@ Contact answer(const Law& law, const MasterWindow& window, const Projection& p, 
                const ContactHistory& history, int record, Record<Law>& now) {
   const Lanes* before = history.at(record);
   const Encounter at = encounter(law, window, p, touching, before[ContactHistory::place], place_of(p));
-  return respond(law, at, law(p.gap), before[ContactHistory::slip], load_record<remembered_count<Law>>(history, record),
-                 now);
+  return respond(law, at, law(p.gap), before[ContactHistory::slip],
+                 load_record<internal_variable_count<Law>>(history, record), now);
 }
 
 std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const ContactHistory& history) {

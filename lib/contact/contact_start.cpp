@@ -49,7 +49,7 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   table_.take(std::move(kept), from.history.records());
   make_room(last_);
   history = {};
-  history.set_columns(static_cast<int>(laws_.remembered()));
+  history.set_columns(static_cast<int>(laws_.internal_variables()));
   history.resize(from.history.records());
   history.clear(0, history.records());
   if (keeps_debts()) history.set_debts(contact_pairs().size());

@@ -28,9 +28,9 @@ template <class Law>
 void forget(Lanes* to) {
   to[ContactHistory::place] = broadcast(ContactHistory::nowhere);
   to[ContactHistory::slip] = Lanes{};
-  if constexpr (remembers<Law>)
-    for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::remembered[k].at_first);
+  if constexpr (has_internal_variables<Law>)
+    for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
+      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::internal_variables[k].at_first);
 }
 
 /// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
@@ -97,7 +97,7 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     const Projection p = project(window, nodes.x, nodes.y, outward);
     const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
     const Lanes old_place = before[ContactHistory::place], old_slip = before[ContactHistory::slip];
-    const Record<Law> old = load_record<remembered_count<Law>>(from, record);
+    const Record<Law> old = load_record<internal_variable_count<Law>>(from, record);
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip, old);
       forget<Law>(after);

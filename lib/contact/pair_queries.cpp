@@ -32,7 +32,7 @@ void locate_newcomers(const PairView& view, ContactHistory& history) {
 
 void start_records(const PairView& view, ContactHistory& history) {
   const auto start = [&]<class Law>(const Law& law) {
-    if constexpr (remembers<Law>)
+    if constexpr (has_internal_variables<Law>)
       for_each_beside(view, law.start_reach(), [&](const HalfPass& pass, int, int i, const Projection& p) {
         const LaneBits beside = first_lanes(pass.nodes.count - i) & p.hit;
         store_record(history, pass.record + i, law.at_start(p.gap, beside));

@@ -19,10 +19,11 @@ int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_coun
 void forget_all(const ContactPair& contact_pair, int side, ContactHistory& history) {
   const int begin = contact_pair.record[side], count = padded(contact_pair.nodes[side].count);
   history.clear(begin, count);
-  const std::span<const Remembered> remembered = remembered_of(contact_pair.law);
+  const std::span<const InternalVariable> internal_variables = internal_variables_of(contact_pair.law);
   for (int record = begin; record < begin + count; record += lane_count)
-    for (std::size_t k = 0; k < remembered.size(); ++k)
-      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(remembered[k].at_first);
+    for (std::size_t k = 0; k < internal_variables.size(); ++k)
+      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] =
+          broadcast(internal_variables[k].at_first);
 }
 
 /// The records of one side's nodes, from where another contact pair of the same bodies has them.

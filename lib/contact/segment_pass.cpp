@@ -268,7 +268,7 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
                           PairForceBuffer& forces) {
   Totals totals;
   const auto both_passes = [&]<class Law>(const Law& law) {
-    if constexpr (!remembers<Law>) {
+    if constexpr (!has_internal_variables<Law>) {
       double damping = 0;
       if constexpr (has_dashpot<Law>)
         if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);

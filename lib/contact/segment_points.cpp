@@ -97,7 +97,7 @@ std::vector<ContactPoint> inspect_integrated(const PairView& view, const Contact
   std::vector<ContactPoint> points;
   NodeTractions found;
   const auto both_passes = [&]<class Law>(const Law& law) {
-    if constexpr (!remembers<Law>)
+    if constexpr (!has_internal_variables<Law>)
       for_each_half_pass(view, runs_in_table(view.contact_pair), [&](const HalfPass& pass, int side) {
         found.find(law, pass, view.window, shears_of(law, pass, history));
         add_points(view, pass, side, found, history, points);

@@ -11,10 +11,10 @@ Memory initial_memory(const Model& model) {
   memory.material.resize(model.material_memory);
   for (const Batch& batch : model.batches)
     with_law_type<Lanes>(model.groups[batch.group].law, [&]<class Law>(std::type_identity<Law>) {
-      if constexpr (remembers<Law>)
-        for (std::size_t k = 0; k < remembered_count<Law>; ++k)
+      if constexpr (has_internal_variables<Law>)
+        for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
           std::fill_n(&memory.material[batch.memory + k * static_cast<std::size_t>(batch.points)], batch.points,
-                      broadcast(Law::remembered[k].at_first));
+                      broadcast(Law::internal_variables[k].at_first));
     });
   return memory;
 }

@@ -16,7 +16,7 @@ struct KelvinVoigt : Law {
     return {Law::weighted(w), w * viscosity};
   }
   KelvinVoigt over(double elapsed) const
-    requires remembers<Law>
+    requires has_internal_variables<Law>
   {
     return {Law::over(elapsed), viscosity};
   }

@@ -21,9 +21,9 @@ struct NeoHookeanMaxwell {
   T relaxation_time;                            ///< t, s
   T decay = T{} + 1.0, mean_decay = T{} + 1.0;  ///< of an overstress over the step: at its end, on average
 
-  static constexpr Remembered remembered[] = {{"overstrain_xx", 0},     {"overstrain_xy", 0},
-                                              {"overstrain_yy", 0},     {"inverse_strain_xx", 1},
-                                              {"inverse_strain_xy", 0}, {"inverse_strain_yy", 1}};
+  static constexpr InternalVariable internal_variables[] = {{"overstrain_xx", 0},     {"overstrain_xy", 0},
+                                                            {"overstrain_yy", 0},     {"inverse_strain_xx", 1},
+                                                            {"inverse_strain_xy", 0}, {"inverse_strain_yy", 1}};
   using Record = std::array<T, 6>;  ///< H, and the C^-1 that goes with it
 
   static NeoHookeanMaxwell of(const Material& material) {

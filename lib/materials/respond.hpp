@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/remembered.hpp"
+#include "core/internal_variables.hpp"
 #include "materials/tensor.hpp"
 
 namespace pliant {
@@ -15,7 +15,7 @@ struct Response {
 
 /// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first, and answers
 ///
-///     Response<T> respond(F) const;            or respond(F, old, now) if it remembers (core/remembered.hpp),
+///     Response<T> respond(F) const;            or respond(F, old, now) if it remembers (core/internal_variables.hpp),
 ///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
 ///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
@@ -31,7 +31,7 @@ Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, c
                     Record<Law, T>& now) {
   if constexpr (requires { law.respond(F, rate, old, now); })
     return law.respond(F, rate, old, now);
-  else if constexpr (remembers<Law>)
+  else if constexpr (has_internal_variables<Law>)
     return law.respond(F, old, now);
   else
     return law.respond(F);
@@ -40,7 +40,7 @@ Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, c
 /// Stored at once at F, by a point that remembers this.
 template <class Law, class T>
 T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
-  if constexpr (remembers<Law>) {
+  if constexpr (has_internal_variables<Law>) {
     Record<Law, T> now;
     law.respond(F, old, now);
     return law.energy(F, now);
@@ -51,7 +51,7 @@ T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
 
 template <class Law>
 Law over(const Law& law, double elapsed) {
-  if constexpr (remembers<Law>)
+  if constexpr (has_internal_variables<Law>)
     return law.over(elapsed);
   else
     return law;
@@ -60,6 +60,6 @@ Law over(const Law& law, double elapsed) {
 template <class Law>
 constexpr bool has_rate = requires { Law::has_rate; };
 template <class Law>
-constexpr bool dissipates = has_rate<Law> || remembers<Law>;
+constexpr bool dissipates = has_rate<Law> || has_internal_variables<Law>;
 
 }  // namespace pliant

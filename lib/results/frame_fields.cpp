@@ -91,7 +91,7 @@ std::vector<double> contact_slip(const Snapshot& snapshot) {
 
 /// Least damage of each node's bonds, 1 at nodes without.
 std::vector<double> contact_damage(const Snapshot& snapshot) {
-  return snapshot.contact().least_remembered(snapshot.state().memory.contact, "damage", 1);
+  return snapshot.contact().least_internal_variable(snapshot.state().memory.contact, "damage", 1);
 }
 
 template <class Function>

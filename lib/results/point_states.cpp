@@ -22,7 +22,7 @@ Stress cauchy(const Law& law, const Tensor<double>& F, const Record<Law, double>
 template <class Law>
 Record<Law, double> record_of(const Model& model, const Body& body, const Memory& memory, std::size_t point) {
   Record<Law, double> record;
-  if constexpr (remembers<Law>) {
+  if constexpr (has_internal_variables<Law>) {
     const Batch& batch = model.batches[body.batch];
     const bool spread = batch.layout == Layout::spread;
     const std::size_t number = spread ? model.spread_shape_of(batch).point_number[point] : point;

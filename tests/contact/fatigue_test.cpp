@@ -227,7 +227,7 @@ TEST(Fatigue, BondsAreThereFromTheStart) {
   ContactRig rig(scene);
   rig.step();
   const auto damaged = [&](int body) {
-    const std::vector<double> damage = rig.contact.least_remembered(rig.committed, "damage", 1);
+    const std::vector<double> damage = rig.contact.least_internal_variable(rig.committed, "damage", 1);
     double least = 1;
     for (int k = 0; k < rig.count(body); ++k) least = std::min(least, damage[rig.model.outline_offset[body] + k]);
     return least;

@@ -153,7 +153,8 @@ TEST(AllContactLaws, answer_the_same_again_at_rest) {
           for (int sample = 0; sample < 50; ++sample) {
             Lanes slip{};
             Record<Law> record{};
-            if constexpr (remembers<Law>) record = law.at_start(uniform_lanes(random, 0, 0.04), first_lanes(8));
+            if constexpr (has_internal_variables<Law>)
+              record = law.at_start(uniform_lanes(random, 0, 0.04), first_lanes(8));
             for (int step = 0; step < 20; ++step) {
               const Lanes gap = uniform_lanes(random, -0.4, 0.7);
               const Lanes moved = Law::has_shear ? uniform_lanes(random, -0.3, 0.3) : Lanes{};

@@ -160,7 +160,7 @@ TEST(StartPoint, pairs_with_another_law_begin_anew) {
     const Model model = build_model(scene);
     Simulation simulation(model, &from);
     const std::vector<double> damage =
-        simulation.forces().contact().least_remembered(simulation.state().memory.contact, "damage", 1);
+        simulation.forces().contact().least_internal_variable(simulation.state().memory.contact, "damage", 1);
     return std::pair(*std::min_element(damage.begin(), damage.end()), point_of(simulation));
   };
   const auto [bonded, with_bonds] = wholeness(0.02, start);

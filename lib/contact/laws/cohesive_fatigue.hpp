@@ -20,7 +20,7 @@ struct CohesiveFatigue {
   static constexpr const char* name = "cohesive-fatigue";
   /// 1: no bond is left; max(g, 0), m; elastic slip of a bond's broken share, m. The slip that all laws have is that of
   /// the bond, and once it is torn that of friction.
-  static constexpr Remembered remembered[] = {{"damage", 1}, {"opening", 0}, {"friction_slip", 0}};
+  static constexpr InternalVariable internal_variables[] = {{"damage", 1}, {"opening", 0}, {"friction_slip", 0}};
   double normal_stiffness = 0;      ///< kn, Pa/m
   double shear_stiffness = 0;       ///< kn / r^2, Pa/m
   double reach = 0;                 ///< g_max, m; larger than strength / kn

@@ -4,7 +4,7 @@
 #include <type_traits>
 
 #include "contact/laws/traction.hpp"
-#include "core/remembered.hpp"
+#include "core/internal_variables.hpp"
 
 namespace pliant {
 
@@ -24,7 +24,7 @@ struct Contact {
 
 /// Every law has has_shear, name, normal_stiffness shear_stiffness, Pa/m; reach, m: nodes with smaller
 /// gaps touch; and Traction operator()(Lanes gap) const. One that remembers something besides place and slip
-/// (core/remembered.hpp) brings
+/// (core/internal_variables.hpp) brings
 ///
 ///     Contact respond(const Encounter&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
 ///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight is beside the master
@@ -56,7 +56,7 @@ concept AnswersEncounters = requires(const Law& law, const Encounter& at, const 
 
 /// What a law lacks is said where it joins the others, contact/contact_law.hpp.
 template <class Law>
-concept CompleteContactLaw = AnswersGaps<Law> && (!remembers<Law> || AnswersEncounters<Law>);
+concept CompleteContactLaw = AnswersGaps<Law> && (!has_internal_variables<Law> || AnswersEncounters<Law>);
 
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
@@ -85,7 +85,7 @@ void add_pressure(const Law& law, Lanes more, Traction& traction) {
 template <class Law>
 Contact respond(const Law& law, const Encounter& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,
                 Record<Law>& now) {
-  if constexpr (remembers<Law>) {
+  if constexpr (has_internal_variables<Law>) {
     return law.respond(at, traction, old_slip, old, now);
   } else {
     Contact c{traction.pressure, {}, traction.energy, {}, {}};
@@ -97,7 +97,7 @@ Contact respond(const Law& law, const Encounter& at, const Traction& traction, L
 /// What nodes had stored that are no longer beside the master, J/m2.
 template <class Law>
 Lanes set_free(const Law& law, Lanes old_slip, const Record<Law>& old) {
-  if constexpr (remembers<Law>)
+  if constexpr (has_internal_variables<Law>)
     return law.set_free(old_slip, old);
   else
     return (0.5 * law.shear_stiffness) * old_slip * old_slip;

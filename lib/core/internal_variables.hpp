@@ -10,30 +10,31 @@
 namespace pliant {
 
 /// A number that a law, of a material or of contact, remembers of each point from one accepted step to the next. A law
-/// that does lists them as `static constexpr Remembered remembered[]`; all others have no record and cost nothing.
-struct Remembered {
+/// that does lists them as `static constexpr InternalVariable remembered[]`; all others have no record and cost
+/// nothing.
+struct InternalVariable {
   const char* name;
   double at_first;  ///< before anything has happened to the point
 };
 
 template <class Law>
-constexpr bool remembers = requires { Law::remembered; };
+constexpr bool has_internal_variables = requires { Law::internal_variables; };
 template <class Law>
-constexpr std::size_t remembered_count = 0;
+constexpr std::size_t internal_variable_count = 0;
 template <class Law>
-  requires remembers<Law>
-constexpr std::size_t remembered_count<Law> = std::size(Law::remembered);
+  requires has_internal_variables<Law>
+constexpr std::size_t internal_variable_count<Law> = std::size(Law::internal_variables);
 
 /// What a law remembers of one point (T: double), or of eight (Lanes).
 template <class Law, class T = Lanes>
-using Record = std::array<T, remembered_count<Law>>;
+using Record = std::array<T, internal_variable_count<Law>>;
 
 /// Place in the record of what has this name; -1: the law remembers no such thing.
 template <class Law>
 constexpr int index_of_remembered(std::string_view name) {
-  if constexpr (remembers<Law>)
-    for (std::size_t k = 0; k < remembered_count<Law>; ++k)
-      if (Law::remembered[k].name == name) return static_cast<int>(k);
+  if constexpr (has_internal_variables<Law>)
+    for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
+      if (Law::internal_variables[k].name == name) return static_cast<int>(k);
   return -1;
 }
 
