@@ -6,11 +6,11 @@ namespace pliant {
 
 /// What an integrator tries next.
 struct Proposal {
-  double dt = 0, end_time = 0;   ///< s
-  double wish = 0;               ///< dt but for the time at which the step must end, s
-  double largest_dt = 0;         ///< what limits dt when no error does, s
-  const char* governed_by = "";  ///< what limits dt: "error", "stability", "until"
-  bool is_look = false;          ///< a shorter step for an observer: it takes the candidates as they are
+  double dt = 0, end_time = 0;    ///< s
+  double controller_dt = 0;       ///< dt but for the time at which the step must end, s
+  double largest_dt = 0;          ///< what limits dt when no error does, s
+  const char* governed_by = "";   ///< what limits dt: "error", "stability", "until"
+  bool is_output_sample = false;  ///< a shorter step for an observer: it takes the candidates as they are
 };
 
 /// What is made of a trial.

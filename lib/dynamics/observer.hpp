@@ -48,11 +48,12 @@ Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Propos
   if (!observer || !observer->looks_before(proposal.end_time)) return Shown::all;
   do {
     Proposal shorter = proposal;
-    shorter.end_time = observer->next_time(), shorter.dt = shorter.end_time - state.time, shorter.is_look = true;
+    shorter.end_time = observer->next_time(), shorter.dt = shorter.end_time - state.time,
+    shorter.is_output_sample = true;
     StepReport report;
     report.dt = shorter.dt;
     scheme.attempt(state, shorter, report);
-    if (!scheme.stands(report)) return Shown::failed;
+    if (!scheme.within_tolerance(report)) return Shown::failed;
     scheme.finish(state, report);
     const ShorterStep step(forces.model(), state, scheme.trial(), report);
     if (!observer->look()) return Shown::enough;

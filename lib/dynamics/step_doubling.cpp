@@ -87,8 +87,8 @@ Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepRe
   const TimeSettings& settings = model_.scene.time;
   const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_change;
   const double next_dt = proposal.dt * std::clamp(factor, least_change, largest_change);
-  if (!stands(report)) return {false, next_dt};
-  return {true, proposal.wish > proposal.dt ? std::max(next_dt, proposal.wish) : next_dt};
+  if (!within_tolerance(report)) return {false, next_dt};
+  return {true, proposal.controller_dt > proposal.dt ? std::max(next_dt, proposal.controller_dt) : next_dt};
 }
 
 void StepDoubling::attempt(State& state, const Proposal& proposal, StepReport& report) {
@@ -110,7 +110,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
-  if (!stands(report)) return Halves::done;
+  if (!within_tolerance(report)) return Halves::done;
   if (show(state, second, proposal, report).found_anew) return Halves::voided;
   const OutlineField* half_way = start_of_step(trial_.outlines) ? &half_outlines_ : nullptr;
   if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
@@ -143,7 +143,7 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
   ++report.evaluations;
   forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion(at), trial_.outlines);
-  if (proposal.is_look) return {};
+  if (proposal.is_output_sample) return {};
   return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
 }
 

@@ -20,7 +20,7 @@ class StepDoubling {
   Proposal propose(const State& state, double next_dt, double until) const;
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   /// Whether the error of an attempt is one to live with.
-  bool stands(const StepReport& report) const {
+  bool within_tolerance(const StepReport& report) const {
     return report.error <= model_.scene.time.alpha * model_.scene.time.target;
   }
   Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;

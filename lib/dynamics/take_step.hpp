@@ -17,7 +17,7 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until,
     report.dt = proposal.dt;
     report.governed_by = proposal.governed_by;
     scheme.attempt(state, proposal, report);
-    if (scheme.stands(report)) {
+    if (scheme.within_tolerance(report)) {
       const Shown shown = show_on_the_way(scheme, forces, state, proposal, observer);
       if (shown == Shown::enough) return {};
       if (shown == Shown::failed) {

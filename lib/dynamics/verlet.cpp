@@ -55,10 +55,10 @@ double Verlet::first_dt() const { return first_step * std::min(largest_dt(), mod
 /// Equal steps up to the next stop, such as a point of a history: a short one before each would jolt the fastest
 /// vibrations time and again.
 Proposal Verlet::propose(const State& state, double next_dt, double until) const {
-  const double largest = std::min(largest_dt(), model_.scene.time.end), wish = std::min(next_dt, largest);
-  const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / wish));
-  const double dt = std::isfinite(steps) ? remaining / steps : wish;
-  return {dt, steps > 1 ? state.time + dt : until, wish, largest,
+  const double largest = std::min(largest_dt(), model_.scene.time.end), controller_dt = std::min(next_dt, largest);
+  const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / controller_dt));
+  const double dt = std::isfinite(steps) ? remaining / steps : controller_dt;
+  return {dt, steps > 1 ? state.time + dt : until, controller_dt, largest,
           steps == 1          ? "until"
           : next_dt < largest ? "error"
                               : "stability"};
@@ -71,7 +71,8 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   forces_.phases().enter(Phase::outlines);
   show_outlines(model_, motion, trial_.outlines);
   Forces::Candidates candidates;
-  if (!proposal.is_look) candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
+  if (!proposal.is_output_sample)
+    candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
   const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
@@ -84,14 +85,15 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
 }
 
 Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
-  const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, wish = proposal.wish;
-  if (!stands(report)) return {false, dt * controller_factor(report.error, tolerance)};
+  const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, controller_dt = proposal.controller_dt;
+  if (!within_tolerance(report)) return {false, dt * controller_factor(report.error, tolerance)};
   if (state.steps % span == 0) state.jerk_before = std::exchange(state.jerk, 0);
   // Of the whole step: one cut short to meet a stop does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
-  if (dt >= least_step_share * wish) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
+  if (dt >= least_step_share * controller_dt) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
   const double jerk = std::max(state.jerk, state.jerk_before);
-  const double next_dt = wish * controller_factor(jerk * wish * wish * wish, tolerance);
+  const double next_dt =
+      controller_dt * controller_factor(jerk * controller_dt * controller_dt * controller_dt, tolerance);
   return {true, std::min(next_dt, proposal.largest_dt)};
 }
 

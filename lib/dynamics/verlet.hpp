@@ -20,7 +20,7 @@ class Verlet {
   Proposal propose(const State& state, double next_dt, double until) const;
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   /// Whether the error of an attempt is one to live with.
-  bool stands(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
+  bool within_tolerance(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
   Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State& state, StepReport& report);
   void accepted(State& state, const StepReport& report);

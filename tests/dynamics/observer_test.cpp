@@ -54,7 +54,7 @@ struct FailsOnceAt {
     verlet.attempt(state, proposal, report);
     if (proposal.end_time == time && attempts++ == 0) report.error = std::numeric_limits<double>::infinity();
   }
-  bool stands(const StepReport& report) const { return verlet.stands(report); }
+  bool within_tolerance(const StepReport& report) const { return verlet.within_tolerance(report); }
   Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const {
     return verlet.judge(state, proposal, report);
   }
