@@ -156,7 +156,7 @@ void place_outlines(const Model& model, const Dofs& positions, OutlineField& pos
        [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
 }
 
-void show_field(const Model& model, const Dofs& values, OutlineField& field) {
+void update_outline_field(const Model& model, const Dofs& values, OutlineField& field) {
   show(model, {values, false}, field, 0, [](int) {});
 }
 

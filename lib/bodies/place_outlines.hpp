@@ -10,13 +10,13 @@ namespace pliant {
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position);
 
 /// Values of a field at all outline nodes, of rigid bodies left as they are: velocities of compliant ones.
-void show_field(const Model& model, const Dofs& values, OutlineField& field);
+void update_outline_field(const Model& model, const Dofs& values, OutlineField& field);
 
 /// Where all outlines are, newly made.
 OutlineField placed_outlines(const Model& model, const Dofs& positions);
 
 /// All that a motion shows: positions, and velocities and present lengths in models that need them.
-void show_outlines(const Model& model, const Motion& motion, Outlines& outlines);
+void update_outlines(const Model& model, const Motion& motion, Outlines& outlines);
 
 /// Carries forces on the outline nodes of a batch's bodies to the degrees of freedom of one of its regions: forces,
 /// [slots x 2] of the batch, += phi^T f.

@@ -20,7 +20,7 @@ void find_velocities(const Model& model, const Motion& motion, Outlines& outline
   OutlineField& velocity = outlines.velocity;
   velocity.x.resize(outlines.position.x.size());
   velocity.y.resize(outlines.position.x.size());
-  show_field(model, motion.velocity, velocity);
+  update_outline_field(model, motion.velocity, velocity);
   parallel_for(static_cast<int>(model.rigid_bodies.size()), [&](int r) {
     const RigidBody& rigid = model.rigid_bodies[r];
     rigid_velocities(outlines.position, model.outline_offset[rigid.body], model.outlines[rigid.outline].count,
@@ -47,7 +47,7 @@ void measure_lengths(const Model& model, Outlines& outlines) {
 
 }  // namespace
 
-void show_outlines(const Model& model, const Motion& motion, Outlines& outlines) {
+void update_outlines(const Model& model, const Motion& motion, Outlines& outlines) {
   outlines.position.x.resize(static_cast<std::size_t>(model.outline_offset.back()));
   outlines.position.y.resize(static_cast<std::size_t>(model.outline_offset.back()));
   place_outlines(model, motion.position, outlines.position);

@@ -20,7 +20,7 @@ constexpr std::size_t most_bodies = 3000;
 Stability stability(const Model& model) {
   const Dofs position = initial_positions(model);
   Outlines outlines;
-  show_outlines(model, {position, initial_velocities(model, position), 0}, outlines);
+  update_outlines(model, {position, initial_velocities(model, position), 0}, outlines);
   ContactSystem contact(model);
   ContactHistory history;
   contact.find_candidates(outlines, history);

@@ -49,7 +49,7 @@ struct Evaluated {
 /// Contact between the outlines of all bodies: keeps the contact pairs, refreshes them when some pair may have exceeded
 /// its skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
-/// Of a body in motion it knows only its stretch of the outlines, which show_outlines fills, and gives back only its
+/// Of a body in motion it knows only its stretch of the outlines, which update_outlines fills, and gives back only its
 /// stretch of the forces on them, which the bodies gather afterwards. Between the two is the seam where a body's
 /// outline may come from elsewhere, as from another process: fill its stretch before candidates_hold, fetch its stretch
 /// after forces().

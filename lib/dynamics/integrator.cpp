@@ -45,7 +45,7 @@ Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
   Dofs scratch;
   const Dofs& velocity = material_velocity(forces.model(), state.reduced_momentum, scratch);
   const Motion motion{state.position, velocity, state.time};
-  show_outlines(forces.model(), motion, state.outlines);
+  update_outlines(forces.model(), motion, state.outlines);
   forces.ensure_candidates(state, state.outlines.position, state.time);
   return forces.evaluate(motion, state.outlines, {state.memory}, {trial.force, trial.contact_force, trial.memory});
 }

@@ -142,7 +142,7 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
   trial_.time = at.time;
   ++report.evaluations;
   forces_.phases().enter(Phase::outlines);
-  show_outlines(model_, motion(at), trial_.outlines);
+  update_outlines(model_, motion(at), trial_.outlines);
   if (proposal.is_output_sample) return {};
   return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
 }

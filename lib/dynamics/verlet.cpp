@@ -69,7 +69,7 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   predict(state, proposal.dt);
   const Motion motion{trial_.position, end_velocity_, proposal.end_time, true};
   forces_.phases().enter(Phase::outlines);
-  show_outlines(model_, motion, trial_.outlines);
+  update_outlines(model_, motion, trial_.outlines);
   Forces::Candidates candidates;
   if (!proposal.is_output_sample)
     candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);

@@ -15,7 +15,7 @@ class ContactRig {
   }
   ContactRig(const ContactRig&) = delete;
 
-  void show() { show_outlines(model, {q, q, 0}, outlines); }
+  void show() { update_outlines(model, {q, q, 0}, outlines); }
   /// Forces at the positions q. Returns whether the candidates were searched anew.
   bool evaluate() {
     show();
