@@ -35,7 +35,7 @@ struct OutlineNode {
 /// A grain or a wall.
 struct Body {
   bool rigid = false;
-  int party = 0;          ///< which contact law holds
+  int group = 0;          ///< which contact law holds
   double x = 0, y = 0;    ///< fixed centre of a compliant body, present one of a rigid body, m
   double turn_shift = 0;  ///< x offset of an outline after its last node: a wall's period, m
   std::vector<OutlineNode> outline;

@@ -98,7 +98,7 @@ double Contact::way(const Body& master, const Slip& old, const Foot& now) {
 
 void Contact::list_segments(const std::vector<Body>& bodies, int slave, int master, double shift) {
   const Body &a = bodies[slave], &b = bodies[master];
-  const double reach = laws_[a.party][b.party].reach;
+  const double reach = laws_[a.group][b.group].reach;
   for (std::size_t i = 0; i < a.outline.size(); ++i)
     for (std::size_t k = 0; k < b.outline.size(); ++k) {
       const OutlineNode& node = a.outline[i];
@@ -123,7 +123,7 @@ void Contact::find_candidates(const std::vector<Body>& bodies) {
   for (int slave = 0; slave < count; ++slave) {
     candidates_[slave].resize(bodies[slave].outline.size());
     for (int master = 0; master < count; ++master) {
-      const double far = skin_ + laws_[bodies[slave].party][bodies[master].party].reach;
+      const double far = skin_ + laws_[bodies[slave].group][bodies[master].group].reach;
       const Box &a = boxes[slave], &b = boxes[master];
       if (master == slave || a.top + far < b.bottom || b.top + far < a.bottom) continue;
       const double first = a.left - far - b.right, last = a.right + far - b.left;  // shifts that bring them together
@@ -138,7 +138,7 @@ void Contact::find_candidates(const std::vector<Body>& bodies) {
 int Contact::touch(std::vector<Body>& bodies, int slave, int node, int master, const Foot& foot) {
   Body& body = bodies[master];
   OutlineNode& at = bodies[slave].outline[node];
-  const ContactLaw& law = laws_[bodies[slave].party][body.party];
+  const ContactLaw& law = laws_[bodies[slave].group][body.group];
   const std::uint64_t key = static_cast<std::uint64_t>(node) << 32 | static_cast<std::uint64_t>(master);
   const bool slides = law.shear_stiffness > 0;
   if (foot.gap > law.reach + (slides ? skin_ : 0)) {

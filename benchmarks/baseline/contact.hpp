@@ -21,7 +21,7 @@ struct ContactLaw {
 /// two passes of docs/method.md 4.
 class Contact {
  public:
-  /// `laws`: [parties][parties]. `period`: 0 without.
+  /// `laws`: [groups][groups]. `period`: 0 without.
   Contact(std::vector<std::vector<ContactLaw>> laws, double skin, double period);
 
   void find_candidates(const std::vector<Body>& bodies);

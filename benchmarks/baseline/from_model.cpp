@@ -95,11 +95,11 @@ void move_to(const Model& model, const Dofs& position, std::vector<Body>& bodies
 Contact contact_of(const Model& model, const ContactSystem& contact, std::vector<Body>& bodies) {
   const ContactLaws& laws = contact.laws();
   std::map<std::pair<int, double>, int> numbers;  // by what laws depend on
-  std::vector<int> one;                           // body of each party
+  std::vector<int> one;                           // body of each group
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {
-    const auto [party, fresh] = numbers.try_emplace({laws.party(b), laws.spacing(b)}, static_cast<int>(one.size()));
+    const auto [group, fresh] = numbers.try_emplace({laws.group(b), laws.spacing(b)}, static_cast<int>(one.size()));
     if (fresh) one.push_back(b);
-    bodies[b].party = party->second;
+    bodies[b].group = group->second;
   }
   std::vector<std::vector<ContactLaw>> table(one.size());
   for (std::size_t p = 0; p < one.size(); ++p)

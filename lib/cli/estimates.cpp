@@ -103,14 +103,14 @@ PairEstimate make_pair_of(const Model& model, const ContactLaws& laws, int first
   return pair;
 }
 
-/// Of the bodies of each party, grains and walls apart, the one with the finest outline, another, and the one with the
+/// Of the bodies of each group, grains and walls apart, the one with the finest outline, another, and the one with the
 /// coarsest.
 std::vector<std::vector<int>> representatives(const Model& model, const ContactLaws& laws) {
-  std::map<std::pair<int, bool>, std::vector<int>> parties;
+  std::map<std::pair<int, bool>, std::vector<int>> groups;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    parties[{laws.party(b), model.bodies[b].wall}].push_back(b);
+    groups[{laws.group(b), model.bodies[b].wall}].push_back(b);
   std::vector<std::vector<int>> result;
-  for (auto& [party, members] : parties) {
+  for (auto& [group, members] : groups) {
     std::stable_sort(members.begin(), members.end(), [&](int a, int b) { return laws.spacing(a) < laws.spacing(b); });
     if (members.size() > 3) members = {members[0], members[1], members.back()};
     result.push_back(members);
@@ -150,7 +150,7 @@ double PairEstimate::penetration(double pressure) const {
 }
 
 std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& laws) {
-  const std::vector<std::vector<int>> parties = representatives(model, laws);
+  const std::vector<std::vector<int>> groups = representatives(model, laws);
   std::vector<PairEstimate> pairs;
   const auto is_known = [&](const PairEstimate& pair) {
     return std::any_of(pairs.begin(), pairs.end(), [&](const PairEstimate& other) { return alike(other, pair); });
@@ -163,8 +163,8 @@ std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& 
     const PairEstimate pair = make_pair_of(model, laws, first, second);
     if (!is_known(pair)) pairs.push_back(pair);
   };
-  for (auto i = parties.begin(); i != parties.end(); ++i)
-    for (auto j = i; j != parties.end(); ++j)
+  for (auto i = groups.begin(); i != groups.end(); ++i)
+    for (auto j = i; j != groups.end(); ++j)
       for (const int first : *i)
         for (const int second : *j) add(first, second);
   return pairs;

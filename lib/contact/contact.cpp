@@ -64,7 +64,7 @@ PairView ContactSystem::view(const ContactPair& contact_pair) const {
 }
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
-  if (!fresh_ || laws_.era(clock.time) != laws_.era(refreshed_.time)) return false;
+  if (!fresh_ || laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) return false;
   return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !verlet_list_.skin_is_exceeded(position);
 }
 
@@ -99,7 +99,7 @@ bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
                                      const OutlineField* trial) {
   const OutlineField& asked = trial ? *trial : outlines.position;
   const bool pair_by_pair = fresh_ && !has_fixed_refresh(model_.scene.contact) && !model_.scene.contact.self_contact &&
-                            laws_.era(clock.time) == laws_.era(refreshed_.time);
+                            laws_.law_interval(clock.time) == laws_.law_interval(refreshed_.time);
   if (pair_by_pair) {
     if (!trial) verlet_list_.skin_is_exceeded(asked);
     return take_over_pairs(outlines, asked, history, clock);
@@ -128,7 +128,7 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
 bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                     const RunClock& clock) {
   accept(history);
-  if (laws_.era(clock.time) != laws_.era(refreshed_.time)) last_.number = 0;  // of other laws
+  if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) last_.number = 0;  // of other laws
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);

@@ -59,7 +59,7 @@ class ContactSystem {
 
   /// False when some close pair may have moved by the skin since the candidates were found, or always before the first
   /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
-  /// ContactLaws::era.
+  /// ContactLaws::law_interval.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
   /// Rebuilds the contact pairs and carries the history, that of these outlines, over to them; newcomers get their
   /// places. Throws InputError when a body that may touch itself does so at the start.

@@ -19,9 +19,9 @@ constexpr double auto_range_factor = 0.12;
 /// they govern the time step.
 constexpr double rigid_pair_factor = 3;
 
-ContactParty party_of(const Scene& scene, const Body& body) {
+ContactGroup group_of(const Scene& scene, const Body& body) {
   const std::string& name = body.wall ? body.name : scene.grains[body.grains].name;
-  return contact_party(scene, scene.materials[body.material].name, name, body.wall);
+  return contact_group(scene, scene.materials[body.material].name, name, body.wall);
 }
 
 /// Of a motion along one axis: the freer of the two. 0: imposed in both.
@@ -69,46 +69,46 @@ double damping_ratio(double restitution, bool pull) {
 ContactLaws::ContactLaws(const Model& model) : file_(model.scene.file.string()), rules_(model.scene.contacts) {
   for (const Body& body : model.bodies) add_body(model, body);
   find_rules(model.scene);
-  for (int a = 0; a < static_cast<int>(parties_.size()); ++a)
-    for (int b = 0; b < static_cast<int>(parties_.size()); ++b)
+  for (int a = 0; a < static_cast<int>(groups_.size()); ++a)
+    for (int b = 0; b < static_cast<int>(groups_.size()); ++b)
       largest_auto_ = std::max(largest_auto_, auto_stiffness(extreme(a, true), extreme(b, true)));
   look_at_extremes();
   if (damps_) find_eras(model);
 }
 
 void ContactLaws::add_body(const Model& model, const Body& body) {
-  const std::string name = party_of(model.scene, body).name;
+  const std::string name = group_of(model.scene, body).name;
   const double h = model.outlines[body.outline].spacing, inverse = inverse_mass(model, body);
-  auto party = std::find_if(parties_.begin(), parties_.end(), [&](const Party& p) {
+  auto group = std::find_if(groups_.begin(), groups_.end(), [&](const Group& p) {
     return p.kind == body.kind && p.material == body.material && p.name == name;
   });
-  if (party == parties_.end()) {
+  if (group == groups_.end()) {
     const double young = body.kind == BodyKind::compliant ? model.scene.materials[body.material].young : 0;
-    party = parties_.insert(party, Party{body.kind, body.material, name, young, h, h, 0, 0, true});
+    group = groups_.insert(group, Group{body.kind, body.material, name, young, h, h, 0, 0, true});
   }
-  ++party->bodies;
-  party->wall &= body.wall;
-  party->least_h = std::min(party->least_h, h);
-  party->largest_h = std::max(party->largest_h, h);
-  party->largest_inverse_mass = std::max(party->largest_inverse_mass, inverse);
-  bodies_.push_back({static_cast<int>(party - parties_.begin()), h, inverse});
+  ++group->bodies;
+  group->wall &= body.wall;
+  group->least_h = std::min(group->least_h, h);
+  group->largest_h = std::max(group->largest_h, h);
+  group->largest_inverse_mass = std::max(group->largest_inverse_mass, inverse);
+  bodies_.push_back({static_cast<int>(group - groups_.begin()), h, inverse});
 }
 
 /// A single body meets at most its image or itself.
-bool ContactLaws::meets_itself(const Scene& scene, const Party& party) const {
-  if (party.bodies > 1) return true;
-  return !party.wall && (scene.period || (scene.contact.self_contact && party.kind == BodyKind::compliant));
+bool ContactLaws::meets_itself(const Scene& scene, const Group& group) const {
+  if (group.bodies > 1) return true;
+  return !group.wall && (scene.period || (scene.contact.self_contact && group.kind == BodyKind::compliant));
 }
 
 void ContactLaws::find_rules(const Scene& scene) {
-  const auto describe = [&](const Party& party) {
+  const auto describe = [&](const Group& group) {
     const bool wall = std::any_of(scene.walls.begin(), scene.walls.end(),
-                                  [&](const Wall& w) { return !party.name.empty() && w.name == party.name; });
-    return ContactParty{scene.materials[party.material].name, party.name, wall};
+                                  [&](const Wall& w) { return !group.name.empty() && w.name == group.name; });
+    return ContactGroup{scene.materials[group.material].name, group.name, wall};
   };
-  for (const Party& a : parties_)
-    for (const Party& b : parties_) {
-      const ContactParty first = describe(a), second = describe(b);
+  for (const Group& a : groups_)
+    for (const Group& b : groups_) {
+      const ContactGroup first = describe(a), second = describe(b);
       const RuleMatch match = match_rule(scene, first, second);
       const bool never_meets = &a == &b && !meets_itself(scene, a);
       if (!match.rule && !never_meets)
@@ -121,7 +121,7 @@ void ContactLaws::find_rules(const Scene& scene) {
 }
 
 /// `softer`: the compliant one of two, if any.
-void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const {
+void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule, const Group& softer) const {
   if (softer.kind == BodyKind::rigid || rule.restitution.value_or(1) == 1) return;
   throw InputError(fmt::format("{}: {}: {}", file_, pair_text(rule),
                                refusal_of_restitution(scene, rule, scene.materials[softer.material].name)));
@@ -129,8 +129,8 @@ void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule,
 
 /// Lengths, and stiffness with its inverse, grow with the finer of the two spacings.
 void ContactLaws::look_at_extremes() {
-  for (int a = 0; a < static_cast<int>(parties_.size()); ++a)
-    for (int b = 0; b < static_cast<int>(parties_.size()); ++b)
+  for (int a = 0; a < static_cast<int>(groups_.size()); ++a)
+    for (int b = 0; b < static_cast<int>(groups_.size()); ++b)
       for (const bool finest : {true, false}) {
         const Side first = extreme(a, finest), second = extreme(b, finest);
         if (!rule(first, second)) continue;
@@ -141,9 +141,9 @@ void ContactLaws::look_at_extremes() {
       }
 }
 
-ContactLaws::Side ContactLaws::extreme(int party, bool finest) const {
-  const Party& p = parties_[party];
-  return {party, finest ? p.least_h : p.largest_h, p.largest_inverse_mass};
+ContactLaws::Side ContactLaws::extreme(int group, bool finest) const {
+  const Group& p = groups_[group];
+  return {group, finest ? p.least_h : p.largest_h, p.largest_inverse_mass};
 }
 
 void ContactLaws::find_eras(const Model& model) {
@@ -151,25 +151,26 @@ void ContactLaws::find_eras(const Model& model) {
     for (int c = 0; c < 2; ++c)
       if (const RigidDof& dof = rigid.dof[c]; dof.imposed())
         for (const double time : {dof.window.from, dof.window.until})
-          if (time > 0 && std::isfinite(time)) era_starts_.push_back(time);
-  if (era_starts_.empty()) return;
-  std::sort(era_starts_.begin(), era_starts_.end());
-  era_starts_.erase(std::unique(era_starts_.begin(), era_starts_.end()), era_starts_.end());
-  for (std::size_t era = 0; era <= era_starts_.size(); ++era) {
-    std::vector<double>& masses = era_inverse_masses_.emplace_back();
+          if (time > 0 && std::isfinite(time)) interval_starts_.push_back(time);
+  if (interval_starts_.empty()) return;
+  std::sort(interval_starts_.begin(), interval_starts_.end());
+  interval_starts_.erase(std::unique(interval_starts_.begin(), interval_starts_.end()), interval_starts_.end());
+  for (std::size_t law_interval = 0; law_interval <= interval_starts_.size(); ++law_interval) {
+    std::vector<double>& masses = interval_inverse_masses_.emplace_back();
     for (const Body& body : model.bodies)
-      masses.push_back(inverse_mass(model, body, era == 0 ? 0 : era_starts_[era - 1]));
+      masses.push_back(inverse_mass(model, body, law_interval == 0 ? 0 : interval_starts_[law_interval - 1]));
   }
 }
 
-int ContactLaws::era(double time) const {
-  return static_cast<int>(std::upper_bound(era_starts_.begin(), era_starts_.end(), time) - era_starts_.begin());
+int ContactLaws::law_interval(double time) const {
+  return static_cast<int>(std::upper_bound(interval_starts_.begin(), interval_starts_.end(), time) -
+                          interval_starts_.begin());
 }
 
 ContactLaw ContactLaws::between(int first, int second, double time) const {
   Side a = bodies_[first], b = bodies_[second];
-  if (!era_inverse_masses_.empty()) {
-    const std::vector<double>& masses = era_inverse_masses_[era(time)];
+  if (!interval_inverse_masses_.empty()) {
+    const std::vector<double>& masses = interval_inverse_masses_[law_interval(time)];
     a.inverse_mass = masses[first], b.inverse_mass = masses[second];
   }
   return make_law(a, b);
@@ -181,7 +182,7 @@ bool ContactLaws::automatic_stiffness(int first, int second) const {
 
 double ContactLaws::largest_stiffness(int body) const {
   double largest = 0;
-  for (int other = 0; other < static_cast<int>(parties_.size()); ++other)
+  for (int other = 0; other < static_cast<int>(groups_.size()); ++other)
     if (const Side side = extreme(other, true); rule(bodies_[body], side))
       largest = std::max(largest, stiffness_of(make_law(bodies_[body], side)));
   return largest;
@@ -189,7 +190,7 @@ double ContactLaws::largest_stiffness(int body) const {
 
 double ContactLaws::largest_damping_ratio(int body) const {
   double largest = 0;
-  for (int other = 0; other < static_cast<int>(parties_.size()); ++other)
+  for (int other = 0; other < static_cast<int>(groups_.size()); ++other)
     largest = std::max(largest, damping_ratio(bodies_[body], extreme(other, true)));
   return largest;
 }
@@ -198,7 +199,7 @@ double ContactLaws::largest_damping_ratio(int body) const {
 double ContactLaws::auto_stiffness(const Side& a, const Side& b) const {
   double young = 1e300;
   for (const Side* side : {&a, &b})
-    if (parties_[side->party].kind == BodyKind::compliant) young = std::min(young, parties_[side->party].young);
+    if (groups_[side->group].kind == BodyKind::compliant) young = std::min(young, groups_[side->group].young);
   return young < 1e300 ? pliant::auto_stiffness(young, std::min(a.h, b.h)) : 0;
 }
 
@@ -246,7 +247,7 @@ ContactLaw ContactLaws::make_law(const Side& a, const Side& b) const {
 /// 0 where there is no dashpot: only two rigid bodies of which one can move have one.
 double ContactLaws::damping_ratio(const Side& a, const Side& b) const {
   const ContactRule* rule = this->rule(a, b);
-  const bool rigid = parties_[a.party].kind == BodyKind::rigid && parties_[b.party].kind == BodyKind::rigid;
+  const bool rigid = groups_[a.group].kind == BodyKind::rigid && groups_[b.group].kind == BodyKind::rigid;
   if (!rule || !rigid || !rule->restitution || a.inverse_mass + b.inverse_mass == 0) return 0;
   return pliant::damping_ratio(*rule->restitution, rule->pull);
 }

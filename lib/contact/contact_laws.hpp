@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// Which law holds between two bodies. Rules are found once a scene for each two parties, bodies of equal kind,
+/// Which law holds between two bodies. Rules are found once a scene for each two groups, bodies of equal kind,
 /// material and name in rules; the law itself also depends on both outline spacings, and is made when a pair is.
 class ContactLaws {
  public:
@@ -22,7 +22,7 @@ class ContactLaws {
   ContactLaw between(int first, int second, double time = 0) const;
   /// Laws hold for one such span of time, counted from 0; all the time unless dashpots meet drives with `from` or
   /// `until`.
-  int era(double time) const;
+  int law_interval(double time) const;
   bool automatic_stiffness(int first, int second) const;
   /// Number of the ContactLawKind; -1: the two never meet.
   std::int32_t kind(int first, int second) const {
@@ -36,11 +36,11 @@ class ContactLaws {
   /// numbers that any law remembers of a node at most
   std::size_t internal_variables() const { return internal_variables_; }
   bool damps() const { return damps_; }                       ///< some law has a dashpot
-  int party(int body) const { return bodies_[body].party; }   ///< number of the body's party
+  int group(int body) const { return bodies_[body].group; }   ///< number of the body's group
   double spacing(int body) const { return bodies_[body].h; }  ///< of its outline, m
 
  private:
-  struct Party {
+  struct Group {
     BodyKind kind;
     int material;
     std::string name;
@@ -52,21 +52,21 @@ class ContactLaws {
   };
   /// What a law depends on besides the rule.
   struct Side {
-    int party;
+    int group;
     double h, inverse_mass;
   };
 
   void add_body(const Model& model, const Body& body);
   void find_rules(const Scene& scene);
-  bool meets_itself(const Scene& scene, const Party& party) const;
-  void check_restitution(const Scene& scene, const ContactRule& rule, const Party& softer) const;
+  bool meets_itself(const Scene& scene, const Group& group) const;
+  void check_restitution(const Scene& scene, const ContactRule& rule, const Group& softer) const;
   void look_at_extremes();
   void find_eras(const Model& model);
   const ContactRule* rule(const Side& a, const Side& b) const {
-    const int index = pair_rule_[static_cast<std::size_t>(a.party) * parties_.size() + b.party];
+    const int index = pair_rule_[static_cast<std::size_t>(a.group) * groups_.size() + b.group];
     return index < 0 ? nullptr : &rules_[index];
   }
-  Side extreme(int party, bool finest) const;
+  Side extreme(int group, bool finest) const;
   double auto_stiffness(const Side& a, const Side& b) const;
   ContactLaw make_law(const Side& a, const Side& b) const;
   double damping_ratio(const Side& a, const Side& b) const;
@@ -75,11 +75,12 @@ class ContactLaws {
 
   std::string file_;
   std::vector<ContactRule> rules_;
-  std::vector<Party> parties_;
-  std::vector<Side> bodies_;                             ///< inverse masses: the largest at any time
-  std::vector<double> era_starts_;                       ///< growing, s, of all eras but the first
-  std::vector<std::vector<double>> era_inverse_masses_;  ///< [eras][bodies]; empty: one era, those of bodies_
-  std::vector<int> pair_rule_;  ///< [parties x parties], index in rules_; -1: the pair never meets
+  std::vector<Group> groups_;
+  std::vector<Side> bodies_;             ///< inverse masses: the largest at any time
+  std::vector<double> interval_starts_;  ///< growing, s, of all intervals but the first
+  /// [intervals][bodies]; empty: one interval, those of bodies_
+  std::vector<std::vector<double>> interval_inverse_masses_;
+  std::vector<int> pair_rule_;  ///< [groups x groups], index in rules_; -1: the pair never meets
   double largest_auto_ = 0, max_reach_ = 0;
   std::size_t internal_variables_ = 0;
   bool damps_ = false;

@@ -13,12 +13,12 @@ namespace {
 
 PairLaws pair_laws(const ContactLaws& laws, int bodies) {
   PairLaws all;
-  std::vector<int> member;  // [parties] some body of each
+  std::vector<int> member;  // [groups] some body of each
   for (int b = 0; b < bodies; ++b) {
-    const int party = laws.party(b);
-    all.parties.push_back(party);
-    if (party >= static_cast<int>(member.size())) member.resize(party + std::size_t{1});
-    member[party] = b;
+    const int group = laws.group(b);
+    all.groups.push_back(group);
+    if (group >= static_cast<int>(member.size())) member.resize(group + std::size_t{1});
+    member[group] = b;
   }
   all.count = static_cast<std::int32_t>(member.size());
   for (const int first : member)
@@ -27,9 +27,9 @@ PairLaws pair_laws(const ContactLaws& laws, int bodies) {
 }
 
 void require_fit(const PairLaws& laws, std::size_t bodies) {
-  const auto is_one = [&](std::int32_t party) { return party >= 0 && party < laws.count; };
-  if (laws.parties.size() != bodies || laws.kinds.size() != static_cast<std::size_t>(laws.count) * laws.count ||
-      !std::ranges::all_of(laws.parties, is_one))
+  const auto is_one = [&](std::int32_t group) { return group >= 0 && group < laws.count; };
+  if (laws.groups.size() != bodies || laws.kinds.size() != static_cast<std::size_t>(laws.count) * laws.count ||
+      !std::ranges::all_of(laws.groups, is_one))
     throw ArchiveError("contacts have other laws");
 }
 

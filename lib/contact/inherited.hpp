@@ -10,14 +10,14 @@ namespace pliant {
 
 /// Which kind of law holds between any two bodies, whether they are close or not.
 struct PairLaws {
-  std::vector<std::int32_t> parties;  ///< [bodies] number of each body's party
-  std::vector<std::int32_t> kinds;    ///< [parties x parties] as ContactLaws::kind
-  std::int32_t count = 0;             ///< of parties
+  std::vector<std::int32_t> groups;  ///< [bodies] number of each body's group
+  std::vector<std::int32_t> kinds;   ///< [groups x groups] as ContactLaws::kind
+  std::int32_t count = 0;            ///< of groups
 
-  std::int32_t kind(int first, int second) const { return kinds[parties[first] * count + parties[second]]; }
+  std::int32_t kind(int first, int second) const { return kinds[groups[first] * count + groups[second]]; }
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("parties", parties), visitor("kinds", kinds), visitor("count", count);
+    visitor("groups", groups), visitor("kinds", kinds), visitor("count", count);
   }
 };
 

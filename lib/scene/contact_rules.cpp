@@ -10,43 +10,43 @@ namespace {
 
 constexpr int no_match = -1;
 
-int specificity(const std::string& name, const ContactParty& party) {
+int specificity(const std::string& name, const ContactGroup& group) {
   if (name == "all") return 0;
-  if (name == party.name) return 2;
-  return name == party.material ? 1 : no_match;
+  if (name == group.name) return 2;
+  return name == group.material ? 1 : no_match;
 }
 
-int specificity(const ContactRule& rule, const ContactParty& a, const ContactParty& b) {
+int specificity(const ContactRule& rule, const ContactGroup& a, const ContactGroup& b) {
   const int first = specificity(rule.first, a), second = specificity(rule.second, b);
   return first < 0 || second < 0 ? no_match : first + second;
 }
 
 }  // namespace
 
-ContactParty contact_party(const Scene& scene, const std::string& material, const std::string& name, bool wall) {
+ContactGroup contact_group(const Scene& scene, const std::string& material, const std::string& name, bool wall) {
   const bool named = std::any_of(scene.contacts.begin(), scene.contacts.end(),
                                  [&](const ContactRule& rule) { return rule.first == name || rule.second == name; });
-  return named ? ContactParty{material, name, wall} : ContactParty{material, {}, false};
+  return named ? ContactGroup{material, name, wall} : ContactGroup{material, {}, false};
 }
 
-std::vector<ContactParty> contact_parties(const Scene& scene) {
-  std::set<ContactParty> parties;
+std::vector<ContactGroup> contact_parties(const Scene& scene) {
+  std::set<ContactGroup> groups;
   for (const Grains& grains : scene.grains)
-    for (const MixEntry& entry : grains.mix) parties.insert(contact_party(scene, entry.material, grains.name, false));
-  for (const Wall& wall : scene.walls) parties.insert(contact_party(scene, wall.material, wall.name, true));
-  return {parties.begin(), parties.end()};
+    for (const MixEntry& entry : grains.mix) groups.insert(contact_group(scene, entry.material, grains.name, false));
+  for (const Wall& wall : scene.walls) groups.insert(contact_group(scene, wall.material, wall.name, true));
+  return {groups.begin(), groups.end()};
 }
 
-bool meets_itself(const Scene& scene, const ContactParty& party) {
+bool meets_itself(const Scene& scene, const ContactGroup& group) {
   std::int64_t bodies = 0;
   bool may_return = false;  // to its own image or folds, as walls do not
   for (const Grains& grains : scene.grains)
     for (const MixEntry& entry : grains.mix) {
-      if (contact_party(scene, entry.material, grains.name, false) != party) continue;
+      if (contact_group(scene, entry.material, grains.name, false) != group) continue;
       bodies += grains.packing.grain_count();
       may_return |= scene.period || (scene.contact.self_contact && entry.body == BodyKind::compliant);
     }
-  for (const Wall& wall : scene.walls) bodies += contact_party(scene, wall.material, wall.name, true) == party;
+  for (const Wall& wall : scene.walls) bodies += contact_group(scene, wall.material, wall.name, true) == group;
   return bodies != 1 || may_return;
 }
 
@@ -72,7 +72,7 @@ std::string refusal_of_restitution(const Scene& scene, const ContactRule& rule, 
       *rule.restitution, material, instead);
 }
 
-RuleMatch match_rule(const Scene& scene, const ContactParty& a, const ContactParty& b) {
+RuleMatch match_rule(const Scene& scene, const ContactGroup& a, const ContactGroup& b) {
   RuleMatch match;
   int best = no_match;
   for (const ContactRule& rule : scene.contacts) {

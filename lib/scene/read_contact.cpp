@@ -9,7 +9,7 @@ namespace {
 const QuantityOr automatic_stiffness{"auto", {"Pa/m", positive}};
 
 /// What a side of a rule may be called.
-std::vector<std::string> party_names(const Scene& scene) {
+std::vector<std::string> group_names(const Scene& scene) {
   std::vector<std::string> names = names_of(scene.materials);
   for (const std::vector<std::string>& more : {names_of(scene.grains), names_of(scene.walls)})
     names.insert(names.end(), more.begin(), more.end());
@@ -29,7 +29,7 @@ void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
     rule.second = rule.first;
     return;
   }
-  const std::vector<std::string> names = party_names(scene);
+  const std::vector<std::string> names = group_names(scene);
   std::vector<std::string> pair;
   table.required("between", pair, List<OneOf>{{"material, grains or wall", names}, 2, 2});
   for (const std::string& name : pair) refuse_ambiguous(table, name, names);

@@ -10,14 +10,14 @@ namespace {
 /// Spacings: beyond, contact sees into bodies further than outlines resolve them, and the stable step only shrinks.
 constexpr double most_skin = 4;
 
-std::string name_of(const ContactParty& party) {
-  return party.name.empty() ? fmt::format("'{}'", party.material)
-                            : fmt::format("'{}' of '{}'", party.name, party.material);
+std::string name_of(const ContactGroup& group) {
+  return group.name.empty() ? fmt::format("'{}'", group.material)
+                            : fmt::format("'{}' of '{}'", group.name, group.material);
 }
 
 /// A pair needs a rule, and only one.
 const ContactRule& require_rule(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
-                                const ContactParty& a, const ContactParty& b) {
+                                const ContactGroup& a, const ContactGroup& b) {
   if (tables.empty()) root.fail_missing("contacts", "at least one table [[contacts]]");
   const RuleMatch match = match_rule(scene, a, b);
   if (!match.rule) {
@@ -37,24 +37,24 @@ const ContactRule& require_rule(const TableReader& root, const Scene& scene, con
   return *match.rule;
 }
 
-bool has_compliant(const Scene& scene, const ContactParty& party) {
+bool has_compliant(const Scene& scene, const ContactGroup& group) {
   for (const Grains& grains : scene.grains)
     for (const MixEntry& entry : grains.mix)
-      if (entry.body == BodyKind::compliant && contact_party(scene, entry.material, grains.name, false) == party)
+      if (entry.body == BodyKind::compliant && contact_group(scene, entry.material, grains.name, false) == group)
         return true;
   return false;
 }
 
-void check_restitution(const Scene& scene, const TableReader& table, const ContactRule& rule, const ContactParty& a,
-                       const ContactParty& b) {
+void check_restitution(const Scene& scene, const TableReader& table, const ContactRule& rule, const ContactGroup& a,
+                       const ContactGroup& b) {
   if (rule.restitution.value_or(1) == 1) return;
-  for (const ContactParty* party : {&a, &b})
-    if (has_compliant(scene, *party)) table.fail("restitution", refusal_of_restitution(scene, rule, party->material));
+  for (const ContactGroup* group : {&a, &b})
+    if (has_compliant(scene, *group)) table.fail("restitution", refusal_of_restitution(scene, rule, group->material));
 }
 
 /// The automatic stiffness follows from the compliant bodies of the scene.
 void check_pair(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables,
-                const ContactParty& a, const ContactParty& b) {
+                const ContactGroup& a, const ContactGroup& b) {
   const ContactRule& rule = require_rule(root, scene, tables, a, b);
   const TableReader& table = tables[static_cast<std::size_t>(&rule - scene.contacts.data())];
   check_restitution(scene, table, rule, a, b);
@@ -68,9 +68,9 @@ void check_pair(const TableReader& root, const Scene& scene, const std::vector<T
 }
 
 void check_rules(const TableReader& root, const Scene& scene, const std::vector<TableReader>& tables) {
-  const std::vector<ContactParty> parties = contact_parties(scene);
-  for (auto a = parties.begin(); a != parties.end(); ++a)
-    for (auto b = a; b != parties.end(); ++b)
+  const std::vector<ContactGroup> groups = contact_parties(scene);
+  for (auto a = groups.begin(); a != groups.end(); ++a)
+    for (auto b = a; b != groups.end(); ++b)
       if (a != b || meets_itself(scene, *a)) check_pair(root, scene, tables, *a, *b);
 }
 

@@ -37,20 +37,20 @@ struct Stiffness {
   double value() const { return 8 * young / spacing; }
 };
 
-ContactParty party_of(const Scene& scene, const ContactOutline& body) {
-  return contact_party(scene, body.material, body.name, body.wall);
+ContactGroup group_of(const Scene& scene, const ContactOutline& body) {
+  return contact_group(scene, body.material, body.name, body.wall);
 }
 
 /// The largest automatic stiffness of pairs that have a rule, 0 when none has a compliant body.
 double largest_stiffness(const Scene& scene, const std::vector<ContactOutline>& outlines) {
-  std::map<ContactParty, Stiffness> parties;
+  std::map<ContactGroup, Stiffness> groups;
   for (const ContactOutline& body : outlines) {
-    Stiffness& party = parties[party_of(scene, body)];
-    party = party.with(Stiffness::of(scene, body));
+    Stiffness& group = groups[group_of(scene, body)];
+    group = group.with(Stiffness::of(scene, body));
   }
   double largest = 0;
-  for (const auto& [a, of_a] : parties)
-    for (const auto& [b, of_b] : parties) {
+  for (const auto& [a, of_a] : groups)
+    for (const auto& [b, of_b] : groups) {
       const Stiffness both = of_a.with(of_b);
       if (!both.rigid() && match_rule(scene, a, b).rule != nullptr) largest = std::max(largest, both.value());
     }
@@ -135,7 +135,7 @@ PairLaws::PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlin
     for (int b = 0; b < bodies_; ++b) {
       // Of its own kind a body meets only its periodic images, and a wall has none.
       if (a == b && (!scene.period || outlines[a].wall)) continue;
-      const ContactRule* rule = match_rule(scene, party_of(scene, outlines[a]), party_of(scene, outlines[b])).rule;
+      const ContactRule* rule = match_rule(scene, group_of(scene, outlines[a]), group_of(scene, outlines[b])).rule;
       if (rule == nullptr) continue;
       const Stiffness pair = Stiffness::of(scene, outlines[a]).with(Stiffness::of(scene, outlines[b]));
       laws_[a * bodies_ + b] = make_law(*rule, normal_stiffness(*rule, pair, largest), pair.spacing);

@@ -201,9 +201,9 @@ TEST(Restitution, laws_follow_drives_in_time) {
   const Model model = build_model(scene);
   const ContactLaws laws(model);
   const auto root = [&](double time) { return std::get<Damped<Frictionless>>(laws.between(0, 1, time)).root_damping; };
-  EXPECT_EQ(laws.era(0.5), 0);
-  EXPECT_EQ(laws.era(1), 1) << "from on";
-  EXPECT_EQ(laws.era(2), 2);
+  EXPECT_EQ(laws.law_interval(0.5), 0);
+  EXPECT_EQ(laws.law_interval(1), 1) << "from on";
+  EXPECT_EQ(laws.law_interval(2), 2);
   EXPECT_NEAR(root(1) / root(0.999), std::sqrt(2), 1e-14);
   EXPECT_EQ(root(2), root(0));
 }

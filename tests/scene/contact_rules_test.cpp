@@ -44,11 +44,11 @@ TEST(ContactRules, TheMostSpecificHolds) {
                                   rule("[\"hard\", \"floor\"]", 7)));
   const Scene scene = read_scene(file.path());
   const auto stiffness = [&](const char* material, const char* name, const char* other, const char* other_name) {
-    const auto party = [&](const char* m, const std::string& n) {
-      return contact_party(scene, m, n, n == "floor" || n == "lid");
+    const auto group = [&](const char* m, const std::string& n) {
+      return contact_group(scene, m, n, n == "floor" || n == "lid");
     };
-    const RuleMatch match = match_rule(scene, party(material, name), party(other, other_name));
-    const RuleMatch mirrored = match_rule(scene, party(other, other_name), party(material, name));
+    const RuleMatch match = match_rule(scene, group(material, name), group(other, other_name));
+    const RuleMatch mirrored = match_rule(scene, group(other, other_name), group(material, name));
     EXPECT_EQ(match.rule, mirrored.rule);
     EXPECT_EQ(match.rival, nullptr);
     return *match.rule->stiffness;
@@ -62,14 +62,14 @@ TEST(ContactRules, TheMostSpecificHolds) {
   EXPECT_EQ(stiffness("hard", "lid", "hard", "floor"), 6);
 }
 
-// EXACT: only what rules name tells parties apart.
+// EXACT: only what rules name tells groups apart.
 TEST(ContactRules, PartiesAreFew) {
   EXPECT_EQ(contact_parties(read_scene(SceneFile(good_scene).path())).size(), 2u);
   const SceneFile file(with_rules(rule("\"all\"", 1) + rule("[\"floor\", \"grains\"]", 2)));
-  const std::vector<ContactParty> parties = contact_parties(read_scene(file.path()));
-  ASSERT_EQ(parties.size(), 5u);  // lid, floor, hard and soft grains, soft boxes
-  EXPECT_EQ(parties[0], (ContactParty{"hard", "", false}));
-  EXPECT_EQ(parties[1], (ContactParty{"hard", "floor", true}));
+  const std::vector<ContactGroup> groups = contact_parties(read_scene(file.path()));
+  ASSERT_EQ(groups.size(), 5u);  // lid, floor, hard and soft grains, soft boxes
+  EXPECT_EQ(groups[0], (ContactGroup{"hard", "", false}));
+  EXPECT_EQ(groups[1], (ContactGroup{"hard", "floor", true}));
 }
 
 // EXACT: place and words.
