@@ -141,7 +141,7 @@ bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField
   };
   if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
   parallel_for(static_cast<int>(found_.size()),
-               [&](int i) { locate_newcomers(view(contact_pairs()[found_[i]]), history); });
+               [&](int i) { locate_new_contacts(view(contact_pairs()[found_[i]]), history); });
   return verlet_list_.hold(exceeded, trial);
 }
 

@@ -61,7 +61,7 @@ class ContactSystem {
   /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
   /// ContactLaws::law_interval.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
-  /// Rebuilds the contact pairs and carries the history, that of these outlines, over to them; newcomers get their
+  /// Rebuilds the contact pairs and carries the history, that of these outlines, over to them; new contacts get their
   /// places. Throws InputError when a body that may touch itself does so at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
   /// The same, but contact pairs that have used less than three fourths of their skin stay as they are. Returns

@@ -20,7 +20,7 @@ double touching_length(const PairView& view) {
   return sum(length);
 }
 
-void locate_newcomers(const PairView& view, ContactHistory& history) {
+void locate_new_contacts(const PairView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.contact_pair.law);
   if (!shears || view.contact_pair.integrated) return;
   for_each_beside(view, reach_of(view.contact_pair.law) + view.skin,

@@ -13,7 +13,7 @@ double touching_length(const PairView& view);
 /// Places of the nodes within reach and a skin of the present outlines, where a history has none yet: so that slip
 /// counts from the first step in touch. One that comes from further off in a single step, which may go up to two skins,
 /// has none.
-void locate_newcomers(const PairView& view, ContactHistory& history);
+void locate_new_contacts(const PairView& view, ContactHistory& history);
 
 /// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most
 /// laws.
