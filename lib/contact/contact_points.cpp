@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "contact/encounter.hpp"
+#include "contact/gap_and_slip.hpp"
 #include "contact/node_pass.hpp"
 #include "contact/segment_pass.hpp"
 
@@ -16,7 +16,7 @@ template <class Law>
 Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
                const ContactHistory& history, int record, Record<Law>& now) {
   const Lanes* before = history.at(record);
-  const Encounter at = encounter(law, window, p, touching, before[ContactHistory::place], place_of(p));
+  const GapAndSlip at = gap_and_slip(law, window, p, touching, before[ContactHistory::place], place_of(p));
   return respond(law, at, law(p.gap), before[ContactHistory::slip],
                  load_record<internal_variable_count<Law>>(history, record), now);
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "contact/encounter.hpp"
 #include "contact/energy_debt.hpp"
+#include "contact/gap_and_slip.hpp"
 #include "contact/node_pass.hpp"
 #include "contact/pair_queries.hpp"
 #include "contact/reactions.hpp"
@@ -109,7 +109,8 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     if constexpr (has_dashpot<Law>)
       totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
     Record<Law> now;
-    const Contact c = respond(law, encounter(law, window, p, touching, old_place, place), traction, old_slip, old, now);
+    const Contact c =
+        respond(law, gap_and_slip(law, window, p, touching, old_place, place), traction, old_slip, old, now);
     after[ContactHistory::place] = select(p.hit, place, broadcast(ContactHistory::nowhere));
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
     store_record(to, record, now);

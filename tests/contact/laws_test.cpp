@@ -134,7 +134,7 @@ struct Answer {
 template <class Law>
 Answer<Law> answer(const Law& law, Lanes gap, LaneBits beside, Lanes moved, Lanes slip, const Record<Law>& old) {
   Answer<Law> now;
-  const Encounter at{gap, beside, beside & (gap < law.reach), moved};
+  const GapAndSlip at{gap, beside, beside & (gap < law.reach), moved};
   now.contact = respond(law, at, law(gap), slip, old, now.record);
   return now;
 }

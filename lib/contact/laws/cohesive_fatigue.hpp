@@ -44,7 +44,7 @@ struct CohesiveFatigue {
   }
 
   /// `broken`: tractions of broken surfaces.
-  Contact respond(const Encounter& at, const Traction& broken, Lanes old_slip, const Record& old, Record& now) const {
+  Contact respond(const GapAndSlip& at, const Traction& broken, Lanes old_slip, const Record& old, Record& now) const {
     const LaneBits bonded = old[0] < 1.0;
     const Lanes elastic = select(bonded, old[2], old_slip);
     now = {broadcast(1), select(at.beside, max(at.gap, Lanes{}), Lanes{}), Lanes{}};
@@ -75,7 +75,7 @@ struct CohesiveFatigue {
 
   /// Puts the whole share of bonds beside the broken one, `c`, whose elastic slip was `elastic`. Nodes that are no
   /// longer beside the master tear off.
-  void hold(const Encounter& at, const Bond& bond, LaneBits bonded, Lanes elastic, Contact& c, Record& now) const {
+  void hold(const GapAndSlip& at, const Bond& bond, LaneBits bonded, Lanes elastic, Contact& c, Record& now) const {
     const Lanes opening = select(at.beside, max(at.gap, Lanes{}), bond.opening), slip = bond.slip + at.moved;
     const Lanes damage = select(bonded & at.beside, this->damage(bond, opening, slip, c.slip), broadcast(1));
     const Lanes whole = 1.0 - damage, grown = damage - bond.damage, depth = min(at.gap, Lanes{});

@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// Eight nodes near a master, in the step at hand.
-struct Encounter {
+struct GapAndSlip {
   Lanes gap;          ///< m, negative: penetration
   LaneBits beside;    ///< which of them face the master at all
   LaneBits touching;  ///< and are within the law's reach
@@ -26,7 +26,7 @@ struct Contact {
 /// gaps touch; and Traction operator()(Lanes gap) const. One that remembers something besides place and slip
 /// (core/internal_variables.hpp) brings
 ///
-///     Contact respond(const Encounter&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
+///     Contact respond(const GapAndSlip&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
 ///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight is beside the master
 ///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to
 ///     double start_reach() const;                                   m
@@ -46,7 +46,7 @@ concept AnswersGaps = requires(const Law& law, Lanes gap) {
   { law(gap) } -> std::same_as<Traction>;
 };
 template <class Law>
-concept AnswersEncounters = requires(const Law& law, const Encounter& at, const Traction& traction, Lanes number,
+concept AnswersGapAndSlip = requires(const Law& law, const GapAndSlip& at, const Traction& traction, Lanes number,
                                      LaneBits which, const Record<Law>& old, Record<Law>& now) {
   { law.respond(at, traction, number, old, now) } -> std::same_as<Contact>;
   { law.set_free(number, old) } -> std::same_as<Lanes>;
@@ -56,7 +56,7 @@ concept AnswersEncounters = requires(const Law& law, const Encounter& at, const 
 
 /// What a law lacks is said where it joins the others, contact/contact_law.hpp.
 template <class Law>
-concept CompleteContactLaw = AnswersGaps<Law> && (!has_internal_variables<Law> || AnswersEncounters<Law>);
+concept CompleteContactLaw = AnswersGaps<Law> && (!has_internal_variables<Law> || AnswersGapAndSlip<Law>);
 
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
@@ -83,7 +83,7 @@ void add_pressure(const Law& law, Lanes more, Traction& traction) {
 
 /// `traction`: the law's answer to the gap, and its dashpot's.
 template <class Law>
-Contact respond(const Law& law, const Encounter& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,
+Contact respond(const Law& law, const GapAndSlip& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,
                 Record<Law>& now) {
   if constexpr (has_internal_variables<Law>) {
     return law.respond(at, traction, old_slip, old, now);
