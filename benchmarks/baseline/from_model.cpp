@@ -17,10 +17,10 @@ void add_tables(const Model& model, const pliant::Body& body, Body& to) {
   const IntegrationTable& table = space.table;
   const double s = body.scale;
   to.mu = batch.mu[body.lane], to.lambda = batch.lambda[body.lane];
-  to.nodes.resize(space.unit_mass.size());
+  to.nodes.resize(space.mass_at_unit_density.size());
   for (std::size_t i = 0; i < to.nodes.size(); ++i) {
     to.nodes[i] = {};
-    to.nodes[i].mass = space.unit_mass[i] * batch.density[body.lane];
+    to.nodes[i].mass = space.mass_at_unit_density[i] * batch.density[body.lane];
     to.nodes[i].distance = s * space.nodal_distance[i];
   }
   to.points.resize(table.weight.size());

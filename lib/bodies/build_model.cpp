@@ -27,7 +27,7 @@ class ShapeStore {
       return discretise(alone ? make_field_mesh(spec) : related->second.mesh, model_.scene.discretisation);
     });
     if (!alone) shape.family = related->second.family;
-    for (double m : shape.space.unit_mass) shape.inverse_unit_mass.push_back(1 / m);
+    for (double m : shape.space.mass_at_unit_density) shape.inverse_mass_at_unit_density.push_back(1 / m);
     const FieldMesh& mesh = shape.space.mesh;
     shape.outline = add_outline(Points(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count), 0);
     model_.shapes.push_back(std::move(shape));

@@ -22,7 +22,7 @@ void add_drag(const Model& model, const Instant& at, const Dofs& velocity, Dofs&
     with_nodes(model, batch, [&](const auto& nodes) {
       for (int i = 2 * region.first; i < 2 * region.last; ++i) {
         const std::size_t at_dof = batch.offset + static_cast<std::size_t>(i);
-        force.compliant[at_dof] -= factor * nodes.unit_mass[i / 2] * velocity.compliant[at_dof];
+        force.compliant[at_dof] -= factor * nodes.mass_at_unit_density[i / 2] * velocity.compliant[at_dof];
       }
     });
   });

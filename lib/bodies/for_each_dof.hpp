@@ -30,7 +30,7 @@ void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&&
       const Lanes inverse_density = batch.inverse_density;  // here it cannot alias what the updates write
       std::size_t i = batch.offset + 2 * static_cast<std::size_t>(region.first);
       for (int slot = region.first; slot < region.last; ++slot) {
-        const Lanes inverse_mass = nodes.inverse_unit_mass[slot] * inverse_density;
+        const Lanes inverse_mass = nodes.inverse_mass_at_unit_density[slot] * inverse_density;
         compliant(i++, inverse_mass);
         compliant(i++, inverse_mass);
       }

@@ -18,9 +18,9 @@ enum class Layout { shared, related, spread };
 /// What the nodes of a batch have, slot by slot: one value for all lanes (double), or one a lane (Lanes).
 template <class T>
 struct NodeArrays {
-  const T *unit_mass,
-      *inverse_unit_mass;   ///< [slots], lumped mass at density 1, m2, and its inverse; both 0 in padding
-  const T* nodal_distance;  ///< [slots], m
+  const T *mass_at_unit_density,
+      *inverse_mass_at_unit_density;  ///< [slots], lumped mass at density 1, m2, and its inverse; both 0 in padding
+  const T* nodal_distance;            ///< [slots], m
 };
 
 /// A part of a batch that one thread handles at once: the whole batch, or a stretch of a spread body.
@@ -61,7 +61,7 @@ struct LaneRows {
 
 /// The shapes of one batch of related bodies, members as Discretisation's; padding lanes repeat the last one.
 struct RelatedShapes {
-  std::vector<Lanes> unit_mass, inverse_unit_mass, nodal_distance;  ///< [nodes]
+  std::vector<Lanes> mass_at_unit_density, inverse_mass_at_unit_density, nodal_distance;  ///< [nodes]
   LaneTable table;
   LaneRows outline_rows, node_rows, mass_correction;
   Lanes correction_bound{}, weight_share{};
@@ -75,10 +75,10 @@ struct SpreadShape {
   static constexpr int chunk_points = 1024;  ///< integration points of a chunk, a multiple of lane_count
   static constexpr int chunk_nodes = 128;    ///< outline nodes of a chunk
 
-  std::vector<int> order;                           ///< [nodes], the node that is the n-th in memory
-  std::vector<int> offset;                          ///< [nodes], of each node
-  std::vector<Lanes> unit_mass, inverse_unit_mass;  ///< [slots]
-  std::vector<Lanes> nodal_distance;                ///< [slots], m; 1 in padding
+  std::vector<int> order;   ///< [nodes], the node that is the n-th in memory
+  std::vector<int> offset;  ///< [nodes], of each node
+  std::vector<Lanes> mass_at_unit_density, inverse_mass_at_unit_density;  ///< [slots]
+  std::vector<Lanes> nodal_distance;                                      ///< [slots], m; 1 in padding
 
   std::vector<int> point_number;  ///< [points of the IntegrationTable], where each stands among the following
   std::vector<double> weight;     ///< [points, whole lanes], m2; 0 in padding
@@ -99,7 +99,7 @@ struct SpreadShape {
   std::vector<int> outline_start;             ///< [regions + 1], rows of the following
   std::vector<OutlineEntry> outline_entries;  ///< region by region
 
-  int slots() const { return static_cast<int>(unit_mass.size()); }
+  int slots() const { return static_cast<int>(mass_at_unit_density.size()); }
   int points() const { return static_cast<int>(weight.size()); }
 };
 

@@ -18,9 +18,9 @@ namespace pliant {
 /// A shape as compliant bodies use it: one table whatever the number of grains.
 struct CompliantShape {
   Discretisation space;
-  std::vector<double> inverse_unit_mass;  ///< [nodes], 1/m2
-  int outline = 0;                        ///< index of its outline shape
-  int family = -1;                        ///< related shapes, of one mesh topology, have one number; -1: alone
+  std::vector<double> inverse_mass_at_unit_density;  ///< [nodes], 1/m2
+  int outline = 0;                                   ///< index of its outline shape
+  int family = -1;  ///< related shapes, of one mesh topology, have one number; -1: alone
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 

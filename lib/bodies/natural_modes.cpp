@@ -94,7 +94,7 @@ MatrixXd inverse_mass_of(const Model& model, const Body& body) {
   MatrixXd result(nodes, nodes);
   for (Index j = 0; j < nodes; ++j) {
     Lanes& unit = y[2 * static_cast<std::size_t>(j)];
-    unit = broadcast(shape.inverse_unit_mass[static_cast<std::size_t>(j)] / batch.density[body.lane]);
+    unit = broadcast(shape.inverse_mass_at_unit_density[static_cast<std::size_t>(j)] / batch.density[body.lane]);
     if (model.corrected_mass)
       correct_velocity(model, batch, y.data(), v.data());
     else

@@ -34,7 +34,7 @@ Points dof_values(const Model& model, const Body& body, const Dofs& dofs) {
 
 Vec2 mean_value(const Model& model, const Body& body, const Dofs& dofs) {
   const BodyView q(model, body, dofs);
-  const std::vector<double>& mass = model.shape_of(body).space.unit_mass;
+  const std::vector<double>& mass = model.shape_of(body).space.mass_at_unit_density;
   Vec2 total(0, 0);
   double sum = 0;
   for (std::size_t i = 0; i < mass.size(); ++i) total += mass[i] * q[i], sum += mass[i];

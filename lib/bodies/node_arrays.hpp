@@ -10,16 +10,16 @@ template <class Action>
 decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& action) {
   if (batch.layout == Layout::spread) {
     const SpreadShape& shape = model.spread_shape_of(batch);
-    return action(
-        NodeArrays<Lanes>{shape.unit_mass.data(), shape.inverse_unit_mass.data(), shape.nodal_distance.data()});
+    return action(NodeArrays<Lanes>{shape.mass_at_unit_density.data(), shape.inverse_mass_at_unit_density.data(),
+                                    shape.nodal_distance.data()});
   }
   if (batch.layout == Layout::related) {
     const RelatedShapes& shapes = model.related_shapes[batch.tables];
-    return action(
-        NodeArrays<Lanes>{shapes.unit_mass.data(), shapes.inverse_unit_mass.data(), shapes.nodal_distance.data()});
+    return action(NodeArrays<Lanes>{shapes.mass_at_unit_density.data(), shapes.inverse_mass_at_unit_density.data(),
+                                    shapes.nodal_distance.data()});
   }
   const CompliantShape& shape = model.shape_of(batch);
-  return action(NodeArrays<double>{shape.space.unit_mass.data(), shape.inverse_unit_mass.data(),
+  return action(NodeArrays<double>{shape.space.mass_at_unit_density.data(), shape.inverse_mass_at_unit_density.data(),
                                    shape.space.nodal_distance.data()});
 }
 

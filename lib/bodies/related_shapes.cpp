@@ -55,12 +55,13 @@ LaneRows unite_rows(Shapes shapes, ShapeRows Discretisation::* member) {
 
 RelatedShapes unite(Shapes shapes) {
   RelatedShapes result;
-  const std::size_t nodes = shapes[0]->unit_mass.size();
-  result.unit_mass.resize(nodes), result.inverse_unit_mass.resize(nodes), result.nodal_distance.resize(nodes);
+  const std::size_t nodes = shapes[0]->mass_at_unit_density.size();
+  result.mass_at_unit_density.resize(nodes), result.inverse_mass_at_unit_density.resize(nodes),
+      result.nodal_distance.resize(nodes);
   for (std::size_t i = 0; i < nodes; ++i)
     for (int lane = 0; lane < lane_count; ++lane) {
-      result.unit_mass[i][lane] = shapes[lane]->unit_mass[i];
-      result.inverse_unit_mass[i][lane] = 1 / shapes[lane]->unit_mass[i];
+      result.mass_at_unit_density[i][lane] = shapes[lane]->mass_at_unit_density[i];
+      result.inverse_mass_at_unit_density[i][lane] = 1 / shapes[lane]->mass_at_unit_density[i];
       result.nodal_distance[i][lane] = shapes[lane]->nodal_distance[i];
     }
   for (int lane = 0; lane < lane_count; ++lane) {

@@ -46,14 +46,14 @@ void add_nodes(const Discretisation& space, SpreadShape& shape) {
   const std::vector<int>& order = shape.order = spatial_order(space.mesh.nodes);
   const std::size_t nodes = order.size(), slots = (nodes + lane_count - 1) / lane_count;
   shape.offset.resize(nodes);
-  shape.unit_mass.assign(slots, Lanes{});
-  shape.inverse_unit_mass.assign(slots, Lanes{});
+  shape.mass_at_unit_density.assign(slots, Lanes{});
+  shape.inverse_mass_at_unit_density.assign(slots, Lanes{});
   shape.nodal_distance.assign(slots, broadcast(1));
   for (std::size_t n = 0; n < nodes; ++n) {
     const int node = order[n];
     shape.offset[node] = offset_of(static_cast<int>(n));
-    shape.unit_mass[n / lane_count][n % lane_count] = space.unit_mass[node];
-    shape.inverse_unit_mass[n / lane_count][n % lane_count] = 1 / space.unit_mass[node];
+    shape.mass_at_unit_density[n / lane_count][n % lane_count] = space.mass_at_unit_density[node];
+    shape.inverse_mass_at_unit_density[n / lane_count][n % lane_count] = 1 / space.mass_at_unit_density[node];
     shape.nodal_distance[n / lane_count][n % lane_count] = space.nodal_distance[node];
   }
 }

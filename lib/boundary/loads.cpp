@@ -52,8 +52,8 @@ void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes*
   const Lanes density = select(batch.weight > 0.0, weighing_density(model, batch), Lanes{});
   with_nodes(model, batch, [&](const auto& nodes) {
     for (int i = region.first; i < region.last; ++i) {
-      forces[2 * i] += density * (nodes.unit_mass[i] * g.x());
-      forces[2 * i + 1] += density * (nodes.unit_mass[i] * g.y());
+      forces[2 * i] += density * (nodes.mass_at_unit_density[i] * g.x());
+      forces[2 * i + 1] += density * (nodes.mass_at_unit_density[i] * g.y());
     }
   });
 }
@@ -108,7 +108,8 @@ Lanes gravity_moment(const Model& model, const Batch& batch, int first, int last
   const Lanes* q = &position.compliant[batch.offset];
   return with_nodes(model, batch, [&](const auto& nodes) {
     Lanes moment{};
-    for (int i = first; i < last; ++i) moment += nodes.unit_mass[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
+    for (int i = first; i < last; ++i)
+      moment += nodes.mass_at_unit_density[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
     return moment * weighing_density(model, batch) * batch.weight;
   });
 }

@@ -56,7 +56,8 @@ std::string of_rolling(double restitution) {
 double largest_inertia_ratio(const Model& model) {
   double largest = 1;
   for (const CompliantShape& shape : model.shapes)
-    largest = std::max(largest, inertia_ratio(shape.space.mesh, shape.space.unit_mass, shape.space.mass_correction));
+    largest = std::max(largest,
+                       inertia_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.mass_correction));
   return largest;
 }
 

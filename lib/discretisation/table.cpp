@@ -62,7 +62,7 @@ FieldMesh nondimensional(FieldMesh mesh, double length) {
 
 void give_dimensions(Discretisation& result, double length) {
   for (double& w : result.table.weight) w *= length * length;
-  for (double& m : result.unit_mass) m *= length * length;
+  for (double& m : result.mass_at_unit_density) m *= length * length;
   for (Vec2& b : result.table.gradient) b /= length;
 }
 
@@ -92,12 +92,12 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.mesh = mesh;
   result.node_rows = rows_at_nodes(scaled, basis);
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
-  result.unit_mass = lumped_mass(scaled, basis);
+  result.mass_at_unit_density = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
-  result.weight_share = add_rim_mass(mesh.outline_count, settings.rim_mass, result.unit_mass);
+  result.weight_share = add_rim_mass(mesh.outline_count, settings.rim_mass, result.mass_at_unit_density);
   if (settings.mass == Mass::corrected) {
-    result.mass_correction = mass_correction(scaled, basis, result.unit_mass);
-    result.correction_bound = correction_bound(result.mass_correction, result.unit_mass);
+    result.mass_correction = mass_correction(scaled, basis, result.mass_at_unit_density);
+    result.correction_bound = correction_bound(result.mass_correction, result.mass_at_unit_density);
   }
   RecipeResult recipe = build(scaled, basis, result.outline_rows, settings);
   result.table = std::move(recipe.table);

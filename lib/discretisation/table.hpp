@@ -32,10 +32,10 @@ struct ShapeRows {
 struct Discretisation {
   FieldMesh mesh;
   IntegrationTable table;
-  ShapeRows outline_rows;              ///< at the outline nodes
-  ShapeRows node_rows;                 ///< at all field nodes
-  std::vector<double> unit_mass;       ///< [nodes], lumped mass at density 1, m2
-  std::vector<double> nodal_distance;  ///< [nodes], distance to the nearest other node, m
+  ShapeRows outline_rows;                    ///< at the outline nodes
+  ShapeRows node_rows;                       ///< at all field nodes
+  std::vector<double> mass_at_unit_density;  ///< [nodes], lumped mass at density 1, m2
+  std::vector<double> nodal_distance;        ///< [nodes], distance to the nearest other node, m
   /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (docs/method.md 2). Empty:
   /// lumped.
   ShapeRows mass_correction;

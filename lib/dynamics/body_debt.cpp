@@ -30,17 +30,18 @@ struct RigidMotion {
   RigidMotion(const Batch& batch, const Nodes& nodes, const Lanes* q, const Lanes* v) {
     Lanes mass{};
     for (int i = 0; i < batch.slots; ++i) {
-      mass += nodes.unit_mass[i];
-      x += nodes.unit_mass[i] * q[2 * i], y += nodes.unit_mass[i] * q[2 * i + 1];
-      velocity_x += nodes.unit_mass[i] * v[2 * i], velocity_y += nodes.unit_mass[i] * v[2 * i + 1];
+      mass += nodes.mass_at_unit_density[i];
+      x += nodes.mass_at_unit_density[i] * q[2 * i], y += nodes.mass_at_unit_density[i] * q[2 * i + 1];
+      velocity_x += nodes.mass_at_unit_density[i] * v[2 * i],
+          velocity_y += nodes.mass_at_unit_density[i] * v[2 * i + 1];
     }
     mass = sum_over_body(batch, mass);
     for (Lanes* mean : {&x, &y, &velocity_x, &velocity_y}) *mean = sum_over_body(batch, *mean) / mass;
     Lanes momentum{}, inertia{};
     for (int i = 0; i < batch.slots; ++i) {
       const Lanes rx = q[2 * i] - x, ry = q[2 * i + 1] - y;
-      momentum += nodes.unit_mass[i] * (rx * (v[2 * i + 1] - velocity_y) - ry * (v[2 * i] - velocity_x));
-      inertia += nodes.unit_mass[i] * (rx * rx + ry * ry);
+      momentum += nodes.mass_at_unit_density[i] * (rx * (v[2 * i + 1] - velocity_y) - ry * (v[2 * i] - velocity_x));
+      inertia += nodes.mass_at_unit_density[i] * (rx * rx + ry * ry);
     }
     spin = sum_over_body(batch, momentum) / sum_over_body(batch, inertia);
   }
@@ -65,10 +66,10 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   return with_nodes(model, batch, [&](const auto& nodes) {
     Lanes mass{}, way[2]{}, old_mean[2]{};
     for (int slot = 0; slot < batch.slots; ++slot) {
-      mass += nodes.unit_mass[slot];
+      mass += nodes.mass_at_unit_density[slot];
       for (int c = 0; c < 2; ++c) {
         const int i = 2 * slot + c;
-        way[c] += nodes.unit_mass[slot] * (q[i] - old_q[i]), old_mean[c] += old_f[i];
+        way[c] += nodes.mass_at_unit_density[slot] * (q[i] - old_q[i]), old_mean[c] += old_f[i];
       }
     }
     mass = sum_over_body(batch, mass);
@@ -78,15 +79,15 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
     }
     Lanes change{};
     for (std::size_t i = 0; i < size; ++i) {
-      const Lanes half_step = 0.5 * dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density);
+      const Lanes half_step = 0.5 * dt * (nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density);
       impulse[i] = half_step * f[i];
-      less[i] = half_step * (f[i] - 2.0 / 3 * (old_f[i] - nodes.unit_mass[i / 2] * old_mean[i % 2]));
+      less[i] = half_step * (f[i] - 2.0 / 3 * (old_f[i] - nodes.mass_at_unit_density[i / 2] * old_mean[i % 2]));
       change += (q[i] - old_q[i] - way[i % 2]) * (f[i] - old_f[i]);
     }
     const auto product = [&](const Lanes* a, const Lanes* b) {  // of reduced momenta, by the mass
       if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();
       Lanes total{};
-      for (std::size_t i = 0; i < size; ++i) total += nodes.unit_mass[i / 2] * (a[i] * b[i]);
+      for (std::size_t i = 0; i < size; ++i) total += nodes.mass_at_unit_density[i / 2] * (a[i] * b[i]);
       return total;
     };
     const Lanes twice = product(y, y) - product(impulse.data(), less.data());
@@ -103,7 +104,7 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State&
     Lanes twice{};  // their kinetic energy
     for (int i = 0; i < batch.slots; ++i) {
       const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
-      twice += nodes.unit_mass[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
+      twice += nodes.mass_at_unit_density[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
     }
     twice = sum_over_body(batch, twice * batch.density * batch.weight);
     owed = select(abs(owed) < 0.5 * most_owed * twice, owed, Lanes{});
@@ -111,7 +112,8 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State&
     const Lanes taken = max(min(wanted, broadcast(most_settled)), broadcast(-most_settled));
     for (int i = 0; i < batch.slots; ++i) {
       const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
-      const Lanes there = taken * (nodes.unit_mass[i] * nodes.inverse_unit_mass[i]);  // 0 in padding
+      // 0 in padding
+      const Lanes there = taken * (nodes.mass_at_unit_density[i] * nodes.inverse_mass_at_unit_density[i]);
       v[2 * i] -= there * shaking.x(), v[2 * i + 1] -= there * shaking.y();
     }
   });

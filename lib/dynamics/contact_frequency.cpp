@@ -29,7 +29,7 @@ void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, cons
     absolute *= stiffness[k];
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) product[rows.node[e]] += std::abs(rows.value[e]) * absolute;
   }
-  for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_unit_mass[i];
+  for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_mass_at_unit_density[i];
 }
 
 /// Bounds of w^2 that springs of these stiffnesses, [outline nodes], N/m2, give eight bodies of a shape, of density 1,

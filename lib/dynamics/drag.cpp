@@ -60,7 +60,8 @@ double DragLoss::weighted_square(const Instant& at, const Dofs& y, Weight&& weig
     for (int lane = 0; lane < lane_count; ++lane) factor[lane] = weight(batch.mass_damping[lane]);
     const Lanes *here = &y.compliant[batch.offset], *moving = &v.compliant[batch.offset];
     with_nodes(model_, batch, [&](const auto& nodes) {
-      for (int i = 2 * region.first; i < 2 * region.last; ++i) square += nodes.unit_mass[i / 2] * (here[i] * moving[i]);
+      for (int i = 2 * region.first; i < 2 * region.last; ++i)
+        square += nodes.mass_at_unit_density[i / 2] * (here[i] * moving[i]);
     });
     return sum(factor * square * batch.density * batch.weight);
   });

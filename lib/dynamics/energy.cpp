@@ -34,7 +34,7 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
     return with_nodes(model, batch, [&](const auto& nodes) {
       Lanes energy{};
       for (int i = region.first; i < region.last; ++i)
-        energy += 0.5 * nodes.unit_mass[i] * (y[2 * i] * v[2 * i] + y[2 * i + 1] * v[2 * i + 1]);
+        energy += 0.5 * nodes.mass_at_unit_density[i] * (y[2 * i] * v[2 * i] + y[2 * i + 1] * v[2 * i + 1]);
       return sum(energy * batch.density * batch.weight);
     });
   });

@@ -184,7 +184,8 @@ void StepDoubling::find_difference(const Region& region, double dt) {
   const Lanes *start = &start_force_.compliant[batch.offset], *middle = &trial_.force.compliant[batch.offset];
   with_nodes(model_, batch, [&](const auto& nodes) {
     for (int i = 2 * region.first; i < 2 * region.last; ++i)
-      d[i] = 0.25 * dt * dt * nodes.inverse_unit_mass[i / 2] * batch.inverse_density * (middle[i] - 2.0 * start[i]);
+      d[i] = 0.25 * dt * dt * nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density *
+             (middle[i] - 2.0 * start[i]);
   });
 }
 

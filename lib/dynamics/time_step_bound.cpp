@@ -81,9 +81,9 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const Weight* weight, int slo
 std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector<Lanes> force) {
   std::vector<Lanes> result(force.size());
   with_nodes(model, batch, [&](const auto& nodes) {
-    for (std::size_t i = 0; i < force.size(); ++i) force[i] *= nodes.inverse_unit_mass[i / 2];
+    for (std::size_t i = 0; i < force.size(); ++i) force[i] *= nodes.inverse_mass_at_unit_density[i / 2];
     correct_velocity(model, batch, force.data(), result.data());
-    for (std::size_t i = 0; i < force.size(); ++i) result[i] *= nodes.unit_mass[i / 2];
+    for (std::size_t i = 0; i < force.size(); ++i) result[i] *= nodes.mass_at_unit_density[i / 2];
   });
   return result;
 }
@@ -147,12 +147,12 @@ void TimeStepBound::iterate_batch(int b, BatchMotion motion, int iterations) {
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
     if (model_.corrected_mass) response = corrected(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
-      const Lanes before = sum_over_body(batch, weighted_dot(u, u, nodes.unit_mass, batch.slots));
-      const Lanes after =
-          sum_over_body(batch, weighted_dot(response.data(), response.data(), nodes.inverse_unit_mass, batch.slots));
+      const Lanes before = sum_over_body(batch, weighted_dot(u, u, nodes.mass_at_unit_density, batch.slots));
+      const Lanes after = sum_over_body(
+          batch, weighted_dot(response.data(), response.data(), nodes.inverse_mass_at_unit_density, batch.slots));
       internal_[b] = sqrt(after / before) * batch.inverse_density;
       for (std::size_t i = 0; i < size; ++i)
-        u[i] = response[i] * nodes.inverse_unit_mass[i / 2] * batch.inverse_density;
+        u[i] = response[i] * nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density;
     });
   }
   frame.into_body(batch, u);
@@ -171,13 +171,13 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
     add_internal_forces(model_, batch, {.position = position, .velocity = v, .elastic = false}, response.data());
     if (model_.corrected_mass) response = corrected(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
-      const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.unit_mass, batch.slots));
-      const Lanes after =
-          sum_over_body(batch, weighted_dot(response.data(), response.data(), nodes.inverse_unit_mass, batch.slots));
+      const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.mass_at_unit_density, batch.slots));
+      const Lanes after = sum_over_body(
+          batch, weighted_dot(response.data(), response.data(), nodes.inverse_mass_at_unit_density, batch.slots));
       const LaneBits damped = after > 0.0;  // a batch may hold bodies without viscosity
       viscous_[b] = select(damped, sqrt(after / before) * batch.inverse_density, Lanes{});
       for (std::size_t i = 0; i < response.size(); ++i)
-        v[i] = select(damped, -response[i] * nodes.inverse_unit_mass[i / 2], v[i]);
+        v[i] = select(damped, -response[i] * nodes.inverse_mass_at_unit_density[i / 2], v[i]);
     });
   }
   frame.into_body(batch, v);

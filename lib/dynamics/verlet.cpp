@@ -141,7 +141,8 @@ void Verlet::predict_velocities(const State& state, double dt) {
     with_nodes(model_, batch, [&](const auto& nodes) {
       for (int i = 2 * region.first; i < 2 * region.last; ++i) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
-        const Lanes change = dt * (nodes.inverse_unit_mass[i / 2] * batch.inverse_density) * state.force.compliant[at];
+        const Lanes change =
+            dt * (nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density) * state.force.compliant[at];
         mean_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.mean * change;
         end_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.end * change;
       }
@@ -187,21 +188,21 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   with_nodes(model_, batch, [&](const auto& nodes) {
     Lanes worst{}, any_nan{};  // squares
     for (int slot = region.first; slot < region.last; ++slot) {
-      const auto inverse_unit_mass = nodes.inverse_unit_mass[slot];
+      const auto inverse_mass_at_unit_density = nodes.inverse_mass_at_unit_density[slot];
       Lanes square{};
       for (int i = 2 * slot; i < 2 * slot + 2; ++i) {
-        velocity[i] =
-            old_velocity[i] + 0.5 * dt * (inverse_unit_mass * batch.inverse_density) * (old_force[i] + force[i]);
+        velocity[i] = old_velocity[i] +
+                      0.5 * dt * (inverse_mass_at_unit_density * batch.inverse_density) * (old_force[i] + force[i]);
         Lanes change = force[i] - old_force[i];
         if (batch.mass_damped) {
-          const Lanes coefficient = drag * nodes.unit_mass[slot];
+          const Lanes coefficient = drag * nodes.mass_at_unit_density[slot];
           velocity[i] += z * (0.5 * old_velocity[i] - mean[i]);
           change -= coefficient * old_velocity[i];
           force[i] -= coefficient * velocity[i];
         }
         square += change * change;
       }
-      const auto scale = inverse_unit_mass / nodes.nodal_distance[slot];
+      const auto scale = inverse_mass_at_unit_density / nodes.nodal_distance[slot];
       const Lanes error = scale * scale * square;
       worst = max(worst, error);
       any_nan += error;

@@ -71,7 +71,7 @@ TEST(NaturalModes, inverse_mass_keeps_rigid_motion) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
     const Model model = build_model(free_disc(61, {.mass = mass}));
     const MatrixXd inverse = small_motions(model, model.bodies[0]).inverse_mass;
-    const std::vector<double>& lumped = model.shapes[0].space.unit_mass;
+    const std::vector<double>& lumped = model.shapes[0].space.mass_at_unit_density;
     const Eigen::Map<const Eigen::VectorXd> masses(lumped.data(), static_cast<Index>(lumped.size()));
     EXPECT_LT((inverse * masses - Eigen::VectorXd::Ones(masses.size())).cwiseAbs().maxCoeff(), 1e-12);
     EXPECT_EQ(inverse.isDiagonal(0), mass == Mass::lumped);

@@ -187,10 +187,10 @@ TEST(SpreadShape, is_the_table_in_another_order) {
   EXPECT_EQ(shape.points() % lane_count, 0);
   EXPECT_EQ(shape.point.size(), shape.node.size());
   Lanes mass{};
-  for (const Lanes& m : shape.unit_mass) mass += m;
+  for (const Lanes& m : shape.mass_at_unit_density) mass += m;
   EXPECT_NEAR(sum(mass), M_PI, 1e-12);
-  for (std::size_t n = 0; n < space.unit_mass.size(); ++n)
-    EXPECT_EQ(shape.unit_mass[n / 8][n % 8] * shape.inverse_unit_mass[n / 8][n % 8] > 0.99, true);
+  for (std::size_t n = 0; n < space.mass_at_unit_density.size(); ++n)
+    EXPECT_EQ(shape.mass_at_unit_density[n / 8][n % 8] * shape.inverse_mass_at_unit_density[n / 8][n % 8] > 0.99, true);
 }
 
 /// Neighbours in space are neighbours in memory: the mean distance of the places of nodes that share a point. The

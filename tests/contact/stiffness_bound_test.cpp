@@ -29,8 +29,8 @@ std::vector<FreeDof> free_dofs(const Model& model) {
   for (const Batch& batch : model.batches)
     for (int lane = 0; lane < batch.count; ++lane)
       for (std::size_t i = 0; i < 2U * model.shape_of(batch).nodes(); ++i)
-        dofs.push_back(
-            {false, batch.offset + i, lane, batch.density[lane] * model.shape_of(batch).space.unit_mass[i / 2]});
+        dofs.push_back({false, batch.offset + i, lane,
+                        batch.density[lane] * model.shape_of(batch).space.mass_at_unit_density[i / 2]});
   return dofs;
 }
 

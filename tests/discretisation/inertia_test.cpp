@@ -17,7 +17,9 @@ Discretisation disc(int nodes, Recipe recipe, Mass mass) {
   return discretise(make_field_mesh(shape), settings);
 }
 
-double ratio(const Discretisation& space) { return inertia_ratio(space.mesh, space.unit_mass, space.mass_correction); }
+double ratio(const Discretisation& space) {
+  return inertia_ratio(space.mesh, space.mass_at_unit_density, space.mass_correction);
+}
 
 /// Row sums of linear triangles put a third of each triangle's mass on each of its corners.
 TEST(InertiaRatio, is_that_of_thirds_on_corners) {

@@ -32,7 +32,8 @@ MatrixXd scaled_stiffness(const Discretisation& d) {
         const int i = d.table.node[a], j = d.table.node[b];
         const Vec2 &p = d.table.gradient[a], &q = d.table.gradient[b];
         const Matrix2d block = 4 * p * q.transpose() + q * p.transpose() + p.dot(q) * Matrix2d::Identity();
-        k.block<2, 2>(2 * i, 2 * j) += d.table.weight[g] / std::sqrt(d.unit_mass[i] * d.unit_mass[j]) * block;
+        k.block<2, 2>(2 * i, 2 * j) +=
+            d.table.weight[g] / std::sqrt(d.mass_at_unit_density[i] * d.mass_at_unit_density[j]) * block;
       }
   return k;
 }
@@ -40,10 +41,11 @@ MatrixXd scaled_stiffness(const Discretisation& d) {
 // L^T K L with L L^T = D^1/2 C D^-1/2: the stiffness scaled by the corrected inverse mass C D^-1.
 MatrixXd corrected(const Discretisation& d, const MatrixXd& stiffness) {
   MatrixXd c = MatrixXd::Zero(stiffness.rows(), stiffness.cols());
-  for (int i = 0; i < static_cast<int>(d.unit_mass.size()); ++i)
+  for (int i = 0; i < static_cast<int>(d.mass_at_unit_density.size()); ++i)
     for (int e = d.mass_correction.start[i]; e < d.mass_correction.start[i + 1]; ++e) {
       const int j = d.mass_correction.node[e];
-      const double value = d.mass_correction.value[e] * std::sqrt(d.unit_mass[i] / d.unit_mass[j]);
+      const double value =
+          d.mass_correction.value[e] * std::sqrt(d.mass_at_unit_density[i] / d.mass_at_unit_density[j]);
       c.block<2, 2>(2 * i, 2 * j) = value * Matrix2d::Identity();
     }
   const MatrixXd l = c.llt().matrixL();
@@ -117,7 +119,7 @@ TEST(MassCorrection, IsSymmetricKeepsMomentumAndIsBounded) {
     for (int i = 0; i < n; ++i)
       for (int e = d.mass_correction.start[i]; e < d.mass_correction.start[i + 1]; ++e)
         c(i, d.mass_correction.node[e]) = d.mass_correction.value[e];
-    const Eigen::Map<const Eigen::VectorXd> mass(d.unit_mass.data(), n);
+    const Eigen::Map<const Eigen::VectorXd> mass(d.mass_at_unit_density.data(), n);
     const MatrixXd dc = mass.asDiagonal() * c;
     EXPECT_LT((dc - dc.transpose()).norm(), 1e-14 * dc.norm());
     EXPECT_LT((c.rowwise().sum().array() - 1).abs().maxCoeff(), 1e-13);

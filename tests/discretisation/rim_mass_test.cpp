@@ -19,7 +19,8 @@ TEST(RimMass, makes_outline_nodes_heavier) {
     Scene scene = free_disc(90, 1);
     scene.discretisation.recipe = recipe;
     const Model plain = build_model(scene), heavy = build_model(with_rim(scene, 1.7));
-    const std::vector<double>&before = plain.shapes[0].space.unit_mass, &now = heavy.shapes[0].space.unit_mass;
+    const std::vector<double>&before = plain.shapes[0].space.mass_at_unit_density,
+          &now = heavy.shapes[0].space.mass_at_unit_density;
     const std::size_t outline = static_cast<std::size_t>(plain.shapes[0].space.mesh.outline_count);
     ASSERT_GT(outline, 10u);
     for (std::size_t i = 0; i < before.size(); ++i) EXPECT_DOUBLE_EQ(now[i], (i < outline ? 1.7 : 1) * before[i]);

@@ -129,10 +129,11 @@ TEST(Table, AreaAndMasses) {
       const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
       const double area = polygon_properties(outline_of(d.mesh)).area;
       EXPECT_NEAR(std::accumulate(d.table.weight.begin(), d.table.weight.end(), 0.0) / area, 1, 1e-13);
-      EXPECT_NEAR(std::accumulate(d.unit_mass.begin(), d.unit_mass.end(), 0.0) / area, 1, 1e-13);
-      EXPECT_GT(*std::min_element(d.unit_mass.begin(), d.unit_mass.end()), 0);
+      EXPECT_NEAR(std::accumulate(d.mass_at_unit_density.begin(), d.mass_at_unit_density.end(), 0.0) / area, 1, 1e-13);
+      EXPECT_GT(*std::min_element(d.mass_at_unit_density.begin(), d.mass_at_unit_density.end()), 0);
       Vec2 moment(0, 0);
-      for (std::size_t i = 0; i < d.unit_mass.size(); ++i) moment += d.unit_mass[i] * d.mesh.nodes[i];
+      for (std::size_t i = 0; i < d.mass_at_unit_density.size(); ++i)
+        moment += d.mass_at_unit_density[i] * d.mesh.nodes[i];
       EXPECT_LT(moment.norm(), 1e-13 * std::pow(area, 1.5));
     }
 }

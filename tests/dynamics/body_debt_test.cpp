@@ -54,7 +54,7 @@ Eigen::Vector3d momenta(const Bench& bench) {
                   *y = &bench.state.reduced_momentum.compliant[batch.offset];
       Lanes px{}, py{}, turning{};
       for (int i = 0; i < batch.slots; ++i) {
-        const Lanes mass = nodes.unit_mass[i] * select(batch.weight > 0.0, batch.density, Lanes{});
+        const Lanes mass = nodes.mass_at_unit_density[i] * select(batch.weight > 0.0, batch.density, Lanes{});
         px += mass * y[2 * i], py += mass * y[2 * i + 1];
         turning += mass * (q[2 * i] * y[2 * i + 1] - q[2 * i + 1] * y[2 * i]);
       }
@@ -163,16 +163,16 @@ Lanes owed_by_linear(const Bench& bench, const Trial& before, const Batch& batch
   Lanes way[2]{};
   with_nodes(bench.model, batch, [&](const auto& nodes) {
     Lanes mass{}, kick_of_all[2]{};
-    for (int i = 0; i < batch.slots; ++i) mass += nodes.unit_mass[i];
+    for (int i = 0; i < batch.slots; ++i) mass += nodes.mass_at_unit_density[i];
     for (int i = 0; i < 2 * batch.slots; ++i) {
       const std::size_t at = batch.offset + static_cast<std::size_t>(i);
       kick_of_all[i % 2] += kick.compliant[at] / mass * batch.inverse_density;
-      way[i % 2] +=
-          nodes.unit_mass[i / 2] / mass * (bench.state.position.compliant[at] - before.position.compliant[at]);
+      way[i % 2] += nodes.mass_at_unit_density[i / 2] / mass *
+                    (bench.state.position.compliant[at] - before.position.compliant[at]);
     }
     for (int i = 0; i < 2 * batch.slots; ++i) {
       Lanes& of_node = kick.compliant[batch.offset + static_cast<std::size_t>(i)];
-      of_node = of_node * nodes.inverse_unit_mass[i / 2] * batch.inverse_density - kick_of_all[i % 2];
+      of_node = of_node * nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density - kick_of_all[i % 2];
     }
   });
   const Dofs& moving = material_velocity(bench.model, kick, response);

@@ -225,7 +225,7 @@ double true_largest_dt(Bench& bench) {
     for (Lanes& v : bench.state.reduced_momentum.compliant) v = Lanes{};
     bench.state.reduced_momentum.compliant[j] = broadcast(1);
     const Viscous unit = viscous_forces(bench);
-    for (std::size_t i = 0; i < size; ++i) rates(i, j) = -unit.force[i][0] * shape.inverse_unit_mass[i / 2];
+    for (std::size_t i = 0; i < size; ++i) rates(i, j) = -unit.force[i][0] * shape.inverse_mass_at_unit_density[i / 2];
   }
   for (Lanes& v : bench.state.reduced_momentum.compliant) v = Lanes{};
   const double c = Eigen::EigenSolver<Eigen::MatrixXd>(rates, false).eigenvalues().real().maxCoeff();

@@ -47,7 +47,7 @@ void euler_step(const Model& model, Euler& state, const Dofs& force, double dt) 
   for (const Batch& batch : model.batches)
     for (int i = 0; i < 2 * model.shape_of(batch).nodes(); ++i) {
       const std::size_t at = batch.offset + static_cast<std::size_t>(i);
-      const Lanes mass = model.shape_of(batch).space.unit_mass[i / 2] * batch.density;
+      const Lanes mass = model.shape_of(batch).space.mass_at_unit_density[i / 2] * batch.density;
       state.velocity.compliant[at] += dt * force.compliant[at] / mass;
       state.position.compliant[at] += dt * state.velocity.compliant[at];
     }

@@ -140,7 +140,7 @@ double lightest_direction(const Scene& scene) {
   const Model model = build_model(scene);
   const CompliantShape& shape = model.shape_of(model.bodies[0]);
   const auto inverse_mass = [&](int k) {
-    return shape.inverse_unit_mass[shape.space.outline_rows.node[shape.space.outline_rows.start[k]]];
+    return shape.inverse_mass_at_unit_density[shape.space.outline_rows.node[shape.space.outline_rows.start[k]]];
   };
   int lightest = 0;
   for (int k = 1; k < model.outlines[0].count; ++k)

@@ -23,7 +23,7 @@ inline std::vector<Coordinate> coordinates(Bench& bench, Dofs& force) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
         all.push_back({reinterpret_cast<double*>(&bench.state.position.compliant[at]) + lane,
                        reinterpret_cast<double*>(&force.compliant[at]) + lane,
-                       model.shape_of(batch).inverse_unit_mass[i / 2] * batch.inverse_density[lane]});
+                       model.shape_of(batch).inverse_mass_at_unit_density[i / 2] * batch.inverse_density[lane]});
       }
   for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r)
     for (std::size_t c = 0; c < 3; ++c)

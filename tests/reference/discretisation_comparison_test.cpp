@@ -72,12 +72,13 @@ PointDifference difference(const reference::Space& own, const IntegrationTable& 
 
 /// The consistent mass that the engine's correction 2 I - D^-1 M was made of.
 Eigen::SparseMatrix<double> engine_mass(const Discretisation& engine) {
-  const auto nodes = static_cast<Eigen::Index>(engine.unit_mass.size());
+  const auto nodes = static_cast<Eigen::Index>(engine.mass_at_unit_density.size());
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < nodes; ++i) {
-    entries.emplace_back(i, i, 2 * engine.unit_mass[i]);
+    entries.emplace_back(i, i, 2 * engine.mass_at_unit_density[i]);
     for (int e = engine.mass_correction.start[i]; e < engine.mass_correction.start[i + 1]; ++e)
-      entries.emplace_back(i, engine.mass_correction.node[e], -engine.unit_mass[i] * engine.mass_correction.value[e]);
+      entries.emplace_back(i, engine.mass_correction.node[e],
+                           -engine.mass_at_unit_density[i] * engine.mass_correction.value[e]);
   }
   Eigen::SparseMatrix<double> mass(nodes, nodes);
   mass.setFromTriplets(entries.begin(), entries.end());
@@ -105,8 +106,8 @@ void compare(const ShapeSpec& shape, DiscretisationSettings settings, LargestFig
   const PointDifference points = difference(own, engine.table);
   const double values = std::max(difference(own.outline, engine.outline_rows), difference(own.nodes, engine.node_rows));
   double lumped = 0;
-  for (std::size_t i = 0; i < engine.unit_mass.size(); ++i)
-    lumped = std::max(lumped, std::abs(own.lumped[static_cast<Eigen::Index>(i)] - engine.unit_mass[i]));
+  for (std::size_t i = 0; i < engine.mass_at_unit_density.size(); ++i)
+    lumped = std::max(lumped, std::abs(own.lumped[static_cast<Eigen::Index>(i)] - engine.mass_at_unit_density[i]));
   const Eigen::SparseMatrix<double> rest = own.consistent - engine_mass(engine);
   const double mass_scale = own.lumped.maxCoeff();
   const auto expect_agreement = [&](const char* what, double error) {

@@ -31,7 +31,7 @@ inline Vec2 node_value(const Model& model, const Body& body, const Dofs& dofs, i
 
 /// Lumped masses of a compliant body, kg/m a node.
 inline std::vector<double> node_masses(const Model& model, const Body& body) {
-  std::vector<double> masses = model.shape_of(model.batches[body.batch]).space.unit_mass;
+  std::vector<double> masses = model.shape_of(model.batches[body.batch]).space.mass_at_unit_density;
   for (double& m : masses) m *= model.scene.materials[body.material].density;
   return masses;
 }

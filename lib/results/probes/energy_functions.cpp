@@ -33,10 +33,11 @@ double kinetic_energy_of(const Snapshot& snapshot, const Body& body) {
     for (int c = 0; c < 3; ++c) energy += 0.5 * model.rigid_bodies[body.rigid].dof[c].mass * v[c] * v[c];
     return energy;
   }
-  const std::vector<double>& unit_mass = model.shape_of(body).space.unit_mass;
+  const std::vector<double>& mass_at_unit_density = model.shape_of(body).space.mass_at_unit_density;
   const Points y = dof_values(model, body, velocity), v = dof_values(model, body, snapshot.velocities());
   double mass = 0;
-  for (std::size_t i = 0; i < v.size(); ++i) energy += 0.5 * unit_mass[i] * y[i].dot(v[i]), mass += unit_mass[i];
+  for (std::size_t i = 0; i < v.size(); ++i)
+    energy += 0.5 * mass_at_unit_density[i] * y[i].dot(v[i]), mass += mass_at_unit_density[i];
   return body.mass / mass * energy;
 }
 

@@ -89,7 +89,7 @@ Vec2 rotation_of(const Snapshot& snapshot, const Body& body) {
   const Discretisation& space = model.shape_of(body).space;
   double sine = 0, cosine = 0, momentum = 0, inertia = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double m = space.unit_mass[i];
+    const double m = space.mass_at_unit_density[i];
     const Vec2 start = arm_at_start(body, space.mesh.nodes[i]), arm = x[i] - centre;
     sine += m * cross(start, arm), cosine += m * start.dot(arm);
     momentum += m * cross(arm, v[i] - drift), inertia += m * arm.squaredNorm();
