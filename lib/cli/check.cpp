@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-#include "cli/cautions.hpp"
+#include "cli/dry_run.hpp"
 #include "cli/estimates.hpp"
 #include "cli/expected_errors.hpp"
-#include "cli/rehearsal.hpp"
+#include "cli/preflight_warnings.hpp"
 #include "cli/stability.hpp"
 #include "cli/thin_parts.hpp"
 #include "core/memory.hpp"
@@ -177,8 +177,8 @@ void print_errors(const Model& model) {
 
 void print_cautions(const Model& model) {
   const char* heading = "mind";
-  for (const std::string& caution : cautions(model)) {
-    print_row(heading, caution);
+  for (const std::string& preflight_warning : preflight_warnings(model)) {
+    print_row(heading, preflight_warning);
     heading = "";
   }
 }
@@ -221,13 +221,13 @@ void print_time_step(const Model& model, const Stability& stable, double skin) {
                     si(speed, "m/s"), si(skin / speed, "s")));
 }
 
-/// Evaluations of the whole run: counted, or those of the rehearsal and what its pace or the bound makes of the rest.
+/// Evaluations of the whole run: counted, or those of the dry run and what its pace or the bound makes of the rest.
 struct Forecast {
   double evaluations = 0;
   const char *before = "", *after = "";
 };
 
-Forecast forecast(const Scene& scene, const Rehearsal& first, double bound) {
+Forecast forecast(const Scene& scene, const DryRun& first, double bound) {
   const double done = static_cast<double>(first.evaluations), left = scene.time.end - first.time;
   if (first.finished) return {done, "", ", counted: the first second went to the end"};
   const bool verlet = scene.time.integrator == Integrator::verlet;
@@ -237,7 +237,7 @@ Forecast forecast(const Scene& scene, const Rehearsal& first, double bound) {
   return {done + least, "at least ", ", at the largest stable step"};
 }
 
-void print_cost(const Model& model, const Rehearsal& first, const Forecast& run, std::int64_t frames) {
+void print_cost(const Model& model, const DryRun& first, const Forecast& run, std::int64_t frames) {
   std::string text =
       fmt::format("{}{} until {}{}", run.before, count(run.evaluations), si(model.scene.time.end, "s"), run.after);
   if (first.rejections > 0)
@@ -283,7 +283,7 @@ void print_check(const Scene& scene, int threads) {
   print_errors(model);
   print_cautions(model);
   print_time_step(model, stable, simulation.forces().contact().skin());
-  const Rehearsal first = rehearse(simulation);
+  const DryRun first = dry_run(simulation);
   const Forecast run = forecast(scene, first, stable.dt);
   const OutputSize size = output_size(model, run.evaluations);
   print_cost(model, first, run, size.frames);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/rehearsal.hpp"
+#include "cli/dry_run.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {
@@ -144,7 +144,7 @@ TEST(OutputSizes, GrowWithWhatIsAskedFor) {
   EXPECT_GT(some.frames_h5, 11 * 0.5 * frame_bytes(build_model(scene)));
 }
 
-TEST(Rehearsal, CountsWhatARunCounts) {
+TEST(DryRun, CountsWhatARunCounts) {
   Scene scene = three_discs_and_a_wall();
   scene.grains[0].velocity.uniform = Vec2(1, 0);
   scene.time.end = 0.5;
@@ -154,7 +154,7 @@ TEST(Rehearsal, CountsWhatARunCounts) {
     scene.time.stop_at_outputs = stops;
     const Model model = build_model(scene);
     Simulation rehearsed(model);
-    const Rehearsal first = rehearse(rehearsed);
+    const DryRun first = dry_run(rehearsed);
     ASSERT_TRUE(first.finished);
     // EXACT: the same steps as a run, which stops at the union of both periods or before the end.
     Simulation run(model);

@@ -5,7 +5,7 @@
 namespace pliant {
 
 /// What the first second of a run tells.
-struct Rehearsal {
+struct DryRun {
   double time = 0;  ///< reached, s of the scene
   bool finished = false;
   std::int64_t evaluations = 0, rejections = 0;
@@ -15,6 +15,6 @@ struct Rehearsal {
 };
 
 /// Steps for at most a second, with the same outputs as a run, and samples the probes; nothing is written.
-Rehearsal rehearse(Simulation& simulation);
+DryRun dry_run(Simulation& simulation);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "cli/cautions.hpp"
+#include "cli/preflight_warnings.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,7 +74,7 @@ std::optional<double> least_restitution(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> cautions(const Model& model) {
+std::vector<std::string> preflight_warnings(const Model& model) {
   std::vector<std::string> all;
   if (const std::optional<int> facets = fewest_facets(model)) all.push_back(of_facets(*facets));
   if (const std::optional<double> restitution = least_restitution(model.scene);

@@ -9,6 +9,6 @@ namespace pliant {
 
 /// What polygons and lumped masses change in a scene's mechanics, with figures and what lessens it: a sentence each,
 /// none where it does not apply.
-std::vector<std::string> cautions(const Model& model);
+std::vector<std::string> preflight_warnings(const Model& model);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "cli/rehearsal.hpp"
+#include "cli/dry_run.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -46,7 +46,7 @@ class ProbeRehearsal {
 
 }  // namespace
 
-Rehearsal rehearse(Simulation& simulation) {
+DryRun dry_run(Simulation& simulation) {
   using Clock = std::chrono::steady_clock;
   const Scene& scene = simulation.model().scene;
   const State& state = simulation.state();
@@ -70,7 +70,7 @@ Rehearsal rehearse(Simulation& simulation) {
     if (grown == 0 && state.evaluations >= growth) grown = state.evaluations, grown_time = state.time;
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
-  Rehearsal result;
+  DryRun result;
   result.time = state.time;
   result.finished = finished;
   result.evaluations = state.evaluations;
