@@ -46,18 +46,18 @@ double kinetic_energy(const Model& model, const Dofs& velocity) {
   return total;
 }
 
-Auditor::Auditor(const Model& model, const State& start) : model_(model) {
+EnergyAccountant::EnergyAccountant(const Model& model, const State& start) : model_(model) {
   gravity_start_ = constant_gravity_moment(start.position);
   energy_start_ = audit(start).energy.mechanical();
 }
 
 /// 0 with a history: its work is booked step by step.
-double Auditor::constant_gravity_moment(const Dofs& position) const {
+double EnergyAccountant::constant_gravity_moment(const Dofs& position) const {
   const Scene& scene = model_.scene;
   return scene.gravity_history.empty() ? gravity_moment(model_, scene.gravity, position) : 0;
 }
 
-void Auditor::warn_of_strain(const State& state) {
+void EnergyAccountant::warn_of_strain(const State& state) {
   if (warned_of_strain_) return;
   const double strain = largest_small_strain(model_, state.position);
   if (strain <= small_strain) return;
@@ -68,9 +68,9 @@ void Auditor::warn_of_strain(const State& state) {
       strain, state.time);
 }
 
-Audit Auditor::audit(const State& state) {
+EnergyBalance EnergyAccountant::audit(const State& state) {
   warn_of_strain(state);
-  Audit result;
+  EnergyBalance result;
   result.contacts = static_cast<int>(state.contacts);
   result.energy.contact = state.contact_energy;
   result.energy.kinetic = kinetic_energy(model_, state.reduced_momentum);
@@ -88,11 +88,11 @@ Audit Auditor::audit(const State& state) {
   return result;
 }
 
-double Auditor::energy_gained(const Energies& energy) const {
+double EnergyAccountant::energy_gained(const Energies& energy) const {
   return energy.mechanical() - energy_start_ - energy.external_work + energy.dissipated;
 }
 
-double Auditor::balance_error(const Energies& energy) const {
+double EnergyAccountant::balance_error(const Energies& energy) const {
   return ratio(std::abs(energy_gained(energy)),
                std::max({std::abs(energy.external_work), std::abs(energy_start_), energy.dissipated}));
 }
@@ -100,7 +100,7 @@ double Auditor::balance_error(const Energies& energy) const {
 /// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but
 /// a force's lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a
 /// period.
-double Auditor::contact_imbalance(const State& state) const {
+double EnergyAccountant::contact_imbalance(const State& state) const {
   const OutlineField &at = state.outlines.position, &force = state.contact_force;
   double fx = 0, fy = 0, moment = 0, magnitude = 0, lever = 0;
   for (std::size_t b = 0; b < model_.bodies.size(); ++b)
@@ -115,7 +115,7 @@ double Auditor::contact_imbalance(const State& state) const {
   return model_.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
 }
 
-double Auditor::internal_imbalance(const State& state) const {
+double EnergyAccountant::internal_imbalance(const State& state) const {
   std::vector<double> imbalance(model_.batches.size());
   for_each_batch(model_, [&](int b) {
     const Batch& batch = model_.batches[b];

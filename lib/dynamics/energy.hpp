@@ -19,7 +19,7 @@ struct Energies {
 double kinetic_energy(const Model& model, const Dofs& velocity);
 
 /// Sums and checks of one state: energies, and what should vanish in the balances of momentum.
-struct Audit {
+struct EnergyBalance {
   Energies energy;
   /// |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
   double momentum_error = 0;
@@ -27,11 +27,11 @@ struct Audit {
 };
 
 /// Books the energy of a run from a given start.
-class Auditor {
+class EnergyAccountant {
  public:
   /// `start` must hold forces of its own positions, as after the first evaluation.
-  Auditor(const Model& model, const State& start);
-  Audit audit(const State& state);
+  EnergyAccountant(const Model& model, const State& start);
+  EnergyBalance audit(const State& state);
 
   /// Mechanical energy that neither the start nor work nor dissipation accounts for, J/m; negative when some is lost.
   double energy_gained(const Energies& energy) const;

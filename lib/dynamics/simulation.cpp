@@ -34,7 +34,7 @@ Simulation::Simulation(const Model& model, const StartPoint* from) : model_(mode
   forces_.warn_of_depth(start, 0);
   if (!from && start.contact.deepest > 0) overlap_ = initial_overlap(model, forces_.contact(), state_.outlines);
   ++state_.evaluations;
-  auditor_ = std::make_unique<Auditor>(model, state_);
+  auditor_ = std::make_unique<EnergyAccountant>(model, state_);
   if (model.scene.time.integrator == Integrator::verlet)
     integrator_ = std::make_unique<Verlet>(forces_, state_);
   else

@@ -25,7 +25,7 @@ class Simulation {
   /// One accepted step, ending at `until` at the latest. An observer sees what it passes by; if it has seen enough
   /// then, no step is taken, and the report's has no length.
   StepReport step(double until, const Observer* observer = nullptr);
-  Audit audit() { return auditor_->audit(state_); }
+  EnergyBalance energy_balance() { return auditor_->audit(state_); }
   double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }
   double balance_error(const Energies& energy) const { return auditor_->balance_error(energy); }
 
@@ -58,7 +58,7 @@ class Simulation {
   Forces forces_;
   InitialOverlap overlap_;
   StepStatistics statistics_;
-  std::unique_ptr<Auditor> auditor_;
+  std::unique_ptr<EnergyAccountant> auditor_;
   std::variant<std::unique_ptr<Verlet>, std::unique_ptr<StepDoubling>> integrator_;
 };
 

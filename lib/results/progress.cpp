@@ -21,12 +21,12 @@ void ProgressLine::begin(const Simulation& simulation) {
     fmt::print(stderr, "overlap at the start: {}\n", describe(simulation.overlap(), simulation.model()));
 }
 
-bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report, Audit& audit) {
+bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report, EnergyBalance& audit) {
   const Clock::time_point now = Clock::now();
   const double since = std::chrono::duration<double>(now - last_).count();
   if (since < (terminal_ ? 1.0 : 10.0)) return false;
   const State& state = simulation.state();
-  audit = simulation.audit();
+  audit = simulation.energy_balance();
   const double rate = static_cast<double>(state.evaluations - last_evaluations_) / since;
   const double done = state.time - start_time_, to_do = simulation.model().scene.time.end - state.time;
   const double left = done > 0 ? seconds() * to_do / done : 0;

@@ -15,7 +15,7 @@ class ProgressLine {
   /// The state that this process starts from, for speeds and time left. A run's first line: bodies that overlap.
   void begin(const Simulation& simulation);
   /// Cheap when no line is due. Returns the audit it took, if any, through `audit`.
-  bool show_if_due(Simulation& simulation, const StepReport& report, Audit& audit);
+  bool show_if_due(Simulation& simulation, const StepReport& report, EnergyBalance& audit);
   void finish() const;
   double seconds() const;  ///< since construction
 

@@ -23,7 +23,7 @@ void Recorder::record_outputs(Simulation& simulation) {
 
 void Recorder::record_step(Simulation& simulation, const StepReport& report) {
   steps_.record(simulation.state(), report);
-  Audit audit;
+  EnergyBalance audit;
   if (!progress_.show_if_due(simulation, report, audit)) return;
   figures.worst_momentum_error = std::max(figures.worst_momentum_error, audit.momentum_error);
   flush();

@@ -54,7 +54,7 @@ std::string shares(const PhaseTimes::Seconds& seconds) {
 /// What is said of a run that has come to its end.
 std::string last_line(Simulation& simulation, const RunFigures& figures, const RunOptions& options) {
   const State& state = simulation.state();
-  const Audit audit = simulation.audit();
+  const EnergyBalance audit = simulation.energy_balance();
   return fmt::format(
       "{}: t = {:.6g} s in {:.1f} s, {} steps, {} rejected, {} evaluations ({:.0f}/s), energy balance {:.2e}, momentum "
       "{:.1e}; time: {}\n",
@@ -90,7 +90,7 @@ struct Run {
     recorder.figures.checkpoint_time = before;
     write_start_file(options.out, scene_text, simulation);
     end_line = last_line(simulation, recorder.figures, options);
-    warn_of_balance(simulation, simulation.audit().energy);
+    warn_of_balance(simulation, simulation.energy_balance().energy);
   }
   void write_end() {
     pliant::write_checkpoint(options.out, scene_text, simulation, recorder, simulation.model().scene.time.end);

@@ -51,8 +51,8 @@ const Dofs& Snapshot::internal_forces() const {
   return f;
 }
 
-const Audit& Snapshot::audit() const {
-  if (!audit_) audit_ = simulation_.audit();
+const EnergyBalance& Snapshot::energy_balance() const {
+  if (!audit_) audit_ = simulation_.energy_balance();
   return *audit_;
 }
 

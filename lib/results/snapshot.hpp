@@ -26,15 +26,15 @@ class Snapshot {
   const Dofs& velocities() const;                  ///< see bodies/mass_correction.hpp
   const Dofs& accelerations() const;               ///< total force over mass; imposed ones by their histories
   const Dofs& internal_forces() const;             ///< on compliant degrees of freedom, N/m
-  const Audit& audit() const;
-  double balance_error() const { return simulation_.balance_error(audit().energy); }
+  const EnergyBalance& energy_balance() const;
+  double balance_error() const { return simulation_.balance_error(energy_balance().energy); }
 
  private:
   Simulation& simulation_;
   mutable std::optional<std::vector<TouchingPair>> contacts_;
   mutable std::optional<std::vector<int>> contact_counts_;
   mutable std::optional<Dofs> velocities_, accelerations_, internal_forces_;
-  mutable std::optional<Audit> audit_;
+  mutable std::optional<EnergyBalance> audit_;
 };
 
 }  // namespace pliant

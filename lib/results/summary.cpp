@@ -13,7 +13,7 @@ namespace pliant {
 std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& status) {
   const State& state = simulation.state();
   const Model& model = simulation.model();
-  const Audit audit = simulation.audit();
+  const EnergyBalance audit = simulation.energy_balance();
   const Energies& e = audit.energy;
   nlohmann::ordered_json json;
   json["scene"] = model.scene.name;

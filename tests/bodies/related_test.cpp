@@ -99,7 +99,7 @@ TEST_P(Related, bodies_move_as_those_spread) {
                         100 * rounding,
                         "velocity");  // a frequency of 100
   }
-  const Audit a = here.auditor.audit(x), b = there.auditor.audit(y);
+  const EnergyBalance a = here.auditor.audit(x), b = there.auditor.audit(y);
   EXPECT_NEAR(a.energy.kinetic / b.energy.kinetic, 1, 1e-10) << "EXACT";
   EXPECT_NEAR(a.energy.strain / b.energy.strain, 1, 1e-9) << "EXACT";
   EXPECT_NEAR(a.energy.contact / b.energy.contact, 1, 1e-9) << "EXACT";

@@ -90,7 +90,7 @@ TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
     EXPECT_NEAR(here.bench.state.reduced_momentum.rigid[i], there.bench.state.reduced_momentum.rigid[i], rounding)
         << "EXACT";
   }
-  const Audit audit = here.auditor.audit(here.bench.state);
+  const EnergyBalance audit = here.auditor.audit(here.bench.state);
   const Energies a = audit.energy, b = there.auditor.audit(there.bench.state).energy;
   for (const auto& [x, y] :
        {std::pair(a.kinetic, b.kinetic), std::pair(a.strain, b.strain), std::pair(a.contact, b.contact),

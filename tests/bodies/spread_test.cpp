@@ -79,7 +79,7 @@ TEST_P(Spread, bodies_move_as_those_in_lanes) {
     EXPECT_LT((mean_value(spread, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding)
         << "EXACT";
   }
-  const Audit a = here.auditor.audit(here.bench.state), b = there.auditor.audit(there.bench.state);
+  const EnergyBalance a = here.auditor.audit(here.bench.state), b = there.auditor.audit(there.bench.state);
   EXPECT_NEAR(a.energy.kinetic / b.energy.kinetic, 1, 1e-10) << "EXACT";
   EXPECT_NEAR(a.energy.strain / b.energy.strain, 1, 1e-9) << "EXACT";
   EXPECT_NEAR(a.energy.contact / b.energy.contact, 1, 1e-9) << "EXACT";
@@ -165,7 +165,7 @@ TEST(SpreadForces, do_not_depend_on_the_number_of_threads) {
       omp_set_num_threads(threads);
       Simulation simulation(model);
       for (int step = 0; step < 60; ++step) simulation.step(2);
-      const Audit audit = simulation.audit();
+      const EnergyBalance audit = simulation.energy_balance();
       hashes.push_back(state_hash(simulation.state()) ^
                        std::bit_cast<std::uint64_t>(audit.energy.strain + audit.energy.kinetic));
     }

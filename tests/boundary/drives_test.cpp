@@ -42,9 +42,9 @@ TEST(RigidGrain, obeys_one_drive_an_axis_and_its_fellow_none) {
     EXPECT_EQ(rigid(simulation.state().position, 0), Eigen::Vector3d(0, 0, 0)) << "EXACT";
     const double kinetic =
         0.5 * (body.dof[0].mass + body.dof[1].mass * 4 * push * push + body.dof[2].mass * 4 * turn * turn);
-    EXPECT_NEAR(simulation.audit().energy.kinetic, kinetic, 1e-12) << "EXACT";
+    EXPECT_NEAR(simulation.energy_balance().energy.kinetic, kinetic, 1e-12) << "EXACT";
     if (integrator == Integrator::verlet) {
-      EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-12) << "EXACT: constant forces";
+      EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-12) << "EXACT: constant forces";
     }
   }
 }
@@ -101,7 +101,7 @@ TEST(Window, of_a_wall_lets_it_go) {
   Simulation simulation(model);
   advance(simulation, 2);
   EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], 0.5 - 0.3, 1e-12) << "EXACT: free after 1";
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT: constant forces";
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-11) << "EXACT: constant forces";
 }
 
 /// m v' = L (p - d v): a servo wall in free flight approaches the speed p/d, whatever it weighs.
@@ -123,7 +123,7 @@ void expect_servo_flight(Integrator integrator, const Vec2& gravity, const std::
   const double rate = damping * 3 / model.rigid_bodies[1].dof[1].mass;
   const double exact = pressure / damping * (1 - std::exp(-rate * end));
   EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], exact, 1e-12) << "EXACT: at default settings";
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT";
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-11) << "EXACT";
 }
 
 TEST(ServoWall, approaches_the_speed_of_pressure_over_damping) {
@@ -150,7 +150,7 @@ TEST(ServoWall, falls_when_its_pressure_ends) {
     const double push = 0.7 * 3 / model.rigid_bodies[1].dof[1].mass;
     EXPECT_NEAR(rigid(simulation.state().reduced_momentum, 1)[1], push - 0.3, 1e-12) << "EXACT";
     if (integrator == Integrator::verlet) {
-      EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11) << "EXACT: constant forces";
+      EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-11) << "EXACT: constant forces";
     }
   }
 }
@@ -180,7 +180,7 @@ Pressed pressed_block(double damping, double gravity = 0) {
     result.largest = std::max(result.largest, result.last);
   }
   result.lid = contact_force(simulation, 2).y();
-  result.imbalance = simulation.balance_error(simulation.audit().energy);
+  result.imbalance = simulation.balance_error(simulation.energy_balance().energy);
   return result;
 }
 

@@ -181,7 +181,8 @@ TEST(Impulse, of_windows_closes_the_books) {
   while (simulation.state().time < 2) {
     simulation.step(2);
     if (simulation.state().time > 0.25)
-      EXPECT_LT(simulation.balance_error(simulation.audit().energy), rounding) << "at " << simulation.state().time;
+      EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), rounding)
+          << "at " << simulation.state().time;
   }
   EXPECT_GT(simulation.state().dissipated, 0.01);
 }

@@ -117,9 +117,9 @@ TEST(Gravity, free_fall_in_step_doubling_is_off_by_its_first_order) {
 TEST(Work, of_gravity_is_the_kinetic_energy_gained) {
   const Model model = build_model(falling(Integrator::verlet));
   Simulation simulation(model);
-  const double start = simulation.audit().energy.kinetic;
+  const double start = simulation.energy_balance().energy.kinetic;
   advance(simulation, 3);
-  const Energies energy = simulation.audit().energy;
+  const Energies energy = simulation.energy_balance().energy;
   double mass = 0;
   for (const Body& body : model.bodies) mass += body.mass;
   const double work = mass * parabola(3).dot(Vec2(0.2, -1));
@@ -143,7 +143,7 @@ TEST(Gravity, may_have_a_history) {
   const Vec2 gained(0.4, 0), start(0.5, 0.7);
   EXPECT_LT((mass_mean(model, model.bodies[0], simulation.state().reduced_momentum) - start - gained).norm(), 1e-11);
   EXPECT_LT((rigid(simulation.state().reduced_momentum, 0).head<2>() - start - gained).norm(), 1e-11);
-  const Energies energy = simulation.audit().energy;
+  const Energies energy = simulation.energy_balance().energy;
   double mass = 0;
   for (const Body& body : model.bodies) mass += body.mass;
   EXPECT_NEAR(energy.external_work, 0.5 * mass * ((start + gained).squaredNorm() - start.squaredNorm()),
@@ -175,7 +175,7 @@ TEST(Work, of_a_load_that_ends_is_the_kinetic_energy) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 2);
-    const Energies energy = simulation.audit().energy;
+    const Energies energy = simulation.energy_balance().energy;
     EXPECT_NEAR(rigid(simulation.state().reduced_momentum, wall_index)[0], 3 / 1.5 * end, 1e-12) << end;
     EXPECT_NEAR(energy.external_work / energy.kinetic, 1, 1e-11) << end;
   }
@@ -188,7 +188,7 @@ TEST(Work, of_a_pressure_is_the_kinetic_energy_of_the_wall) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  const Energies energy = simulation.audit().energy;
+  const Energies energy = simulation.energy_balance().energy;
   const double pressed = std::pow(0.7 * 3 * 2, 2) / (2 * 1.5),
                pushed = std::pow(2 - 3, 2) / (2 * 1.5);  // impulse^2 / (2 mass)
   EXPECT_NEAR(energy.external_work, pressed + pushed, 2e-3) << "RATE: trapezoidal rule";
@@ -201,7 +201,7 @@ TEST(Work, of_an_imposed_acceleration_is_the_kinetic_energy_of_the_wall) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
-  const Energies energy = simulation.audit().energy;
+  const Energies energy = simulation.energy_balance().energy;
   EXPECT_NEAR(energy.kinetic, 0.5 * 1.5 * 4, 1e-12) << "EXACT";
   EXPECT_NEAR(energy.external_work, energy.kinetic, 1e-12) << "EXACT";
 }
@@ -227,7 +227,7 @@ TEST(Work, of_an_imposed_motion_is_that_of_the_contact_forces_against_it) {
   const double weight_work = -0.02 * model.bodies[2].mass * -0.15;
   EXPECT_GT(work, 1e-4);
   EXPECT_NEAR(simulation.state().external_work, work - weight_work, 1e-10) << "EXACT";
-  const double books = simulation.balance_error(simulation.audit().energy);
+  const double books = simulation.balance_error(simulation.energy_balance().energy);
   EXPECT_LT(books, 0.01) << "EXACT: the promise of 1 %";
 }
 
@@ -244,7 +244,7 @@ double largest_imbalance(double safety) {
   double largest = 0;
   while (simulation.state().time < 3) {
     simulation.step(3);
-    const Energies energy = simulation.audit().energy;
+    const Energies energy = simulation.energy_balance().energy;
     largest = std::max(largest, std::abs(energy.mechanical() - energy.external_work));
   }
   return largest;

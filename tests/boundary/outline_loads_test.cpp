@@ -148,7 +148,7 @@ TEST(Work, of_a_following_pressure_is_the_loss_of_area) {
   const double work = 0.4 * (start - area(model, simulation.state().position));
   EXPECT_GT(work, 0.01);
   EXPECT_NEAR(simulation.state().external_work, work, 1e-13) << "EXACT";
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-3) << "RATE: second order in the step";
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-3) << "RATE: second order in the step";
 }
 
 TEST(Work, of_a_pressure_on_a_rigid_grain_is_its_kinetic_energy) {
@@ -163,7 +163,7 @@ TEST(Work, of_a_pressure_on_a_rigid_grain_is_its_kinetic_energy) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 4);
-    const Energies energy = simulation.audit().energy;
+    const Energies energy = simulation.energy_balance().energy;
     EXPECT_GT(energy.kinetic, 0.1);
     EXPECT_NEAR(energy.external_work / energy.kinetic, 1, 1e-3) << "RATE: trapezoidal rule, following " << following;
   }
@@ -243,11 +243,11 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
     while (simulation.state().time < 6) {
       simulation.step(6);
       met |= simulation.state().time == 3;
-      const Energies e = simulation.audit().energy;
+      const Energies e = simulation.energy_balance().energy;
       worst = std::max(worst, std::abs(e.mechanical() - e.external_work + e.dissipated));
     }
     EXPECT_TRUE(met) << "EXACT: a step ends where the support does";
-    const Energies end = simulation.audit().energy;
+    const Energies end = simulation.energy_balance().energy;
     EXPECT_GT(end.dissipated, 0.01);
     EXPECT_GT(end.external_work, 0.1);
     return worst;
@@ -274,13 +274,13 @@ TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     const auto imbalance = [&] {
-      const Energies e = simulation.audit().energy;
+      const Energies e = simulation.energy_balance().energy;
       return e.mechanical() - e.external_work + e.dissipated;
     };
     double before = 0, stored = 0;
     while (simulation.state().time < 2) {
       before = imbalance();
-      stored = simulation.audit().energy.boundary;
+      stored = simulation.energy_balance().energy.boundary;
       simulation.step(4);
     }
     return std::abs(imbalance() - before) / stored;
@@ -303,7 +303,7 @@ TEST(Support, enters_the_stability_bound) {
     } catch (const PhysicsError&) {
       return std::numeric_limits<double>::infinity();  // turned inside out
     }
-    return simulation.audit().energy.mechanical();
+    return simulation.energy_balance().energy.mechanical();
   };
   EXPECT_LT(energy_after(1), 1e-11) << "EXACT: stable";
   EXPECT_GT(energy_after(2), 1) << "EXACT: the bound gives away less than a factor of two";

@@ -55,7 +55,7 @@ PlateErrors plate_errors(int nodes) {
   Simulation simulation(model);
   const double first = mean_force(simulation, 0.05) / force_at_5_percent - 1;
   const double second = mean_force(simulation, 0.1) / force_at_10_percent - 1;
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 0.01)
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 0.01)
       << "EXACT: what a run warns of; nodes that touch and leave in time with the steps: 1e-6 to 3e-3, as rounding has "
          "it";
   return {first, second};
@@ -148,7 +148,7 @@ TEST(FreeOscillation, initial_energy_is_pi_over_16) {
   const auto error = [](int nodes) {
     const Model model = build_model(free_disc(nodes, 1, stretching(0.5)));
     Simulation simulation(model);
-    return simulation.audit().energy.kinetic / (std::numbers::pi / 16) - 1;
+    return simulation.energy_balance().energy.kinetic / (std::numbers::pi / 16) - 1;
   };
   const double coarse = error(168), fine = error(700);
   EXPECT_LT(coarse, 0.03) << "RATE: lumping, as below";

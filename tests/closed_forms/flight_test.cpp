@@ -109,7 +109,7 @@ TEST(TwoDiscs, exchange_momentum_symmetrically) {
   const double speed = -mass_mean(model, model.bodies[0], simulation.state().reduced_momentum).x();
   EXPECT_GT(speed, 0.9 * 0.05) << "EXACT: slower than 5 % of the wave speed, little vibration";
   EXPECT_LE(speed, 0.05) << "EXACT: no more than came";
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), 0.01) << "EXACT: the promise of 1 %";
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 0.01) << "EXACT: the promise of 1 %";
 }
 
 /// Off-centre and with friction the discs spin away; both momenta are those of the start.
@@ -120,7 +120,7 @@ TEST(TwoDiscs, momenta_balance_through_an_oblique_collision_with_friction) {
   double worst = 0;
   while (simulation.state().time < 20) {
     const StepReport report = simulation.step(20);
-    if (report.evaluation.contact.contacts > 0) worst = std::max(worst, simulation.audit().momentum_error);
+    if (report.evaluation.contact.contacts > 0) worst = std::max(worst, simulation.energy_balance().momentum_error);
   }
   const Momentum end = momentum_of(model, simulation.state());
   EXPECT_GT(simulation.state().dissipated, 0) << "friction must have acted";

@@ -26,7 +26,7 @@ Scene block_above_floor(const ContactRule& rule, double height, double speed, co
   return scene;
 }
 
-double balance(Simulation& simulation) { return simulation.balance_error(simulation.audit().energy); }
+double balance(Simulation& simulation) { return simulation.balance_error(simulation.energy_balance().energy); }
 
 /// Speed after over speed before.
 double rebound(const ContactRule& rule, double safety, double height = 0.003) {

@@ -64,9 +64,9 @@ TEST(SlidingBlock, stops_after_u0_over_mu_g) {
 TEST(SlidingBlock, dissipates_its_kinetic_energy_and_the_books_notice_half_of_it_missing) {
   const Model model = build_model(sliding_block(0.3, 1, 0.1));
   Simulation simulation(model);
-  const double start = simulation.audit().energy.kinetic;
+  const double start = simulation.energy_balance().energy.kinetic;
   advance(simulation, 0.5);
-  Energies energy = simulation.audit().energy;
+  Energies energy = simulation.energy_balance().energy;
   EXPECT_NEAR(energy.dissipated, start, 2e-3 * start) << "EXACT";
   EXPECT_LT(energy.kinetic, 1e-3 * start);
   EXPECT_LT(simulation.balance_error(energy), 2e-3) << "EXACT: 1 % is promised";
@@ -78,7 +78,7 @@ TEST(SlidingBlock, dissipates_its_kinetic_energy_and_the_books_notice_half_of_it
 TEST(BalanceError, is_the_missing_energy_over_the_larger_of_work_and_start) {
   const Model model = build_model(sliding_block(0.3, 1, 0.8));
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   const auto error = [&](double gained, double work, double dissipated) {
     Energies energy;
     energy.kinetic = start + gained;

@@ -36,7 +36,7 @@ double squares(const Model& model, const Dofs& force) {
   return sum;
 }
 
-double gained(Simulation& simulation) { return simulation.energy_gained(simulation.audit().energy); }
+double gained(Simulation& simulation) { return simulation.energy_gained(simulation.energy_balance().energy); }
 
 double owed(const Simulation& simulation) {
   const std::vector<double>& all = simulation.state().memory.contact.owed;
@@ -218,9 +218,9 @@ double bounce_gain(double height, double stiffness, bool consistent) {
   scene.grains[0].packing.positions = {{4, height}};
   const Model model = build_model(scene);
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   advance(simulation, 9);  // the last one has left the floor at 8.4: in touch forces of the moment count
-  return std::abs(simulation.audit().energy.mechanical() / start - 1);
+  return std::abs(simulation.energy_balance().energy.mechanical() / start - 1);
 }
 
 /// What is left is not of contacts: Verlet keeps K + U - dt^2 sum m a^2 / 8, which of a disc that rings differs by some
@@ -284,12 +284,12 @@ double agitated(double speed, bool consistent, int seed) {
   scene.contact.energy_consistent = consistent;
   const Model model = build_model(scene);
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   double worst = 0;
   for (int step = 0, quiet = 0; step < 10000; ++step) {
     simulation.step(1e9);
     quiet = squares(model, simulation.state().force) == 0 ? quiet + 1 : 0;
-    if (quiet == 1) worst = std::max(worst, std::abs(simulation.audit().energy.mechanical() / start - 1));
+    if (quiet == 1) worst = std::max(worst, std::abs(simulation.energy_balance().energy.mechanical() / start - 1));
   }
   return worst;
 }

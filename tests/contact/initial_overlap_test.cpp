@@ -52,7 +52,7 @@ TEST(InitialOverlap, of_corner_in_corner_sets_free_what_it_stores) {
     Simulation simulation(model);
     EXPECT_GT(simulation.overlap().share, 0.25);
     advance(simulation, scene.time.end);
-    return simulation.balance_error(simulation.audit().energy);
+    return simulation.balance_error(simulation.energy_balance().energy);
   };
   EXPECT_LT(balance(0.8), 0.01);
   EXPECT_LT(balance(0.02), 0.001);

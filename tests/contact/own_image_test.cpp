@@ -78,7 +78,7 @@ Seen run_both(const Scene& single, const Scene& twice) {
   while (a.state().time < single.time.end) {
     seen.contacts = std::max(seen.contacts, a.step(single.time.end).evaluation.contact.contacts);
     if (a.state().steps % 20 != 0) continue;
-    const Audit audit = a.audit();
+    const EnergyBalance audit = a.energy_balance();
     seen.stored = std::max(seen.stored, std::abs(audit.energy.contact));
     seen.momentum = std::max(seen.momentum, audit.momentum_error);
   }
@@ -141,7 +141,7 @@ TEST(OwnImages, soft_corners_pressed_deep_make_no_energy) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, scene.time.end);
-    return simulation.balance_error(simulation.audit().energy);
+    return simulation.balance_error(simulation.energy_balance().energy);
   };
   EXPECT_LT(balance(0.8), 1e-3);
   EXPECT_LT(balance(0.2), 1e-3);

@@ -51,7 +51,7 @@ Closing close(const Scene& scene) {
     const Vec2 from = outlines.at(low), to = outlines.at(high);
     result.width = std::min(result.width, (to - from).norm() * (to.y() > from.y() ? 1 : -1));
     if (simulation.state().steps % 10 != 0) continue;
-    const Audit audit = simulation.audit();
+    const EnergyBalance audit = simulation.energy_balance();
     result.stored = std::max(result.stored, audit.energy.contact);
     result.momentum = std::max(result.momentum, audit.momentum_error);
     result.balance = std::max(result.balance, simulation.balance_error(audit.energy));
@@ -101,7 +101,7 @@ TEST(SelfContact, refuses_thin_limbs) {
   {
     const Model model = build_model(scene);
     Simulation simulation(model);
-    EXPECT_EQ(simulation.audit().energy.contact, 0);
+    EXPECT_EQ(simulation.energy_balance().energy.contact, 0);
   }
   scene.contact.quadrature = ContactQuadrature::nodes;
   const Model model = build_model(scene);

@@ -119,7 +119,7 @@ TEST(CurrentLength, costs_energy) {
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 6);
-    return simulation.balance_error(simulation.audit().energy);
+    return simulation.balance_error(simulation.energy_balance().energy);
   };
   const double reference = error(ContactLength::reference), current = error(ContactLength::current);
   RecordProperty("reference", std::to_string(reference));

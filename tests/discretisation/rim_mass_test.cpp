@@ -48,7 +48,7 @@ TEST(RimMass, adds_no_weight) {
       const Vec2 velocity = mass_mean(model, body, simulation.state().reduced_momentum);
       EXPECT_LT((velocity - share * scene.gravity).norm(), 1e-12);
     }
-    const Audit audit = simulation.audit();
+    const EnergyBalance audit = simulation.energy_balance();
     EXPECT_NEAR(audit.energy.kinetic, 0.5 * count * share * M_PI * scene.gravity.squaredNorm(), 0.02)
         << "of (m / share) (share g)^2 / 2, m that of the polygon";
     EXPECT_NEAR(audit.energy.kinetic / audit.energy.external_work, 1, 1e-10);

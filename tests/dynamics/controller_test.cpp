@@ -123,11 +123,11 @@ TEST(Controller, error_control_does_not_damp) {
   scene.grains[0].packing.positions = {{4, 1.05}};
   const Model model = build_model(scene);
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   int governed = 0;
   while (simulation.state().time < 8) governed += simulation.step(8).governed_by == std::string("error");
   EXPECT_GT(governed, simulation.state().steps / 3);
-  EXPECT_NEAR(simulation.audit().energy.mechanical() / start, 1, 5e-3) << "FROZEN: 2.4e-3 when written";
+  EXPECT_NEAR(simulation.energy_balance().energy.mechanical() / start, 1, 5e-3) << "FROZEN: 2.4e-3 when written";
 }
 
 }  // namespace

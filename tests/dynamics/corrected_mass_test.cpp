@@ -71,7 +71,7 @@ double energy_error(Scene scene, Integrator integrator, bool fine) {
   double worst = 0;
   while (simulation.state().time < 5) {
     simulation.step(5);
-    worst = std::max(worst, simulation.balance_error(simulation.audit().energy));
+    worst = std::max(worst, simulation.balance_error(simulation.energy_balance().energy));
   }
   return worst;
 }
@@ -136,9 +136,9 @@ TEST(CorrectedMass, step_bound_is_that_of_the_corrected_spectrum) {
   scene.time.end = 200;
   const Model at_the_bound = build_model(scene);
   Simulation simulation(at_the_bound);
-  const double start = simulation.audit().energy.kinetic;
+  const double start = simulation.energy_balance().energy.kinetic;
   advance(simulation, 200);
-  EXPECT_LT(simulation.audit().energy.mechanical(), 2 * start) << "EXACT: stable";
+  EXPECT_LT(simulation.energy_balance().energy.mechanical(), 2 * start) << "EXACT: stable";
 }
 
 /// A swinging disc with both kinds of damping: at the end nearly half of its energy is gone.

@@ -207,7 +207,7 @@ TEST(Books, close_for_damped_bodies_as_the_step_falls) {
       const Model model = build_model(scene);
       Simulation simulation(model);
       advance(simulation, 6);
-      const Energies energy = simulation.audit().energy;
+      const Energies energy = simulation.energy_balance().energy;
       EXPECT_GT(energy.dissipated, 5 * energy.mechanical()) << "nearly all is gone";
       return simulation.balance_error(energy);
     };
@@ -260,7 +260,7 @@ double energy_after(double viscosity, double mass_damping, double safety, Mass m
   } catch (const PhysicsError&) {
     return std::numeric_limits<double>::infinity();  // turned inside out
   }
-  return simulation.audit().energy.mechanical();
+  return simulation.energy_balance().energy.mechanical();
 }
 
 TEST(Bound, is_where_damped_motion_becomes_unstable) {

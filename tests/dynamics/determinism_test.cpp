@@ -12,7 +12,7 @@ std::uint64_t hash_after(const Model& model, int threads, double time) {
   omp_set_num_threads(threads);
   Simulation simulation(model);
   advance(simulation, time);
-  simulation.audit();
+  simulation.energy_balance();
   const std::uint64_t hash = state_hash(simulation.state());
   omp_set_num_threads(before);
   return hash;

@@ -74,7 +74,7 @@ TEST(Failure, stops_at_the_last_good_state) {
   EXPECT_EQ(mass_mean(model, model.bodies[0], simulation.state().position),
             mass_mean(model, model.bodies[0], before.position))
       << "EXACT";
-  EXPECT_TRUE(std::isfinite(simulation.audit().energy.mechanical()));
+  EXPECT_TRUE(std::isfinite(simulation.energy_balance().energy.mechanical()));
 }
 
 /// Evaluates a bench's forces for what a test did to its positions and lets the failure be told.

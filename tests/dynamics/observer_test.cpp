@@ -18,13 +18,13 @@ TEST(Observers, see_a_fall_at_their_own_times) {
   scene.gravity = {0, -0.2};
   const Model model = build_model(scene);
   Simulation simulation(model);
-  const double mass = simulation.audit().energy.kinetic / (0.5 * (0.1 * 0.1 + 0.3 * 0.3)), period = 0.013;
+  const double mass = simulation.energy_balance().energy.kinetic / (0.5 * (0.1 * 0.1 + 0.3 * 0.3)), period = 0.013;
   int looks = 0;
   const Observer observer{[&] { return (looks + 1) * period; },
                           [&] {
                             const double t = ++looks * period;
                             EXPECT_NEAR(simulation.state().time, t, 1e-12 * t) << "EXACT";
-                            EXPECT_NEAR(simulation.audit().energy.kinetic / mass,
+                            EXPECT_NEAR(simulation.energy_balance().energy.kinetic / mass,
                                         0.5 * (0.1 * 0.1 + (0.3 - 0.2 * t) * (0.3 - 0.2 * t)), 1e-12)
                                 << "EXACT: constant accelerations";
                             return looks < 153;

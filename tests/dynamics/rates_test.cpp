@@ -50,8 +50,8 @@ TEST(Drag, of_falling_bodies_is_exact) {
       EXPECT_LT((rigid(state.position, 0).head<2>() - Vec2(10, 0) - way).norm(), 1e-12);
       EXPECT_NEAR(rigid(state.position, 0)[2], 1.5 * (1 - left) / rate, 1e-12);
       EXPECT_LT((mass_mean(model, model.bodies[0], state.reduced_momentum) - speed).norm(), 1e-11);
-      EXPECT_LT(simulation.balance_error(simulation.audit().energy), 1e-11);
-      EXPECT_GT(simulation.audit().energy.dissipated, 0.1);
+      EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), 1e-11);
+      EXPECT_GT(simulation.energy_balance().energy.dissipated, 0.1);
     }
 }
 

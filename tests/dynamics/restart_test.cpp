@@ -160,8 +160,9 @@ TEST_P(Restart, same_bits_from_any_step_with_any_number_of_threads) {
         resumed.step(1000);
       }
       EXPECT_EQ(difference(resumed, whole), "") << "saved at " << first << ", " << threads << " threads";
-      EXPECT_EQ(resumed.audit().energy.mechanical(), whole.audit().energy.mechanical());
-      EXPECT_EQ(resumed.balance_error(resumed.audit().energy), whole.balance_error(whole.audit().energy));
+      EXPECT_EQ(resumed.energy_balance().energy.mechanical(), whole.energy_balance().energy.mechanical());
+      EXPECT_EQ(resumed.balance_error(resumed.energy_balance().energy),
+                whole.balance_error(whole.energy_balance().energy));
     }
   }
 }
@@ -178,7 +179,7 @@ TEST_P(Restart, looks_on_the_way_leave_the_motion_as_it_is_and_see_a_step_that_e
                           [&] {
                             const State& seen = watched.state();
                             EXPECT_EQ(seen.time, next);
-                            watched.audit();
+                            watched.energy_balance();
                             if (++looks % 20 == 0) {
                               LoadLeaf load(before);
                               Walk{load}("simulation", cut);
@@ -204,7 +205,7 @@ TEST_P(Restart, looks_on_the_way_leave_the_motion_as_it_is_and_see_a_step_that_e
     ASSERT_EQ(state_hash(watched.state()), state_hash(whole.state())) << "looking changed the run at step " << step;
   }
   EXPECT_GT(looks, last_step / 2);
-  EXPECT_EQ(watched.audit().energy.mechanical(), whole.audit().energy.mechanical());
+  EXPECT_EQ(watched.energy_balance().energy.mechanical(), whole.energy_balance().energy.mechanical());
 }
 
 /// The scenes show what restarts may lose.
@@ -259,7 +260,7 @@ TEST(RestartWhileTouching, laws_are_those_of_the_time) {
     whole.step(1000), resumed.step(1000);
     ASSERT_EQ(state_hash(resumed.state()), state_hash(whole.state())) << "step " << step;
   }
-  EXPECT_GT(whole.audit().energy.dissipated, 0) << "the dashpot works";
+  EXPECT_GT(whole.energy_balance().energy.dissipated, 0) << "the dashpot works";
   EXPECT_EQ(whole.forces().contact().refreshes(), refreshes) << "else this test says nothing";
 }
 

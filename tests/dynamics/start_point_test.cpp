@@ -95,7 +95,7 @@ TEST_P(AStart, goes_on_as_the_run_did) {
   EXPECT_EQ(next.state().external_work, 0);
   EXPECT_EQ(next.state().dissipated, 0);
   EXPECT_EQ(next.overlap().pairs, 0) << "contact at the start is no overlap of a packing";
-  EXPECT_NEAR(next.audit().energy.mechanical(), whole.audit().energy.mechanical(), 1e-13) << "EXACT";
+  EXPECT_NEAR(next.energy_balance().energy.mechanical(), whole.energy_balance().energy.mechanical(), 1e-13) << "EXACT";
   start.contact.contact_pairs = {}, start.contact.history = {};
   Simulation forgetful(model, &start);
   step_evenly(whole, after), step_evenly(next, after), step_evenly(forgetful, after);
@@ -134,11 +134,11 @@ TEST(StartPoint, takes_the_new_scenes_friction_and_drives) {
   const StartPoint start = point_of(first);
   const Model let_go = build_model(on_a_slope(0.1, 0));
   Simulation second(let_go, &start);
-  EXPECT_LT(second.audit().energy.kinetic, 1e-18);
+  EXPECT_LT(second.energy_balance().energy.kinetic, 1e-18);
   advance(second, 1);
   // Of the weight 1 m; what the block rocks by as its shear gets less, 0.1 m of 100 Pa/m on 2 m, is 1e-3 of a second.
   EXPECT_NEAR(rigid(second.state().reduced_momentum, 0)[0], 0.2 - 0.1, 1e-3) << "EXACT";
-  EXPECT_LT(second.balance_error(second.audit().energy), 0.01) << "EXACT: books from here on";
+  EXPECT_LT(second.balance_error(second.energy_balance().energy), 0.01) << "EXACT: books from here on";
   Scene driven = on_a_slope(0.5, 0);
   driven.walls[0].x = {Drive::Mode::velocity, constant(0.3)};
   const Model moving_floor = build_model(driven);
@@ -194,8 +194,8 @@ TEST(StartPoint, a_body_pressed_on_itself_takes_another_law) {
   scene.contact.self_contact = true;
   const Model model = build_model(scene);
   Simulation first(model);
-  while (first.state().time < 4 && first.audit().energy.contact < 1e-4) first.step(4);
-  ASSERT_GE(first.audit().energy.contact, 1e-4) << "it touches itself";
+  while (first.state().time < 4 && first.energy_balance().energy.contact < 1e-4) first.step(4);
+  ASSERT_GE(first.energy_balance().energy.contact, 1e-4) << "it touches itself";
   const StartPoint start = point_of(first);
   scene.contacts = {mohr_coulomb(300, 0.4)};
   const Model other = build_model(scene);

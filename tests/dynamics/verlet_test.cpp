@@ -54,13 +54,13 @@ TEST(Verlet, order_two_when_safety_sets_the_step) {
 TEST(Verlet, energy_stays_over_100000_steps) {
   const Model model = build_model(free_disc(30, 1e9, stretching(0.05)));
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   const auto mean_error = [&](int steps) {
     double sum = 0, worst = 0;
     for (int i = 0; i < steps; ++i) {
       simulation.step(1e9);
       if (i % 20) continue;
-      const double error = simulation.audit().energy.mechanical() / start - 1;
+      const double error = simulation.energy_balance().energy.mechanical() / start - 1;
       sum += 20 * error / steps;
       worst = std::max(worst, std::abs(error));
     }
@@ -79,10 +79,10 @@ bool is_stable(double safety) {
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);
-  const double start = simulation.audit().energy.mechanical();
+  const double start = simulation.energy_balance().energy.mechanical();
   try {
     for (int i = 0; i < 3000; ++i) simulation.step(1e9);
-    return simulation.audit().energy.mechanical() < 1e4 * start;
+    return simulation.energy_balance().energy.mechanical() < 1e4 * start;
   } catch (const PhysicsError&) {
     return false;
   }

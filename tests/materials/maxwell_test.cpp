@@ -281,7 +281,7 @@ TEST(NeoHookeanMaxwell, books_of_a_disc_close) {
       const Model model = build_model(scene);
       Simulation simulation(model);
       while (simulation.state().time < 3) simulation.step(3);
-      const Audit audit = simulation.audit();
+      const EnergyBalance audit = simulation.energy_balance();
       EXPECT_GT(audit.energy.dissipated, 5 * audit.energy.mechanical());
       EXPECT_LT(audit.momentum_error, 1e-12);
       errors[i] = simulation.balance_error(audit.energy);
@@ -303,7 +303,7 @@ TEST(NeoHookeanMaxwell, step_bound_counts_the_branch) {
   const Model soft = build_model(scene);
   EXPECT_LT(simulation.largest_dt(), 0.5 * Simulation(soft).largest_dt());
   while (simulation.state().time < 1) simulation.step(1);
-  EXPECT_LT(simulation.balance_error(simulation.audit().energy), scene.time.safety * scene.time.safety);
+  EXPECT_LT(simulation.balance_error(simulation.energy_balance().energy), scene.time.safety * scene.time.safety);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ Differences compare_at_rest(const Scene& scene, int load_steps) {
   result.positions = difference.cwiseAbs().maxCoeff() / 2;
   const Vector forces = reference_contact_forces(run);
   result.forces = (engine_contact_forces(simulation) - forces).cwiseAbs().maxCoeff() / forces.cwiseAbs().maxCoeff();
-  const Energies energy = simulation.audit().energy;
+  const Energies energy = simulation.energy_balance().energy;
   result.kinetic = energy.kinetic / energy.strain;
   return result;
 }

@@ -29,7 +29,7 @@ Outcome by_engine(Scene scene, double safety) {
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, scene.time.end);
-  const Energies e = simulation.audit().energy;
+  const Energies e = simulation.energy_balance().energy;
   return {engine_positions(simulation),
           (Vector(5) << e.kinetic, e.strain, e.boundary, e.dissipated, e.external_work).finished()};
 }

@@ -171,7 +171,7 @@ TEST(EnergyProbes, bodies_add_up_to_the_books) {
   const Model model = build_model(loaded_layer());
   Simulation simulation(model);
   advance(simulation, 1);
-  const Energies e = simulation.audit().energy;
+  const Energies e = simulation.energy_balance().energy;
   double kinetic = measured(simulation, probe_of("kinetic_energy", "all"))[0];
   for (const char* wall : {"lower", "upper"}) kinetic += measured(simulation, probe_of("kinetic_energy", wall))[0];
   EXPECT_NEAR(kinetic, e.kinetic, rounding * e.kinetic) << "EXACT";
@@ -187,7 +187,7 @@ TEST(EnergyProbes, works_by_origin) {
   const Vec2 upper_before = measured_vector(simulation, probe_of("position", "upper"));
   advance(simulation, 1);
   const std::vector<double> works = measured(simulation, probe_of("works"));
-  const Energies e = simulation.audit().energy;
+  const Energies e = simulation.energy_balance().energy;
   EXPECT_NEAR(works[0] + works[1], e.external_work, rounding) << "EXACT";
   EXPECT_EQ(works[2], e.dissipated) << "EXACT: no damping";
   EXPECT_EQ(works[3], 0) << "EXACT: no damping";

@@ -33,7 +33,7 @@ TEST(ProbeOrder, shows_the_force_of_the_step) {
   const Model model = build_model(damped_block());
   Simulation simulation(model);
   while (contact_force(simulation, 0).norm() == 0) simulation.step(1);
-  simulation.audit();
+  simulation.energy_balance();
   EXPECT_NEAR(measured(simulation, probe_of("force", "block"))[1], simulation.state().force.rigid[1], 1e-12)
       << "sums in another order";
 }

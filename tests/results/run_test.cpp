@@ -216,7 +216,7 @@ TEST_F(RunScene, files_tell_the_same_as_a_simulation) {
   const auto compare = [&] {
     EXPECT_DOUBLE_EQ(force[row], contact_force(simulation, 3).y()) << "EXACT, row " << row;
     EXPECT_DOUBLE_EQ(spin[row], rigid(simulation.state().reduced_momentum, 0)[2]) << "EXACT, row " << row;
-    EXPECT_DOUBLE_EQ(kinetic[row], simulation.audit().energy.kinetic) << "EXACT, row " << row;
+    EXPECT_DOUBLE_EQ(kinetic[row], simulation.energy_balance().energy.kinetic) << "EXACT, row " << row;
     hash = fmt::format("{:016x}", state_hash(simulation.state()));
     return ++row < time.size();
   };

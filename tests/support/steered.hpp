@@ -15,7 +15,7 @@ namespace pliant::dynamics_tests {
 /// A simulation whose steps a test chooses, so that two models can take the same ones.
 struct Steered {
   Bench bench;
-  Auditor auditor;
+  EnergyAccountant auditor;
   std::unique_ptr<Verlet> verlet;
   std::unique_ptr<StepDoubling> step_doubling;
 

@@ -7,7 +7,7 @@ namespace pliant {
 namespace {
 
 Samples energy(const Snapshot& snapshot, const Selection&) {
-  const Audit& audit = snapshot.audit();
+  const EnergyBalance& audit = snapshot.energy_balance();
   const Energies& e = audit.energy;
   Samples samples(8);
   samples.add(1, {e.kinetic, e.strain, e.contact, e.boundary, e.dissipated, e.external_work, snapshot.balance_error(),
@@ -19,7 +19,7 @@ Samples energy(const Snapshot& snapshot, const Selection&) {
 Samples works(const Snapshot& snapshot, const Selection&) {
   const State& state = snapshot.state();
   Samples samples(4);
-  samples.add(1, {state.external_work, snapshot.audit().energy.external_work - state.external_work,
+  samples.add(1, {state.external_work, snapshot.energy_balance().energy.external_work - state.external_work,
                   state.dissipated - state.damped, state.damped});
   return samples;
 }
