@@ -16,10 +16,10 @@ constexpr int small_outline = 512;
 
 /// Mean of four nodes' displacements, displacement(node): it turns with the axes.
 template <class Way>
-DisplacementDisc about_four(int count, Way&& way) {
+DisplacementDisc about_four(int count, Way&& displacement) {
   DisplacementDisc disc{0, 0, 0};
   for (int quarter = 0; quarter < 4; ++quarter) {
-    const auto [x, y] = way(quarter * count / 4);
+    const auto [x, y] = displacement(quarter * count / 4);
     disc.x += 0.25 * x, disc.y += 0.25 * y;
   }
   return disc;
@@ -28,10 +28,10 @@ DisplacementDisc about_four(int count, Way&& way) {
 /// Makes a disc hold the displacements of an outline's nodes, displacements(i) of eight at once from node i on. The
 /// last lanes may reach into the cyclic copies, which move as their originals.
 template <class Ways>
-DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& ways) {
+DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& displacements) {
   Lanes square{};
   for (int i = 0; i < count; i += lane_count) {
-    const auto [x, y] = ways(i);
+    const auto [x, y] = displacements(i);
     square = max(square, (x - disc.x) * (x - disc.x) + (y - disc.y) * (y - disc.y));
   }
   disc.radius = std::sqrt(largest(square));
@@ -62,7 +62,7 @@ std::pair<Lanes, Lanes> ways_at(const OutlineField& now, const OutlineField& ref
 }
 
 /// New references move a disc that is not known by little.
-bool is_known(const DisplacementDisc& disc) { return disc.radius < 0.5 * unknown_way.radius; }
+bool is_known(const DisplacementDisc& disc) { return disc.radius < 0.5 * unknown_displacement.radius; }
 
 }  // namespace
 
@@ -73,20 +73,22 @@ DisplacementDisc displacement_disc(const Model& model, int body, const OutlineFi
   return widened(middle, count, [&](int i) { return ways_at(now, reference, first + i); });
 }
 
-DisplacementDisc way_between(const DisplacementDisc& from, const DisplacementDisc& to) {
+DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to) {
   return {to.x - from.x, to.y - from.y, from.radius + to.radius};
 }
 
-double displacement_spread(const DisplacementDisc& ways) { return 2 * ways.radius; }
+double displacement_spread(const DisplacementDisc& displacements) { return 2 * displacements.radius; }
 
-double relative_way(const DisplacementDisc& a, const DisplacementDisc& b) {
+double relative_displacement(const DisplacementDisc& a, const DisplacementDisc& b) {
   const double dx = a.x - b.x, dy = a.y - b.y;
   return std::sqrt(dx * dx + dy * dy) + a.radius + b.radius;
 }
 
-NodeDisplacements::Common NodeDisplacements::way_of_first(int body, const DisplacementsSoFar& ways) const {
+NodeDisplacements::Common NodeDisplacements::displacement_of_first(int body,
+                                                                   const DisplacementsSoFar& displacements) const {
   const int node = model_->outline_offset[body];
-  return {ways.now.x[node] - ways.reference.x[node], ways.now.y[node] - ways.reference.y[node]};
+  return {displacements.now.x[node] - displacements.reference.x[node],
+          displacements.now.y[node] - displacements.reference.y[node]};
 }
 
 bool NodeDisplacements::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
@@ -105,7 +107,7 @@ void NodeDisplacements::lay_out(int first) {
 
 void NodeDisplacements::set_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
-  start_.assign(body_.size(), unknown_way);
+  start_.assign(body_.size(), unknown_displacement);
   lay_out(0);
 }
 
@@ -114,13 +116,13 @@ void NodeDisplacements::restore_bodies(std::vector<int> bodies) {
   const int all = static_cast<int>(model_->bodies.size());
   const bool fits =
       start_.size() == body_.size() && std::ranges::all_of(body_, [&](int body) { return body >= 0 && body < all; });
-  if (!fits) throw ArchiveError("ways are those of other bodies");
+  if (!fits) throw ArchiveError("displacements are those of other bodies");
   lay_out(0);
 }
 
 void NodeDisplacements::append(int body) {
   body_.push_back(body);
-  start_.push_back(unknown_way);
+  start_.push_back(unknown_displacement);
   lay_out(count() - 1);
 }
 
@@ -133,55 +135,56 @@ void NodeDisplacements::copy_entry(int entry, const NodeDisplacements& from, int
   std::copy_n(&from.y_[from.at_[old_entry]], nodes, &y_[at_[entry]]);
 }
 
-void NodeDisplacements::look(int entry, const DisplacementsSoFar& ways) {
+void NodeDisplacements::look(int entry, const DisplacementsSoFar& displacements) {
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
-  const Common common = common_[entry] = way_of_first(b, ways);
+  const Common common = common_[entry] = displacement_of_first(b, displacements);
   const bool keeps = keeps_nodes(entry);
-  const DisplacementDisc middle = about_four(count, [&](int i) { return way_at(ways.now, ways.reference, first + i); });
+  const DisplacementDisc middle =
+      about_four(count, [&](int i) { return way_at(displacements.now, displacements.reference, first + i); });
   start_[entry] = widened(middle, count, [&](int i) {
-    const auto [x, y] = ways_at(ways.now, ways.reference, first + i);
+    const auto [x, y] = ways_at(displacements.now, displacements.reference, first + i);
     if (keeps)
       store_displacements(&x_[at_[entry] + i], x - common.x), store_displacements(&y_[at_[entry] + i], y - common.y);
     return std::pair(x, y);
   });
 }
 
-DisplacementDisc NodeDisplacements::displacement_bound(int entry, const DisplacementsSoFar& ways) const {
-  return way_between(start_[entry], ways.discs[body_[entry]]);
+DisplacementDisc NodeDisplacements::displacement_bound(int entry, const DisplacementsSoFar& displacements) const {
+  return displacement_between(start_[entry], displacements.discs[body_[entry]]);
 }
 
-DisplacementDisc NodeDisplacements::way(int entry, const DisplacementsSoFar& ways) const {
-  if (!is_known(start_[entry]) || !keeps_nodes(entry)) return displacement_bound(entry, ways);
+DisplacementDisc NodeDisplacements::displacement(int entry, const DisplacementsSoFar& displacements) const {
+  if (!is_known(start_[entry]) || !keeps_nodes(entry)) return displacement_bound(entry, displacements);
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry];
   const float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
   const DisplacementDisc middle = about_four(count, [&](int i) {
-    const auto [x, y] = way_at(ways.now, ways.reference, first + i);
+    const auto [x, y] = way_at(displacements.now, displacements.reference, first + i);
     return std::pair(x - common.x - x_then[i], y - common.y - y_then[i]);
   });
   return widened(middle, count, [&](int i) {
-    const auto [x, y] = ways_at(ways.now, ways.reference, first + i);
+    const auto [x, y] = ways_at(displacements.now, displacements.reference, first + i);
     return std::pair(x - common.x - load_ways(x_then + i), y - common.y - load_ways(y_then + i));
   });
 }
 
-void NodeDisplacements::reset_reference(int entry, const DisplacementsSoFar& ways) {
+void NodeDisplacements::reset_reference(int entry, const DisplacementsSoFar& displacements) {
   DisplacementDisc& start = start_[entry];
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   if (!is_known(start)) return;
   if (!keeps_nodes(entry)) {
-    start = way_between(displacement_disc(*model_, b, ways.now, ways.reference), start);
+    start = displacement_between(displacement_disc(*model_, b, displacements.now, displacements.reference), start);
     return;
   }
-  const Common back = way_of_first(b, ways);
+  const Common back = displacement_of_first(b, displacements);
   Common& common = common_[entry];
   float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
   const DisplacementDisc middle = about_four(count, [&](int i) {
-    const auto [dx, dy] = way_at(ways.now, ways.reference, first + i);
+    const auto [dx, dy] = way_at(displacements.now, displacements.reference, first + i);
     return std::pair(common.x - back.x + (x_then[i] - (dx - back.x)), common.y - back.y + (y_then[i] - (dy - back.y)));
   });
   start = widened(middle, count, [&](int i) {
-    const auto [dx, dy] = ways_at(ways.now, ways.reference, first + i);
+    const auto [dx, dy] = ways_at(displacements.now, displacements.reference, first + i);
     const Lanes back_x = load_ways(x_then + i) - (dx - back.x), back_y = load_ways(y_then + i) - (dy - back.y);
     store_displacements(x_then + i, back_x), store_displacements(y_then + i, back_y);
     return std::pair(common.x - back.x + back_x, common.y - back.y + back_y);

@@ -19,17 +19,17 @@ struct DisplacementsSoFar {
 };
 
 /// Of which nothing is known.
-constexpr DisplacementDisc unknown_way{0, 0, 1e150};
+constexpr DisplacementDisc unknown_displacement{0, 0, 1e150};
 
 /// Of the displacements from a body's outline nodes in a reference to where they are now.
 DisplacementDisc displacement_disc(const Model& model, int body, const OutlineField& now,
                                    const OutlineField& reference);
-/// Ways from one motion to another of the same body.
-DisplacementDisc way_between(const DisplacementDisc& from, const DisplacementDisc& to);
+/// Displacements from one motion to another of the same body.
+DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to);
 /// How far nodes of a body have moved against each other, m.
-double displacement_spread(const DisplacementDisc& ways);
+double displacement_spread(const DisplacementDisc& displacements);
 /// Bound on the relative displacement of any two nodes of two bodies, m.
-double relative_way(const DisplacementDisc& a, const DisplacementDisc& b);
+double relative_displacement(const DisplacementDisc& a, const DisplacementDisc& b);
 
 /// How far bodies have moved since each of these entries looked at one: bounds, node by node and in all. Of small ones
 /// each node's displacement is kept: discs alone would add up what bodies shake and turn, from reference to reference.
@@ -47,13 +47,13 @@ class NodeDisplacements {
   int count() const { return static_cast<int>(body_.size()); }
   int body(int entry) const { return body_[entry]; }
   /// The entry looks at its body where it is now, whatever its disc.
-  void look(int entry, const DisplacementsSoFar& ways);
+  void look(int entry, const DisplacementsSoFar& displacements);
   /// Disc of the displacements since then, by the discs alone: at little cost, but blurred.
-  DisplacementDisc displacement_bound(int entry, const DisplacementsSoFar& ways) const;
+  DisplacementDisc displacement_bound(int entry, const DisplacementsSoFar& displacements) const;
   /// The same by each node, but for a share of 1e-4 of the skin; endless where nothing is known.
-  DisplacementDisc way(int entry, const DisplacementsSoFar& ways) const;
+  DisplacementDisc displacement(int entry, const DisplacementsSoFar& displacements) const;
   /// The body's reference becomes where it is now, whatever its disc.
-  void reset_reference(int entry, const DisplacementsSoFar& ways);
+  void reset_reference(int entry, const DisplacementsSoFar& displacements);
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -64,7 +64,7 @@ class NodeDisplacements {
   struct Common {
     double x, y;
   };
-  Common way_of_first(int body, const DisplacementsSoFar& ways) const;
+  Common displacement_of_first(int body, const DisplacementsSoFar& displacements) const;
   bool keeps_nodes(int entry) const;
   void lay_out(int first);
 

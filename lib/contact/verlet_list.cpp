@@ -69,16 +69,16 @@ void VerletList::forget() {
   excess_.clear();
   gap_.clear(), watched_.clear();
   pair_displacements_.set_bodies({});
-  since_sweep_.assign(model_.bodies.size(), unknown_way);
+  since_sweep_.assign(model_.bodies.size(), unknown_displacement);
   swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
 }
 
 void VerletList::loaded() {
   pair_displacements_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size() || since_sweep_.size() != motion_.size())
-    throw ArchiveError("ways are those of other bodies");
+    throw ArchiveError("displacements are those of other bodies");
   if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
-    throw ArchiveError("ways are those of other pairs");
+    throw ArchiveError("displacements are those of other pairs");
   use_.assign(pairs_.size(), all);
 }
 
@@ -92,15 +92,16 @@ double VerletList::measure(const OutlineField& now) {
   int free = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
     if (model_.bodies[b].wall) continue;
-    const DisplacementDisc way = way_between(since_sweep_[b], motion_[b]);
-    x += way.x, y += way.y, ++free;
+    const DisplacementDisc displacement = displacement_between(since_sweep_[b], motion_[b]);
+    x += displacement.x, y += displacement.y, ++free;
   }
   if (free > 0) x /= free, y /= free;
   double farthest = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
-    const DisplacementDisc way = way_between(since_sweep_[b], motion_[b]);
+    const DisplacementDisc displacement = displacement_between(since_sweep_[b], motion_[b]);
     const bool wall = model_.bodies[b].wall;
-    const double dx = wall ? 0.0 : way.x - x, dy = way.y - y, from_mean = std::sqrt(dx * dx + dy * dy) + way.radius;
+    const double dx = wall ? 0.0 : displacement.x - x, dy = displacement.y - y,
+                 from_mean = std::sqrt(dx * dx + dy * dy) + displacement.radius;
     if (from_mean > farthest) farthest = std::max(farthest, come_out_of_place(b, from_mean, x, y, now));
   }
   return farthest;
@@ -118,17 +119,18 @@ double VerletList::come_out_of_place(int body, double from_mean, double drift_x,
 
 /// By the discs of their nodes' displacements: at little cost, but blurred.
 double VerletList::displacement_bound(int pair, const OutlineField& now) const {
-  return relative_way(pair_displacements_.displacement_bound(2 * pair, ways(now)),
-                      pair_displacements_.displacement_bound(2 * pair + 1, ways(now)));
+  return relative_displacement(pair_displacements_.displacement_bound(2 * pair, displacements(now)),
+                               pair_displacements_.displacement_bound(2 * pair + 1, displacements(now)));
 }
 
 /// By each node's own displacement.
-double VerletList::way(int pair, const OutlineField& now) const {
-  return relative_way(pair_displacements_.way(2 * pair, ways(now)), pair_displacements_.way(2 * pair + 1, ways(now)));
+double VerletList::displacement(int pair, const OutlineField& now) const {
+  return relative_displacement(pair_displacements_.displacement(2 * pair, displacements(now)),
+                               pair_displacements_.displacement(2 * pair + 1, displacements(now)));
 }
 
 bool VerletList::stays_within(int pair, double limit, const OutlineField& now) const {
-  return displacement_bound(pair, now) < limit || way(pair, now) < (1 - rounded) * limit;
+  return displacement_bound(pair, now) < limit || displacement(pair, now) < (1 - rounded) * limit;
 }
 
 bool VerletList::skin_is_exceeded(const OutlineField& now) {
@@ -137,7 +139,7 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   const bool some = parallel_any(count(), [&](int p) {
     if (!watched_[p]) return use_[p] = little, false;
     // Below the skin by discs a pair holds, and what is likely will do.
-    const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : way(p, now);
+    const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : displacement(p, now);
     use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
   });
@@ -148,12 +150,12 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
 void VerletList::reset_references(const OutlineField& here, const OutlineField& trial) {
   const auto is_due = [&](int b) { return displacement_spread(motion_[b]) >= blurred * skin_; };
   parallel_for(pair_displacements_.count(), [&](int e) {
-    if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, ways(here));
+    if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, displacements(here));
   });
   parallel_for(count_of_bodies(), [&](int b) {
     if (!is_due(b)) return;
     const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
-    since_sweep_[b] = way_between(displacement_disc(model_, b, here, reference_), since_sweep_[b]);
+    since_sweep_[b] = displacement_between(displacement_disc(model_, b, here, reference_), since_sweep_[b]);
     std::copy_n(&here.x[first], nodes, &reference_.x[first]);
     std::copy_n(&here.y[first], nodes, &reference_.y[first]);
     motion_[b] = displacement_disc(model_, b, trial, reference_);
@@ -199,9 +201,9 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   std::vector<char> stays(pairs_.size());
   parallel_for(count(), [&](int p) {
     if (watched_[p])
-      stays[p] = gap_[p] <= margin_ - skin_ || gap_[p] + way(p, here) <= margin_;
+      stays[p] = gap_[p] <= margin_ - skin_ || gap_[p] + displacement(p, here) <= margin_;
     else
-      stays[p] = gap_[p] - way(p, here) > margin_;
+      stays[p] = gap_[p] - displacement(p, here) > margin_;
   });
   const std::vector<BodyPair> before = std::exchange(pairs_, std::move(found));
   const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
@@ -222,7 +224,7 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
 std::vector<int> VerletList::exceeded(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
     if (use_[p] != much) return;
-    const double exact = way(p, here);
+    const double exact = displacement(p, here);
     excess_[p] = std::max(0.0, displacement_bound(p, here) - exact);
     if (exact < kept * skin_) use_[p] = little;
   });
@@ -240,7 +242,7 @@ bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {
   excess_[pair] = 0, gap_[pair] = gap;
   watched_[pair] = !(just_swept_ && gap > margin_);
-  for (int side = 0; side < 2; ++side) pair_displacements_.look(2 * pair + side, ways(now));
+  for (int side = 0; side < 2; ++side) pair_displacements_.look(2 * pair + side, displacements(now));
 }
 
 void VerletList::add(const BodyPair& pair, const OutlineField& now) {

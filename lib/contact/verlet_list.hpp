@@ -16,8 +16,8 @@ struct BodyPlace {
 
 /// The pairs of bodies that may come to touch, and bounds of how far they have moved against each other since it was
 /// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
-/// pair by pair, but all together, and so those that turn out to be further apart than their boxes. Ways are from place
-/// to place: what only vibrates goes nowhere.
+/// pair by pair, but all together, and so those that turn out to be further apart than their boxes. Displacements are
+/// from place to place: what only vibrates goes nowhere.
 class VerletList {
  public:
   /// `skin`: displacement after which a pair must be searched; `reach`: gap from which on nothing acts, m.
@@ -56,12 +56,12 @@ class VerletList {
   void loaded();
 
  private:
-  DisplacementsSoFar ways(const OutlineField& now) const { return {now, reference_, motion_}; }
+  DisplacementsSoFar displacements(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   double measure(const OutlineField& now);
   double come_out_of_place(int body, double from_mean, double drift_x, double drift_y, const OutlineField& now) const;
   double displacement_bound(int pair, const OutlineField& now) const;
-  double way(int pair, const OutlineField& now) const;
+  double displacement(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
   void reset_references(const OutlineField& here, const OutlineField& trial);
   bool discs_are_apart(const BodyPair& pair) const;

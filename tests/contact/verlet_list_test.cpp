@@ -57,7 +57,7 @@ TEST(VerletList, sweeps_no_more_for_what_shakes_and_spins) {
 /// EXACT: pairs that are searched where a step begins hold at its end if they go less than a skin in it.
 TEST(VerletList, tells_whether_what_was_searched_holds_on_trial) {
   ContactRig rig(two_rows());
-  for (const double way : {0.7, 1.3}) {
+  for (const double displacement : {0.7, 1.3}) {
     VerletList watch(rig.model, rig.contact.skin(), 0);
     rig.show();
     watch.update(rig.outlines.position, rig.outlines.position);
@@ -65,14 +65,14 @@ TEST(VerletList, tells_whether_what_was_searched_holds_on_trial) {
     rig.move(11, {0.5 * rig.contact.skin(), 0});
     rig.show();
     const OutlineField begin = rig.outlines.position;
-    rig.move(11, {way * rig.contact.skin(), 0});
+    rig.move(11, {displacement * rig.contact.skin(), 0});
     rig.show();
     EXPECT_TRUE(watch.skin_is_exceeded(rig.outlines.position));
     EXPECT_FALSE(watch.update(begin, rig.outlines.position));
     const std::vector<int> pairs = watch.exceeded(begin);
     EXPECT_FALSE(pairs.empty());
     for (int pair : pairs) watch.searched(pair, begin);
-    EXPECT_EQ(watch.hold(pairs, rig.outlines.position), way < 1);
+    EXPECT_EQ(watch.hold(pairs, rig.outlines.position), displacement < 1);
   }
 }
 
@@ -159,16 +159,18 @@ TEST(NodeDisplacements, are_known_however_far_bodies_drift) {
     for (int b = 0; b < 2; ++b) discs[b] = displacement_disc(rig.model, b, rig.outlines.position, reference);
     return DisplacementsSoFar{rig.outlines.position, reference, discs};
   };
-  NodeDisplacements ways(rig.model);
-  ways.set_bodies({0, 1});
-  for (int entry = 0; entry < 2; ++entry) ways.look(entry, look());
+  NodeDisplacements displacements(rig.model);
+  displacements.set_bodies({0, 1});
+  for (int entry = 0; entry < 2; ++entry) displacements.look(entry, look());
   for (int step = 1; step <= 100; ++step) {
     for (int body = 0; body < 2; ++body) rig.move(body, {1e4, -1e4});
     rig.move(1, {0, 0.005 * skin});
     const DisplacementsSoFar now = look();
-    EXPECT_NEAR(relative_way(ways.way(0, now), ways.way(1, now)), 0.005 * step * skin, 1e-4 * skin) << step;
+    EXPECT_NEAR(relative_displacement(displacements.displacement(0, now), displacements.displacement(1, now)),
+                0.005 * step * skin, 1e-4 * skin)
+        << step;
     if (step % 3 > 0) continue;
-    for (int entry = 0; entry < 2; ++entry) ways.reset_reference(entry, now);
+    for (int entry = 0; entry < 2; ++entry) displacements.reset_reference(entry, now);
     reference = rig.outlines.position;
   }
 }
@@ -189,12 +191,12 @@ TEST(VerletList, of_other_pairs_is_refused) {
 /// EXACT: what a checkpoint has of other bodies is refused.
 TEST(NodeDisplacements, of_other_bodies_are_refused) {
   ContactRig rig(two_rows());
-  NodeDisplacements ways(rig.model);
-  ways.set_bodies({0, 1});
-  EXPECT_NO_THROW(ways.restore_bodies({2, 3}));
-  EXPECT_THROW(ways.restore_bodies({0, 12}), ArchiveError) << "there are twelve";
-  EXPECT_THROW(ways.restore_bodies({-1, 0}), ArchiveError);
-  EXPECT_THROW(ways.restore_bodies({0}), ArchiveError) << "two are known";
+  NodeDisplacements displacements(rig.model);
+  displacements.set_bodies({0, 1});
+  EXPECT_NO_THROW(displacements.restore_bodies({2, 3}));
+  EXPECT_THROW(displacements.restore_bodies({0, 12}), ArchiveError) << "there are twelve";
+  EXPECT_THROW(displacements.restore_bodies({-1, 0}), ArchiveError);
+  EXPECT_THROW(displacements.restore_bodies({0}), ArchiveError) << "two are known";
 }
 
 }  // namespace
