@@ -6,17 +6,18 @@ namespace pliant {
 
 /// What an integrator tries next.
 struct Proposal {
-  double dt = 0, end_time = 0;    ///< s
-  double controller_dt = 0;       ///< dt but for the time at which the step must end, s
-  double largest_dt = 0;          ///< what limits dt when no error does, s
-  const char* governed_by = "";   ///< what limits dt: "error", "stability", "until"
+  double dt = 0, end_time = 0;  ///< s
+  double controller_dt = 0;     ///< dt but for the time at which the step must end, s
+  double largest_dt = 0;        ///< what limits dt when no error does, s
+  StepLimit limited_by = StepLimit::until;
   bool is_output_sample = false;  ///< a shorter step for an observer: it takes the candidates as they are
 };
 
-/// What is made of a trial.
+/// The controller's answer to a trial.
 struct Verdict {
   bool accepted;
-  double next_dt;  ///< of the next trial, or of the next step, s
+  double next_dt;            ///< of the next trial, or of the next step, s
+  ErrorHistory errors = {};  ///< becomes the state's if the trial is accepted
 };
 
 /// Forces at a state's own positions and velocities, into a trial; finds contact candidates if there are none. The
@@ -32,6 +33,6 @@ void swap_motion(State& state, Trial& trial);
 /// Makes an accepted trial the state: books its work and dissipation, swaps, counts. Where loads switch, the state's
 /// forces become those of the next step. Only acceptance changes a state, so that a step that throws leaves it as it
 /// was; new contact candidates may have put the records of its memory in another order.
-void take_over(const Model& model, State& state, Trial& trial, double next_dt, const StepReport& report);
+void take_over(const Model& model, State& state, Trial& trial, const Verdict& verdict, const StepReport& report);
 
 }  // namespace pliant

@@ -43,7 +43,7 @@ Simulation::Simulation(const Model& model, const StartPoint* from) : model_(mode
 
 void Simulation::begin(const StartPoint& start) {
   start.require_fit(model_);
-  state_.next_dt = start.next_dt, state_.jerk = start.jerk, state_.jerk_before = start.jerk_before;
+  state_.next_dt = start.next_dt, state_.errors = start.errors;
   state_.position = start.position, state_.reduced_momentum = start.reduced_momentum;
   state_.memory.material = start.material;
   set_imposed_velocities(model_, state_.reduced_momentum);
@@ -51,13 +51,8 @@ void Simulation::begin(const StartPoint& start) {
 }
 
 StartPoint Simulation::start_point() const {
-  return {state_.next_dt,
-          state_.jerk,
-          state_.jerk_before,
-          state_.position,
-          state_.reduced_momentum,
-          state_.memory.material,
-          forces_.contact().leave(state_.memory.contact)};
+  return {state_.next_dt,          state_.errors,          state_.position,
+          state_.reduced_momentum, state_.memory.material, forces_.contact().leave(state_.memory.contact)};
 }
 
 StepReport Simulation::step(double until, const Observer* observer) {

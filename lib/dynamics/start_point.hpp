@@ -12,15 +12,15 @@ namespace pliant {
 /// What a run leaves to another one of the same bodies that starts where it ended: motion and memory. Forces, energies
 /// and books follow from the other's scene. It enumerates itself (core/archive.hpp).
 struct StartPoint {
-  double next_dt = 0;                ///< s; 0: as at any start
-  double jerk = 0, jerk_before = 0;  ///< as in StateNumbers, 1/s3
-  Dofs position, reduced_momentum;   ///< as in State
-  std::vector<Lanes> material;       ///< Memory::material
+  double next_dt = 0;  ///< s; 0: as at any start
+  ErrorHistory errors;
+  Dofs position, reduced_momentum;  ///< as in State
+  std::vector<Lanes> material;      ///< Memory::material
   InheritedContact contact;
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("next_dt", next_dt), visitor("jerk", jerk), visitor("jerk_before", jerk_before);
+    visitor("next_dt", next_dt), errors.visit(visitor);
     visitor("position", position), visitor("reduced_momentum", reduced_momentum);
     visitor("material", material), visitor("contact", contact);
   }

@@ -50,12 +50,21 @@ struct BodyBooks {
   }
 };
 
-/// Of a state, what is no array.
+/// The controller of `verlet` reads the largest error over dt^3, of this span of steps and of the last one, 1/s3.
+struct ErrorHistory {
+  double now = 0, before = 0;
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("jerk", now), visitor("jerk_before", before);
+  }
+};
+
+/// The numbers of a state that are no arrays.
 struct StateNumbers {
   double time = 0;     ///< s
   double next_dt = 0;  ///< what the controller proposes, s
-  /// verlet: error over dt^3, the largest of this span of steps and of the one before, 1/s3
-  double jerk = 0, jerk_before = 0;
+  ErrorHistory errors;
   double external_work = 0;   ///< of loads and imposed motions, J/m
   double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;      ///< by contact laws and by damping, J/m
@@ -91,7 +100,7 @@ struct State : StateNumbers {
   void visit_motion(Visitor&& visitor) {
     visitor("time", time);
     visitor("next_dt", next_dt);
-    visitor("jerk", jerk), visitor("jerk_before", jerk_before);
+    errors.visit(visitor);
     visitor("external_work", external_work);
     visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);

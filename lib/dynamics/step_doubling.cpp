@@ -79,8 +79,8 @@ double StepDoubling::first_dt() const { return first_share * wave_time_; }
 
 Proposal StepDoubling::propose(const State& state, double next_dt, double until) const {
   const double remaining = until - state.time;
-  if (next_dt >= remaining) return {remaining, until, next_dt, wave_time_, "until"};
-  return {next_dt, state.time + next_dt, next_dt, wave_time_, "error"};
+  if (next_dt >= remaining) return {remaining, until, next_dt, wave_time_, StepLimit::until};
+  return {next_dt, state.time + next_dt, next_dt, wave_time_, StepLimit::error};
 }
 
 Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepReport& report) const {

@@ -20,8 +20,8 @@ struct StepStatistics {
     const PairTotals& contact = report.evaluation.contact;
     if (contact.deepest > deepest) deepest = contact.deepest, deepest_time = time;
     contacts = std::max<std::int64_t>(contacts, contact.contacts);
-    by_error += report.governed_by[0] == 'e';
-    by_stability += report.governed_by[0] == 's';
+    by_error += report.limited_by == StepLimit::error;
+    by_stability += report.limited_by == StepLimit::stability;
   }
 
   template <class Visitor>

@@ -10,12 +10,12 @@ namespace pliant {
 /// report has no length.
 template <class Scheme>
 StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until, const Observer* observer = nullptr) {
-  double next_dt = state.next_dt > 0 ? state.next_dt : scheme.first_dt();
+  Verdict verdict{false, state.next_dt > 0 ? state.next_dt : scheme.first_dt()};
   StepReport report;
   for (;;) {
-    const Proposal proposal = scheme.propose(state, next_dt, until);
+    const Proposal proposal = scheme.propose(state, verdict.next_dt, until);
     report.dt = proposal.dt;
-    report.governed_by = proposal.governed_by;
+    report.limited_by = proposal.limited_by;
     scheme.attempt(state, proposal, report);
     if (scheme.within_tolerance(report)) {
       const Shown shown = show_on_the_way(scheme, forces, state, proposal, observer);
@@ -25,15 +25,14 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until,
         continue;
       }
     }
-    const Verdict verdict = scheme.judge(state, proposal, report);
-    next_dt = verdict.next_dt;
+    verdict = scheme.judge(state, proposal, report);
     if (verdict.accepted) break;
     ++report.rejections;
-    check_time_step({report, scheme.trial(), next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
+    check_time_step({report, scheme.trial(), verdict.next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
   }
   forces.warn_of_depth(report.evaluation, scheme.trial().time);
   scheme.finish(state, report);
-  take_over(forces.model(), state, scheme.trial(), next_dt, report);
+  take_over(forces.model(), state, scheme.trial(), verdict, report);
   scheme.accepted(state, report);
   return report;
 }

@@ -59,9 +59,9 @@ Proposal Verlet::propose(const State& state, double next_dt, double until) const
   const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / controller_dt));
   const double dt = std::isfinite(steps) ? remaining / steps : controller_dt;
   return {dt, steps > 1 ? state.time + dt : until, controller_dt, largest,
-          steps == 1          ? "until"
-          : next_dt < largest ? "error"
-                              : "stability"};
+          steps == 1          ? StepLimit::until
+          : next_dt < largest ? StepLimit::error
+                              : StepLimit::stability};
 }
 
 void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report) {
@@ -84,17 +84,18 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   report.error = report.evaluation.sound ? error(proposal.dt) : std::numeric_limits<double>::infinity();
 }
 
-Verdict Verlet::judge(State& state, const Proposal& proposal, const StepReport& report) const {
+Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepReport& report) const {
   const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, controller_dt = proposal.controller_dt;
   if (!within_tolerance(report)) return {false, dt * controller_factor(report.error, tolerance)};
-  if (state.steps % span == 0) state.jerk_before = std::exchange(state.jerk, 0);
+  ErrorHistory errors = state.errors;
+  if (state.steps % span == 0) errors.before = std::exchange(errors.now, 0);
   // Of the whole step: one cut short to meet a stop does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
-  if (dt >= least_step_share * controller_dt) state.jerk = std::max(report.error / (dt * dt * dt), state.jerk);
-  const double jerk = std::max(state.jerk, state.jerk_before);
+  if (dt >= least_step_share * controller_dt) errors.now = std::max(report.error / (dt * dt * dt), errors.now);
+  const double jerk = std::max(errors.now, errors.before);
   const double next_dt =
       controller_dt * controller_factor(jerk * controller_dt * controller_dt * controller_dt, tolerance);
-  return {true, std::min(next_dt, proposal.largest_dt)};
+  return {true, std::min(next_dt, proposal.largest_dt), errors};
 }
 
 /// What rigid bodies do in the step, for what contacts owe.

@@ -21,7 +21,7 @@ class Verlet {
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   /// Whether the error of an attempt is one to live with.
   bool within_tolerance(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
-  Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const;
+  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State& state, StepReport& report);
   void accepted(State& state, const StepReport& report);
   Trial& trial() { return trial_; }

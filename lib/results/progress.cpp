@@ -33,9 +33,9 @@ bool ProgressLine::show_if_due(Simulation& simulation, const StepReport& report,
   if (!quiet_) {
     const std::string line = fmt::format(
         "t = {:.4g} of {:.4g} s | dt {:.3g} s ({}{}) | {:.0f} evaluations/s | balance {:.2e} | {:.0f} s left",
-        state.time, simulation.model().scene.time.end, report.dt, report.governed_by,
-        report.governed_by[0] == 's' ? ": " + simulation.governing() : "", rate, simulation.balance_error(audit.energy),
-        left);
+        state.time, simulation.model().scene.time.end, report.dt, name_of(report.limited_by),
+        report.limited_by == StepLimit::stability ? ": " + simulation.governing() : "", rate,
+        simulation.balance_error(audit.energy), left);
     std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
     std::fflush(stderr);
   }

@@ -125,7 +125,7 @@ TEST(Controller, error_control_does_not_damp) {
   Simulation simulation(model);
   const double start = simulation.energy_balance().energy.mechanical();
   int governed = 0;
-  while (simulation.state().time < 8) governed += simulation.step(8).governed_by == std::string("error");
+  while (simulation.state().time < 8) governed += simulation.step(8).limited_by == StepLimit::error;
   EXPECT_GT(governed, simulation.state().steps / 3);
   EXPECT_NEAR(simulation.energy_balance().energy.mechanical() / start, 1, 5e-3) << "FROZEN: 2.4e-3 when written";
 }

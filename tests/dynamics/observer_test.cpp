@@ -55,7 +55,7 @@ struct FailsOnceAt {
     if (proposal.end_time == time && attempts++ == 0) report.error = std::numeric_limits<double>::infinity();
   }
   bool within_tolerance(const StepReport& report) const { return verlet.within_tolerance(report); }
-  Verdict judge(State& state, const Proposal& proposal, const StepReport& report) const {
+  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const {
     return verlet.judge(state, proposal, report);
   }
   void finish(const State& state, StepReport& report) { verlet.finish(state, report); }
