@@ -14,7 +14,7 @@ constexpr double largest_error = 0.01;
 /// Energies are what is left of numbers as large as the modulus times area, and forces times positions: bodies at rest
 /// have balances of rounding only.
 constexpr double rounding = 1e-13;
-/// What docs/defaults.md recommends where the default heats.
+/// What docs/notes/impacts.md recommends where the default heats.
 constexpr double calm_safety = 0.4;
 /// Penetration over segment length from which on it is to blame, and that stiffer contacts should come down to.
 constexpr double deep = 0.3, shallow = 0.1;

@@ -1,4 +1,4 @@
-// What a touch costs when steps have a length: the one error in energy that Verlet makes in contact (docs/defaults.md).
+// The energy error of Verlet in contact: contacts begin and end within a step (docs/notes/impacts.md).
 #include <gtest/gtest.h>
 
 #include "support/simulations.hpp"

@@ -80,7 +80,7 @@ double root_mean_square(double safety, bool repays) {
   return std::sqrt(sum / count);
 }
 
-/// INDEPENDENT: the bound that is promised at the defaults (docs/defaults.md).
+/// INDEPENDENT: the bound that is promised at the defaults (docs/notes/quadrature.md).
 TEST(RandomImpacts, keep_their_energy) { EXPECT_LT(root_mean_square(0.8, true), 1e-3); }
 
 /// RATE: forces have an energy and are continuous, so that half the step leaves a quarter of the error of velocity

@@ -68,7 +68,7 @@ TEST(SelfContact, stops_the_jaws) {
   EXPECT_GT(with.stored, 1e-4);
   EXPECT_EQ(without.stored, 0);
   EXPECT_LT(with.momentum, 1e-12) << "EXACT: rounding of sums over 60 nodes, linear and angular";
-  EXPECT_LT(with.balance, 1e-3) << "RATE: impacts at this safety keep some 2e-4 of the energy, docs/defaults.md";
+  EXPECT_LT(with.balance, 1e-3) << "RATE: impacts at this safety keep some 2e-4 of the energy, docs/notes/impacts.md";
 }
 
 TEST(SelfContact, with_friction) {

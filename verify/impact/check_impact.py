@@ -111,7 +111,7 @@ def test_impact(runs: dict, elements: dict, variant: tuple[str, str], speed: flo
                time_error(expected, error), OWN)
     balance = np.abs(runs[variant, speed][1400].probe("energy.balance_error"))
     CASE.check(Label.EXACT, f"{name}: balance of energy, after", balance[-1], 0, 1e-3,
-               "energy is conserved; the default safety keeps a bounce to 0.1 % (docs/defaults.md)")
+               "energy is conserved; the default safety keeps a bounce to 0.1 % (docs/notes/impacts.md)")
     CASE.check(Label.EXACT, f"{name}: balance of energy, on the way", balance.max(), 0, 1e-2,
                "promised: 1 %; what Verlet keeps differs from it by dt^2 sum m a^2 / 8, and debts are under way")
 

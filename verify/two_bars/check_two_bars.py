@@ -106,8 +106,8 @@ def test_balances(runs: dict[str, dict[float, Run]]) -> None:
     total = np.abs(run.probe("left.velocity_x") + run.probe("right.velocity_x")).max() / SPEED
     CASE.check(Label.EXACT, "sum of the velocities over v", total, 0, 1e-11, "momentum; rounding of sums over 1e4 "
                                                                              "steps and 1e3 nodes")
-    CASE.check(Label.EXACT, "energy balance", run.balance_error, 0, 8.5e-4, "docs/defaults.md: 1.7e-4 of a bounce "
-                                                                            "at most; five of them")
+    CASE.check(Label.EXACT, "energy balance", run.balance_error, 0, 8.5e-4, "docs/notes/impacts.md: 1.7e-4 of a "
+                                                                            "bounce at most; five of them")
 
 
 def test_both_solvers() -> None:
