@@ -53,14 +53,12 @@ void print_schema(const std::vector<std::string>& files) {
   for (const std::string& file : files) read_scene(file, &schema);
   fmt::print(
       "# Keys of scene files\n\n"
-      "Written by `./pliant schema` from the code that reads scenes (change it there, then `./pliant schema >\n"
-      "docs/scene.md`). A quantity is a number in SI units or a string with a unit, such as \"2 GPa\"; \"a number\" "
-      "has\n"
-      "none. Angles are no numbers: units such as deg, rad and turn are for quantities in rad and rad/s and for "
-      "friction\n"
-      "angles alone; an angle without a unit is in radians. `with` names the choice in the same table that a key "
-      "belongs\n"
-      "to. Unknown keys are refused. Reasons of the defaults: [defaults.md](defaults.md).\n\n{}",
+      "`./pliant schema` writes this page from the code that reads scenes. To change the page, change that code\n"
+      "and run `./pliant schema > docs/scene.md`. A quantity is a number in SI units or a string with a unit,\n"
+      "such as \"2 GPa\"; \"a number\" has no unit. An angle without a unit is in radians. The units deg, rad and\n"
+      "turn apply only to quantities in rad and rad/s and to friction angles. `with` names the choice in the\n"
+      "same table that a key belongs to. Unknown keys are refused. [defaults.md](defaults.md) gives the reasons\n"
+      "of the defaults.\n\n{}",
       schema.markdown());
 }
 
