@@ -1,6 +1,6 @@
 """Hooks of mkdocs. Pages link to files of the whole repository, as they must to be read there: what stands outside of
 docs/ and is linked becomes a page of the site too, Markdown as it is, other files as listings. Pages of verification
-get what `./pliant verify` found last."""
+get what `./pliant verify` found last, pages with formulas what typesets them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mkdocs.structure.pages import Page
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from pages import verification
+from pages import formulas, verification
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
@@ -95,3 +95,11 @@ def on_page_markdown(markdown: str, page: Page, config: Config, files: Files) ->
 def on_page_content(html: str, page: Page, config: Config, files: Files) -> str:
     """Paths may break at their slashes, or columns of tables would be as wide as they are."""
     return PATH.sub(lambda match: match[0].replace("/", "/<wbr>"), html)
+
+
+def on_post_page(output: str, page: Page, config: Config) -> str:
+    return formulas.complete(output, page.url)
+
+
+def on_post_build(config: Config) -> None:
+    formulas.copy_typesetter(Path(config["site_dir"]))
