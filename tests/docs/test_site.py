@@ -80,6 +80,32 @@ def test_what_was_verified_is_shown(site: Path) -> None:
     assert {"way | stop", "1.25", "0.5", "red: c ended before it wrote a check down"} <= set(cells)
 
 
+def test_pages_with_formulas_load_what_typesets_them(site: Path) -> None:
+    page = (site / "method.html").read_text()
+    assert page.count('class="arithmatex"') > 100 and "$" not in re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
+    assert any(link == "katex/katex.min.js" for link in Html(page).loaded)
+    assert "../katex/katex.min.js" in Html((site / "notes/method.html").read_text()).loaded
+    assert not any("katex" in link for link in Html((site / "index.html").read_text()).loaded)
+    fonts = re.findall(r"url\(([^)]*\.woff2)\)", (site / "katex/katex.min.css").read_text())
+    assert fonts and all((site / "katex" / font).is_file() for font in fonts)
+
+
+@pytest.mark.skipif(BROWSER is None, reason="chromium is not installed")
+@pytest.mark.parametrize("name", ["method", "notes/method"])
+def test_a_browser_typesets_all_formulas(site: Path, name: str) -> None:
+    command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--timeout=60000", "--dump-dom",
+               (site / f"{name}.html").as_uri()]
+    shown = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert shown.returncode == 0, shown.stderr
+    assert "katex-error" not in shown.stdout
+    assert shown.stdout.count('class="katex"') == shown.stdout.count('class="arithmatex"') > 0
+
+
+def test_equations_are_numbered_in_their_order() -> None:
+    numbers = re.findall(r"\\tag\{(\d+)\}", (ROOT / "docs/method.md").read_text())
+    assert numbers == [str(number) for number in range(1, len(numbers) + 1)]
+
+
 def test_checks_of_links_can_fail(tmp_path: Path) -> None:
     (tmp_path / "a.html").write_text('<a href="b.html#there">1</a><a href="b.html#not">2</a><a href="c.html">3</a>'
                                      '<a href="https://x.org/">4</a><script src="https://x.org/y.js"></script>')
