@@ -12,7 +12,7 @@ struct Box {
   double x_min, x_max, y_min, y_max;
 };
 
-/// Two bodies, or a body and its own periodic image, whose bounding boxes come closer than the margin.
+/// Two bodies, or a body and its own periodic image, whose bounding boxes are closer than the margin.
 struct BodyPair {
   int first, second;  ///< first <= second
   int images;         ///< periods to add to x of the second; positive for a body's own image
@@ -21,8 +21,8 @@ struct BodyPair {
 
 Box bounding_box(const Model& model, const OutlineField& position, int body);
 
-/// Sweep and prune on x, then y, periodic in x (docs/method.md 4, stage 1). Pairs are sorted. Walls span all x, and
-/// meet no image of theirs.
+/// Sweep and prune on x, then y, periodic in x (docs/method.md 4, stage 1). Returns sorted pairs. Walls span all x and
+/// do not meet their own images.
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin);
 
 }  // namespace pliant

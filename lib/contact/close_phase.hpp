@@ -5,11 +5,11 @@
 
 namespace pliant {
 
-/// Finds the nodes and segments through which a contact pair's two bodies can touch while their relative motion stays
-/// below the skin (docs/method.md 4, stage 2), and sets them in the contact pair. Conservative: a node within `margin`
-/// (reach + skin) of a segment of the other outline, or within sight below it
-/// (compute_pair), is in, and so is the segment. All counts are 0 when the bodies stay apart. Returns the least
-/// distance of the two outlines, m; where it is more than `look`, anything between.
+/// Finds the nodes and segments through which both bodies of a contact pair can touch while their relative displacement
+/// stays below the skin (docs/method.md 4, stage 2), and sets them in the contact pair. The result is conservative: it
+/// contains each node within `margin` (reach + skin) of a segment of the other outline, or within the detection depth
+/// below it (compute_pair), and that segment. All counts are 0 if the bodies stay apart. Returns the least distance of
+/// the two outlines, m; if that exceeds `look`, any value between the two.
 double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
                  double skin, MasterWindow& scratch, double look = 0);
 

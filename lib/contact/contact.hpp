@@ -18,26 +18,26 @@
 
 namespace pliant {
 
-/// What a fixed refresh period counts.
+/// Time and number of steps that measure a fixed rebuild interval.
 struct RunClock {
-  double time = 0;         ///< of the positions, s
-  std::int64_t steps = 0;  ///< accepted so far
+  double time = 0;         ///< time of the positions, s
+  std::int64_t steps = 0;  ///< steps accepted so far
 };
 
-/// Where a step began.
+/// State at the start of a step.
 struct StepStart {
-  const OutlineField& position;      ///< of outlines, with their copies
-  double elapsed;                    ///< since then, s
-  const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null where no debts are kept
+  const OutlineField& position;      ///< of the outlines, with their cyclic copies
+  double elapsed;                    ///< time since the start, s
+  const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null without energy correction
 };
 
-/// What an evaluation leaves behind.
+/// Forces and sums that an evaluation stores for the next step.
 struct Evaluated {
   PairForceBuffer forces;
   std::vector<PairTotals> totals;  ///< [contact pairs]
-  std::int64_t number = 0;         ///< ContactHistory::evaluation; 0: of no step
-  long refreshes = 0;              ///< before it
-  double elapsed = 0;              ///< in the step that led to it, s
+  std::int64_t number = 0;         ///< ContactHistory::evaluation; 0: it belongs to no step
+  long refreshes = 0;              ///< number of rebuilds before it
+  double elapsed = 0;              ///< size of the step that led to it, s
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -46,65 +46,66 @@ struct Evaluated {
   }
 };
 
-/// Contact between the outlines of all bodies: keeps the contact pairs, refreshes them when some pair may have exceeded
-/// its skin, and computes the forces on outline nodes. The history belongs to the caller's state.
+/// Contact between the outlines of all bodies: stores the contact pairs, rebuilds those that may have exceeded their
+/// skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
-/// Of a body in motion it knows only its stretch of the outlines, which update_outlines fills, and gives back only its
-/// stretch of the forces on them, which the bodies gather afterwards. Between the two is the seam where a body's
-/// outline may come from elsewhere, as from another process: fill its stretch before candidates_hold, fetch its stretch
-/// after forces().
+/// A moving body enters only through its range of the outlines, which update_outlines fills. Its forces return in the
+/// same range of the outline forces, which the body gathers afterwards. At this interface an outline may come from
+/// elsewhere, for example from another process: fill its range before candidates_hold and read its range after
+/// forces().
 class ContactSystem {
  public:
   explicit ContactSystem(const Model& model);
 
-  /// False when some close pair may have moved by the skin since the candidates were found, or always before the first
-  /// time. With a fixed period: when it is over; contacts that come earlier are missed. Also when laws change: see
-  /// ContactLaws::law_interval.
+  /// Returns false if some close pair may have moved by the skin since its candidates were found, and always before the
+  /// first search. With a fixed rebuild interval it returns false when the interval is over; contacts that come earlier
+  /// are missed. It also returns false when laws change: see ContactLaws::law_interval.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
-  /// Rebuilds the contact pairs and carries the history, that of these outlines, over to them; new contacts get their
-  /// places. Throws InputError when a body that may touch itself does so at the start.
+  /// Rebuilds all contact pairs and transfers the history, which must belong to these outlines. New contacts get their
+  /// surface coordinates. Throws InputError if a body with self-contact overlaps itself at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
-  /// The same, but contact pairs that have used less than three fourths of their skin stay as they are. Returns
-  /// whether all hold on trial, where they were last asked whether they do; without one, where they are.
+  /// Partial rebuild: keeps contact pairs that have used less than three fourths of their skin. `trial`: positions of
+  /// the last candidates_hold. Returns whether all candidates are valid for the trial; without one, for `outlines`.
   bool renew_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {},
                         const OutlineField* trial = nullptr);
 
-  /// What another run of the same bodies may inherit; `history` is that of the state now.
+  /// Contact state that another run of the same bodies may inherit; `history` is that of the present state.
   InheritedContact leave(const ContactHistory& history) const;
-  /// Before the first search: it carries places, slip and what laws remember over, but of pairs whose law was of
-  /// another kind. Those begin as in any run. Throws ArchiveError for contacts of other bodies.
+  /// Call before the first search. Transfers surface coordinates, slip and internal variables, except for pairs whose
+  /// law was of another kind: those begin as in any run. Throws ArchiveError for contacts of other bodies.
   void inherit(const InheritedContact& from, ContactHistory& history);
 
-  /// Contact forces on outline nodes, N/m, from one history into another. `step`: what led here from where the history
-  /// was, so that contacts may repay what they owe. Without it, as at the start, all stands still.
+  /// Contact forces on outline nodes, N/m; reads the history `from` and writes `to`. `step`: the step from the state of
+  /// `from` to here, from which the energy correction follows. Without it, as at the start, no time has passed.
   PairTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
                     const StepStart* step = nullptr);
 
-  /// A trial whose history is that of the state now was accepted.
+  /// Accepts the trial evaluation if `history`, that of the present state, came from it.
   void accept(const ContactHistory& history);
 
-  /// [bodies] upper bound of the damping ratio over all contacts until the next refresh, in terms of the bound of
+  /// [bodies] upper bound of the damping ratio over all contacts until the next rebuild, relative to the bound of
   /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
 
-  /// [outline nodes] least of what laws remember by this name over each node's contacts; `none` where no law does.
+  /// [outline nodes] least value of the internal variable with this name over each node's contacts; `none` where no law
+  /// has it.
   std::vector<double> least_internal_variable(const ContactHistory& history, std::string_view name, double none) const;
 
   const ContactLaws& laws() const { return laws_; }
-  /// Of all pairs that are watched: some are empty.
+  /// All pairs of the Verlet list; some have no candidates.
   const std::vector<ContactPair>& contact_pairs() const { return table_.contact_pairs(); }
   const PairTable& table() const { return table_; }
-  /// A contact pair that was found last, where it was.
+  /// View of a contact pair at the outlines of its last search.
   PairView view(const ContactPair& contact_pair) const;
-  /// Places in the table of the contact pairs that were found at the last refresh.
+  /// Indices in the table of the contact pairs that the last rebuild searched.
   const std::vector<int>& found() const { return found_; }
-  /// Whether contact of some pairs is integrated over segments.
+  /// Whether contact of some pairs may be integrated over segments.
   bool may_integrate() const { return may_integrate_; }
   long refreshes() const { return refreshes_; }
-  long pairs_searched() const { return pairs_searched_; }  ///< over all refreshes, those of the broad phase alone not
+  long pairs_searched() const { return pairs_searched_; }  ///< narrow-phase searches, all rebuilds
   double skin() const { return skin_; }
 
-  /// What a refresh leaves behind; the layout follows from the contact pairs.
+  /// State after a rebuild; sizes of buffers follow from the contact pairs.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("watch", verlet_list_);
@@ -140,7 +141,7 @@ class ContactSystem {
   void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
   bool starts_from_a_state() const { return laws_before_.count > 0; }
-  bool keeps_law(const ContactPair& contact_pair) const;  ///< of the state that it starts from; false: there is none
+  bool keeps_law(const ContactPair& contact_pair) const;  ///< whether the inherited law was of the same kind
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
                 const ContactHistory& from, const ContactHistory& to, const PairForceBuffer& forces) const;
@@ -150,17 +151,17 @@ class ContactSystem {
   double skin_;
   bool may_integrate_;
   VerletList verlet_list_;
-  PairTable table_;         ///< in the order of the pairs, unless bodies touch themselves
-  double most_repaid_;      ///< see energy_debt.hpp
-  Evaluated last_, trial_;  ///< what accepted steps left behind and, where debts are kept, what is not accepted
+  PairTable table_;                       ///< ordered as the Verlet list, unless there is self-contact
+  double most_repaid_;                    ///< limit of the energy correction, see energy_debt.hpp
+  Evaluated last_, trial_;                ///< of the last accepted step and, with energy correction, of the trial
   std::vector<PairTotals> block_totals_;  ///< scratch
-  OutlineField moved_;                    ///< scratch, in a step, m
-  Outlines found_at_;                     ///< of each body, where some candidates of its were found last
+  OutlineField moved_;                    ///< scratch, displacements in a step, m
+  Outlines found_at_;                     ///< [bodies] outlines at the last search of a pair with the body
   std::vector<int> found_;                ///< see found()
   bool fresh_ = false, warned_ = false;
-  RunClock refreshed_;  ///< when the candidates were found
+  RunClock refreshed_;  ///< of the last rebuild
   long refreshes_ = 0, pairs_searched_ = 0;
-  PairLaws laws_before_;  ///< of the run whose state it starts from
+  PairLaws laws_before_;  ///< of the run whose state is inherited
 };
 
 }  // namespace pliant

@@ -14,11 +14,11 @@
 
 namespace pliant {
 
-/// One of several.
+/// Variant of complete contact laws.
 template <CompleteContactLaw... Laws>
 using AnyOf = std::variant<Laws...>;
 
-/// The law of one pair of bodies.
+/// Contact law of one pair of bodies.
 using ContactLaw = AnyOf<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, Smoothed<Frictionless>,
                          Smoothed<MohrCoulomb>, Damped<Frictionless>, Damped<MohrCoulomb>>;
 
@@ -33,11 +33,11 @@ inline double stiffness_of(const ContactLaw& law) {
       [](const auto& l) { return l.has_shear ? std::max(l.normal_stiffness, l.shear_stiffness) : l.normal_stiffness; },
       law);
 }
-/// Whether it has a dashpot.
+/// Whether the law has a dashpot.
 inline bool is_damped(const ContactLaw& law) {
   return std::visit([]<class Law>(const Law&) { return has_dashpot<Law>; }, law);
 }
-/// What the law remembers of a node.
+/// Internal variables that the law stores per node.
 inline std::span<const InternalVariable> internal_variables_of(const ContactLaw& law) {
   return std::visit(
       []<class Law>(const Law&) -> std::span<const InternalVariable> {

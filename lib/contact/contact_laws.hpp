@@ -9,33 +9,33 @@
 
 namespace pliant {
 
-/// Which law holds between two bodies. Rules are found once a scene for each two groups, bodies of equal kind,
-/// material and name in rules; the law itself also depends on both outline spacings, and is made when a pair is.
+/// Contact laws between bodies. The rule of each pair of groups is found once per scene; bodies of a group share kind,
+/// material and name in rules. The law itself also depends on both outline spacings and is made together with the pair.
 class ContactLaws {
  public:
   /// Stiffness `auto`: kn = kt = 8 E/h, E of the softer compliant body, h the finer outline spacing; pairs of rigid
-  /// bodies get three times the scene's largest; g_max `auto`: 0.12 h. Throws InputError for a missing rule or value,
+  /// bodies get three times the scene's largest. g_max `auto`: 0.12 h. Throws InputError for a missing rule or value,
   /// and for restitution where a compliant body takes part.
   explicit ContactLaws(const Model& model);
 
-  /// At a time: a body that a drive moves then counts as infinitely heavy for dashpots.
+  /// Law at a given time: a body that a drive moves at that time counts as infinitely heavy for dashpots.
   ContactLaw between(int first, int second, double time = 0) const;
-  /// Laws hold for one such span of time, counted from 0; all the time unless dashpots meet drives with `from` or
-  /// `until`.
+  /// Index, from 0, of the time interval in which laws do not change. There is one interval unless dashpots meet drives
+  /// with `from` or `until`.
   int law_interval(double time) const;
   bool automatic_stiffness(int first, int second) const;
-  /// Number of the ContactLawKind; -1: the two never meet.
+  /// Number of the ContactLawKind; -1: the two bodies never meet.
   std::int32_t kind(int first, int second) const {
     const ContactRule* found = rule(bodies_[first], bodies_[second]);
     return found ? static_cast<std::int32_t>(found->law) : -1;
   }
 
-  double max_reach() const { return max_reach_; }  ///< of any pair, m
+  double max_reach() const { return max_reach_; }  ///< largest reach of any pair, m
   double largest_stiffness(int body) const;        ///< of any pair with this body, Pa/m
-  double largest_damping_ratio(int body) const;    ///< likewise; 0: no dashpot
-  /// numbers that any law remembers of a node at most
+  double largest_damping_ratio(int body) const;    ///< of any pair with this body; 0: no dashpot
+  /// Largest number of internal variables per node of any law.
   std::size_t internal_variables() const { return internal_variables_; }
-  bool damps() const { return damps_; }                       ///< some law has a dashpot
+  bool damps() const { return damps_; }                       ///< whether some law has a dashpot
   int group(int body) const { return bodies_[body].group; }   ///< number of the body's group
   double spacing(int body) const { return bodies_[body].h; }  ///< of its outline, m
 
@@ -48,9 +48,9 @@ class ContactLaws {
     double least_h, largest_h;  ///< outline spacings, m
     double largest_inverse_mass;
     int bodies;
-    bool wall;  ///< all of them are walls
+    bool wall;  ///< whether all bodies are walls
   };
-  /// What a law depends on besides the rule.
+  /// Properties of one body on which a law depends besides the rule.
   struct Side {
     int group;
     double h, inverse_mass;
@@ -76,9 +76,9 @@ class ContactLaws {
   std::string file_;
   std::vector<ContactRule> rules_;
   std::vector<Group> groups_;
-  std::vector<Side> bodies_;             ///< inverse masses: the largest at any time
-  std::vector<double> interval_starts_;  ///< growing, s, of all intervals but the first
-  /// [intervals][bodies]; empty: one interval, those of bodies_
+  std::vector<Side> bodies_;             ///< inverse masses are the largest at any time
+  std::vector<double> interval_starts_;  ///< ascending, s, of all intervals but the first
+  /// [intervals][bodies]; empty with a single interval, which has the values of bodies_.
   std::vector<std::vector<double>> interval_inverse_masses_;
   std::vector<int> pair_rule_;  ///< [groups x groups], index in rules_; -1: the pair never meets
   double largest_auto_ = 0, max_reach_ = 0;
@@ -86,9 +86,9 @@ class ContactLaws {
   bool damps_ = false;
 };
 
-/// Damping ratio of a linear spring and dashpot that bounce with this restitution in (0, 1]. `pull`: the force ends
-/// with g = 0, e = exp(-pi z / sqrt(1 - z^2)); else when it would pull, e = exp(-2 z acos(z) / sqrt(1 - z^2)), z > 1
-/// with acosh and the root of z^2 - 1.
+/// Damping ratio z of a linear spring and dashpot that rebound with the restitution e in (0, 1]. With `pull` the force
+/// ends at g = 0: e = exp(-pi z / sqrt(1 - z^2)). Without, it ends when it would pull: e = exp(-2 z acos(z) / sqrt(1 -
+/// z^2)), for z > 1 with acosh and the root of z^2 - 1.
 double damping_ratio(double restitution, bool pull);
 
 }  // namespace pliant

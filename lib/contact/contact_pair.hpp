@@ -15,45 +15,45 @@ namespace pliant {
 
 class MasterWindow;
 
-/// A run of consecutive outline nodes or segments (a segment bears its first node's number). Numbers beyond [0, count)
-/// of the outline continue cyclically; on a wall they reach into the next periods.
+/// Range of consecutive outline nodes or segments; a segment has the number of its first node. Numbers beyond [0,
+/// count) of the outline continue cyclically; on a wall they lie in neighbouring periods.
 struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }
   bool operator==(const Arc&) const = default;
 };
 
-/// The shortest arc with both.
+/// Shortest arc that contains both.
 inline Arc hull(const Arc& a, const Arc& b) {
   const int begin = a.begin < b.begin ? a.begin : b.begin, end = a.end() > b.end() ? a.end() : b.end();
   return {begin, end - begin};
 }
 
-/// Two bodies, or a body and its own periodic image, that come close, and the parts of their outlines that may touch
-/// before they are searched again. Of a body that may touch itself, see of_itself(), some nodes, as those of the first,
-/// and segments far from them along the outline, as those of the second.
+/// Two bodies, or a body and its own periodic image, that come close, with the parts of their outlines that may touch
+/// before the next search. For self-contact, see of_itself(), some nodes are stored as those of the first body, and the
+/// segments far from them along the outline as those of the second.
 struct ContactPair {
   int first = 0, second = 0;  ///< bodies, first <= second
-  int images = 0;             ///< periods to add to x of the second to see it from the first
-  int part = 0;               ///< of a body that touches itself: which of its nodes; 0 for two bodies
-  bool integrated = false;    ///< over segments; else collocated at nodes
+  int images = 0;             ///< periods to add to x of the second body as seen from the first
+  int part = 0;               ///< first node of a part in self-contact; 0 for two bodies
+  bool integrated = false;    ///< integrated over segments; else collocated at nodes
   ContactLaw law;
-  Arc nodes[2];     ///< that may touch the other body; no node twice, but images of a wall's
-  Arc segments[2];  ///< that the other's nodes may touch
-  /// Of contact integrated over segments: how many of each side, from nodes[side].begin on; 0: nodes touch.
+  Arc nodes[2];     ///< that may touch the other body; each node once, except images of a wall's nodes
+  Arc segments[2];  ///< that the other body's nodes may touch
+  /// Integrated contact: number of slave segments of each side, from nodes[side].begin on; 0 for collocation at nodes.
   int slave_segments[2] = {0, 0};
-  Arc window[2];           ///< `segments`, and of those integrated the ones across the medial axis, which may be nearer
+  Arc window[2];           ///< `segments`; with integration also their medial neighbours, which may be nearer
   int record[2] = {0, 0};  ///< first history record of each side's nodes (padded to whole lanes)
-  int entry[2] = {0, 0};   ///< first entry of each side in buffers of forces; that of node forces(side).begin
-  std::int64_t found = 0;  ///< at which refresh
+  int entry[2] = {0, 0};   ///< first force buffer entry of each side, for node forces(side).begin
+  std::int64_t found = 0;  ///< number of the rebuild that found it
 
   BodyPair pair() const { return {first, second, images}; }
-  /// Nothing of it can touch for now.
+  /// Whether it has no candidates.
   bool is_empty() const { return nodes[0].count + nodes[1].count == 0; }
-  /// Parts of one outline, not of two or of two images.
+  /// Self-contact: both sides are parts of one outline, not of two bodies or two images.
   bool of_itself() const { return first == second && images == 0; }
 
-  /// All but the law, which follows from the bodies.
+  /// All members except the law, which follows from the bodies.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("first", first), visitor("second", second), visitor("images", images), visitor("part", part),
@@ -63,46 +63,46 @@ struct ContactPair {
     visitor("record", record), visitor("entry", entry), visitor("found", found);
   }
 
-  /// Outline nodes that this contact pair puts forces on.
+  /// Outline nodes that receive forces from this contact pair.
   Arc forces(int side) const {
     const Arc n = nodes[side], s{segments[side].begin, segments[side].count == 0 ? 0 : segments[side].count + 1};
     return n.count == 0 ? s : s.count == 0 ? n : hull(n, s);
   }
 };
 
-/// The order in which contact pairs stand.
+/// Storage order of contact pairs.
 inline bool comes_before(const ContactPair& a, const ContactPair& b) {
   return std::pair(a.pair(), a.part) < std::pair(b.pair(), b.part);
 }
 
-/// A contact pair with all that work on it looks at.
+/// Contact pair with the data that its evaluation needs.
 struct PairView {
   const Model& model;
-  const Outlines& outlines;  ///< in motion
+  const Outlines& outlines;  ///< current outlines
   const ContactPair& contact_pair;
   double skin;                          ///< m
-  MasterWindow& window;                 ///< scratch: of the pass at hand
-  double elapsed = 0;                   ///< in the step that led here, s; 0: not known
-  const OutlineField* moved = nullptr;  ///< ways of outline nodes in that step, m; null: none
+  MasterWindow& window;                 ///< scratch: master segments of the current half pass
+  double elapsed = 0;                   ///< size of the step that led here, s; 0: unknown
+  const OutlineField* moved = nullptr;  ///< displacements of outline nodes in that step, m; null: none
   int body(int side) const { return side == 0 ? contact_pair.first : contact_pair.second; }
-  /// Periods to add to x of one side's body, m.
+  /// Shift of one side's body in x, by its periods, m.
   double shift(int side) const { return side == 0 ? 0.0 : contact_pair.images * model.scene.period.value_or(0); }
 };
 
-/// What the two passes of a contact pair add up to.
+/// Sums over both half passes of a contact pair.
 struct PairTotals {
   double stored = 0;         ///< normal and elastic tangential energy, J/m
   double dissipated = 0;     ///< work of slip and damage since the last accepted step, J/m
-  double damping_power = 0;  ///< of dashpots, W/m
+  double damping_power = 0;  ///< power of dashpots, W/m
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
-  int contacts = 0;          ///< nodes in touch
-  // See energy_debt.hpp; 0 without:
-  double work_before = 0;  ///< of the forces before over the way between them and these, J/m
-  double work = 0;         ///< of these forces over the same way
-  double pull = 0;         ///< of the forces before on rigid bodies, times the accelerations then, W/(m s)
-  double squares = 0;      ///< of pressures over kn, times lengths, J/m
+  int contacts = 0;          ///< active slave nodes; slave segments if integrated
+  // For energy_debt.hpp; work and pull are 0 without a step:
+  double work_before = 0;  ///< work of the forces at the step's start over its displacements, J/m
+  double work = 0;         ///< work of the present forces over the same displacements, J/m
+  double pull = 0;         ///< forces at the start on rigid bodies times their accelerations then, W/(m s)
+  double squares = 0;      ///< squared pressures over kn, integrated over length, J/m
 
-  /// Another contact pair's, but for what belongs to one alone.
+  /// Adds the sums of another contact pair, except those of the energy correction, which belong to one pair alone.
   void add(const PairTotals& other) {
     stored += other.stored, dissipated += other.dissipated, damping_power += other.damping_power;
     deepest = deepest > other.deepest ? deepest : other.deepest;
@@ -116,8 +116,8 @@ struct PairTotals {
   }
 };
 
-/// Where the forces of all contact pairs go: each arc has its own stretch, in whole lanes, 0 beyond its last node,
-/// gathered later by its body in a fixed order.
+/// Force buffer of all contact pairs. Each arc has its own range in whole lanes, zero beyond its last node. Bodies
+/// gather their forces from it later in a fixed order.
 struct PairForceBuffer {
   LinedNumbers x, y;  ///< N/m
 

@@ -6,20 +6,20 @@
 
 namespace pliant {
 
-/// Parts of eight slave segments that lie in the fan outside a node, each in a range of gaps.
+/// Parts of eight slave segments in the vertex region outside a node, each in a range of gaps.
 struct FanParts {
   LaneBits hit;
   Span8 span;
-  Lanes low, high;       ///< the range, m
-  Lanes x0, y0, dx, dy;  ///< the slave's first end, from the node, and its direction, m
-  Lanes counted_length;  ///< of the whole slave segment, m
+  Lanes low, high;       ///< range of gaps, m
+  Lanes x0, y0, dx, dy;  ///< first end of the slave segment relative to the node, and its vector, m
+  Lanes counted_length;  ///< of the whole slave segment, reference or current, m
 };
 
-/// Calls visit.in_fan(FanPoint) and where it has that, visit.in_fan_of(FanShape) for such parts.
+/// Calls visit.in_fan(FanPoint) and, where present, visit.in_fan_of(FanShape) for such parts.
 ///
-/// Normals turn from one side of a corner to the other, over no length at all where a segment passes close by: so what
-/// tractions a + b r do to hat functions is found in closed form, from those at two distances. With u along the segment
-/// from the foot of the node and m its distance, r^2 = m^2 + u^2.
+/// Normals rotate from one side of a corner to the other, over almost no length if a segment passes close by. Therefore
+/// the integrals of tractions a + b r times hat functions are evaluated in closed form, from the tractions at two
+/// distances r. With u along the segment from the foot of the node and m the node's distance, r^2 = m^2 + u^2.
 template <class Visit>
 void visit_fan_forces(const FanParts& of, Visit& visit) {
   const Lanes length = sqrt(of.dx * of.dx + of.dy * of.dy), ex = of.dx / length, ey = of.dy / length;
@@ -43,7 +43,7 @@ void visit_fan_forces(const FanParts& of, Visit& visit) {
   const Lanes rn_x = mx * p0 + ex * p1, rn_y = my * p0 + ey * p1, urn_x = mx * p1 + ex * p2, urn_y = my * p1 + ey * p2;
   const Lanes scale = select(of.hit, 0.5 * of.counted_length / length, Lanes{}), inverse = 1.0 / length;
   const Lanes r_integral = 0.5 * (b * rb - a * ra + m2 * q0), r2_integral = m2 * p0 + p2;
-  // Of n and of r times s and its square, as s = (u - u0)/length.
+  // Integrals times s and s^2, where s = (u - u0)/length.
   const Lanes ru = (rb * rb * rb - ra * ra * ra) * (1.0 / 3), r_times_s = (ru - u0 * r_integral) * inverse,
               times_s = (p1 - u0 * p0) * inverse;
   if constexpr (WantsFans<Visit>) {
@@ -61,10 +61,10 @@ void visit_fan_forces(const FanParts& of, Visit& visit) {
     shape.gap = {scale * r_integral, scale * r_times_s};
     visit.in_fan_of(shape);
   }
-  // By the tractions at the first and the last of three distances, and the energies at all.
+  // Tractions are interpolated from the first and the last of three distances, energies from all three.
   const Lanes middle = 0.5 * (of.low + of.high), half = select(of.hit, 0.25 * (of.high - of.low), broadcast(1));
   for (const int k : {-1, 0, 1}) {
-    const double to_p = k == 0 ? -1 : -k, to_q = k == 0 ? 1 : -2 * k;  // the other two, from this one
+    const double to_p = k == 0 ? -1 : -k, to_q = k == 0 ? 1 : -2 * k;  // offsets of the other two
     const Lanes own = middle + k * half, p = own + to_p * half, q = own + to_q * half;
     FanPoint point{of.hit, {}, own, {}, {}, {}, {}, {}, {}, {}};
     point.energy_weight = scale / ((to_p * to_q) * half * half) * (r2_integral - (p + q) * r_integral + p * q * p0);

@@ -5,7 +5,8 @@
 
 namespace pliant {
 
-/// Eight nodes, by where they were on the master at the last accepted step, and are now: place_of(p).
+/// Gap and slip increment of eight nodes, from their surface coordinates place_of(p) on the master at the last accepted
+/// step and now.
 template <class Law>
 GapAndSlip gap_and_slip(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
                         Lanes place) {

@@ -7,24 +7,24 @@
 
 namespace pliant {
 
-/// One pass: the slave's nodes and the buffers of both sides.
+/// One half pass: the slave's nodes and the force buffers of both sides.
 struct HalfPass {
   const OutlineShape *slave, *master;
   const double* slave_x;
   const double* slave_y;
   Arc nodes;
-  int segments;  ///< of the slave, from the first node on, where contact is integrated over them
+  int segments;  ///< slave segments from the first node on, if contact is integrated over them
   double slave_shift;
   int record;
   int slave_force;                 ///< buffer entry of the first node
   int master_force;                ///< buffer entry of the window's first row
-  Arc rows;                        ///< of the window, that can touch
+  Arc rows;                        ///< rows of the window that can be touched
   const double* tributary_length;  ///< [nodes] of the slave, m
-  bool present_lengths;            ///< as the slave's outline is now
+  bool present_lengths;            ///< whether lengths are those of the current outline
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
-  double elapsed = 0;  ///< PairView's
+  double elapsed = 0;  ///< see PairView, s
 };
 
 struct SlaveNodes {
@@ -40,18 +40,18 @@ inline SlaveNodes load_slaves(const HalfPass& pass, int i) {
           load(pass.tributary_length + node)};
 }
 
-/// Nodes of one side that get forces; `begin`: the first one's entry in a buffer.
+/// Nodes of one side that receive forces; `begin`: the first node's entry in a buffer.
 struct ForceRun {
   Arc arc;
   int begin;
 };
 using ForceRuns = std::array<ForceRun, 2>;  ///< [sides]
-/// As they stand in the buffers of all contact pairs.
+/// Ranges in the buffers of all contact pairs.
 inline ForceRuns runs_in_table(const ContactPair& contact_pair) {
   return {{{contact_pair.forces(0), contact_pair.entry[0]}, {contact_pair.forces(1), contact_pair.entry[1]}}};
 }
 
-/// HalfPass 0: the first body's nodes on the second's segments; pass 1: the other way round.
+/// Half pass 0: the first body's nodes on the second's segments; half pass 1: the reverse.
 inline HalfPass make_half_pass(const PairView& view, int slave_side, const ForceRuns& runs) {
   const Model& model = view.model;
   const ContactPair& contact_pair = view.contact_pair;

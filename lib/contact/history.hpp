@@ -12,28 +12,29 @@
 
 namespace pliant {
 
-/// Contact history, one record a slave node and other body (docs/method.md 4): committed on accepted steps only. Of
-/// eight nodes that a pass takes at once all numbers stand side by side.
+/// Contact history, one record per slave node and partner (docs/method.md 4); committed on accepted steps only. All
+/// columns of the eight nodes that a pass handles at once are adjacent in memory.
 struct ContactHistory {
   enum Column {
-    place,           ///< on the master's outline at the last accepted step, see slip.hpp; NaN when not beside it
-    weight = place,  ///< of a node where contact is integrated over segments, see segment_pass.hpp, m
-    slip,            ///< elastic tangential displacement then, m
-    first_of_law,    ///< what laws remember besides (laws/response.hpp), from here on
+    place,           ///< surface coordinate on the master at the last accepted step, see slip.hpp; NaN: no projection
+    weight = place,  ///< length that an integrated contact assigns to the node, see segment_pass.hpp, m
+    slip,            ///< elastic tangential displacement at the last accepted step, m
+    first_of_law,    ///< first of the law's internal variables (laws/response.hpp)
   };
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
   std::vector<Lanes> numbers;  ///< [eights of records][columns]
   std::int32_t columns = first_of_law;
-  std::vector<double> owed;  ///< [contact pairs] where debts are kept: what they owe, J/m
-  /// [contact pairs] likewise, see energy_debt.hpp: of the forces that repaid there, besides all that stays.
+  std::vector<double> owed;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
+  /// [contact pairs] likewise: factor of the correcting forces, which add to the others, see energy_debt.hpp.
   std::vector<double> repaid;
-  /// Which evaluation of the forces left it behind, where debts are kept; 0: none.
+  /// Number of the force evaluation that wrote it, if energy errors are corrected; 0: none.
   std::int64_t evaluation = 0;
-  /// Where records stand (pair_table.hpp): histories with the same number have each node's at the same place.
+  /// Version of the storage layout (pair_table.hpp): histories with the same number store each node's record at the
+  /// same position.
   std::int64_t layout = 0;
 
-  /// Columns for so many numbers of laws, and none of the records.
+  /// Sets the number of internal variables and removes all records.
   void set_columns(int fields) {
     columns = first_of_law + fields;
     numbers.clear();
@@ -46,14 +47,14 @@ struct ContactHistory {
   int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }
   int fields() const { return columns - first_of_law; }
 
-  /// The columns of eight records.
+  /// Columns of the eight records that begin at `record`.
   Lanes* at(int record) { return numbers.data() + record / lane_count * columns; }
   const Lanes* at(int record) const { return numbers.data() + record / lane_count * columns; }
   double number(int record, int column) const { return at(record)[column][record % lane_count]; }
   void copy_record(const ContactHistory& from, int old_record, int record) {
     for (int c = 0; c < columns; ++c) at(record)[c][record % lane_count] = from.number(old_record, c);
   }
-  /// As of nodes that met nothing yet, but for what laws remember: 0.
+  /// Resets records to nodes without contact, with internal variables 0.
   void clear(int record, int count) {
     for (int i = record; i < record + count; i += lane_count)
       for (int c = 0; c < columns; ++c) at(i)[c] = c == place ? broadcast(nowhere) : Lanes{};
@@ -70,7 +71,7 @@ struct ContactHistory {
   }
 };
 
-/// What a law remembers of eight nodes, from a record on.
+/// Internal variables of eight nodes, from a record on.
 template <std::size_t count>
 std::array<Lanes, count> load_record(const ContactHistory& history, int record) {
   std::array<Lanes, count> values;

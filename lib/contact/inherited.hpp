@@ -8,11 +8,11 @@
 
 namespace pliant {
 
-/// Which kind of law holds between any two bodies, whether they are close or not.
+/// Kind of law between any two bodies, whether they are close or not.
 struct PairLaws {
-  std::vector<std::int32_t> groups;  ///< [bodies] number of each body's group
+  std::vector<std::int32_t> groups;  ///< index of each body's group
   std::vector<std::int32_t> kinds;   ///< [groups x groups] as ContactLaws::kind
-  std::int32_t count = 0;            ///< of groups
+  std::int32_t count = 0;            ///< number of groups
 
   std::int32_t kind(int first, int second) const { return kinds[groups[first] * count + groups[second]]; }
   template <class Visitor>
@@ -21,11 +21,11 @@ struct PairLaws {
   }
 };
 
-/// What contact remembers at the end of a run, for another one of the same bodies.
+/// Contact state at the end of a run, for another run of the same bodies.
 struct InheritedContact {
   std::vector<ContactPair> contact_pairs;
   PairLaws laws;
-  ContactHistory history;  ///< whose records the contact pairs name
+  ContactHistory history;  ///< with the records that the contact pairs refer to
 
   template <class Visitor>
   void visit(Visitor&& visitor) {

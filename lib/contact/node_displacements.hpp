@@ -6,53 +6,54 @@
 
 namespace pliant {
 
-/// A disc that holds the displacements of all nodes of a body, m: not a box, which would tell more along some axes than
+/// Disc that contains the displacements of all nodes of a body, m. A box would be tighter along some axes than along
 /// others.
 struct DisplacementDisc {
   double x, y, radius;
 };
 
-/// Where all outlines are, and how they came there from a reference.
+/// Positions of all outlines, now and in a reference, with bounds of the displacements between them.
 struct DisplacementsSoFar {
   const OutlineField &now, &reference;
-  const std::vector<DisplacementDisc>& discs;  ///< [bodies], of the displacements of their nodes
+  const std::vector<DisplacementDisc>& discs;  ///< [bodies] of their nodes' displacements
 };
 
-/// Of which nothing is known.
+/// Disc of an unknown displacement.
 constexpr DisplacementDisc unknown_displacement{0, 0, 1e150};
 
-/// Of the displacements from a body's outline nodes in a reference to where they are now.
+/// Disc of the displacements of a body's outline nodes from a reference to their present positions.
 DisplacementDisc displacement_disc(const Model& model, int body, const OutlineField& now,
                                    const OutlineField& reference);
-/// Displacements from one motion to another of the same body.
+/// Disc of the displacements from one configuration to another of the same body.
 DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to);
-/// How far nodes of a body have moved against each other, m.
+/// Bound on the relative displacement of any two nodes of a body, m.
 double displacement_spread(const DisplacementDisc& displacements);
 /// Bound on the relative displacement of any two nodes of two bodies, m.
 double relative_displacement(const DisplacementDisc& a, const DisplacementDisc& b);
 
-/// How far bodies have moved since each of these entries looked at one: bounds, node by node and in all. Of small ones
-/// each node's displacement is kept: discs alone would add up what bodies shake and turn, from reference to reference.
+/// Displacements of bodies since each entry was set: bounds for the whole body and values node by node. Of small bodies
+/// each node's displacement is stored. Discs alone would accumulate vibration and rotation from reference to reference.
 class NodeDisplacements {
  public:
   explicit NodeDisplacements(const Model& model) : model_(&model) {}
 
-  /// Entries for these bodies, of which nothing is known.
+  /// Creates entries of unknown displacement for these bodies.
   void set_bodies(std::vector<int> bodies);
-  /// The same for entries that are known, as read from a checkpoint.
+  /// Restores the bodies of entries that were read from a checkpoint.
   void restore_bodies(std::vector<int> bodies);
   void append(int body);
   void copy_entry(int entry, const NodeDisplacements& from, int old_entry);
 
   int count() const { return static_cast<int>(body_.size()); }
   int body(int entry) const { return body_[entry]; }
-  /// The entry looks at its body where it is now, whatever its disc.
+  /// Counts the entry's displacements from the body's present position on. The body's disc is not used.
   void look(int entry, const DisplacementsSoFar& displacements);
-  /// Disc of the displacements since then, by the discs alone: at little cost, but blurred.
+  /// Disc of the displacements since look(), from the discs alone: cheap, but an overestimate.
   DisplacementDisc displacement_bound(int entry, const DisplacementsSoFar& displacements) const;
-  /// The same by each node, but for a share of 1e-4 of the skin; endless where nothing is known.
+  /// The same node by node, up to 1e-4 of the skin; unbounded if unknown. Large outlines have displacement_bound()
+  /// only.
   DisplacementDisc displacement(int entry, const DisplacementsSoFar& displacements) const;
-  /// The body's reference becomes where it is now, whatever its disc.
+  /// Changes the body's reference to its present position. The body's disc is not used.
   void reset_reference(int entry, const DisplacementsSoFar& displacements);
 
   template <class Visitor>
@@ -70,12 +71,12 @@ class NodeDisplacements {
 
   const Model* model_;
   std::vector<int> body_;
-  std::vector<DisplacementDisc> start_;  ///< [entries], displacements from the reference when it looked
-  // The same node by node, of small bodies: of the first, and what others have moved more. However far all drift, that
-  // is little, and floats hold it.
+  std::vector<DisplacementDisc> start_;  ///< [entries] displacements from the reference at look()
+  // The same node by node, for small bodies: that of the first node, and those of the others relative to it. These
+  // remain small however far all nodes drift, so that floats suffice.
   std::vector<Common> common_;  ///< [entries], m
   std::vector<float> x_, y_;    ///< m
-  std::vector<int> at_;         ///< [entries], of the first nodes
+  std::vector<int> at_;         ///< [entries] index of the first nodes
 };
 
 }  // namespace pliant

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Calls visit(pass, slave side, i, projection) where some of eight slave nodes, from position i of the pass on, are
-/// beside the master, at most `outward` off, m.
+/// Calls visit(pass, slave side, i, projection) for each eight slave nodes, from position i of the pass on, of which
+/// some project onto the master, at most `outward` away, m.
 template <class Visit>
 void for_each_beside(const PairView& view, double outward, Visit&& visit) {
   const ForceRuns runs = runs_in_table(view.contact_pair);

@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-/// The nodes of a long outline by strips across x, as wide as its longest segment at least: what is near a point is
-/// found without a look at all of them. Strips of a wall go around the period.
+/// Nodes of a long outline sorted into strips across x, at least as wide as its longest segment. Queries near a point
+/// visit only some of the nodes. Strips of a wall wrap around the period.
 class NodeStrips {
  public:
-  /// x [count + 1]: the segments' ends, m. period 0: none.
+  /// x [count + 1]: ends of the segments, m. period 0: not periodic.
   NodeStrips(const double* x, int count, double longest_segment, double period)
       : period_(period), x_min_(period > 0 ? 0.0 : *std::min_element(x, x + count)) {
     const double extent = period > 0 ? period : *std::max_element(x, x + count) - x_min_;
@@ -26,14 +26,14 @@ class NodeStrips {
     for (int i = 0; i < count; ++i) nodes_[next[strip_of(x[i])]++] = i;
   }
 
-  /// Visits nodes strip by strip from x on, both ways, until no node and no segment that begins at one can be as near
-  /// as limit(), which may fall on the way, m.
+  /// Visits nodes strip by strip from x on in both directions, until no further node, and no segment that begins at
+  /// one, can be closer than limit(), m. The limit may decrease during the search.
   template <class Visit, class Limit>
   void from(double x, Visit&& visit, Limit&& limit) const {
     const int middle = strip_of(x);
     visit_strip(middle, visit);
     const int last = period_ > 0 ? strips_ / 2 : std::max(middle, strips_ - 1 - middle);
-    // Nodes are a strip nearer than their number says, and segments reach back by another.
+    // Nodes may be one strip width closer than their strip's number suggests, and segments reach back by another.
     for (int d = 1; d <= last && (d - 2) * width_ <= limit(); ++d) {
       if (period_ > 0 || middle - d >= 0) visit_strip(middle - d, visit);
       const bool same = period_ > 0 && 2 * d == strips_;
@@ -41,7 +41,7 @@ class NodeStrips {
     }
   }
 
-  /// Visits all nodes of the strips that hold [x_min, x_max].
+  /// Visits all nodes of the strips that cover [x_min, x_max].
   template <class Visit>
   void between(double x_min, double x_max, Visit&& visit) const {
     if (period_ > 0 && !(x_max - x_min < period_ - width_)) {
@@ -53,7 +53,7 @@ class NodeStrips {
   }
 
  private:
-  /// In [0, strips), for any number.
+  /// Strip in [0, strips), for any x.
   int strip_of(double x) const {
     const double off = period_ > 0 ? x - period_ * std::floor(x / period_) : x - x_min_;
     const double strip = off / width_;

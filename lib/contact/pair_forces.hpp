@@ -6,11 +6,11 @@
 
 namespace pliant {
 
-/// Forces of one contact pair: each body's nodes against the other's segments, each pass with weight 1/2
-/// (docs/method.md 4), from one history into another. Penetrations are seen down to the longest segment near and the
-/// skin more. Candidates were found at an accepted state, at most a segment deep, from which nothing goes further than
-/// the skin before they are found anew: none can pass from a permitted depth to beyond sight.
-/// `step`: null without energy_debt.hpp.
+/// Forces of one contact pair: each body's nodes against the other's segments, each half pass with weight 1/2
+/// (docs/method.md 4). Reads the history `from` and writes `to`. Penetrations are detected down to the length of the
+/// longest segment near plus the skin. Candidates were found at an accepted state, at most one segment deep, and no
+/// node moves further than the skin before the next search. Thus no node can pass from a permitted depth beyond
+/// detection. `step`: null without the energy correction of energy_debt.hpp.
 PairTotals compute_pair(const PairView& view, const PairStep* step, const ContactHistory& from, ContactHistory& to,
                         PairForceBuffer& forces);
 

@@ -5,27 +5,27 @@
 
 namespace pliant {
 
-// What is asked of a contact pair besides its forces.
+// Queries of a contact pair besides its forces.
 
-/// Length of both sides in touch, each pass with weight 1/2, m.
+/// Length of both sides that penetrates the other, each half pass with weight 1/2, m.
 double touching_length(const PairView& view);
 
-/// Places of the nodes within reach and a skin of the present outlines, where a history has none yet: so that slip
-/// counts from the first step in touch. One that comes from further off in a single step, which may go up to two skins,
-/// has none.
+/// Sets the surface coordinates of nodes within reach and a skin of the present outlines, if the history has none yet.
+/// Slip then counts from the first step in contact. A node that comes from further away in a single step, which may
+/// cover up to two skins, gets none.
 void locate_new_contacts(const PairView& view, ContactHistory& history);
 
-/// What the law remembers of nodes near the other outline when a run starts, as bonds that are whole. Nothing, for most
-/// laws.
+/// Sets the internal variables of nodes near the other outline at the start of a run, such as intact bonds. Most laws
+/// have none.
 void start_records(const PairView& view, ContactHistory& history);
 
-/// Whether some node of the contact pair stands inside the other outline.
+/// Whether some node of the contact pair is inside the other outline.
 bool overlaps(const PairView& view);
 
-/// A-priori contact stiffness a node, N/m2 per metre of thickness, of everything that may come in touch before the next
-/// search for candidates, added to the entries of the contact pair's nodes as forces have them: half the tributary
-/// length times the stiffness, shared by the two segment nodes on the master, but all of the largest that may slide
-/// onto one, and times the factor of the node's side.
+/// Adds the a-priori contact stiffness per node, N/m2 per metre of thickness, of everything that may come into contact
+/// before the next search. Entries are those of the contact pair's nodes in force buffers. A slave node gets half its
+/// tributary length times the stiffness. The two nodes of the master segment share that; a compliant master's node gets
+/// at least all of the largest slave that may slide onto it. All is multiplied by the factor of the node's side.
 void add_patch_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries);
 
 }  // namespace pliant

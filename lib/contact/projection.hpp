@@ -7,30 +7,30 @@
 
 namespace pliant {
 
-/// Stage 3 of docs/method.md 4 for eight slave nodes: the segment whose wedge, between the two angle bisectors, holds
-/// the node, and where the node
-/// stands beside it: orthogonal or, beyond an end, radial from that end node.
+/// Stage 3 of docs/method.md 4 for eight slave nodes: the segment whose Voronoi region, between the two angle
+/// bisectors, contains the node, and the node's projection onto it: orthogonal or, beyond an end, radial from that end
+/// node.
 struct Projection {
   LaneBits hit;
-  Lanes row;     ///< of the window
+  Lanes row;     ///< row of the window
   Lanes number;  ///< of the segment in its outline
   Lanes length, inverse_length;
   Lanes tangent_x, tangent_y;
-  Lanes height;  ///< distance from the segment's line, outward positive, m
+  Lanes height;  ///< distance from the segment's line, positive outside, m
   Lanes gap;     ///< m, negative inside
   Lanes normal_x, normal_y;
   Lanes xi;   ///< [0, 1] along the segment
-  Lanes fan;  ///< beyond an end: sine of the turn from the segment's normal to the node's; 0 beside the segment
+  Lanes fan;  ///< beyond an end: sine of the angle from the segment's normal to the node's; 0 beside the segment
 };
 
-/// Row of the nearest segment's line among those whose wedges hold the nodes, at most `reach` off; -1: none. Of equals
-/// the first.
+/// Row of the segment whose line is nearest, among those whose Voronoi regions contain the nodes, at most `reach` away;
+/// -1: none. The first of equally near ones counts.
 Lanes find_nearest_wedges(const MasterWindow& window, Lanes px, Lanes py, double reach);
 
-/// Rows of the segments whose wedges hold the nodes; -1: none.
+/// Rows of the segments whose Voronoi regions contain the nodes; -1: none.
 struct Wedges {
   Lanes row;
-  LaneBits in_order;  ///< whoever has passed a bisector has passed all before it, so that no other wedge holds the node
+  LaneBits in_order;  ///< bisector tests are monotone, so no other region contains the node
 };
 
 inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
@@ -38,12 +38,12 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
                *bisector_y = window.column(MasterWindow::bisector_y),
                *bisector_at = window.column(MasterWindow::bisector_at);
   const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
-  // Neighbours share the bisector's value, so that every node beside the arc falls to exactly one of them.
+  // Neighbours share the bisector's value, so each node beside the arc belongs to exactly one of them.
   const auto is_beyond = [&](int k) { return rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0; };
   Lanes count{};
   LaneBits in_order = ~LaneBits{};
-  // A bit for each bisector, in groups that a number holds. In order: no gap between ones, and none in a group unless
-  // all before it are full.
+  // One bit per bisector, in groups that fit a number. Tests are monotone if there is no gap between ones, and if a
+  // group has ones only when all groups before it are full.
   constexpr int most = 32;
   for (int first = 0; first <= window.count(); first += most) {
     const int size = std::min(most, window.count() + 1 - first);
@@ -55,12 +55,12 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
   return {select(count <= window.count(), count - 1.0, broadcast(-1)), in_order};
 }
 
-/// Where nodes stand beside the segments of the rows given, at most `outward` off.
+/// Projections of nodes onto the segments of the given rows, at most `outward` away.
 inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes row_of_node, double outward) {
   Projection p;
   p.row = row_of_node;
   p.hit = p.row >= 0.0;
-  p.fan = Lanes{};  // read even where nothing is hit
+  p.fan = Lanes{};  // read even without a projection
   if (!any(p.hit)) return p;
   const Lanes some_row = max(p.row, Lanes{});
   const LaneBits rows = __builtin_convertvector(some_row, LaneBits);
@@ -91,19 +91,20 @@ inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes r
   return p;
 }
 
-/// Projects nodes for which wedges mislead once more, each to its truly nearest segment, at most `reach` off.
+/// Projects the nodes for which Voronoi regions mislead again, each onto its truly nearest segment, at most `reach`
+/// away.
 void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits misled, double reach, double outward,
                         Projection& projection);
 
-/// Nodes count from the window's depth inward to `outward` outward. The near side of a thin or pointed body competes as
-/// far as its far side does: else nodes outside would be caught from behind.
+/// Projects nodes from the window's depth inside to `outward` outside. The near side of a thin or pointed body competes
+/// as far as its far side does; else nodes outside would project onto the far side from behind.
 inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double outward) {
   const double reach = std::max(outward, window.depth());
   const Wedges wedges = find_wedges(window, px, py);
   const Lanes rows = any(~wedges.in_order) ? find_nearest_wedges(window, px, py, reach) : wedges.row;
   Projection p = beside(window, px, py, rows, outward);
   p.hit = p.hit & (abs(p.height) < reach);
-  // Up to here a node is at most 1 % nearer to the line than to the segment.
+  // Up to this sine a node is at most 1 % nearer to the line than to the segment.
   constexpr double steep = 0.14;
   if (const LaneBits misled = p.hit & (abs(p.fan) > steep); any(misled)) [[unlikely]]
     project_to_nearest(window, px, py, misled, reach, outward, p);

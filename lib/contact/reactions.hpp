@@ -8,13 +8,13 @@
 
 namespace pliant {
 
-/// Zeros in whole lanes.
+/// Sets whole lanes to zero.
 inline void clear(LinedNumbers& numbers, std::size_t count) {
   if (numbers.size() < count) numbers.resize(count);
   for (std::size_t i = 0; i < count; i += lane_count) store(&numbers[i], Lanes{});
 }
 
-/// Reactions on the master's segments: x and y on their first nodes and on their second, side by side.
+/// Reactions on the master's segments: x and y on their first nodes and on their second nodes, adjacent in memory.
 class Reactions {
  public:
   void clear(int rows) {
@@ -22,8 +22,8 @@ class Reactions {
     pliant::clear(entries_, static_cast<std::size_t>(padded(4 * (rows + 2))));
   }
 
-  /// Of forces that are 0 where nothing touches. The couple balances the moment of a shear that acts at the gap's
-  /// distance, and makes the force the exact conjugate of the slip.
+  /// Adds the reactions to forces that are 0 without contact. The couple balances the moment of a shear that acts at
+  /// the gap's distance. It makes the force the exact conjugate of the slip.
   void add(const Projection& p, Lanes fx, Lanes fy, Lanes couple) {
     const Lanes bx = -p.xi * fx + couple * p.tangent_y, by = -p.xi * fy - couple * p.tangent_x;
     double reaction[lane_count][4];
@@ -42,7 +42,7 @@ class Reactions {
     }
   }
 
-  /// To nodes, from the window's first on.
+  /// Adds the reactions to nodes, from the window's first node on.
   void add_to(double* x, double* y) const {
     const double* first = entries_.data() + 4;
     for (int row = 0; row <= rows_; ++row, first += 4) {
