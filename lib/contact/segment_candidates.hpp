@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// Pairs of a slave segment, by its position in the pass, and a row of the master's window, one behind the other.
+/// Pairs of a slave segment, by its position in the pass, and a row of the master's window, one after the other.
 class PairList {
  public:
   void clear() { count_ = 0; }
@@ -20,7 +20,7 @@ class PairList {
     for (; mask != 0; mask &= mask - 1, ++count_)
       slave_[count_] = first_slave + std::countr_zero(mask), row_[count_] = row;
   }
-  /// Fills the last eight, so that these can be loaded.
+  /// Pads the last eight, so that whole vectors can be loaded.
   void close() {
     if (count_ > 0)
       for (std::size_t i = count_; i % lane_count != 0; ++i) slave_[i] = slave_[0], row_[i] = row_[0];
@@ -34,13 +34,13 @@ class PairList {
   std::vector<std::int64_t> slave_, row_;
 };
 
-/// What may touch in a pass: slave segments beside segments of the master, and in the fans of its nodes.
+/// Candidates of a half pass: slave segments beside segments of the master, and in the vertex regions of its nodes.
 class SegmentCandidates {
  public:
   PairList beside, fans;
 
-  /// `rows`: that can touch. All that has a part is found, and some that has none, row by row and slave by slave: sums
-  /// do not depend on where arcs begin.
+  /// `rows`: rows that can be touched. Finds every pair that has a part, and some that have none, row by row and slave
+  /// by slave: sums do not depend on where arcs begin.
   void find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows, const GapRanges& ranges);
 
  private:

@@ -6,49 +6,49 @@
 
 namespace pliant {
 
-/// Eight slave segments, from x0, y0 to x1, y1; a point on one is at s in [0, 1].
+/// Eight slave segments, from (x0, y0) to (x1, y1); a point on one has the coordinate s in [0, 1].
 struct SlaveSegments {
   Lanes x0, y0, x1, y1;  ///< m
-  Lanes length;          ///< that counts, m
+  Lanes length;          ///< reference or current length, m
 };
 
-/// Eight pairs of a slave segment and a segment of the master, or a node.
+/// Eight pairs of a slave segment and a segment, or a node, of the master.
 struct SegmentPairs {
   LaneBits valid;
   bool of_nodes;
-  LaneBits slave, row;  ///< position in the pass; in the window, of a node of the one that begins or ends there
+  LaneBits slave, row;  ///< position in the pass; row in the window, for a node that of a segment at it
   SlaveSegments segments;
-  Linear along, height;  ///< of the slave, against the master's segment from its first node: along it, and outward
+  Linear along, height;  ///< of the slave, relative to the master's segment from its first node: along it, and outward
   Lanes tangent_x, tangent_y, length, inverse_length;  ///< of the master's segment
 };
 
-/// By less, in terms of tangents' lengths, a node does not turn: rounding would give it a fan of no width.
+/// Smaller turns, for unit tangents, count as none: rounding would create a vertex region of no width.
 constexpr double least_turn = 1e-12;
 
 /// A node of the master for each of eight slave segments.
 struct NodeLanes {
   Lanes x, y;                                  ///< m
-  Lanes before_x, before_y, after_x, after_y;  ///< tangents of its two segments
+  Lanes before_x, before_y, after_x, after_y;  ///< tangents of both segments at the node
   LaneBits convex;
 };
 
-/// Where the nearest part of a master's outline changes along slave segments (docs/method.md 4).
+/// Finds where the nearest part of a master's outline changes along slave segments (docs/method.md 4).
 ///
-/// Inside, the segments at a convex node share the bisector; outside of it a fan between their normals belongs to the
-/// node, and the reverse at a re-entrant one. Where the medial axis is near, in sharp or thin parts and beside short
-/// segments, points go to what is nearest of all rivals, of those next to a segment as well: bisectors hold as far as
-/// these reach.
+/// Inside, the segments at a convex node share the bisector; outside, the vertex region between their normals belongs
+/// to the node. At a re-entrant node it is the reverse. Near the medial axis, in sharp or thin parts and beside short
+/// segments, points belong to the nearest of all rivals. Shorter segments next to one are rivals as well; bisectors
+/// hold only along their length.
 class SegmentCuts {
  public:
   SegmentCuts(const MasterWindow& window, const GapRanges& ranges) : window_(window), ranges_(ranges) {}
 
-  /// Of pairs from candidates; `rows`: of the master's segments.
+  /// Pairs from candidates; `row`: rows of the master's segments.
   SegmentPairs pairs(const SlaveArc& slaves, LaneBits slave, LaneBits row, LaneBits valid, bool of_nodes) const;
-  /// Parts beside the master's segments.
+  /// Adds the parts beside the master's segments.
   void beside(const SegmentPairs& pairs, PackedParts& parts) const;
-  /// Parts in the fans of nodes.
+  /// Adds the parts in the vertex regions of nodes.
   void in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, PackedParts& parts) const;
-  /// At the start of rows.
+  /// Nodes at the start of rows.
   NodeLanes nodes(LaneBits rows) const;
 
  private:
@@ -59,7 +59,7 @@ class SegmentCuts {
   Beside beside_row(const SlaveSegments& slaves, LaneBits rows) const;
   Linear past_bisector(const SlaveSegments& slaves, LaneBits rows) const;
   Span8 fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const;
-  /// Of segments those next to them on a way, -1 or 1, that are shorter.
+  /// The segments next to others, in the direction `way`, -1 or 1, where these are shorter.
   struct NextLanes {
     LaneBits shorter;
     Lanes length;  ///< m

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// How far the nodes of a pass have come in the step, or how fast they go.
+/// Displacements in the step, or velocities, of the nodes of a half pass.
 struct PairMotion {
   ArcField slave_x, slave_y, master_x, master_y;
 
@@ -20,7 +20,7 @@ struct PairMotion {
   }
 };
 
-/// The motion of the four nodes of eight pairs.
+/// Motion of the four nodes of eight pairs.
 struct NodeMotions {
   Lanes slave_x0, slave_y0, slave_x1, slave_y1, first_x, first_y, second_x, second_y;
   NodeMotions() = default;
@@ -35,8 +35,8 @@ struct NodeMotions {
         second_y(gather(of.master_y.data() + 1, at.row)) {}
 };
 
-/// How far points have moved along the master's outline in the step, m: beside a segment l d(xi), about a node g times
-/// the turn of the normal against the segment.
+/// Displacements of points along the master's outline in the step, m: beside a segment l d(xi), around a node g times
+/// the rotation of the normal relative to the segment.
 class TangentialMotion {
  public:
   TangentialMotion() = default;
@@ -46,7 +46,7 @@ class TangentialMotion {
     const Lanes dx = at.tangent_x * at.length - (m.second_x - m.first_x),
                 dy = at.tangent_y * at.length - (m.second_y - m.first_y), old_length = sqrt(dx * dx + dy * dy),
                 tx = dx / old_length, ty = dy / old_length;
-    // From the first node of the master's segment to the ends of the slave's, before the step.
+    // Vectors from the first node of the master's segment to the ends of the slave's, before the step.
     const auto place = [&](const Linear& now) -> std::array<Lanes, 4> {
       return {
           at.along.at0 * at.tangent_x + now.at0 * at.tangent_y, at.along.at0 * at.tangent_y - now.at0 * at.tangent_x,
@@ -56,7 +56,7 @@ class TangentialMotion {
     x0 -= m.slave_x0 - m.first_x, y0 -= m.slave_y0 - m.first_y;
     x1 -= m.slave_x1 - m.first_x, y1 -= m.slave_y1 - m.first_y;
     const Linear along{x0 * tx + y0 * ty, x1 * tx + y1 * ty}, height{x0 * ty - y0 * tx, x1 * ty - y1 * tx};
-    // In a fan from the node, whose xi is one.
+    // In a vertex region distances begin at the node, whose xi is 0 or 1.
     const Lanes stretch = at.of_nodes ? broadcast(1) : at.length / old_length,
                 start = at.of_nodes ? xi.at0 * (at.length - old_length) : Lanes{};
     along_ = {at.along.at0 - stretch * along.at0 - start, at.along.at1 - stretch * along.at1 - start};
@@ -64,9 +64,9 @@ class TangentialMotion {
   }
 
   Lanes beside(const QuadraturePoint& p) const { return along_.at(p.s); }
-  /// Integrals over a part of a fan.
+  /// Integrals over a part of a vertex region.
   Moments in_fan(const FanShape& f) const {
-    // Of the direction of growing places, in the segment's frame, times powers of s.
+    // Tangent in the direction of growing surface coordinates, in the segment's frame, times powers of s.
     Lanes cosine[3], sine[3];
     for (int power = 0; power < 3; ++power)
       cosine[power] = f.normal_x[power] * tangent_y_ - f.normal_y[power] * tangent_x_,
@@ -80,11 +80,11 @@ class TangentialMotion {
   }
 
  private:
-  Linear along_, height_;  ///< the change of each
+  Linear along_, height_;  ///< their changes in the step
   Lanes tangent_x_, tangent_y_;
 };
 
-/// The speed of points of the slave past those of the master, m/s.
+/// Velocity of points of the slave relative to those of the master, m/s.
 class SpeedPast {
  public:
   SpeedPast() = default;

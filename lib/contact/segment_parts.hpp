@@ -6,43 +6,43 @@
 
 namespace pliant {
 
-/// A point of the quadrature on each of eight slave segments, beside segments of the master.
+/// Quadrature point on each of eight slave segments, beside segments of the master.
 struct QuadraturePoint {
-  LaneBits hit;  ///< which of the eight have one; others have the weight 0
-  Lanes s;       ///< on the slave's segment
+  LaneBits hit;  ///< lanes that have a point; others have the weight 0
+  Lanes s;       ///< coordinate on the slave segment
   Lanes gap;     ///< signed distance to the master's outline, negative inside, m
-  Lanes weight;  ///< length times 1/2, as each of the two passes has half, m
+  Lanes weight;  ///< length times 1/2, the weight of a half pass, m
 };
-/// Integrals over the same parts of something, alone and times s.
+/// Integrals of a quantity over the same parts, alone and times s.
 struct Moments {
   Lanes plain{}, times_s{};
   void add(Lanes value, Lanes s) { plain += value, times_s += s * value; }
 };
 
-/// A distance from a node at which a law is asked for its tractions in the node's fan, and what integrals over a part
-/// of the fan take from there.
+/// Distance from a node at which a law is evaluated in the node's vertex region, and the weights of its values in
+/// integrals over a part of the region.
 struct FanPoint {
   LaneBits hit;
-  Lanes s, gap;                  ///< as of QuadraturePoint
+  Lanes s, gap;                  ///< as in QuadraturePoint
   Lanes weight;                  ///< of dashpots, m; 0 outside
-  Lanes normal_x, normal_y;      ///< of the master there, outward; of dashpots
+  Lanes normal_x, normal_y;      ///< outward normal of the master there; for dashpots
   Lanes energy_weight;           ///< for energies, m
-  Lanes force_x[2], force_y[2];  ///< of a unit pressure on the two nodes of the slave segment, m
-  Moments of_limit;              ///< of a unit shear limit, m
+  Lanes force_x[2], force_y[2];  ///< of a unit pressure on both nodes of the slave segment, m
+  Moments of_limit;              ///< integrals of a unit shear limit, m
 };
 
-/// Integrals over a part of a fan that no law takes part in.
+/// Integrals over a part of a vertex region that do not depend on the law.
 struct FanShape {
   LaneBits hit{};
-  Lanes weight[3]{};                   ///< length times powers of s and 1/2, as each of the two passes has half, m
-  Lanes normal_x[3]{}, normal_y[3]{};  ///< the same of the normal's components
+  Lanes weight[3]{};                   ///< length times powers of s and 1/2, the weight of a half pass, m
+  Lanes normal_x[3]{}, normal_y[3]{};  ///< the same times the normal's components
   Moments gap{};                       ///< m2
 };
 
 template <class Visit>
 concept WantsFans = requires(Visit& visit, const FanShape& shape) { visit.in_fan_of(shape); };
 
-/// A range of gaps within which the tractions of a law are smooth, m. All of it is inside the master or outside.
+/// Range of gaps in which the tractions of a law are smooth, m. All of it is inside the master, or all of it outside.
 struct GapRange {
   double low, high;
   bool is_inside() const { return high <= 0; }
@@ -56,7 +56,7 @@ struct GapRanges {
   double deepest() const { return -ranges[0].low; }
 };
 
-/// Of a law with kinks(), down to a depth.
+/// Smooth ranges of a law with kinks(), down to a depth.
 template <class Law>
 GapRanges gap_ranges(const Law& law, double depth) {
   GapRanges result;
@@ -73,7 +73,7 @@ GapRanges gap_ranges(const Law& law, double depth) {
   return result;
 }
 
-/// Of a function that is linear along each segment.
+/// Function that is linear along each segment, by its values at the ends.
 struct Linear {
   Lanes at0, at1;
   Linear operator-(const Linear& o) const { return {at0 - o.at0, at1 - o.at1}; }
@@ -83,12 +83,12 @@ inline Linear select(LaneBits mask, const Linear& yes, const Linear& no) {
   return {select(mask, yes.at0, no.at0), select(mask, yes.at1, no.at1)};
 }
 
-/// Where such a function has values between two.
+/// Finds where such a function has values in an interval.
 class Levels {
  public:
   explicit Levels(const Linear& f)
       : at0_(f.at0), flat_(f.at1 == f.at0), inverse_(1.0 / select(flat_, broadcast(1), f.at1 - f.at0)) {}
-  /// The least and the largest s; none where the second is less.
+  /// Least and largest s; empty if the second is less.
   struct Between {
     Lanes low, high;
   };
@@ -105,29 +105,30 @@ class Levels {
   Lanes inverse_;
 };
 
-/// The part [low, high] of each of eight segments; none where high is not more than low.
+/// The part [low, high] of each of eight segments; empty unless high is more than low.
 struct Span8 {
   Lanes low{}, high = broadcast(1);
 
-  /// Keeps where a function is not negative that is linear along the segment; where it is 0 all along, not in lanes
-  /// that leave that to others.
+  /// Keeps the part where a linear function is not negative. Where the function is 0 all along the segment, lanes in
+  /// `leaves_zero` keep nothing, because another segment takes that part.
   void keep(const Linear& f, LaneBits leaves_zero = LaneBits{}) {
     const Lanes change = f.at1 - f.at0, root = -f.at0 / select(change != 0.0, change, broadcast(1));
     low = max(low, select(change > 0.0, root, low));
     high = min(high, select(change < 0.0, root, high));
     high = select((change == 0.0) & ((f.at0 < 0.0) | (leaves_zero & (f.at0 == 0.0))), broadcast(-1), high);
   }
-  /// Whether there is one: what is shorter than `rounding` of the segment is left by clips that should meet.
+  /// Lanes with a part. Parts shorter than `rounding` of the segment are left by clips that should meet, and do not
+  /// count.
   LaneBits some() const { return high - low > rounding; }
   static constexpr double rounding = 1e-12;
 };
 
-/// Several such parts of each, in any order.
+/// Several such parts of each segment, in any order.
 class Spans8 {
  public:
   explicit Spans8(const Span8& all) : spans_{all} {}
 
-  /// Takes a part out of each, which may leave two.
+  /// Removes a part from each segment, which may leave two.
   void remove(const Span8& part) {
     const LaneBits some = part.some();
     if (!any(some)) return;
@@ -143,7 +144,7 @@ class Spans8 {
   const Span8* end() const { return spans_.data() + count_; }
 
  private:
-  /// Where a lane has room.
+  /// Adds a part at the first free position of each lane.
   void add(LaneBits which, const Span8& part) {
     LaneBits left = which & part.some();
     for (int i = 0; any(left) && i < static_cast<int>(spans_.size()); ++i) {
@@ -158,13 +159,13 @@ class Spans8 {
   int count_ = 1;
 };
 
-/// Parts of eight slave segments, each within a range of gaps, packed so that most of the eight have one.
+/// Parts of eight slave segments, each within a range of gaps, packed so that most lanes have one.
 class PackedParts {
  public:
   struct Eight {
     LaneBits hit;
     Span8 span;
-    Lanes low, high;  ///< the range of each, m
+    Lanes low, high;  ///< range of gaps, m
   };
 
   void clear() { count_ = 0; }

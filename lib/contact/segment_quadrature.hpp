@@ -6,17 +6,17 @@
 
 namespace pliant {
 
-/// The quadrature of one pass: slave segments are split where the nearest part of the master's outline changes, and
-/// where the law is not smooth; each part has points.
+/// Quadrature of one half pass: slave segments are split where the nearest part of the master's outline changes, and
+/// where the law is not smooth; each part has quadrature points.
 ///
-/// Beside a segment of the master the signed distance is linear along the slave's segment, so that two Gauss points
-/// integrate the tractions of piecewise linear laws times hat functions without error. In a fan inside the traction is
-/// that of a linear spring to the node, also without error; outside, for laws with a reach, integrals are in closed
-/// form unless three points do as well.
+/// Beside a segment of the master the signed distance is linear along the slave's segment. Two Gauss points then
+/// integrate the tractions of piecewise linear laws times hat functions without error. In a vertex region inside, the
+/// traction is that of a linear spring to the node, also without error. Outside, for laws with a reach, integrals are
+/// in closed form unless three points suffice.
 ///
-/// Pairs are taken eight at a time. For each eight: visit.begin(SegmentPairs, xi), then visit.beside(QuadraturePoint)
-/// for some points, or visit.in_fan(FanPoint) for some distances and, where it has that, visit.in_fan_of(FanShape) for
-/// parts of a fan, then visit.end(); xi: on the master's segment, linear in s; of nodes 0 or 1.
+/// Pairs are handled eight at a time. For each eight: visit.begin(SegmentPairs, xi), then visit.beside(QuadraturePoint)
+/// for some points, or visit.in_fan(FanPoint) for some distances and, where present, visit.in_fan_of(FanShape) for
+/// parts of a vertex region, then visit.end(); xi: coordinate on the master's segment, linear in s; 0 or 1 for nodes.
 class SegmentQuadrature {
  public:
   template <class Visit>
@@ -43,7 +43,7 @@ class SegmentQuadrature {
       visit_fans(pairs, nodes, select(at_end, broadcast(1), Lanes{}), visit);
     }
   }
-  /// The most that slave segments penetrate, m.
+  /// Largest penetration of slave segments, m.
   double deepest() const { return largest(deepest_); }
 
  private:
@@ -79,8 +79,8 @@ class SegmentQuadrature {
     const Lanes whole = sqrt(dx * dx + dy * dy);
     for (const PackedParts::Eight& part : parts_) {
       const Lanes way = select(part.hit, part.span.high - part.span.low, Lanes{});
-      // Three points are off by rho^-6 of a part, rho + 1/rho twice the distances of its ends from the node over its
-      // length (Trefethen 2008, doi 10.1137/060659831): 1e-8 at 21.6.
+      // The error of three points is rho^-6 of a part. There rho + 1/rho is twice the sum of the distances of its ends
+      // from the node, over its length (Trefethen 2008, doi 10.1137/060659831): 1e-8 at 21.6.
       const LaneBits wide =
           nodes.convex & (2.0 * (distance(part.span.low) + distance(part.span.high)) < 21.6 * way * whole);
       FanShape shape{part.hit & ~wide};
@@ -125,7 +125,7 @@ class SegmentQuadrature {
   Lanes deepest_{};
 };
 
-/// One for each thread, so that its memory is found once.
+/// One per thread, so that its memory is allocated once.
 inline SegmentQuadrature& thread_quadrature() {
   thread_local SegmentQuadrature quadrature;
   return quadrature;

@@ -7,12 +7,12 @@
 
 namespace pliant {
 
-/// Integrals over parts of eight slave segments of something times the hat functions of their two nodes.
+/// Integrals of a quantity times the hat functions of both nodes, over parts of eight slave segments.
 struct HatSums {
   Lanes first, second;
   HatSums(Lanes first, Lanes second) : first(first), second(second) {}
   explicit HatSums(const Moments& of) : HatSums(of.plain - of.times_s, of.times_s) {}
-  /// To a number of each node in the pass.
+  /// Adds them to the sums of the nodes of the pass.
   void add_to(std::vector<double>& of_nodes, const SegmentPairs& pairs, LaneBits hit) const {
     for_each_lane(hit, [&](int lane) {
       double* at = &of_nodes[static_cast<std::size_t>(pairs.slave[lane])];
@@ -21,16 +21,16 @@ struct HatSums {
   }
 };
 
-/// Of the nodes of a pass: integrals over all parts.
+/// Integrals over all parts of a half pass, by nodes.
 struct NodeSums {
   std::vector<double> weight, shear_limit, motion;  ///< m, N/m, m2
-  std::vector<double> shear;                        ///< Pa, what comes of them
+  std::vector<double> shear;                        ///< Pa, the traction that results
 
   void clear(int nodes) {
     for (std::vector<double>* sums : {&weight, &shear_limit, &motion, &shear})
       sums->assign(static_cast<std::size_t>(padded(nodes) + 2 * lane_count), 0.0);
   }
-  /// The last node of a whole outline is the first one.
+  /// On a whole outline the last node is the first one, which gets the sums of both.
   void close(int segments) {
     for (std::vector<double>* sums : {&weight, &shear_limit, &motion}) (*sums)[0] += (*sums)[segments];
   }

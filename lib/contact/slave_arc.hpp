@@ -6,16 +6,16 @@
 
 namespace pliant {
 
-/// Index in a slave's outline, whose numbers are those of its arrays, of position i of the pass.
+/// Index of position i of the pass in the arrays of the slave's outline.
 inline int slave_index(const HalfPass& pass, int i) {
   const int index = pass.nodes.begin + i;
   return index - turn_of(index, pass.slave->count) * pass.slave->count;
 }
 
-/// A field on the nodes of an arc, one behind the other, with room for a whole vector at each.
+/// Field on the nodes of an arc, contiguous, with room to load a whole vector at each node.
 class ArcField {
  public:
-  /// `on_outline`: with its cyclic copies; each turn adds `turn_shift`, and all is moved by `shift`.
+  /// `on_outline`: values with their cyclic copies. Each turn adds `turn_shift`, and `shift` is added to all.
   void fill(const double* on_outline, const Arc& arc, const OutlineShape& outline, double shift, double turn_shift) {
     const int nodes = arc.count + 1;
     if (const auto room = static_cast<std::size_t>(padded(nodes) + lane_count); values_.size() < room)
@@ -32,11 +32,11 @@ class ArcField {
   std::vector<double> values_;
 };
 
-/// The segments of a slave that a pass integrates over, from its first node on.
+/// Segments of a slave that a half pass integrates over, from its first node on.
 struct SlaveArc {
   int segments = 0;
-  ArcField x, y;                ///< of nodes, m
-  std::vector<double> lengths;  ///< that count, of the reference outline or the present one, m
+  ArcField x, y;                ///< positions of nodes, m
+  std::vector<double> lengths;  ///< of the reference or the current outline, m
 
   void fill(const HalfPass& pass) {
     segments = pass.segments;

@@ -4,9 +4,10 @@
 
 namespace pliant {
 
-/// Place of a node on the master's outline as one number, for the history: twice the segment's number, plus xi beside
-/// the segment. Beyond an end: |fan|/4 off [0, 1] outside, 0.3 + 0.15 |fan| off it inside a re-entrant corner, where
-/// the normal turns against the way. Always less than 1/2, so that every place belongs to one segment.
+/// Surface coordinate of a node on the master's outline as one number, for the history: twice the segment's number,
+/// plus xi beside the segment. Beyond an end it is outside [0, 1]: by |fan|/4 outside the outline, by 0.3 + 0.15 |fan|
+/// inside a re-entrant corner, where the normal turns against the direction of motion. The offset is always less than
+/// 1/2, so that every coordinate belongs to one segment.
 inline Lanes place_of(const Projection& p) {
   const Lanes turn = abs(p.fan);
   const Lanes off = select(p.gap < 0.0, 0.3 + 0.15 * turn, 0.25 * turn);
@@ -14,21 +15,21 @@ inline Lanes place_of(const Projection& p) {
   return 2.0 * p.number + p.xi + select(p.fan != 0.0, onward, Lanes{});
 }
 
-/// The fan of a place that lies `off` [0, 1].
+/// The fan of a surface coordinate that is `off` outside [0, 1].
 inline Lanes fan_of(Lanes off) {
   const Lanes size = abs(off), inside = (size - 0.3) * (1 / 0.15);
   return select(size > 0.275, select(off > 0.0, -inside, inside), 4.0 * off);
 }
 
-/// Way along the outline from an old place on another segment to the projection in one lane, at its present gap and
-/// shape: faces count by their length, corners by the turn of the normal. Between flanks of a fold the displacement
-/// along them instead. Signed, m.
+/// Path length along the outline, signed, m, from an old surface coordinate on another segment to the projection in one
+/// lane, at its present gap and shape. Faces count by their length, corners by the rotation of the normal. Between
+/// flanks of a fold the displacement along them counts instead.
 double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
 
-/// Tangential motion of eight nodes past the master since the last accepted step, m: rates in the present shape (beside
-/// a segment l d(xi), beyond an end g d(angle)), so that the shear force is their exact conjugate. `place`:
-/// place_of(p), rounded like the old one, so that rest is rest.
-/// `counted`: lanes with a known old place that touch; others give 0.
+/// Slip increment of eight nodes along the master since the last accepted step, m. It is a rate in the present shape
+/// (beside a segment l d(xi), beyond an end g d(angle)), so that the shear force is its exact conjugate. `place`:
+/// place_of(p), rounded like the old one, so that a node at rest gives exactly 0. `counted`: lanes in contact whose old
+/// place is known; others give 0.
 inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBits counted, Lanes old_place,
                          Lanes place) {
   const Lanes u = place - 2.0 * p.number, old_u = old_place - 2.0 * p.number;

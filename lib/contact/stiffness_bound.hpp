@@ -7,19 +7,19 @@
 
 namespace pliant {
 
-/// A-priori bound of the contact stiffness that outline nodes may feel until their contact pairs are searched again,
-/// weighted so that the bound of a pair is that of its two bodies taken alone (docs/method.md 6). Patches that stay as
-/// they are keep their part, wherever it lies.
+/// A-priori bound of the contact stiffness of outline nodes until the next search of their contact pairs. It is
+/// weighted so that the bound of a pair is that of its two bodies taken alone (docs/method.md 6). Pairs that are not
+/// searched again keep their contribution, even if they move in memory.
 class StiffnessBound {
  public:
   explicit StiffnessBound(const Model& model) : model_(model) {}
 
-  /// Looks at all contact pairs found since the last time. `compliance` [bodies]: largest w^2 a body shows per unit
-  /// contact stiffness. Returns the bodies whose bound may have changed, in their order.
+  /// Counts all contact pairs found since the last call. `compliance` [bodies]: largest w^2 of a body per unit contact
+  /// stiffness. Returns the bodies whose bound may have changed, in ascending order.
   std::vector<int> update(const ContactSystem& contact, const std::vector<double>& compliance);
-  /// [outline nodes of the body] N/m2.
+  /// [outline nodes of the body] stiffness bound, N/m2.
   std::vector<double> of_body(const ContactSystem& contact, int body) const;
-  /// Adds it to every `stride`-th number.
+  /// Adds the bound to every `stride`-th number.
   void add_of_body(const ContactSystem& contact, int body, double* to, int stride) const;
 
   template <class Visitor>
@@ -33,10 +33,10 @@ class StiffnessBound {
   void follow_layout(const PairTable& table);
 
   const Model& model_;
-  std::vector<double> entries_;       ///< as the buffers of forces, N/m2
-  std::vector<ContactPair> weighed_;  ///< as they stand in the entries
-  std::int64_t layout_ = -1;          ///< of the entries: PairTable::laid_out
-  std::int64_t seen_ = -1;            ///< refresh up to which contact pairs were looked at
+  std::vector<double> entries_;       ///< in the order of the force buffers, N/m2
+  std::vector<ContactPair> weighed_;  ///< as counted in the entries
+  std::int64_t layout_ = -1;          ///< PairTable::laid_out of the entries
+  std::int64_t seen_ = -1;            ///< last rebuild whose contact pairs are counted
 };
 
 }  // namespace pliant

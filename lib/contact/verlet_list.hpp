@@ -8,42 +8,43 @@
 
 namespace pliant {
 
-/// Where a body is.
+/// Position and extent of a body.
 struct BodyPlace {
   double x, y;
-  double outer, inner;  ///< radii of discs about it, the one around its outline and the one within; negative: none
+  double outer, inner;  ///< radii of discs about it, around the outline and inside it; negative: none
 };
 
-/// The pairs of bodies that may come to touch, and bounds of how far they have moved against each other since it was
-/// searched where they can. The broad phase looks further than the skin: bodies that it leaves out need no watching
-/// pair by pair, but all together, and so those that turn out to be further apart than their boxes. Displacements are
-/// from place to place: what only vibrates goes nowhere.
+/// Pairs of bodies that may come into contact, with bounds of the relative displacement since each was searched. The
+/// broad phase uses a margin of several skins. The pairs that it excludes are monitored all together, not one by one,
+/// and so are pairs that turn out to be further apart than their boxes. Displacements are between two configurations,
+/// so vibration does not add up.
 class VerletList {
  public:
-  /// `skin`: displacement after which a pair must be searched; `reach`: gap from which on nothing acts, m.
+  /// `skin`: relative displacement after which a pair must be searched; `reach`: gap beyond which no law acts, m.
   VerletList(const Model& model, double skin, double reach);
 
-  /// Whether some pair, or what the broad phase left out, may have exceeded its skin where all outlines are now: on
-  /// trial, when pairs are then searched.
+  /// Whether some pair, or those that the broad phase excluded, may have exceeded the skin at these positions. If pairs
+  /// are then searched, these are the trial positions.
   bool skin_is_exceeded(const OutlineField& now);
-  /// All pairs are to be searched, those that the broad phase finds.
+  /// Discards the list: the next update() runs the broad phase, and all its pairs must be searched.
   void forget();
-  /// After skin_is_exceeded(trial), before pairs are searched with all outlines here: takes new references, and the
-  /// broad phase, if it is due. Pairs have other numbers then, and true is returned.
+  /// Call after skin_is_exceeded(trial), before pairs are searched at the positions `here`. Sets new references, and
+  /// runs the broad phase if it is due. Pairs then have other numbers, and true is returned.
   bool update(const OutlineField& here, const OutlineField& trial);
 
   int count() const { return static_cast<int>(pairs_.size()); }
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
-  /// Once after each update: the pairs of which what was found may not stay. All others hold on trial.
+  /// Call once after each update. Returns the pairs whose candidates must be searched again; all others are valid for
+  /// the trial.
   std::vector<int> exceeded(const OutlineField& here);
-  /// Whether pairs that were searched hold on trial.
+  /// Whether the candidates of pairs that were searched are valid for the trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
-  /// Gap beyond which pairs that the broad phase just found need no watching, m.
+  /// Gap beyond which pairs that the broad phase just found need no monitoring, m.
   double margin() const { return margin_; }
-  /// What a pair's bodies can touch was searched there. `gap`: between their outlines; where it is more than the
-  /// margin, anything between.
+  /// Records that a pair was searched at these positions. `gap`: distance of its outlines; if that is more than the
+  /// margin, any value between the two.
   void searched(int pair, const OutlineField& now, double gap = 0);
-  /// A pair that the broad phase does not find, searched just now.
+  /// Adds a pair that the broad phase does not find, searched at these positions.
   void add(const BodyPair& pair, const OutlineField& now);
 
   template <class Visitor>
@@ -69,23 +70,23 @@ class VerletList {
 
   const Model& model_;
   double skin_, own_skin_, margin_;
-  OutlineField reference_;  ///< where each body was at some time; empty: all is to be searched
-  // On trial:
-  std::vector<DisplacementDisc> motion_;  ///< [bodies], of the outline nodes' displacements from the reference
-  double come_out_ = 0;                   ///< of measure, m
-  bool just_swept_ = false;               ///< the broad phase looked, in the last update
+  OutlineField reference_;  ///< reference positions of each body; empty: search everything
+  // At the trial positions:
+  std::vector<DisplacementDisc> motion_;  ///< [bodies] discs of the outline nodes' displacements from the reference
+  double come_out_ = 0;                   ///< result of measure(), m
+  bool just_swept_ = false;               ///< whether the last update ran the broad phase
   enum Use : char { little, much, all };
-  std::vector<Use> use_;  ///< [pairs], of the skin, when somebody asked last
+  std::vector<Use> use_;  ///< [pairs] used share of the skin at the last test
   std::vector<BodyPair> pairs_;
-  /// [pairs] by how much discs told more than nodes when both were last asked, m: what discs tell below the skin is
-  /// taken to be too much by as much, so that few pairs are asked node by node.
+  /// [pairs] overestimate of the disc bound at the last exact check, m. It is subtracted from later bounds below the
+  /// skin, so that few pairs are checked node by node.
   std::vector<double> excess_;
-  std::vector<double> gap_;               ///< [pairs] when each was searched, m
-  std::vector<char> watched_;             ///< [pairs] 0: far apart when the broad phase looked
-  NodeDisplacements pair_displacements_;  ///< [pairs][sides], since each was searched
-  /// [bodies], displacements from the reference when the broad phase looked
+  std::vector<double> gap_;               ///< [pairs] distance of the outlines at the last search, m
+  std::vector<char> watched_;             ///< [pairs] 0: beyond the margin at the last broad phase
+  NodeDisplacements pair_displacements_;  ///< [pairs][sides] since the last search
+  /// [bodies] displacements from the reference at the last broad phase
   std::vector<DisplacementDisc> since_sweep_;
-  std::vector<BodyPlace> swept_at_;  ///< [bodies], where it saw them; of walls nothing
+  std::vector<BodyPlace> swept_at_;  ///< [bodies] at the last broad phase; unused for walls
 };
 
 }  // namespace pliant

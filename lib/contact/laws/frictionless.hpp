@@ -12,7 +12,7 @@ struct Frictionless {
   double shear_stiffness = 0;   ///< unused
   double reach = 0;             ///< largest gap with a traction, m
 
-  /// Gaps at which tractions are not smooth, growing, m; the last one is the reach.
+  /// Gaps at which tractions are not smooth, ascending, m; the last one is the reach.
   std::array<double, 1> kinks() const { return {0}; }
   Traction operator()(Lanes gap) const {
     const Lanes pressure = max(-normal_stiffness * gap, Lanes{});

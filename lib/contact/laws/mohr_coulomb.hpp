@@ -4,9 +4,8 @@
 
 namespace pliant {
 
-/// p = -kn g down to the tensile cut-off -t, nothing beyond; |tau| <= c + friction max(p, 0) (docs/method.md 4).
-/// The cut-off is a jump of the force between two branches of one potential: closing again gives back what opening
-/// took.
+/// p = -kn g down to the tensile cut-off -t, zero beyond; |tau| <= c + friction max(p, 0) (docs/method.md 4). At the
+/// cut-off the force jumps between two branches of one potential: closing the gap returns the energy that opening took.
 struct MohrCoulomb {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "mohr-coulomb";

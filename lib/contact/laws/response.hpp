@@ -8,33 +8,33 @@
 
 namespace pliant {
 
-/// Eight nodes near a master, in the step at hand.
+/// Gap and slip increment of eight nodes near a master, in the current step.
 struct GapAndSlip {
   Lanes gap;          ///< m, negative: penetration
-  LaneBits beside;    ///< which of them face the master at all
-  LaneBits touching;  ///< and are within the law's reach
-  Lanes moved;        ///< past the master since the last accepted step, m; 0 for laws without shear
+  LaneBits beside;    ///< lanes that project onto the master
+  LaneBits touching;  ///< of these, lanes within the law's reach
+  Lanes moved;        ///< slip increment since the last accepted step, m; 0 for laws without shear
 };
 
-/// What a law makes of them: tractions, and slip brought up to date.
+/// Response of a law: tractions, energy and updated slip.
 struct Contact {
   Lanes pressure, shear, energy;  ///< shear acts on the slave along the tangent
-  Lanes slip, slip_work;          ///< slip_work: dissipated per length, by whatever, J/m2
+  Lanes slip, slip_work;          ///< slip_work: energy dissipated per length by friction or damage, J/m2
 };
 
-/// Every law has has_shear, name, normal_stiffness shear_stiffness, Pa/m; reach, m: nodes with smaller
-/// gaps touch; and Traction operator()(Lanes gap) const. One that remembers something besides place and slip
-/// (core/internal_variables.hpp) brings
+/// Each law has has_shear and name; normal_stiffness and shear_stiffness, Pa/m; reach, m: nodes with smaller gaps are
+/// in contact; and Traction operator()(Lanes gap) const. A law with internal variables (core/internal_variables.hpp)
+/// also has
 ///
 ///     Contact respond(const GapAndSlip&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
 ///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight is beside the master
 ///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to
 ///     double start_reach() const;                                   m
 ///
-/// respond is asked for lanes that are not beside, do not touch or are padding as well: what single nodes remember that
-/// left, and what that sets free, is its own. Asked once more at the same place, from `now` and the new slip, it must
-/// answer the same tractions: audits and probes do that. The limit of shear in the Traction is what operator() says of
-/// the gap; respond may set another. Nothing else need know.
+/// respond is also called for lanes without a projection, out of contact, or padding. It sets the internal variables of
+/// single nodes that have left contact, and accounts for the energy that these release. Called once more at the same
+/// place, with `now` and the new slip, it must return the same tractions, because the energy balance and probes do so.
+/// The shear limit in the Traction is that of operator(); respond may use another. No other code depends on the law.
 
 template <class Law>
 concept AnswersGaps = requires(const Law& law, Lanes gap) {
@@ -54,25 +54,26 @@ concept AnswersGapAndSlip = requires(const Law& law, const GapAndSlip& at, const
   { law.start_reach() } -> std::convertible_to<double>;
 };
 
-/// What a law lacks is said where it joins the others, contact/contact_law.hpp.
+/// A missing member is reported where the law joins the others, in contact/contact_law.hpp.
 template <class Law>
 concept CompleteContactLaw = AnswersGaps<Law> && (!has_internal_variables<Law> || AnswersGapAndSlip<Law>);
 
 template <class Law>
 constexpr bool has_dashpot = requires { Law::has_damping; };
 
-/// The tangential part of a contact that slips beyond its limit.
+/// Return mapping of the slip of a contact to its limit of shear.
 template <class Law>
 void slide(const Law& law, const Traction& traction, LaneBits touching, Lanes old_slip, Lanes trial, Contact& c) {
   const Lanes largest = select(touching, traction.shear_limit * (1 / law.shear_stiffness), Lanes{});
   c.slip = min(max(trial, -largest), largest);
   c.shear = -law.shear_stiffness * c.slip;
-  // Mean of the old and the new traction times the plastic slip: what the tangential forces do, less what is stored.
+  // Mean of the old and the new traction times the plastic slip: work of the tangential forces, less the stored energy.
   c.slip_work = (0.5 * law.shear_stiffness) * (old_slip + c.slip) * (trial - c.slip);
   c.energy += 0.5 * law.shear_stiffness * c.slip * c.slip;
 }
 
-/// Of laws without memory: more pressure than of the gap, as of a dashpot, and what friction makes of it, Pa.
+/// Adds a pressure that does not follow from the gap, such as a dashpot's, and the friction that it allows, Pa. For
+/// laws without internal variables.
 template <class Law>
 void add_pressure(const Law& law, Lanes more, Traction& traction) {
   const Lanes before = max(traction.pressure, Lanes{});
@@ -81,7 +82,7 @@ void add_pressure(const Law& law, Lanes more, Traction& traction) {
     traction.shear_limit += law.friction * (max(traction.pressure, Lanes{}) - before);
 }
 
-/// `traction`: the law's answer to the gap, and its dashpot's.
+/// `traction`: the law's response to the gap, with its dashpot's.
 template <class Law>
 Contact respond(const Law& law, const GapAndSlip& at, const Traction& traction, Lanes old_slip, const Record<Law>& old,
                 Record<Law>& now) {
@@ -94,7 +95,7 @@ Contact respond(const Law& law, const GapAndSlip& at, const Traction& traction, 
   }
 }
 
-/// What nodes had stored that are no longer beside the master, J/m2.
+/// Energy that nodes had stored that no longer project onto the master, J/m2.
 template <class Law>
 Lanes set_free(const Law& law, Lanes old_slip, const Record<Law>& old) {
   if constexpr (has_internal_variables<Law>)

@@ -6,10 +6,10 @@
 
 namespace pliant {
 
-/// What a contact law answers for a gap g (negative: penetration), eight nodes at once.
+/// Response of a contact law to a gap g (negative: penetration), for eight nodes at once.
 struct Traction {
   Lanes pressure;     ///< Pa, positive in compression
-  Lanes shear_limit;  ///< Pa, the largest |tau| of contacts that slide; laws with bonds may bear more
+  Lanes shear_limit;  ///< Pa, the largest |tau| of sliding contacts; laws with bonds may exceed it
   Lanes energy;       ///< J/m2, normal part, dpsi/dg = -pressure, zero out of reach
 };
 
