@@ -19,7 +19,7 @@
 namespace pliant {
 namespace {
 
-/// Adds a run of numbers to others. Both may be looked at beyond the run's end, up to whole lanes.
+/// Adds a range of numbers to another. Both must be readable beyond its end, up to whole lanes.
 void add_run(const double* from, int count, double* to) {
   for (int i = 0; i < count; i += lane_count)
     store(to + i, load(to + i) + select(first_lanes(count - i), load(from + i), Lanes{}));
@@ -53,7 +53,7 @@ ContactSystem::ContactSystem(const Model& model)
       table_(model),
       most_repaid_(most_repaid(model.scene.time.safety)) {}
 
-/// A bond is one of a node: laws that remember are collocated.
+/// Bonds belong to nodes, so laws with internal variables are collocated.
 bool ContactSystem::integrates(int first, int second, const ContactLaw& law) const {
   if (!may_integrate_ || !internal_variables_of(law).empty()) return false;
   return model_.scene.contact.quadrature == ContactQuadrature::segments || has_corners(first) || has_corners(second);
@@ -87,7 +87,7 @@ void ContactSystem::warn_of_missed_contacts(const OutlineField& position) {
 void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock) {
   warn_of_missed_contacts(outlines.position);
   verlet_list_.forget();
-  const bool start = !fresh_;  // an empty history would not tell: bodies may have been far apart
+  const bool start = !fresh_;  // an empty history may also mean that bodies were far apart
   take_over_pairs(outlines, outlines.position, history, clock);
   if (start && !starts_from_a_state()) refuse_self_overlap();
   const auto begin = [&](const ContactPair& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
@@ -108,7 +108,7 @@ bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
   return candidates_hold(asked, clock);
 }
 
-/// Where candidates of these pairs are found.
+/// Stores the outlines at which candidates of these pairs are searched.
 void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& pairs) {
   found_at_.velocity = outlines.velocity;
   found_at_.tributary_length = outlines.tributary_length;
@@ -124,18 +124,19 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
   });
 }
 
-/// Candidates at these outlines, of whatever exceeds its skin, and the history with them. Whether they hold on trial.
+/// Searches all pairs that exceed the skin, transfers the history, and returns whether candidates are valid for the
+/// trial.
 bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                     const RunClock& clock) {
   accept(history);
-  if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) last_.number = 0;  // of other laws
+  if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) last_.number = 0;  // the laws have changed
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
   const std::vector<int> exceeded = verlet_list_.exceeded(outlines.position);
   remember(outlines, exceeded);
   const std::vector<ContactPair> found = search(exceeded);
-  found_ = exceeded;  // contact pairs stand in the order of the pairs, unless bodies touch themselves
+  found_ = exceeded;  // contact pairs are ordered as the pairs, unless there is self-contact
   const auto carry = [&](const ContactPair& old, const ContactPair& now) {
     if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
   };
@@ -162,7 +163,7 @@ std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
   return found;
 }
 
-/// The contact pair of each pair of bodies, one just found or that of before.
+/// Lays out one contact pair per pair of bodies, either just found or kept.
 void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history) {
   std::vector<ContactPair> all;
   all.reserve(static_cast<std::size_t>(verlet_list_.count()));
@@ -185,14 +186,14 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
   auto from = old.begin();
   for (int p = 0; p < table_.count(); ++p) {
     while (from != old.end() && comes_before(*from, contact_pairs()[p])) ++from;
-    if (from == old.end() || comes_before(contact_pairs()[p], *from)) continue;  // it did not touch
+    if (from == old.end() || comes_before(contact_pairs()[p], *from)) continue;  // not in the old table
     last_.totals[p] = before.totals[from - old.begin()];
     carry_forces(model_, *from, before.forces, contact_pairs()[p], last_.forces);
   }
 }
 
 void ContactSystem::make_room(Evaluated& evaluated) const {
-  const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // by whole lanes
+  const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
   evaluated.forces.x.assign(looked_at, 0.0);
   evaluated.forces.y.assign(looked_at, 0.0);
   evaluated.totals.assign(contact_pairs().size(), {});
@@ -203,8 +204,8 @@ void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
-/// Asks for what a contact pair looks at and what it writes: there are many, each on places of its own. A write that
-/// waits for its place holds up all that follow it, and what is read back from them.
+/// Prefetches the data that a contact pair reads and writes; each of the many pairs has its own. A write that waits for
+/// its cache line would delay all writes after it, and reads of them.
 void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
                              const ContactHistory& from, const ContactHistory& to,
                              const PairForceBuffer& forces) const {
@@ -223,7 +224,7 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
   }
 }
 
-/// Of all outline nodes.
+/// Displacements of all outline nodes.
 const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
   moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
@@ -235,7 +236,7 @@ const OutlineField* ContactSystem::find_displacements(const OutlineField& now, c
 
 PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                  OutlineField& force, const StepStart* step) {
-  table_.follow(from, to);  // also in what no contact pair writes: states are compared by their bits
+  table_.follow(from, to);  // also where no contact pair writes: states are compared bitwise
   to.evaluation = from.evaluation;
   if (keeps_debts()) {
     accept(from);
@@ -273,7 +274,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
       add_run(&now.forces.y[entry], count, y + node);
     });
   };
-  constexpr std::size_t block = 256;  // of contact pairs, however many threads there are
+  constexpr std::size_t block = 256;  // contact pairs per block, whatever the number of threads
   block_totals_.assign((now.totals.size() + block - 1) / block, {});
   const auto add_up = [&](int b) {
     const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, now.totals.size());
@@ -288,7 +289,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
 void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
-    // as any pair: the body's parts may move by the skin against each other
+    // as for any pair, the body's parts may move by the skin relative to each other
     verlet_list_.add({b, b, 0}, found_at_.position);
     ContactPair of_body;
     of_body.first = of_body.second = b;

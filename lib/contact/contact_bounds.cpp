@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-/// Several contacts at once act together: N of the same ratio z on one body are a ratio z sqrt(N) of their common
-/// frequency, and a lever can raise the square of a contact's share by 1 + m R^2 / I.
+/// Simultaneous contacts act together: N contacts of the same ratio z on one body have a ratio z sqrt(N) of their
+/// common frequency. A lever can raise the square of a contact's share by 1 + m R^2 / I.
 std::vector<double> ContactSystem::damping_ratios() const {
   std::vector<double> ratio(model_.bodies.size(), 0.0);
   if (!laws_.damps()) return ratio;

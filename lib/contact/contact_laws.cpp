@@ -14,9 +14,9 @@ namespace pliant {
 namespace {
 
 constexpr double auto_range_factor = 0.12;
-/// Rigid grains touch on a few nodes only, and carry force chains: with the softer value of the compliant pairs they
-/// sink in by a segment length in the third body at 1 GPa. Their mass lets the stiffness be three times higher before
-/// they govern the time step.
+/// Rigid grains touch at few nodes only, and carry force chains. With the softer value of compliant pairs they
+/// penetrate by a segment length in the third body at 1 GPa. Their mass allows three times the stiffness before they
+/// govern the time step.
 constexpr double rigid_pair_factor = 3;
 
 ContactGroup group_of(const Scene& scene, const Body& body) {
@@ -24,14 +24,14 @@ ContactGroup group_of(const Scene& scene, const Body& body) {
   return contact_group(scene, scene.materials[body.material].name, name, body.wall);
 }
 
-/// Of a motion along one axis: the freer of the two. 0: imposed in both.
+/// Inverse mass along one axis, the larger of both. 0: motion is imposed along both.
 double inverse_mass(const Model& model, const Body& body) {
   if (body.kind == BodyKind::compliant) return 0;
   const RigidBody& rigid = model.rigid_bodies[body.rigid];
   return std::max(rigid.dof[0].inverse_mass, rigid.dof[1].inverse_mass);
 }
 
-/// The same at a time, when a drive may have set in or ended.
+/// The same at a given time, as drives may begin or end.
 double inverse_mass(const Model& model, const Body& body, double time) {
   double largest = 0;
   if (body.kind == BodyKind::rigid)
@@ -94,7 +94,7 @@ void ContactLaws::add_body(const Model& model, const Body& body) {
   bodies_.push_back({static_cast<int>(group - groups_.begin()), h, inverse});
 }
 
-/// A single body meets at most its image or itself.
+/// Whether bodies of the group may meet each other. A single body meets at most its image or itself.
 bool ContactLaws::meets_itself(const Scene& scene, const Group& group) const {
   if (group.bodies > 1) return true;
   return !group.wall && (scene.period || (scene.contact.self_contact && group.kind == BodyKind::compliant));
@@ -120,14 +120,15 @@ void ContactLaws::find_rules(const Scene& scene) {
     }
 }
 
-/// `softer`: the compliant one of two, if any.
+/// Throws InputError for restitution of a compliant body. `softer`: the compliant one of two groups, if any.
 void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule, const Group& softer) const {
   if (softer.kind == BodyKind::rigid || rule.restitution.value_or(1) == 1) return;
   throw InputError(fmt::format("{}: {}: {}", file_, pair_text(rule),
                                refusal_of_restitution(scene, rule, scene.materials[softer.material].name)));
 }
 
-/// Lengths, and stiffness with its inverse, grow with the finer of the two spacings.
+/// Finds bounds over all pairs from the extreme spacings: lengths grow with the finer of the two spacings, stiffness
+/// with its inverse.
 void ContactLaws::look_at_extremes() {
   for (int a = 0; a < static_cast<int>(groups_.size()); ++a)
     for (int b = 0; b < static_cast<int>(groups_.size()); ++b)
@@ -244,7 +245,7 @@ ContactLaw ContactLaws::make_law(const Side& a, const Side& b) const {
   throw std::logic_error("a contact law without a maker");
 }
 
-/// 0 where there is no dashpot: only two rigid bodies of which one can move have one.
+/// Damping ratio; 0: no dashpot. Only two rigid bodies, of which one can move, have one.
 double ContactLaws::damping_ratio(const Side& a, const Side& b) const {
   const ContactRule* rule = this->rule(a, b);
   const bool rigid = groups_[a.group].kind == BodyKind::rigid && groups_[b.group].kind == BodyKind::rigid;

@@ -1,4 +1,4 @@
-// How contact begins: from nothing, or from another run.
+// Initial state of contact: a new one, or one from another run.
 #include <algorithm>
 #include <iterator>
 
@@ -13,7 +13,7 @@ namespace {
 
 PairLaws pair_laws(const ContactLaws& laws, int bodies) {
   PairLaws all;
-  std::vector<int> member;  // [groups] some body of each
+  std::vector<int> member;  // [groups] one body of each
   for (int b = 0; b < bodies; ++b) {
     const int group = laws.group(b);
     all.groups.push_back(group);
@@ -67,7 +67,8 @@ bool ContactSystem::keeps_law(const ContactPair& contact_pair) const {
                                       laws_.kind(contact_pair.first, contact_pair.second);
 }
 
-/// A limb thinner than contact sees would press its own far side out.
+/// Throws InputError if a body overlaps itself: a limb thinner than the detection depth would press its own far side
+/// out.
 void ContactSystem::refuse_self_overlap() const {
   for (const ContactPair& contact_pair : contact_pairs())
     if (contact_pair.of_itself() && overlaps(view(contact_pair)))

@@ -8,7 +8,7 @@ namespace pliant {
 
 void carry_forces(const Model& model, const ContactPair& old, const PairForceBuffer& from, const ContactPair& now,
                   PairForceBuffer& to) {
-  thread_local PairForceBuffer aside[2];  // their memory is found once
+  thread_local PairForceBuffer aside[2];  // memory is allocated once
   for (int side = 0; side < 2; ++side) {
     const int begin = old.entry[side], end = begin + old.forces(side).count;
     aside[side].x.assign(from.x.begin() + begin, from.x.begin() + end);
@@ -18,7 +18,8 @@ void carry_forces(const Model& model, const ContactPair& old, const PairForceBuf
     double *x = &to.x[now.entry[side]], *y = &to.y[now.entry[side]];
     std::fill_n(x, padded(now.forces(side).count), 0.0);
     std::fill_n(y, padded(now.forces(side).count), 0.0);
-    // Of a small body both arcs may go all the way around and show some nodes twice: what either place had counts once.
+    // Both arcs of a small body may go all the way around and contain some nodes twice: forces at both positions are
+    // added.
     for_each_shared(model, now, side, now.forces(side), old.forces(side), [&](int at, int before, int count) {
       for (int i = 0; i < count; ++i) x[at + i] += aside[side].x[before + i], y[at + i] += aside[side].y[before + i];
     });
@@ -42,7 +43,7 @@ void scale_forces(const ContactPair& contact_pair, double factor, PairForceBuffe
 
 ContactLaw parting_law(const ContactLaw& law, double skin) {
   const double stiffness = normal_stiffness_of(law), reach = reach_of(law) + skin;
-  constexpr double rises = 0.1;  // over this part of the reach
+  constexpr double rises = 0.1;  // share of the reach over which the tension rises
   return Cohesive{stiffness, stiffness, reach, rises * reach * stiffness, 0};
 }
 

@@ -11,10 +11,10 @@
 namespace pliant {
 namespace {
 
-/// Outline nodes up to which displacements are kept node by node.
+/// Largest number of outline nodes for which displacements are stored node by node.
 constexpr int small_outline = 512;
 
-/// Mean of four nodes' displacements, displacement(node): it turns with the axes.
+/// Mean of the displacements, displacement(node), of four nodes: it rotates with the axes.
 template <class Way>
 DisplacementDisc about_four(int count, Way&& displacement) {
   DisplacementDisc disc{0, 0, 0};
@@ -25,8 +25,8 @@ DisplacementDisc about_four(int count, Way&& displacement) {
   return disc;
 }
 
-/// Makes a disc hold the displacements of an outline's nodes, displacements(i) of eight at once from node i on. The
-/// last lanes may reach into the cyclic copies, which move as their originals.
+/// Widens a disc so that it contains the displacements of an outline's nodes; displacements(i): eight at once from node
+/// i on. The last lanes may reach into the cyclic copies, which move as their originals.
 template <class Ways>
 DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& displacements) {
   Lanes square{};
@@ -51,17 +51,17 @@ void store_displacements(float* to, Lanes value) {
   std::memcpy(to, &rounded_ways, sizeof rounded_ways);
 }
 
-/// Of one node.
+/// Displacement of one node.
 std::pair<double, double> way_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {now.x[node] - reference.x[node], now.y[node] - reference.y[node]};
 }
 
-/// Of eight nodes.
+/// Displacements of eight nodes.
 std::pair<Lanes, Lanes> ways_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {load(&now.x[node]) - load(&reference.x[node]), load(&now.y[node]) - load(&reference.y[node])};
 }
 
-/// New references move a disc that is not known by little.
+/// Whether a displacement is known. New references hardly change the disc of an unknown one.
 bool is_known(const DisplacementDisc& disc) { return disc.radius < 0.5 * unknown_displacement.radius; }
 
 }  // namespace
@@ -93,7 +93,7 @@ NodeDisplacements::Common NodeDisplacements::displacement_of_first(int body,
 
 bool NodeDisplacements::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
 
-/// Room for the nodes of all entries from one on.
+/// Allocates memory for the nodes of all entries from `first` on.
 void NodeDisplacements::lay_out(int first) {
   at_.resize(body_.size());
   common_.resize(body_.size());

@@ -23,7 +23,7 @@ struct LaneTotals {
 
 void add(double* to, Lanes value) { store(to, load(to) + value); }
 
-/// Of nodes that are not beside the master.
+/// Resets the history of nodes that do not project onto the master.
 template <class Law>
 void forget(Lanes* to) {
   to[ContactHistory::place] = broadcast(ContactHistory::nowhere);
@@ -33,8 +33,8 @@ void forget(Lanes* to) {
       to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::internal_variables[k].at_first);
 }
 
-/// Rate of the gaps of touching nodes, m/s, of the motion that forces on the slave and on the two segment nodes do work
-/// on.
+/// Rate of the gaps of nodes in contact, m/s: of the motion on which forces on the slave and both segment nodes do
+/// work.
 Lanes gap_rate(const HalfPass& pass, int i, const Projection& p, LaneBits touching) {
   const int index = pass.nodes.begin + i, node = index - turn_of(index, pass.slave->count) * pass.slave->count;
   Lanes rate{};
@@ -49,7 +49,7 @@ Lanes gap_rate(const HalfPass& pass, int i, const Projection& p, LaneBits touchi
   return rate;
 }
 
-/// Adds the dashpot's pressure and what friction makes of it. Returns its power on the weights, W/m.
+/// Adds the dashpot's pressure and its friction. Returns its power on the weights, W/m.
 template <class Law>
 Lanes add_damping(const Law& law, const HalfPass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
                   Traction& traction) {
@@ -59,20 +59,20 @@ Lanes add_damping(const Law& law, const HalfPass& pass, int i, const Projection&
   return select(touching, -weight * damping * rate, Lanes{});
 }
 
-/// On slave nodes, N/m. The couple is that of shears that act at the gap's distance from the master, over its segment's
-/// length.
+/// Forces on slave nodes, N/m. The couple is that of shears that act at the gap's distance from the master, over the
+/// length of its segment.
 struct Force {
   Lanes x, y, couple;
 };
 
-/// The tangent goes with the normal, also where that is radial.
+/// Forces on slave nodes. The tangent is perpendicular to the normal, also to a radial one.
 Force force_on(const Projection& p, Lanes weight, Lanes pressure, Lanes shear) {
   const Lanes couple = weight * shear * p.gap * p.inverse_length;
   return {weight * (pressure * p.normal_x - shear * p.normal_y), weight * (pressure * p.normal_y + shear * p.normal_x),
           couple};
 }
 
-/// What the passes of a contact pair go on from and add to.
+/// Histories, forces and sums of the half passes of a contact pair.
 struct Accounts {
   const ContactHistory& from;
   ContactHistory& to;
@@ -87,7 +87,7 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
   thread_local Reactions reactions;
   reactions.clear(window.count());
   const double inverse_longest = 1 / window.longest();
-  const double outward = law.reach + view.skin;  // places before the touch
+  const double outward = law.reach + view.skin;  // to know places before contact
   for (int i = 0; i < pass.nodes.count; i += lane_count) {
     const int record = pass.record + i;
     const Lanes* before = from.at(record);
@@ -136,7 +136,7 @@ void look_up_velocities(const PairView& view, int slave_side, HalfPass& pass) {
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
 }
 
-/// Both passes of a contact pair. What a law does not need is neither kept nor added up.
+/// Both half passes of a contact pair. Sums that a law does not need are skipped.
 template <class Law>
 PairTotals compute_half_passes(const Law& law, const PairView& view, const ForceRuns& runs, Accounts accounts) {
   double damping = 0;
@@ -161,13 +161,13 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
   return result;
 }
 
-/// Work of a side's forces over the way of a step, of those before and those now: the rest of PairTotals.
+/// Work of a side's forces at the start and at the end of a step over its displacements: the rest of PairTotals.
 class StepWork {
  public:
   StepWork(const PairView& view, const PairStep& step, int side)
       : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {}
 
-  /// A vector of nodes from `node` on, whose entries in buffers of forces begin at `entry`, and their forces now.
+  /// Adds a vector of nodes from `node` on, whose entries in force buffers begin at `entry`, with their present forces.
   void add(std::size_t node, std::size_t entry, Lanes x, Lanes y) {
     const Lanes old_x = load(&step_.forces_before.x[entry]), old_y = load(&step_.forces_before.y[entry]);
     const Lanes x0 = load(&step_.before->x[node]), y0 = load(&step_.before->y[node]), x1 = load(&now_.x[node]),
@@ -199,7 +199,7 @@ class StepWork {
 };
 
 /// Copies one side's forces into the buffer of all contact pairs, in whole lanes, 0 beyond the last node. `work`: null
-/// where nobody asks.
+/// if not needed.
 void put_out(const PairView& view, StepWork* work, int side, const ForceRun& run, const PairForceBuffer& near,
              PairForceBuffer& forces) {
   const int entry = view.contact_pair.entry[side], body = view.body(side), n = view.model.outline_of(body).count,
@@ -218,7 +218,7 @@ void put_out(const PairView& view, StepWork* work, int side, const ForceRun& run
 
 PairTotals compute_pair(const PairView& view, const PairStep* step, const ContactHistory& from, ContactHistory& to,
                         PairForceBuffer& forces) {
-  // Both passes add to both sides: near at hand, and what comes of it goes out once.
+  // Both half passes add to both sides, in a small buffer; the results are copied to the large one once.
   thread_local PairForceBuffer near;
   const ContactPair& contact_pair = view.contact_pair;
   ForceRuns runs = runs_in_table(contact_pair);
@@ -229,8 +229,8 @@ PairTotals compute_pair(const PairView& view, const PairStep* step, const Contac
   const auto passes = [&](const auto& law) { return compute_half_passes(law, view, runs, Accounts{from, to, near}); };
   PairTotals totals =
       contact_pair.integrated ? integrate_pair(view, runs, from, to, near) : std::visit(passes, contact_pair.law);
-  // The second pass has just added single numbers to the first side: loads of whole lanes wait for them, so it goes
-  // last.
+  // The second half pass has just added single numbers to the first side. Loads of whole lanes wait for these, so that
+  // side is copied last.
   for (const int side : {1, 0}) {
     std::optional<StepWork> work;
     if (step) work.emplace(view, *step, side);

@@ -52,21 +52,22 @@ bool overlaps(const PairView& view) {
 
 namespace {
 
-/// What slaves put on the nodes of a master, N/m2 per metre, by rows of the window: all as they stand, and the most
-/// that a single one can where it may have slid to by the next search. Where the slave is the coarser one that is more.
+/// Stiffness that slaves put on the nodes of a master, N/m2 per metre, by rows of the window: the sum at present
+/// positions, and the largest of a single slave where it may slide to before the next search. The latter is larger if
+/// the slave is coarser.
 class Carried {
  public:
   void clear(int rows) {
     all_.assign(static_cast<std::size_t>(rows), 0.0);
     single_.assign(static_cast<std::size_t>(rows), 0.0);
   }
-  /// `slid`: by how many segments it may slide.
+  /// `slid`: number of segments by which the slave may slide.
   void add(int row, double share, double slid, double stiffness) {
     if (row < 0 || row >= static_cast<int>(all_.size())) return;
     all_[row] += std::max(share, 0.0) * stiffness;
     single_[row] = std::max(single_[row], std::clamp(share + slid, 0.0, 1.0) * stiffness);
   }
-  /// A rigid body bears it all, wherever it stands.
+  /// A rigid body bears the sum, wherever it acts.
   void add_to(BodyKind kind, double* entries) const {
     for (std::size_t row = 0; row < all_.size(); ++row)
       entries[row] += kind == BodyKind::rigid ? all_[row] : std::max(all_[row], single_[row]);
@@ -76,7 +77,7 @@ class Carried {
   std::vector<double> all_, single_;
 };
 
-/// Of a slave beside a row: on its nodes, and on the next ones, which it may reach.
+/// Adds a slave beside a row to its nodes, and to the next ones, which it may reach.
 void add_beside(const Projection& p, int lane, double skin, double stiffness, Carried& carried) {
   const int row = static_cast<int>(p.row[lane]);
   const double slid = skin / p.length[lane];
@@ -86,7 +87,7 @@ void add_beside(const Projection& p, int lane, double skin, double stiffness, Ca
   carried.add(row + 2, p.xi[lane] - 1, slid, stiffness);
 }
 
-/// Of one pass: half the tributary lengths times the stiffness.
+/// Adds one half pass: half the tributary lengths times the stiffness.
 void add_pass_stiffness(const PairView& view, int slave_side, const double (&factor)[2], std::vector<double>& entries) {
   const double stiffness = stiffness_of(view.contact_pair.law), outward = reach_of(view.contact_pair.law) + view.skin;
   const HalfPass pass = make_half_pass(view, slave_side, runs_in_table(view.contact_pair));
@@ -97,7 +98,7 @@ void add_pass_stiffness(const PairView& view, int slave_side, const double (&fac
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(view.window, nodes.x, nodes.y, outward);
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
-      if (!p.hit[lane] || p.gap[lane] > outward) continue;  // beyond an end: only some of them are in the arc
+      if (!p.hit[lane] || p.gap[lane] > outward) continue;  // far beyond an end; the arc has only some of these
       const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
       entries[pass.slave_force + i + lane] += factor[slave_side] * k;
       add_beside(p, lane, view.skin, factor[1 - slave_side] * k, carried);

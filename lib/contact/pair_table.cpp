@@ -12,10 +12,10 @@
 namespace pliant {
 namespace {
 
-/// Room beyond what a new layout needs, for contact pairs that outgrow their places until the next.
+/// Capacity with spare room, for contact pairs that outgrow their places before the next layout.
 int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
 
-/// As of nodes that met nothing yet.
+/// Resets the records of one side to nodes without contact.
 void forget_all(const ContactPair& contact_pair, int side, ContactHistory& history) {
   const int begin = contact_pair.record[side], count = padded(contact_pair.nodes[side].count);
   history.clear(begin, count);
@@ -26,7 +26,7 @@ void forget_all(const ContactPair& contact_pair, int side, ContactHistory& histo
           broadcast(internal_variables[k].at_first);
 }
 
-/// The records of one side's nodes, from where another contact pair of the same bodies has them.
+/// Transfers the records of one side's nodes from another contact pair of the same bodies.
 void carry(const Model& model, const ContactPair& from, const ContactHistory& old, const ContactPair& to, int side,
            ContactHistory& history) {
   forget_all(to, side, history);
@@ -35,12 +35,12 @@ void carry(const Model& model, const ContactPair& from, const ContactHistory& ol
   });
 }
 
-/// Whole eights of records.
+/// Copies whole groups of eight records.
 void copy_eights(const ContactHistory& from, int first, int count, ContactHistory& to, int at) {
   std::copy_n(from.at(first), count / lane_count * from.columns, to.at(at));
 }
 
-/// The records of a contact pair alone, on which another may come to stand; none is left where they were.
+/// Moves the records of a contact pair aside, because others may take their place, and clears them there.
 void take_aside(ContactHistory& history, ContactPair& contact_pair, ContactHistory& aside) {
   const int size[2] = {padded(contact_pair.nodes[0].count), padded(contact_pair.nodes[1].count)};
   aside.columns = history.columns;
@@ -53,7 +53,8 @@ void take_aside(ContactHistory& history, ContactPair& contact_pair, ContactHisto
   }
 }
 
-/// Space for one side's numbers: where they were if they fit, else behind all others. False without room there.
+/// Finds space for one side's numbers: at the old place if they fit, else behind all others. Returns false without
+/// room.
 bool find_room(int wanted, int had, int room, int& used, int& at) {
   if (wanted <= had) return true;
   if (used + wanted > room) return false;
@@ -114,7 +115,7 @@ void PairTable::take(std::vector<ContactPair> contact_pairs, int records) {
   loaded();
 }
 
-/// Where the numbers of new contact pairs go. False, and nothing taken, where there is no room.
+/// Assigns memory to new contact pairs. Returns false, and changes nothing in the table, if there is no room.
 bool PairTable::take_room(const std::vector<int>& at, std::vector<ContactPair>& now, ContactHistory& history) {
   int records = records_, entries = entries_;
   for (std::size_t i = 0; i < at.size(); ++i) {
@@ -160,7 +161,7 @@ void PairTable::follow(const ContactHistory& from, ContactHistory& to) const {
 }
 
 void PairTable::move_history(const ContactPair& old, const ContactPair& now, ContactHistory& history) const {
-  thread_local ContactHistory aside;  // its memory is found once
+  thread_local ContactHistory aside;  // memory is allocated once
   ContactPair there = old;
   take_aside(history, there, aside);
   for (int side = 0; side < 2; ++side) carry(model_, there, aside, now, side, history);
@@ -171,9 +172,9 @@ ArcEntries PairTable::arc_of(const ContactPair& contact_pair, int side) const {
   return {arc.begin, arc.count, contact_pair.entry[side]};
 }
 
-/// What no search leaves behind, as in a checkpoint of something else.
+/// Throws ArchiveError for contact pairs that no search produces, as in a checkpoint of another model.
 void PairTable::refuse_others() const {
-  constexpr int far = 1 << 29;  // nodes along a wall, or periods: sums of them do not overflow
+  constexpr int far = 1 << 29;  // bound of nodes along a wall, or periods: their sums do not overflow
   const int bodies = static_cast<int>(model_.bodies.size());
   const auto is_arc = [](const Arc& arc) { return std::abs(arc.begin) < far && arc.count >= 0 && arc.count < far; };
   const auto fits = [](int at, int count, int room) { return at >= 0 && at % lane_count == 0 && at <= room - count; };

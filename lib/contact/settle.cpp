@@ -3,14 +3,14 @@
 
 namespace pliant {
 
-/// Forces of a contact pair after a step in which it repays some of what it owes, and what it owes then. Without a step
-/// it finds again what it repaid.
+/// Computes the forces of a contact pair after a step with the correction of its energy error, and updates that error.
+/// Without a step it applies the stored correction again.
 PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const StepStart* step,
                                  const ContactHistory& from, ContactHistory& to, PairForceBuffer& forces) {
   double &owed = to.owed[contact_pair] = from.owed[contact_pair],
          &repaid = to.repaid[contact_pair] = from.repaid[contact_pair];
   const PairTotals& before = last_.totals[contact_pair];
-  // Parts of a body that touches itself are others after a search.
+  // Parts of a body with self-contact change with a search.
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
                      (!view.contact_pair.of_itself() || view.contact_pair.found <= last_.refreshes);
   const auto rigid = [&](int side) {
@@ -19,7 +19,7 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
   };
   const PairStep way{known ? &step->position : nullptr, last_.forces, {rigid(0), rigid(1)}};
   const auto compute = [&](const PairView& as) { return compute_pair(as, known ? &way : nullptr, from, to, forces); };
-  // What is left when a pair parts is repaid by the forces of a law that still reaches it.
+  // The error that is left when a pair separates is corrected by the forces of a law that still reaches it.
   const auto compute_apart = [&] {
     ContactPair near = view.contact_pair;
     near.law = parting_law(near.law, skin_);
@@ -27,7 +27,7 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
   };
 
   PairTotals now, repaying;
-  // Of a pair that was apart these forces tell as well whether it still is.
+  // For a pair that was apart these forces also show whether it still is.
   const bool was_apart = known && owed != 0 && before.contacts == 0 && reach_of(view.contact_pair.law) == 0;
   if (was_apart) repaying = compute_apart();
   const bool still_apart = was_apart && repaying.deepest == 0;
@@ -35,7 +35,7 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
     now.work_before = repaying.work_before, now.pull = repaying.pull;
   else
     now = compute(view);
-  // What a dashpot takes depends on the step: what it seems to owe, it does not.
+  // The work of a dashpot depends on the step size: the difference is not an energy error.
   if (is_damped(view.contact_pair.law)) return now;
   if (known) owed += gain(now, step->elapsed, last_.elapsed) - (before.stored - now.stored - now.dissipated);
   if (now.contacts > 0) {

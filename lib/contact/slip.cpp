@@ -6,20 +6,20 @@
 namespace pliant {
 namespace {
 
-/// A place in the window: row, which may lie before or behind it, xi and the angle beyond an end.
+/// A point along the window: row, which may be outside the window, xi and the angle beyond an end.
 struct Place {
   int row;
   double xi, angle;
 };
 
-/// Faces whose tangents have a lesser cosine, turned by more than 120 degrees, are flanks of a fold.
+/// Faces with a smaller cosine between their tangents, which is a turn of over 120 degrees, are flanks of a fold.
 constexpr double folded = -0.5;
 
 double angle_of(double fan) { return std::asin(std::clamp(fan, -1.0, 1.0)); }
 
-/// Way around the corner at a row's first node, of a node at a height over its row and a gap. Where the wedges open,
-/// outside a convex corner or inside a re-entrant one, the node runs around it at the distance of the gap; where they
-/// close, the faces' ends are cut off on both sides.
+/// Path length around the corner at a row's first node, for a node at a height over its row and at a gap. Outside a
+/// convex corner or inside a re-entrant one wedges open, and the node moves around the corner at the distance of the
+/// gap. Elsewhere wedges close, and the ends of both faces are cut off.
 double corner(const MasterSegment& before, const MasterSegment& after, double height, double gap) {
   const double sine = before.tangent_x * after.tangent_y - before.tangent_y * after.tangent_x;
   const double cosine = before.tangent_x * after.tangent_x + before.tangent_y * after.tangent_y;
@@ -27,8 +27,8 @@ double corner(const MasterSegment& before, const MasterSegment& after, double he
   return height * turn > 0 ? gap * turn : 2 * height * std::tan(0.5 * turn);
 }
 
-/// A window of the whole outline is cut somewhere, and goes on there. In others, nodes move less than the skin between
-/// refreshes and stay on it.
+/// Segment of a row. A window of the whole outline continues cyclically beyond its ends. In other windows nodes stay on
+/// the window, because they move less than the skin between rebuilds.
 MasterSegment at(const MasterWindow& window, int row) {
   const int n = window.count();
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];
@@ -44,7 +44,7 @@ double way_onward(const MasterWindow& window, const Place& from, const Place& to
   return way;
 }
 
-/// Where a node stands, and the tangent that its shear acts along there.
+/// Position of a node, and the tangent along which its shear acts there.
 struct Stand {
   Vec2 position, tangent;
 };
@@ -55,8 +55,8 @@ Stand stand(const MasterSegment& segment, const Place& place, double gap) {
   return {Vec2(segment.x, segment.y) + place.xi * segment.length * along + gap * normal, Vec2(-normal.y(), normal.x())};
 }
 
-/// Displacement, the old gap taken as the present one, along the mean of the tangents at its ends: what shears of one
-/// size do work on. From flank to flank of a fold a node does not go around its bottom.
+/// Displacement at the present gap along the mean of both tangents, on which a constant shear does work. From flank to
+/// flank of a fold a node does not go around its bottom.
 double across_fold(const MasterWindow& window, const Place& from, const Place& to, double gap) {
   const Stand old = stand(at(window, from.row), from, gap), now = stand(at(window, to.row), to, gap);
   const int n = window.count(), turn = n == window.outline_count() ? turn_of(from.row, n) : 0;

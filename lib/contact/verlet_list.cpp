@@ -11,12 +11,12 @@ namespace pliant {
 namespace {
 
 constexpr double extra_skins = 4;
-/// Share of the skin by which a body may change its shape before its displacements are counted from another place.
+/// Spread of a body's displacements, as a share of the skin, from which the body gets a new reference.
 constexpr double blurred = 0.25;
-/// Share of the skin up to which a pair need not be searched when others are; of the broad phase's likewise. Few pairs
-/// move by much more than the others (docs/defaults.md).
+/// Share of the skin up to which a pair is kept when others are searched; likewise for the broad phase. Few pairs move
+/// by much more than the others (docs/defaults.md).
 constexpr double kept = 0.75;
-/// Rounding of displacements that are kept, of some skins, over the skin, many times over.
+/// Bound of the rounding of stored displacements of some skins, over the skin, with a wide margin.
 constexpr double rounded = 1e-4;
 
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
@@ -26,8 +26,8 @@ std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   return bodies;
 }
 
-/// The mean of a closed outline's nodes and how far they are from it at most; of its segments' lines the least
-/// distance, negative where it does not see all of them from inside.
+/// Mean of a closed outline's nodes, largest distance of the nodes from it, and least distance of the segments' lines
+/// from it. The latter is negative if the mean is outside some line.
 BodyPlace place_of(const Model& model, int body, const OutlineField& outlines) {
   const int begin = model.outline_offset[body], count = model.outline_of(body).count;
   const double first_x = outlines.x[begin], first_y = outlines.y[begin];
@@ -82,10 +82,10 @@ void VerletList::loaded() {
   use_.assign(pairs_.size(), all);
 }
 
-/// Finds motion_, and returns how far bodies have come from where the broad phase saw them, all of these places moved
-/// along with the mean of the bodies, m: only what bodies move against each other can bring pairs together that it left
-/// out. A wall lies in wait along all x, whatever its own displacement in x. All of it is the same along all axes, as
-/// all that says when pairs are searched must be: the stable step depends on where they were.
+/// Sets motion_ and returns how far bodies have come since the last broad phase, relative to the mean of all bodies, m.
+/// Only relative displacements can bring pairs together that the broad phase excluded. The box of a wall covers all x,
+/// whatever its own displacement in x. The result does not depend on the direction of the axes. All that determines
+/// when pairs are searched must have that property, because the stable step depends on the positions at the search.
 double VerletList::measure(const OutlineField& now) {
   parallel_for(count_of_bodies(), [&](int b) { motion_[b] = displacement_disc(model_, b, now, reference_); });
   double x = 0, y = 0;
@@ -107,7 +107,8 @@ double VerletList::measure(const OutlineField& now) {
   return farthest;
 }
 
-/// What spins comes out of nothing where it is round: from the disc within its outline as it was to the one around it.
+/// Distance by which a body may have left its place. A round body may spin without leaving it: the distance is from the
+/// disc inside its former outline to the disc around its present one.
 double VerletList::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
                                      const OutlineField& now) const {
   const BodyPlace& then = swept_at_[body];
@@ -117,13 +118,13 @@ double VerletList::come_out_of_place(int body, double from_mean, double drift_x,
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
 }
 
-/// By the discs of their nodes' displacements: at little cost, but blurred.
+/// Bound from the discs of the nodes' displacements: cheap, but an overestimate.
 double VerletList::displacement_bound(int pair, const OutlineField& now) const {
   return relative_displacement(pair_displacements_.displacement_bound(2 * pair, displacements(now)),
                                pair_displacements_.displacement_bound(2 * pair + 1, displacements(now)));
 }
 
-/// By each node's own displacement.
+/// Bound from each node's own displacement.
 double VerletList::displacement(int pair, const OutlineField& now) const {
   return relative_displacement(pair_displacements_.displacement(2 * pair, displacements(now)),
                                pair_displacements_.displacement(2 * pair + 1, displacements(now)));
@@ -138,7 +139,7 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
     if (!watched_[p]) return use_[p] = little, false;
-    // Below the skin by discs a pair holds, and what is likely will do.
+    // If the disc bound is below the skin, the pair is valid and an estimate suffices.
     const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : displacement(p, now);
     use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
     return use_[p] == all;
@@ -146,7 +147,8 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   return some || !(come_out_ < own_skin_);
 }
 
-/// A body that has changed its shape or turned since its reference would blur the displacements of all its pairs.
+/// Sets a new reference for bodies that have deformed or rotated since theirs. The bounds of all their pairs would
+/// become overestimates.
 void VerletList::reset_references(const OutlineField& here, const OutlineField& trial) {
   const auto is_due = [&](int b) { return displacement_spread(motion_[b]) >= blurred * skin_; };
   parallel_for(pair_displacements_.count(), [&](int e) {
@@ -185,8 +187,8 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
   return true;
 }
 
-/// Discs around their outlines are further from each other than the margin, where the broad phase saw them. Of pairs of
-/// grains that boxes alone let in this leaves few to be searched.
+/// Whether discs around both outlines were further apart than the margin at the broad phase. Of the pairs of grains
+/// that only boxes let in, few remain to be searched.
 bool VerletList::discs_are_apart(const BodyPair& pair) const {
   if (model_.bodies[pair.first].wall || model_.bodies[pair.second].wall) return false;
   const BodyPlace &a = swept_at_[pair.first], &b = swept_at_[pair.second];
@@ -195,8 +197,8 @@ bool VerletList::discs_are_apart(const BodyPair& pair) const {
   return dx * dx + dy * dy > reach * reach;
 }
 
-/// What is known of pairs that were found before stays known, unless they may have come from beyond the margin or gone
-/// there: which of them boxes let in depends on the axes.
+/// Replaces the pairs by those found. Data of pairs that were found before are kept, unless these may have entered or
+/// left the margin since. Which of those the boxes let in depends on the axes.
 void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   std::vector<char> stays(pairs_.size());
   parallel_for(count(), [&](int p) {
