@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-/// A box moved into the first period, and by how many periods.
+/// Box moved into the first period, and the number of periods.
 struct SweepEntry {
   double x_min, x_max;
   int body, turn;
@@ -30,8 +30,8 @@ std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>
   return entries;
 }
 
-/// Pairs of entry i with the entries after it in x, around the period as often as it reaches: itself is there once more
-/// a period on.
+/// Adds pairs of entry i with the entries after it in x, around the period as far as it extends. An entry meets itself
+/// one period further on.
 void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period,
                 double margin, std::vector<BodyPair>& pairs) {
   const SweepEntry& a = entries[i];

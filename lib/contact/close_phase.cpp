@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// The shortest run of entries marked so far.
+/// Shortest arc of the entries marked so far.
 struct Span {
   int begin = 1 << 30, end = -(1 << 30);
   void add(int i) { begin = std::min(begin, i), end = std::max(end, i + 1); }
@@ -28,15 +28,16 @@ Lanes signed_distance(const MasterSegment& segment, Lanes px, Lanes py) {
   return select(height < 0.0, -distance, distance);
 }
 
-/// How far to look, m.
+/// Search distances, m.
 struct Margins {
-  double reach;  ///< of the law, and a skin
+  double reach;  ///< reach of the law and a skin
   double skin;
-  double depth;  ///< to which contact sees below the master's segments
+  double depth;  ///< detection depth below the master's segments
 };
 
-/// Which nodes or segments of an outline are near, and the arc that holds them. Of a closed outline the shortest, so
-/// that it does not depend on the arc that boxes let in; but where a body touches itself, within the arc looked at.
+/// Nodes or segments of an outline that are near, and the arc that contains them. On a closed outline it is the
+/// shortest arc, which does not depend on the arc that boxes let in. In self-contact it stays within the arc that is
+/// searched.
 class Near {
  public:
   Near(const OutlineShape& shape, bool itself, std::vector<char>& flags)
@@ -59,12 +60,12 @@ class Near {
   Span span_;
 };
 
-/// Narrows one side's nodes, and the other's segments, given as `window`, to what can touch. A node outside can move to
-/// a depth of the skin, one inside a skin deeper; to find which face is nearest then, all within two skins of the
-/// present reach must be known. Returns the least distance between a node and a segment.
+/// Narrows one side's nodes, and the other's segments, given as `window`, to those that can touch. A node outside can
+/// move to a depth of the skin, one inside a skin deeper. To find the nearest face then, all segments within two skins
+/// of the present reach must be known. Returns the least distance between a node and a segment.
 double narrow(const ContactSide& slave, const ContactSide& master, const Arc& candidates, const MasterWindow& window,
               int first_segment, const Margins& margins, Arc& nodes, Arc& segments) {
-  thread_local std::vector<char> node_flags, segment_flags;  // so that their memory is found once
+  thread_local std::vector<char> node_flags, segment_flags;  // so that memory is allocated once
   const bool itself = &slave == &master;
   Near near_nodes(*slave.shape, itself, node_flags), near_segments(*master.shape, itself, segment_flags);
   const int n = slave.shape->count;
@@ -93,15 +94,15 @@ double narrow(const ContactSide& slave, const ContactSide& master, const Arc& ca
   return -largest(-least);
 }
 
-/// Segments at the nodes of an arc. A wall against a wall is looked at some way beyond the seam, so that it is the same
-/// on both sides.
+/// Segments at the nodes of an arc. A wall against a wall is searched some way beyond the end of the period, so that
+/// the result is the same on both sides of it.
 Arc segments_at(const ContactSide& side, const Arc& nodes, bool two_walls) {
   const int more = two_walls ? lane_count : 0;
   const Arc all{nodes.begin - 1 - more, nodes.count + 1 + 2 * more};
   return side.shape->turn_shift == 0 && all.count > side.shape->count ? Arc{nodes.begin, side.shape->count} : all;
 }
 
-/// With the medial neighbours of all.
+/// The arc with the medial neighbours of all its segments and nodes.
 Arc with_medial_neighbours(const OutlineShape& shape, const Arc& segments) {
   const int n = shape.count;
   if (segments.count == 0 || (shape.turn_shift == 0 && segments.count >= n)) return segments;
@@ -130,7 +131,7 @@ Arc with_medial_neighbours(const OutlineShape& shape, const Arc& segments) {
   return result;
 }
 
-/// Counts a closed outline's segments from the turn that makes one short arc of them and its nodes.
+/// Shifts the numbers of a closed outline's segments by a turn if segments and nodes then make a shorter arc.
 void bring_together(const OutlineShape& shape, const Arc& nodes, Arc& segments) {
   if (shape.turn_shift != 0 || nodes.count == 0 || segments.count == 0) return;
   const Arc here = segments;
@@ -140,7 +141,8 @@ void bring_together(const OutlineShape& shape, const Arc& nodes, Arc& segments) 
       segments = there;
 }
 
-/// Segments of a side that can touch: with a node near the other outline, or near a node of that. Slaves count once.
+/// Segments of a side that can touch: those with a node near the other outline, or near a node of it. Each slave
+/// segment occurs once.
 void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, ContactPair& contact_pair) {
   Arc &nodes = contact_pair.nodes[side], &segments = contact_pair.segments[side];
   if (nodes.count > 0) {
@@ -167,7 +169,8 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
   box_b.x_min += shift, box_b.x_max += shift;
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
-  double gap = std::max({look, margin + 2 * skin, longest + 4 * skin});  // at least, of what is not in rough arcs
+  double gap =
+      std::max({look, margin + 2 * skin, longest + 4 * skin});  // lower bound for all that is not in rough arcs
   find_rough_arcs(model, sides[0], sides[1], box_a, box_b, contact_pair, gap, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return gap;
   const bool two_walls = model.bodies[contact_pair.first].wall && model.bodies[contact_pair.second].wall;
@@ -175,13 +178,13 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
     const ContactSide& master = sides[1 - slave];
     const Arc segments = segments_at(master, rough[1 - slave], two_walls);
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
-    // The depth is that of the whole outline: what boxes let in of it depends on the axes.
+    // The depth follows from the whole outline: the part that boxes let in depends on the axes.
     const Margins margins{margin, skin, master.longest_segment + skin};
     const double least = narrow(sides[slave], master, rough[slave], scratch, segments.begin, margins,
                                 contact_pair.nodes[slave], contact_pair.segments[1 - slave]);
     gap = std::min(gap, least);
-    // Walls meet along the whole period: one image of each node is enough. A body as wide as the period may stand on
-    // two.
+    // Walls meet along the whole period: one image of each node suffices. A body as wide as the period may touch two
+    // images.
     if (two_walls)
       contact_pair.nodes[slave].count = std::min(contact_pair.nodes[slave].count, sides[slave].shape->count);
   }

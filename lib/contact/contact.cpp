@@ -19,7 +19,7 @@
 namespace pliant {
 namespace {
 
-/// Adds a range of numbers to another. Both must be readable beyond its end, up to whole lanes.
+/// Adds a range of numbers to another. Both are read beyond its end, up to whole lanes.
 void add_run(const double* from, int count, double* to) {
   for (int i = 0; i < count; i += lane_count)
     store(to + i, load(to + i) + select(first_lanes(count - i), load(from + i), Lanes{}));
@@ -124,8 +124,7 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
   });
 }
 
-/// Searches all pairs that exceed the skin, transfers the history, and returns whether candidates are valid for the
-/// trial.
+/// Searches pairs that exceed the skin and transfers the history. Returns whether candidates are valid for the trial.
 bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                     const RunClock& clock) {
   accept(history);
@@ -204,8 +203,7 @@ void ContactSystem::accept(const ContactHistory& history) {
   if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
-/// Prefetches the data that a contact pair reads and writes; each of the many pairs has its own. A write that waits for
-/// its cache line would delay all writes after it, and reads of them.
+/// Prefetches what a contact pair reads and writes: a write that waits for its cache line delays all later ones.
 void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
                              const ContactHistory& from, const ContactHistory& to,
                              const PairForceBuffer& forces) const {
@@ -224,7 +222,6 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
   }
 }
 
-/// Displacements of all outline nodes.
 const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
   moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
@@ -289,7 +286,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
 void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
-    // as for any pair, the body's parts may move by the skin relative to each other
+    // as for any pair: parts of the body may move by the skin relative to each other
     verlet_list_.add({b, b, 0}, found_at_.position);
     ContactPair of_body;
     of_body.first = of_body.second = b;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// The law's answer without what a dashpot adds and what is repaid, and what it then remembers.
+/// Response of the law without dashpot and energy correction, and the internal variables after it.
 template <class Law>
 Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
                const ContactHistory& history, int record, Record<Law>& now) {

@@ -15,20 +15,20 @@
 namespace pliant {
 namespace {
 
-/// Where a point stands above the nearest segment of an outline.
+/// Position of a point relative to the nearest segment of an outline.
 struct Nearest {
   double distance = 1e300, depth = 0, length = 1;
   int number = 0;
 };
 
-/// From a segment's first node, by the nearest image in a period.
+/// Vector from a segment's first node, by the nearest image in a period.
 Vec2 lever(const Vec2& point, const Vec2& node, double period) {
   Vec2 r = point - node;
   if (period > 0) r.x() -= period * std::round(r.x() / period);
   return r;
 }
 
-/// A body's outline as others look at it.
+/// A body's outline, prepared for queries of its distance.
 class OutlineView {
  public:
   OutlineView(const Model& model, const OutlineField& outlines, int body)
@@ -38,18 +38,18 @@ class OutlineView {
         box_(bounding_box(model, outlines, body)) {}
 
   int count() const { return shape_.count; }
-  /// In [0, count()]: behind the last one stands the first one's copy.
+  /// Node k in [0, count()]: after the last node comes the copy of the first.
   Vec2 node(int k) const { return {x_[k], y_[k]}; }
   const OutlineShape& shape() const { return shape_; }
   const Box& box() const { return box_; }
-  /// With the nodes by strips, for one that many look at. Lengths are those of now.
+  /// Sorts the nodes into strips, for an outline with many queries. Lengths are current.
   void sort_nodes() {
     double square = 0;
     for (int s = 0; s < count(); ++s) square = std::max(square, (node(s + 1) - node(s)).squaredNorm());
     strips_ = std::make_shared<NodeStrips>(x_, count(), std::sqrt(square), std::abs(shape_.turn_shift));
   }
 
-  /// `period`: of whichever image is nearest; 0: as it stands.
+  /// `period`: of the nearest image; 0: of the outline as it is.
   Nearest nearest_segment(const Vec2& point, double period = 0) const {
     Nearest nearest;
     const auto look = [&](int s) {
@@ -58,7 +58,7 @@ class OutlineView {
       const Vec2 r = lever(point, node(s), period), tangent = along_segment / length;
       const double along = std::clamp(r.dot(tangent), 0.0, length), distance = (r - along * tangent).norm();
       const double depth = r.y() * tangent.x() - r.x() * tangent.y();
-      // At a corner two segments are equally near; the one seen more steeply tells in from out.
+      // At a corner two segments are equally near; the one seen more steeply tells inside from outside.
       const bool same = std::abs(distance - nearest.distance) <= 1e-9 * length;
       if (same ? std::abs(depth) > std::abs(nearest.depth) : distance < nearest.distance)
         nearest = {distance, depth, length, s};
@@ -70,7 +70,7 @@ class OutlineView {
     return nearest;
   }
 
-  /// Calls visit(node) for all that may lie between these, and maybe others.
+  /// Calls visit(node) for all nodes that may lie in [x_min, x_max], and maybe others.
   template <class Visit>
   void for_each_between(double x_min, double x_max, double period, Visit&& visit) const {
     if (strips_ && fits(period))
@@ -79,7 +79,7 @@ class OutlineView {
       for (int k = 0; k < count(); ++k) visit(k);
   }
 
-  /// Whether a point is on the open side of everything in the box around it: off the box, or beyond a wall's surface.
+  /// Whether a point is certainly outside: outside the bounding box or, for a wall, beyond its whole surface.
   bool is_clear_of(const Vec2& point, double period) const {
     if (shape_.turn_shift != 0) return shape_.turn_shift < 0 ? point.y() > box_.y_max : point.y() < box_.y_min;
     const Vec2 middle(0.5 * (box_.x_min + box_.x_max), 0.5 * (box_.y_min + box_.y_max));
@@ -97,7 +97,7 @@ class OutlineView {
   std::shared_ptr<const NodeStrips> strips_;  ///< shared by copies; null: not sorted
 };
 
-/// All outlines of a moment; long ones are sorted once.
+/// All outlines at one time; long ones are sorted once.
 class OutlineViews {
  public:
   OutlineViews(const Model& model, const OutlineField& outlines) : model_(model), outlines_(outlines) {
@@ -117,8 +117,8 @@ class OutlineViews {
   std::map<int, OutlineView> sorted_;
 };
 
-/// The slave looks at the master: moved by `shift` in x or, where one is a wall, at whichever image in a period is
-/// nearest.
+/// Slave and master of a query. The master is shifted by `shift` in x or, if one of them is a wall, taken at its
+/// nearest image in a period.
 struct Sight {
   int slave, master;
   double shift = 0, period = 0;
@@ -149,7 +149,7 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
   });
 }
 
-/// Of the nodes of a contact pair of a body with itself, as contact sees them.
+/// Deepest node of a contact pair of a body with itself, by the projection of contact.
 void look_at_itself(const PairView& view, DeepestNode& deepest) {
   const int body = view.contact_pair.first;
   const OutlineShape& shape = view.model.outline_of(body);
@@ -165,7 +165,7 @@ void look_at_itself(const PairView& view, DeepestNode& deepest) {
   });
 }
 
-/// Of two bodies on the same spot no node is deep, but their middles are.
+/// Whether two bodies are at nearly the same place. Their nodes are not deep then, but their centres are.
 bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPair& pair) {
   if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return false;
   const OutlineView first = views[pair.first], second = views[pair.second];
@@ -176,8 +176,8 @@ bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPai
   return own.depth > own.length && other.depth > other.length;
 }
 
-/// Pairs whose boxes meet, and walls with every body that is not all on their open side: what is behind a wall's
-/// surface lies in the wall.
+/// Pairs whose boxes overlap, and walls with every body that is not wholly on their open side: all that is behind a
+/// wall's surface is inside the wall.
 std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineField& outlines) {
   const int bodies = static_cast<int>(model.bodies.size());
   std::vector<Box> boxes(model.bodies.size());
@@ -187,7 +187,7 @@ std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineFi
     if (!model.bodies[p.first].wall && !model.bodies[p.second].wall) pairs.push_back(p);
   for (int wall = 0; wall < bodies; ++wall) {
     if (!model.bodies[wall].wall) continue;
-    const bool above = model.outline_of(wall).turn_shift < 0;  // its open side
+    const bool above = model.outline_of(wall).turn_shift < 0;  // the open side
     for (int body = 0; body < bodies; ++body) {
       const bool clear = above ? boxes[body].y_min > boxes[wall].y_max : boxes[body].y_max < boxes[wall].y_min;
       if (!clear && (!model.bodies[body].wall || body < wall)) pairs.push_back({body, wall, 0});

@@ -12,16 +12,16 @@
 namespace pliant {
 namespace {
 
-/// Shallower ones are rounding of positions, over the longest segment near.
+/// Smaller depths, over the longest segment near, are rounding of positions.
 constexpr double least_depth_share = 1e-9;
 
-/// A node below the other body's outline.
+/// Node below the other body's outline.
 struct DeepNode {
   double depth, share, stored;  ///< m, -, J/m
   Vec2 normal;                  ///< unit, from the first body of the contact pair to the second
 };
 
-/// What compression stores at a gap below 0, J/m2: all but cohesion's share, which is there at gap 0 too.
+/// Energy of compression at a gap below 0, J/m2: without cohesion's share, which is present at gap 0 too.
 template <class Law>
 Lanes compression(const Law& law, Lanes gap) {
   return law(gap).energy - law(Lanes{}).energy;
@@ -49,8 +49,8 @@ const DeepNode& deepest_of(const std::vector<DeepNode>& nodes) {
   return *std::max_element(nodes.begin(), nodes.end(), [](const auto& a, const auto& b) { return a.depth < b.depth; });
 }
 
-/// Along the deepest node's normal: a node leaves a convex body with the line of its own segment. One beside a corner
-/// leaves it through the deepest node's face.
+/// Separation along the deepest node's normal. A node leaves a convex body through the line of its own segment. A node
+/// beside a corner leaves it through the deepest node's face.
 double separation_along(const Vec2& direction, const std::vector<DeepNode>& nodes) {
   constexpr double same_face = 0.5;  // cosine between the normals
   double separation = 0;
@@ -67,7 +67,7 @@ bool on_one_lattice(const Model& model, int first, int second) {
   return kind == PackingKind::hexagonal || kind == PackingKind::grid;
 }
 
-/// Of a lattice: neighbours move apart in proportion to their distance.
+/// Factor on the pitch of a lattice: neighbours move apart in proportion to their distance.
 double growth_of(const Model& model, const ContactPair& contact_pair, double separation, const Vec2& normal) {
   const Vec2 image(contact_pair.images * model.scene.period.value_or(0), 0);
   const double distance =
@@ -75,7 +75,7 @@ double growth_of(const Model& model, const ContactPair& contact_pair, double sep
   return distance > separation ? 1 + separation / distance : 1;
 }
 
-/// Rounded up to two digits, so that who follows it is on the safe side.
+/// Rounds up to two digits, so that the advice is on the safe side.
 double rounded_up(double length) {
   const double digit = std::pow(10.0, std::floor(std::log10(length)) - 1);
   return std::ceil(length / digit) * digit;
@@ -89,7 +89,7 @@ InitialOverlap initial_overlap(const Model& model, const ContactSystem& contact,
   for (const ContactPair& contact_pair : contact.contact_pairs()) {
     const std::vector<DeepNode> nodes = deep_nodes({model, outlines, contact_pair, contact.skin(), thread_scratch()});
     if (nodes.empty()) continue;
-    // contact pairs with several images stand side by side
+    // contact pairs of one pair of bodies with several images are adjacent
     const std::pair<int, int> pair{contact_pair.first, contact_pair.second};
     overlap.pairs += pair != last;
     last = pair;

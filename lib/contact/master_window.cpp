@@ -30,11 +30,11 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
   const int first_turn = turn_of(segments.begin, shape.count);
   first_number_ = segments.begin - first_turn * shape.count;
   const int rows = count_ + 1;
-  // Whole lanes, and two for look_up.
+  // Whole lanes, and at least two vectors for look_up.
   const std::size_t wanted = std::max<std::size_t>(static_cast<std::size_t>(padded(rows) / lane_count), 2);
   if (stride_ < wanted) stride_ = wanted, entries_.assign(columns * stride_, Lanes{});
   const Vec2 origin(outline_x[first_number_] + shift + first_turn * shape.turn_shift, outline_y[first_number_]);
-  // Of the segment before the first, the tangent is of use: for the bisector at the first node.
+  // The segment before the first gives its tangent for the bisector at the first node.
   const int before = segments.begin - 1 - turn_of(segments.begin - 1, shape.count) * shape.count;
   const Segments last(outline_x + before, outline_y + before);
   before_ = last.length[0];

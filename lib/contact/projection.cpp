@@ -3,12 +3,13 @@
 namespace pliant {
 namespace {
 
-/// Distances to an end node that two segments share differ by rounding: the compiler may contract them in two ways.
+/// Tolerance for distances to an end node that two segments share. They differ by rounding, as the compiler may
+/// contract them in two ways.
 constexpr double same_distance = 1e-12;
 
-/// Row of the nearest segment, at most `reach` off; -1: none. Wedges do not count: they mislead where a face ends
-/// before the bisector between it and its neighbour does. Of the two segments at an end node that which is seen more
-/// steeply: it tells in from out. Past the ends of the window nothing is near.
+/// Row of the nearest segment, at most `reach` away; -1: none. Voronoi regions do not count: they mislead where a face
+/// ends before the bisector between it and its neighbour does. Of the two segments at an end node the one seen more
+/// steeply counts, as it tells inside from outside. Beyond the ends of the window nothing is near.
 Lanes find_nearest_segments(const MasterWindow& window, Lanes px, Lanes py, double reach) {
   Lanes nearest = broadcast(reach * reach), steepest{}, found = broadcast(-1);
   const int last = window.count() - 1;

@@ -21,7 +21,7 @@ bool inside(const Box& box, const Vec2& p) {
   return p.x() >= box.x_min && p.x() <= box.x_max && p.y() >= box.y_min && p.y() <= box.y_max;
 }
 
-/// Which turns of a wall's outline reach over [x_min, x_max].
+/// Finds the turns of a wall's outline that cover [x_min, x_max] of the target.
 void find_turns(ContactSide& side, const Box& own, const Box& target) {
   side.first_turn = side.last_turn = 0;
   if (side.shape->turn_shift == 0) return;
@@ -45,11 +45,11 @@ std::pair<double, double> extent(const ContactSide& side, const Box& box, const 
   return result;
 }
 
-/// Nodes inside the box with coordinate along d of at least `least`, as one arc.
+/// Nodes inside the box with a coordinate along d of at least `least`, as one arc.
 Arc select_arc(const ContactSide& side, const Box& box, const Vec2& d, double least) {
   const int n = side.shape->count;
   if (side.shape->turn_shift == 0) {
-    thread_local std::vector<char> flags;  // so that its memory is found once
+    thread_local std::vector<char> flags;  // so that memory is allocated once
     flags.resize(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) {
       const double x = side.x[i] + side.shift, y = side.y[i];
@@ -100,7 +100,7 @@ Arc covering_arc(const std::vector<char>& flags) {
 void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b,
                      const ContactPair& pair, double margin, Arc (&arcs)[2]) {
   arcs[0] = arcs[1] = {};
-  // A segment more, because the end of a touched segment that lies beyond the plane may be the far one.
+  // One more segment, because that end of a touched segment which is beyond the plane may be the far one.
   const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
   find_turns(b, box_b, inflated(box_a, reach_b));
   const Box region_a = model.bodies[pair.second].wall ? Box{-1e300, 1e300, box_b.y_min - reach_a, box_b.y_max + reach_a}

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-/// Along each of eight slave segments.
+/// Bounds of a function along each of eight slave segments.
 struct Bounds8 {
   Lanes low, high;
 };
@@ -20,7 +20,7 @@ Bounds8 bounds(double c_x, double c_y, double c, Lanes x0, Lanes y0, Lanes x1, L
   return {min(at0, at1), max(at0, at1)};
 }
 
-/// The largest distance from a node at which its fan counts; 0: it has none.
+/// Largest distance from a node at which its vertex region counts; 0: the node has none.
 double fan_radius(const MasterSegment& after, const GapRanges& ranges) {
   const double turn = after.bisector_x * after.tangent_y - after.bisector_y * after.tangent_x;
   if (std::abs(turn) < least_turn) return 0;
@@ -35,13 +35,14 @@ void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window,
   if (rows.count == 0) return;
   const double *x = slaves.x.data(), *y = slaves.y.data();
   const MasterSegment start = window[rows.begin], end = window[rows.end()];
-  const double farthest = std::max(ranges.deepest(), ranges.reach);  // below a segment's line, also in a fan outside
+  const double farthest =
+      std::max(ranges.deepest(), ranges.reach);  // below a segment's line, also for a vertex region outside
   const bool whole = start.x == end.x && start.y == end.y;
   past_end_.assign(static_cast<std::size_t>(padded(slaves.segments) / lane_count), ~LaneBits{});
   for (int row = rows.begin; row <= rows.end(); ++row) {
     const MasterSegment m = window[row];
     const double tx = m.tangent_x, ty = m.tangent_y, margin = 1e-9 * m.length;  // far more than rounding
-    // The first node may have the fan of the last.
+    // On a whole outline the first node has the vertex region of the last.
     const double radius = row == rows.end() && whole ? 0 : fan_radius(m, ranges);
     for (int i = 0; i < slaves.segments; i += lane_count) {
       LaneBits& past_end = past_end_[static_cast<std::size_t>(i / lane_count)];

@@ -5,8 +5,8 @@ namespace {
 
 using Column = MasterWindow::Column;
 
-/// Between the perpendiculars at the ends of a segment, and rounding beyond: what lies on one of them is as near to the
-/// segment as to its end.
+/// Part between the perpendiculars at the ends of a segment, and rounding beyond. A point on a perpendicular is as near
+/// to the segment as to its end.
 Span8 strip_of(const Linear& along, Lanes length) {
   const Lanes end = (1 + Span8::rounding) * length, start = length - end;
   Span8 part;
@@ -15,7 +15,7 @@ Span8 strip_of(const Linear& along, Lanes length) {
   return part;
 }
 
-/// From nodes to the ends of slave segments.
+/// Vectors from nodes to the ends of slave segments.
 struct FromNode {
   Lanes x0, y0, x1, y1;
   FromNode(const SlaveSegments& slaves, const NodeLanes& nodes)
@@ -23,11 +23,11 @@ struct FromNode {
   Linear along(Lanes tx, Lanes ty) const { return {x0 * tx + y0 * ty, x1 * tx + y1 * ty}; }
 };
 
-/// Between the normals of both segments of a node, past the end of the one and before the start of the other.
+/// Part between the normals of both segments of a node, past the end of the one and before the start of the other.
 Span8 fan_between(const Linear& before, const Linear& after) {
   Span8 fan;
   fan.keep(before), fan.keep({-after.at0, -after.at1});
-  // On the normal itself there is none: the fan of a straight node has no width.
+  // There is no part on the normal itself: the vertex region of a straight node has no width.
   const LaneBits on_normal = ((before.at0 == 0.0) & (before.at1 == 0.0)) | ((after.at0 == 0.0) & (after.at1 == 0.0));
   fan.high = select(on_normal, broadcast(-1), fan.high);
   return fan;
@@ -38,12 +38,12 @@ Span8 fan_of(const SlaveSegments& slaves, const NodeLanes& nodes) {
   return fan_between(from.along(nodes.before_x, nodes.before_y), from.along(nodes.after_x, nodes.after_y));
 }
 
-/// In the fan of a node, and nearer to it than to a line at this height: within a parabola.
+/// Part in the vertex region of a node and nearer to it than to a line at this height: within a parabola.
 Span8 nearer_to_node(const SlaveSegments& slaves, const NodeLanes& nodes, const Linear& height) {
   Span8 fan = fan_of(slaves, nodes);
   const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0;
   const Lanes change = height.at1 - height.at0, x0 = slaves.x0 - nodes.x, y0 = slaves.y0 - nodes.y;
-  // Where a s^2 + 2 half s + c < 0. Normal to the line a is rounding, and there may be one end only.
+  // Solves a s^2 + 2 half s + c < 0. If the slave is normal to the line, a is rounding, and there may be one root only.
   const Lanes square = dx * dx + dy * dy, a = square - change * change, half = x0 * dx + y0 * dy - height.at0 * change,
               c = x0 * x0 + y0 * y0 - height.at0 * height.at0, discriminant = half * half - a * c;
   constexpr double rounding = 1e-14;
@@ -60,7 +60,7 @@ Span8 nearer_to_node(const SlaveSegments& slaves, const NodeLanes& nodes, const 
   return fan;
 }
 
-/// But for what all nodes have in common, of second order along the segment.
+/// Squared distance without a term of second order along the segment, which all nodes have in common.
 Linear squared_distance(const SlaveSegments& slaves, const NodeLanes& nodes) {
   const FromNode from(slaves, nodes);
   return {from.x0 * from.x0 + from.y0 * from.y0, from.x1 * from.x1 + from.y1 * from.y1};
@@ -68,7 +68,8 @@ Linear squared_distance(const SlaveSegments& slaves, const NodeLanes& nodes) {
 
 Span8 only(LaneBits which, const Span8& part) { return {part.low, select(which, part.high, broadcast(-1))}; }
 
-/// Rows that eight others have in a list, one each; calls visit(LaneBits rows, LaneBits which have one).
+/// Calls visit(LaneBits rows, LaneBits lanes that have one) for the rows in the lists of eight others, one from each at
+/// a time.
 template <class Count, class Neighbour, class Visit>
 void for_each_neighbour(LaneBits rows, LaneBits hit, const Count& count, const Neighbour& neighbour, Visit&& visit) {
   std::size_t most = 0;
@@ -148,10 +149,10 @@ void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
     const LaneBits near =
         pairs.valid & (inside ? min(height.at0, height.at1) < 0.0 : max(height.at0, height.at1) > 0.0);
     if (!any(near)) continue;
-    // What is nearer to a segment than to its neighbours, on one side of the outline.
+    // Part nearer to a segment than to its neighbours, on one side of the outline.
     Span8 part;
     const bool has_rivals = inside && window_.has_medial_neighbours();
-    // By the bisector, but where a fan lies between.
+    // Cut by the bisector, unless a vertex region is between.
     LaneBits by_start = (inside ? start_turn : -start_turn) > -least_turn,
              by_end = (inside ? end_turn : -end_turn) > -least_turn;
     const NextLanes before = has_rivals ? shorter_next(rows, -1, by_start) : NextLanes{},
@@ -162,7 +163,7 @@ void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
     if (!any(near & part.some())) continue;
     Spans8 spans(part);
     if (has_rivals) {
-      // Past the bisector, as far as feet on the next segment are on it.
+      // Removes the part past the bisector, as far as its points project onto the next segment.
       const auto remove_past = [&](const NextLanes& next, const Linear& bisector, const Linear& from_node) {
         Span8 past = only(next.shorter, {});
         past.keep({-bisector.at0, -bisector.at1});
@@ -200,7 +201,7 @@ void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans
       [&](LaneBits others, LaneBits have) {
         const Beside there = beside_row(pairs.segments, others);
         Span8 nearer = strip_of(there.along, there.length);
-        const Lanes tie = select(others < pairs.row, Lanes{}, broadcast(-1e-300));  // one of them has it
+        const Lanes tie = select(others < pairs.row, Lanes{}, broadcast(-1e-300));  // one of the two gets it
         nearer.keep({there.height.at0 - height.at0 + tie, there.height.at1 - height.at1 + tie});
         nearer.keep({-there.height.at0 - height.at0, -there.height.at1 - height.at1});
         spans.remove(only(have, nearer));
@@ -233,7 +234,7 @@ Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& 
   return spans;
 }
 
-/// Where it begins the strips of both segments end, also by rounding.
+/// Vertex region that begins where the strips of both segments end, also by rounding.
 Span8 SegmentCuts::fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const {
   LaneBits last = rows - 1;
   if (window_.count() == window_.outline_count()) last += (rows == 0) & window_.count();
@@ -250,7 +251,7 @@ void SegmentCuts::in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, Lan
   const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0, x0 = slaves.x0 - nodes.x,
               y0 = slaves.y0 - nodes.y;
   const Lanes square = dx * dx + dy * dy, inverse = 1.0 / square, foot = -(x0 * dx + y0 * dy) * inverse;
-  const Lanes across = x0 * dy - y0 * dx, nearest = across * across * inverse;  // squared distance of the line
+  const Lanes across = x0 * dy - y0 * dx, nearest = across * across * inverse;  // squared distance of the slave's line
   const auto half_chord = [&](double r) { return r == 0 ? Lanes{} : sqrt(max(r * r - nearest, Lanes{}) * inverse); };
   for (const bool inside : {true, false}) {
     const double radius = inside ? ranges_.deepest() : ranges_.reach;

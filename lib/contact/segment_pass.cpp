@@ -13,22 +13,22 @@
 namespace pliant {
 namespace {
 
-/// What a pass needs besides the law.
+/// Data that a half pass needs besides the law.
 struct SegmentHalfPass {
   const HalfPass& pass;
   const MasterWindow& window;
-  const PairMotion* moved;   ///< in the step; null: not known
-  const PairMotion* speeds;  ///< now; null: nobody asks
+  const PairMotion* moved;   ///< displacements in the step; null: unknown
+  const PairMotion* speeds;  ///< current velocities; null: not needed
   PairForceBuffer& forces;
 };
 
 struct Totals {
   double stored = 0, dissipated = 0, damping_power = 0, squares = 0, deepest = 0;
-  int segments = 0;  ///< in touch
+  int segments = 0;  ///< in contact
 };
 
-/// Puts forces on the nodes of both bodies; the reaction of what acts at s goes to both nodes of the master's segment
-/// by xi. `turn`: of the couple of shears, added to the second of these and taken from the first.
+/// Adds forces to the nodes of both bodies. The reaction to a force at s goes to both nodes of the master's segment by
+/// xi. `turn_x`, `turn_y`: the couple of shears, added to the second of these nodes and subtracted from the first.
 void add_forces(const SegmentHalfPass& at, LaneBits slave, LaneBits row, LaneBits hit, const PairForces& f,
                 const Linear& xi, Lanes turn_x, Lanes turn_y) {
   const Lanes all_x = f.x[0] + f.x[1], all_y = f.y[0] + f.y[1], change = xi.at1 - xi.at0;
@@ -44,8 +44,8 @@ void add_forces(const SegmentHalfPass& at, LaneBits slave, LaneBits row, LaneBit
   });
 }
 
-/// Eight pairs that shear: their normal forces, and integrals of tangents times powers of s, and of gaps, of which the
-/// shears of nodes make forces.
+/// Eight pairs with shear: their normal forces, integrals of tangents times powers of s, and integrals of gaps. From
+/// these the shear tractions of nodes make forces.
 struct ShearingPairs {
   LaneBits hit, slave, row;
   Lanes tangent_x, tangent_y, inverse_length;  ///< of the master's segment
@@ -54,7 +54,7 @@ struct ShearingPairs {
   Lanes shear_x[3], shear_y[3];  ///< m
   Moments gap;                   ///< m2
 
-  /// With shears at both ends, linear between them.
+  /// Adds forces for shear tractions at both ends, linear between them.
   void put_out(const SegmentHalfPass& at, Lanes shear0, Lanes shear1) const {
     const Lanes change = shear1 - shear0;
     const Lanes all_x = shear0 * shear_x[0] + change * shear_x[1], all_y = shear0 * shear_y[0] + change * shear_y[1],
@@ -68,7 +68,7 @@ struct ShearingPairs {
   }
 };
 
-/// Memory of a pass that is found once.
+/// Memory of a half pass that is allocated once.
 struct PassScratch {
   NodeSums sums;
   std::vector<ShearingPairs> shearing;
@@ -76,7 +76,7 @@ struct PassScratch {
   std::vector<char> touched;  ///< [slave segments]
 };
 
-/// Visits the points of a pass: tractions of its law become forces of pairs and sums of nodes.
+/// Visits the points of a half pass: turns tractions of its law into forces of pairs and sums of nodes.
 template <class Law>
 class TractionVisitor {
  public:
@@ -171,7 +171,7 @@ class TractionVisitor {
     return traction;
   }
 
-  /// The dashpot's pressure, and what friction makes of it.
+  /// Adds the dashpot's pressure and its friction.
   template <class Point>
   void add_damping(const Point& p, Lanes normal_x, Lanes normal_y, Traction& traction) {
     const Lanes rate = rates_.along(normal_x, normal_y, p.s, xi_.at(p.s));
@@ -184,21 +184,22 @@ class TractionVisitor {
   const SegmentHalfPass& at_;
   PassScratch& scratch_;
   Totals& totals_;
-  // Of the eight pairs at hand:
+  // For the current eight pairs:
   const SegmentPairs* pairs_ = nullptr;
   LaneBits hit_{};
   Linear xi_;
   Lanes stored_, squares_, damping_power_;
   Moments pressure_;    ///< beside segments
-  PairForces in_fans_;  ///< of pressures in the fans of nodes
+  PairForces in_fans_;  ///< of pressures in vertex regions
   Moments weight_, limit_, way_, gap_;
-  Lanes beside_[3], shear_x_[3], shear_y_[3];  ///< weights beside segments, and tangents in fans, times powers of s
+  Lanes beside_[3], shear_x_[3],
+      shear_y_[3];  ///< weights beside segments, tangents in vertex regions, times powers of s
   TangentialMotion motion_;
   SpeedPast rates_;
 };
 
-/// Slip of each node: a length of contact that comes is unstretched, and one that goes takes its energy along, after
-/// half of the step: forces of before and now do half of its work each.
+/// Updates the slip of each node. New length of contact is unstretched, and lost length takes its energy along, after
+/// half of the step: forces at the start and at the end each do half of its work.
 template <class Law>
 void slide_nodes(const Law& law, const HalfPass& pass, const ContactHistory& from, ContactHistory& to, NodeSums& sums,
                  Totals& totals) {

@@ -8,12 +8,12 @@
 namespace pliant {
 namespace {
 
-/// What points of contact in outputs are made of: of each slave node, times its hat function.
+/// Sums for contact points in outputs: integrals for each slave node, weighted by its hat function.
 class NodeTractions {
  public:
   std::vector<double> weight, gap, normal_x, normal_y, force_x, force_y, shear;  ///< m, m2, m, N/m
 
-  /// `shears`: of nodes, Pa, on one behind the last as well.
+  /// `shears`: shear tractions of nodes, Pa, with one more entry after the last.
   template <class Law>
   void find(const Law& law, const HalfPass& pass, const MasterWindow& window, const std::vector<double>& shears) {
     const auto all = {&weight, &gap, &normal_x, &normal_y, &force_x, &force_y, &shear};
@@ -54,12 +54,12 @@ class NodeTractions {
       }
     } visitor{law, *this, shears};
     thread_quadrature().run(pass, window, gap_ranges(law, window.depth()), visitor);
-    if (pass.segments == pass.nodes.count)  // the last node of a whole outline is the first one
+    if (pass.segments == pass.nodes.count)  // on a whole outline the last node is the first one
       for (std::vector<double>* of : all) of->front() += of->back();
   }
 };
 
-/// Of the nodes of a pass, and of the first one again behind the last.
+/// Shear tractions of the nodes of a half pass, and of the first one again after the last.
 template <class Law>
 std::vector<double> shears_of(const Law& law, const HalfPass& pass, const ContactHistory& history) {
   std::vector<double> shears(static_cast<std::size_t>(pass.nodes.count) + 1, 0.0);
@@ -76,7 +76,7 @@ void add_points(const PairView& view, const HalfPass& pass, int side, const Node
     const double weight = found.weight[i];
     if (!(weight > 0)) continue;
     const Vec2 force(found.force_x[i], found.force_y[i]), mean(found.normal_x[i], found.normal_y[i]);
-    // Beside corners normals differ; what a node bears in all has one direction.
+    // Normals differ at corners; the total force on a node has one direction.
     const Vec2 along = force.norm() > 0 ? force : mean;
     const Vec2 normal = along.norm() > 0 ? Vec2((along.dot(mean) < 0 ? -1 : 1) * along.normalized()) : Vec2(0, 0);
     const int node = slave_index(pass, i), turn = turn_of(pass.nodes.begin + i, pass.slave->count);

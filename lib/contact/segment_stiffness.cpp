@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-/// The part of each of eight segments that may come to stand beside any of a master's.
+/// The part of each of eight segments that may come to be beside any segment of a master.
 struct Hull8 {
   Lanes low = broadcast(1), high{};
   void add(LaneBits hit, const Span8& part) {
@@ -15,7 +15,7 @@ struct Hull8 {
   }
 };
 
-/// Before the next search outlines move against each other by the skin.
+/// Part within reach of a master segment. Before the next search outlines move relative to each other by the skin.
 Span8 within_reach(const SlaveSegments& slaves, const MasterSegment& m, double reach, double depth, double skin) {
   const Lanes x0 = slaves.x0 - m.x, y0 = slaves.y0 - m.y, x1 = slaves.x1 - m.x, y1 = slaves.y1 - m.y;
   const Lanes height0 = x0 * m.tangent_y - y0 * m.tangent_x, height1 = x1 * m.tangent_y - y1 * m.tangent_x;
@@ -40,7 +40,7 @@ void add_pass(const PairView& view, const HalfPass& pass, int slave_side, const 
     const double *x = arc.x.data() + i, *y = arc.y.data() + i;
     const SlaveSegments slaves{load(x), load(y), load(x + 1), load(y + 1), load(&arc.lengths[i])};
     Hull8 hull;
-    Lanes parts{};  // of one segment these may overlap, as it may come to stand beside either of two
+    Lanes parts{};  // these may overlap, as a point may come to be beside either of two segments
     const auto for_each_part = [&](auto&& visit) {
       for (int row = pass.rows.begin; row < pass.rows.end(); ++row) {
         const MasterSegment m = window[row];

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// Patches that were weighed keep what they had: weighed where they are now, they would miss what they can still reach
-/// before they are searched again.
+/// Transfers the entries of contact pairs that were counted before. Counted at their present positions, they would miss
+/// what they can still reach before the next search.
 void StiffnessBound::follow_layout(const PairTable& table) {
   std::vector<double> entries(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
   auto old = weighed_.begin();
