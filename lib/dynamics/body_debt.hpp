@@ -6,41 +6,45 @@
 
 namespace pliant {
 
-/// Steps between settlements: each looks at all strain energies, and costs a step's internal forces.
+/// Steps between corrections: each evaluates all strain energies, and costs as much as a step's internal forces.
 constexpr int settling_period = 200;
-/// Of a debt, what a settlement takes back or gives: what is owed flickers with the forces, so ten make a mean.
+/// Share of the energy error that one correction removes. The error fluctuates with the forces, so about ten
+/// corrections average it.
 constexpr double settled_share = 0.1;
-/// Of velocities, most that a settlement changes: 1e-5 a step. What is made in bodies that ring is a hundredth of that
-/// (verify/undamped), in a disc that bounces a tenth or so.
+/// Largest relative change of velocities by one correction: 1e-5 a step. The errors of vibrating bodies are a hundredth
+/// of that (verify/undamped), those of a bouncing disc about a tenth.
 constexpr double most_settled = 1e-5 * settling_period;
-/// Over the kinetic energy of vibrations: beyond, a debt waits, lest a loud past shake what all but stands still.
+/// Largest energy error over the kinetic energy of vibrations. A larger error waits, as its correction would shake a
+/// body that is nearly at rest.
 constexpr double most_owed = 1;
 
-/// Undamped compliant bodies that keep their energy (docs/method.md 6). Equal steps of velocity Verlet, for themselves,
-/// keep K + U - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, dx and dF of a step, but for third powers
-/// of the step; where forces are linear, to rounding. Contacts repay what they make or lose (contact/energy_debt.hpp),
-/// and so leave what stresses would have given back to them: bodies that ring heat; so they do where steps change. What
-/// a body has beyond its start and what contacts and gravity did to it is its debt, J/m. It repays by velocities: those
-/// relative to its rigid motion are scaled by a little, which leaves momentum and angular momentum as they are.
+/// Energy correction of undamped compliant bodies (docs/method.md 6). Equal steps of velocity Verlet keep K + U - dt^2
+/// sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, with dx and dF of a step, up to third powers of the step; if
+/// forces are linear, up to rounding. Contacts correct the energy that they gain or lose (contact/energy_debt.hpp), and
+/// so keep energy that stresses would have returned to them: vibrating bodies gain energy. They also do when the step
+/// size changes. The energy error of a body, J/m, is its energy beyond its start and the work of contacts and gravity.
+/// The correction scales the velocities relative to the rigid motion slightly; momentum and angular momentum do not
+/// change.
 class BodyDebts {
  public:
   explicit BodyDebts(const Model& model);
-  /// Whether some body has debts: compliant, without damping, memory, loads or supports, where contacts repay.
+  /// Whether some body is corrected: compliant, without damping, internal variables, loads or supports, in a scene with
+  /// energy correction of contacts.
   bool are_kept() const { return !repays_.empty(); }
 
-  /// Books what contacts did in an accepted step; `before`: what the state was then.
+  /// Adds the work of contacts in an accepted step; `before`: the state before it.
   void book(const Trial& before, State& state) const;
-  /// Scales velocities, every settling_period steps; dt: of the step that led here. The first time opens the books:
-  /// steps are short before.
+  /// Scales velocities, every settling_period steps; dt: of the step that led here. The first call sets the energies at
+  /// the start of the balance, because steps are short before.
   void settle(const Trial& before, State& state, double dt) const;
-  /// Of the bodies of a batch after a step, while books are open, J/m.
+  /// Energy errors of the bodies of a batch after a step, once the balance has started, J/m.
   Lanes owed(const Trial& before, const State& state, int batch, double dt) const;
 
  private:
   Lanes energy(const Trial& before, const State& state, int batch, double dt) const;
 
   const Model& model_;
-  std::vector<Lanes> repays_;  ///< [batches] 1, or 0 for bodies that keep no debts and padding; empty: none does
+  std::vector<Lanes> repays_;  ///< [batches] 1, or 0 for bodies without correction and padding; empty: no body has it
 };
 
 }  // namespace pliant

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Positions from the body's first node: rounding goes with a body's size then, not with how far it has come.
+/// Positions relative to the body's first node: rounding then depends on a body's size, not on its displacement.
 inline std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
   std::vector<Lanes> result(position, position + 2 * static_cast<std::size_t>(batch.slots));
   for (std::size_t c = 0; c < 2; ++c) {
@@ -17,9 +17,9 @@ inline std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* posit
   return result;
 }
 
-/// A frame that turns with each body of a batch: its x axis leads from the body's first node to the one that is
-/// farthest from it in the reference shape. Power iterations keep their vectors in it: two iterations an update would
-/// not follow a body that spins.
+/// Corotational frame of each body of a batch: its x axis points from the body's first node to the one that is farthest
+/// from it in the reference shape. Power iterations keep their vectors in it, because two iterations per update would
+/// not follow a spinning body.
 struct BodyFrame {
   Lanes cosine, sine;
 

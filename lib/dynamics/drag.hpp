@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// What drag - c m v (bodies/damping_forces.hpp) makes of a step dt, exactly for as long as all other forces stand
-/// still: v' = a at its start, of all forces, and a' = -c a. By z = c dt; without drag 0, 1/2, 1. T: double, or Lanes
-/// of one body each.
+/// Effect of drag - c m v (bodies/damping_forces.hpp) on a step dt, exact while all other forces are constant: v' = a
+/// at the start, with a by all forces, and a' = -c a. As functions of z = c dt; without drag 0, 1/2, 1. T: double, or
+/// Lanes with one body each.
 template <class T>
 struct Drag {
   T z{};
@@ -15,24 +15,24 @@ struct Drag {
   T end{};   ///< velocity at its end = v + end dt a
 };
 
-/// z >= 0.
+/// Coefficients for z >= 0.
 Drag<double> drag_over(double z);
 Drag<Lanes> drag_over(Lanes z);
 
-/// c of a rigid degree of freedom, 1/s.
+/// Drag rate c of a rigid degree of freedom, 1/s.
 double drag_rate(const RigidDof& dof, const Instant& at);
 
-/// What drag takes. Velocities are as a state holds them.
+/// Energy dissipated by drag. Velocities are as a state holds them.
 class DragLoss {
  public:
   explicit DragLoss(const Model& model) : model_(model) {}
-  /// At given velocities, W/m.
+  /// Power at given velocities, W/m.
   double power(const Instant& at, const Dofs& velocity);
-  /// In a step dt from `at` on, from the velocity at its start and the mean one, J/m.
+  /// Work in a step dt from `at` on, from the velocity at its start and the mean velocity, J/m.
   double work(const Instant& at, double dt, const Dofs& velocity, const Dofs& mean);
 
  private:
-  /// sum of weight(c) m y . v over all degrees of freedom, v the material velocity of y.
+  /// Sum of weight(c) m y . v over all degrees of freedom, with v the material velocity of y.
   template <class Weight>
   double weighted_square(const Instant& at, const Dofs& y, Weight&& weight);
 

@@ -18,22 +18,22 @@ struct Energies {
 /// `velocity` as a state holds it: see bodies/mass_correction.hpp.
 double kinetic_energy(const Model& model, const Dofs& velocity);
 
-/// Sums and checks of one state: energies, and what should vanish in the balances of momentum.
+/// Sums and checks of one state: energies, and residuals of the balances of momentum.
 struct EnergyBalance {
   Energies energy;
-  /// |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
+  /// sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
   double momentum_error = 0;
   int contacts = 0;
 };
 
-/// Books the energy of a run from a given start.
+/// Energy balance of a run from a given start.
 class EnergyAccountant {
  public:
   /// `start` must hold forces of its own positions, as after the first evaluation.
   EnergyAccountant(const Model& model, const State& start);
   EnergyBalance audit(const State& state);
 
-  /// Mechanical energy that neither the start nor work nor dissipation accounts for, J/m; negative when some is lost.
+  /// Mechanical energy that neither the start nor work nor dissipation accounts for, J/m; negative if some is lost.
   double energy_gained(const Energies& energy) const;
   /// |energy_gained| over the largest of external work, initial mechanical energy and dissipation; 0 when all vanish.
   double balance_error(const Energies& energy) const;

@@ -12,17 +12,17 @@
 
 namespace pliant {
 
-/// What one force evaluation found.
+/// Sums and checks of one force evaluation.
 struct Evaluation {
   PairTotals contact;
-  double damping_power = 0;  ///< what materials and the dashpots of contacts and supports dissipate, W/m
+  double damping_power = 0;  ///< power of viscosity and of the dashpots of contacts and supports, W/m
   double least_jacobian = 1e300;
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
 
-/// What an integrator does with new forces while they are in the cache: those of a region, by its index in
-/// Model::regions, and of a rigid body. Called by several threads at once. Give it std::cref of closures: copies would
-/// be allocated, at every step.
+/// Functions of an integrator that process new forces while these are in the cache: those of a region, by its index in
+/// Model::regions, and of a rigid body. Several threads call them at once. Pass closures by std::cref: copies would be
+/// allocated in every step.
 struct PostForceHooks {
   std::function<void(int region)> region;
   std::function<void(int rigid)> rigid;
@@ -33,31 +33,31 @@ class Forces {
  public:
   explicit Forces(const Model& model);
 
-  /// What became of the contact candidates.
+  /// Result of the check of the contact candidates.
   struct Candidates {
     bool found_anew = false;
-    bool hold = true;  ///< false for a trial that goes further than the skin at once
+    bool hold = true;  ///< false for a trial that exceeds the skin in a single step
   };
-  /// Makes sure that the candidates hold for the outlines of a trial that ends at `time`. If they do not, they are
-  /// found anew, at the accepted state, whose history is laid out anew and keeps its records: a rejected trial loses
-  /// none.
+  /// Makes sure that the candidates are valid for the outlines of a trial that ends at `time`. If they are not, they
+  /// are rebuilt at the accepted state. Its history is stored in a new order and keeps its records, so that a rejected
+  /// trial loses none.
   Candidates ensure_candidates(State& accepted, const OutlineField& trial, double time);
 
-  /// What an evaluation writes.
+  /// Output of an evaluation.
   struct Output {
-    Dofs& force;                  ///< all but drag (bodies/damping_forces.hpp), which is the integrator's
+    Dofs& force;                  ///< all except drag (bodies/damping_forces.hpp), which the integrator adds
     OutlineField& contact_force;  ///< N/m
-    Memory& memory;               ///< that goes with these positions
+    Memory& memory;               ///< history variables at these positions
   };
-  /// All forces of a motion, whose outlines these are, from a memory on. `hooks`, if any, follows the forces of
-  /// each region and rigid body.
+  /// All forces of a motion with these outlines, from the history variables `from`. `hooks`, if any, are called after
+  /// the forces of each region and rigid body.
   Evaluation evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from, const Output& to,
                       const PostForceHooks& hooks = {});
 
-  /// What the last trial left behind belongs to this state, if that was it.
+  /// Accepts the data of the last trial if they belong to this state.
   void accept(const State& state) { contact_.accept(state.memory.contact); }
 
-  /// Warns once a run that contacts get deep, after an evaluation that is accepted.
+  /// Warns once per run of deep contacts, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 
   /// As ContactSystem::inherit.
@@ -84,9 +84,9 @@ class Forces {
 
   const Model& model_;
   ContactSystem contact_;
-  OutlineField loaded_;                 ///< contact forces and loads on outlines together; empty without such loads
-  std::vector<double> least_jacobian_;  ///< [batches of several bodies and chunks of points]
-  std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty where none dissipates
+  OutlineField loaded_;                 ///< sum of contact forces and loads on outlines; empty without such loads
+  std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
+  std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty without viscosity
   std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]
   bool warned_deep_ = false;
   PhaseTimes phases_;

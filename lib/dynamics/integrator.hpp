@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// What an integrator tries next.
+/// Step that an integrator tries next.
 struct Proposal {
   double dt = 0, end_time = 0;  ///< s
   double controller_dt = 0;     ///< dt but for the time at which the step must end, s
@@ -20,17 +20,17 @@ struct Verdict {
   ErrorHistory errors = {};  ///< becomes the state's if the trial is accepted
 };
 
-/// Forces at a state's own positions and velocities, into a trial; finds contact candidates if there are none. The
-/// trial's memory is that of the state after an evaluation in which time stands still.
+/// Evaluates forces at a state's own positions and velocities into a trial; finds contact candidates if there are none.
+/// The trial's history variables are those of the state after an evaluation without a time increment.
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial);
 
-/// The same, and the state takes over the forces, drag among them, and the memory that go with its motion.
+/// The same, and the state takes over the forces, drag included, and the history variables of its motion.
 Evaluation find_forces(Forces& forces, State& state);
 
-/// Of a state and a trial what moves changes places.
+/// Swaps the motion of a state and a trial.
 void swap_motion(State& state, Trial& trial);
 
-/// Makes an accepted trial the state: books its work and dissipation, swaps, counts. Where loads switch, the state's
+/// Makes an accepted trial the state: adds its work and dissipation, swaps and counts. Where loads switch, the state's
 /// forces become those of the next step. Only acceptance changes a state, so that a step that throws leaves it as it
 /// was; new contact candidates may have put the records of its memory in another order.
 void take_over(const Model& model, State& state, Trial& trial, const Verdict& verdict, const StepReport& report);

@@ -6,18 +6,19 @@
 
 namespace pliant {
 
-/// Looks at a motion at times of its own, and leaves it as it is.
+/// Samples a motion at its own times, without changing it.
 struct Observer {
-  std::function<double()> next_time;  ///< of the next look, s
-  /// At the state, which stands at that time. False if the step is not to be taken: enough has been seen.
+  std::function<double()> next_time;  ///< time of the next sample, s
+  /// Called with the state at that time. Returns false if the step need not be taken, because the observer is done.
   std::function<bool()> look;
-  /// Where a state stands, which is for who takes the steps.
+  /// Whether a sample is due at the end of a step; the caller of the step takes it.
   bool looks_at(double time) const { return next_time() == time; }
-  /// On the way to another time: up to there but for rounding, which would be left over for the next step.
+  /// Whether a sample is due within a step that ends at `time`. The end has a tolerance for rounding, which would
+  /// otherwise be left for the next step.
   bool looks_before(double time) const { return next_time() <= time * (1 + 1e-12) && !looks_at(time); }
 };
 
-/// The state as it is after a shorter step, which does not count, while this lives: then it is where it was.
+/// Holds the state after a shorter step, which does not count, during its lifetime, and then restores the state.
 class ShorterStep {
  public:
   ShorterStep(const Model& model, State& state, Trial& trial, const StepReport& report)
@@ -40,8 +41,8 @@ class ShorterStep {
 
 enum class Shown { all, enough, failed };
 
-/// Shows an observer, if any, what an attempt passed by, at the ends of shorter steps from where it began, and makes it
-/// again. `failed` if a shorter one does not stand.
+/// Calls an observer, if any, at its times within an attempt, at the ends of shorter steps from the attempt's start,
+/// and repeats the attempt. Returns `failed` if a shorter step is not within tolerance.
 template <class Scheme>
 Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Proposal& proposal,
                       const Observer* observer) {

@@ -14,16 +14,16 @@
 
 namespace pliant {
 
-/// A model in motion: state, forces, integrator and energy books.
+/// Simulation of a model: state, forces, integrator and energy balance.
 class Simulation {
  public:
-  /// From the scene's own start, or from where another run of the same bodies ended, at t = 0 either way. Throws
-  /// ArchiveError for a start point of other bodies.
+  /// Starts from the scene's own start, or from the end of another run of the same bodies, at t = 0 in both cases.
+  /// Throws ArchiveError for a start point of other bodies.
   explicit Simulation(const Model& model, const StartPoint* start = nullptr);
-  StartPoint start_point() const;  ///< of the state now
+  StartPoint start_point() const;  ///< from the present state
 
-  /// One accepted step, ending at `until` at the latest. An observer sees what it passes by; if it has seen enough
-  /// then, no step is taken, and the report's has no length.
+  /// One accepted step that ends at `until` at the latest. An observer sees its samples within the step. If it is done
+  /// then, no step is taken, and the report has dt = 0.
   StepReport step(double until, const Observer* observer = nullptr);
   EnergyBalance energy_balance() { return auditor_->audit(state_); }
   double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }
@@ -36,10 +36,10 @@ class Simulation {
   const StepStatistics& statistics() const { return statistics_; }
   PhaseTimes& phases() { return forces_.phases(); }
   double largest_dt() const;      ///< stability bound, s; infinite for step-doubling
-  std::string governing() const;  ///< what limits the stability bound
+  std::string governing() const;  ///< name of the limiting body
 
-  /// Everything that the coming steps, audits and diagnoses depend on: a simulation of the same model that reads it
-  /// goes on with the same bits.
+  /// All data on which later steps, energy balances and diagnoses depend: a simulation of the same model that reads
+  /// them continues with identical bits.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("state", state_);

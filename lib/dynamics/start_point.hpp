@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-/// What a run leaves to another one of the same bodies that starts where it ended: motion and memory. Forces, energies
-/// and books follow from the other's scene. It enumerates itself (core/archive.hpp).
+/// Start for another run of the same bodies: motion and history variables at the end of a run. Forces, energies and the
+/// energy balance follow from the other run's scene. It enumerates itself (core/archive.hpp).
 struct StartPoint {
   double next_dt = 0;  ///< s; 0: as at any start
   ErrorHistory errors;
@@ -24,7 +24,7 @@ struct StartPoint {
     visitor("position", position), visitor("reduced_momentum", reduced_momentum);
     visitor("material", material), visitor("contact", contact);
   }
-  /// Throws ArchiveError unless it is of a model with as many degrees of freedom and points.
+  /// Throws ArchiveError unless it fits the model's numbers of degrees of freedom and points.
   void require_fit(const Model& model) const;
 };
 

@@ -12,10 +12,11 @@
 
 namespace pliant {
 
-/// What the forces of the next step depend on beside positions and velocities: committed on accepted steps only.
+/// History variables: all on which the forces of the next step depend besides positions and velocities. Committed on
+/// accepted steps only.
 struct Memory {
   ContactHistory contact;
-  std::vector<Lanes> material;  ///< [Model::material_memory], of integration points: Batch::memory
+  std::vector<Lanes> material;  ///< of integration points, see Batch::memory
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -24,8 +25,8 @@ struct Memory {
   }
 };
 
-/// A memory, how long ago it was, and, if contact may know, where the outlines were then and what rigid bodies have
-/// done since.
+/// History variables, the time since then and, if contact needs them, the outlines at that time and the motion of rigid
+/// bodies since.
 struct PreviousHistory {
   const Memory& memory;
   double elapsed = 0;  ///< s
@@ -33,16 +34,16 @@ struct PreviousHistory {
   const RigidStep* rigid = nullptr;  ///< see StepStart
 };
 
-/// Before anything has happened.
+/// History variables at the start.
 Memory initial_memory(const Model& model);
 
-/// The motion of a batch at a state's positions, with its memory, and at rest.
+/// Motion of a batch at a state's positions, with its history variables, at rest.
 BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& memory);
 
-/// Of bodies that keep their energy (dynamics/body_debt.hpp); empty before the first settlement.
+/// Energy balance of bodies with energy correction (dynamics/body_debt.hpp); empty before the first correction.
 struct BodyBooks {
-  std::vector<Lanes> opening;  ///< [batches] what bodies had when the books were opened, J/m
-  std::vector<double> work;    ///< [bodies] of contacts since, J/m
+  std::vector<Lanes> opening;  ///< [batches] energies of bodies at the start of the balance, J/m
+  std::vector<double> work;    ///< [bodies] work of contacts since, J/m
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
@@ -68,26 +69,25 @@ struct StateNumbers {
   double external_work = 0;   ///< of loads and imposed motions, J/m
   double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;      ///< by contact laws and by damping, J/m
-  double damped = 0;          ///< of that, by forces that depend on velocities, J/m
-  double damping_power = 0;   ///< of viscosity and of the dashpots of contacts and supports, with `force`, W/m
-  double contact_energy = 0;  ///< stored in contacts, J/m; with `contact_force`
-  std::int64_t contacts = 0;  ///< nodes in touch
+  double damped = 0;          ///< part of it by forces that depend on velocities, J/m
+  double damping_power = 0;   ///< of viscosity and of the dashpots of contacts and supports, for `force`, W/m
+  double contact_energy = 0;  ///< stored in contacts, J/m; for `contact_force`
+  std::int64_t contacts = 0;  ///< active slave nodes; slave segments if integrated
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
 };
 
-/// What the motion of a run has become. It enumerates itself (core/archive.hpp), so that hash, comparison and
-/// checkpoint cannot forget a part.
+/// State of a run. It enumerates itself (core/archive.hpp), so that hash, comparison and checkpoint cannot omit a part.
 struct State : StateNumbers {
   Dofs position;          ///< m
   Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
   Dofs force;             ///< N/m
   Memory memory;
   BodyBooks books;
-  // They go with the positions, and are no part of the motion, nor are contact_energy and contacts:
-  Outlines outlines;           ///< with the velocities that dashpots saw
+  // These follow from the positions and are no part of the motion, like contact_energy and contacts:
+  Outlines outlines;           ///< with the velocities that dashpots used
   OutlineField contact_force;  ///< on outline nodes, N/m
 
-  /// visitor(name, value) for every member; arrays come as vectors.
+  /// Calls visitor(name, value) for every member; arrays are passed as vectors.
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visit_motion(visitor);

@@ -8,18 +8,18 @@
 namespace pliant {
 
 /// The paper's scheme (docs/method.md 6): semi-implicit Euler once with dt (u1) and twice with dt/2 (u2, kept),
-/// controlled by err = max |u2 - u1| / d over all field nodes and rigid outline nodes. Two force evaluations a step. It
-/// knows no stability limit. Loads act with their mean over each half step, forces that depend on velocities see those
-/// of its start.
+/// controlled by err = max |u2 - u1| / d over all field nodes and rigid outline nodes. It takes two force evaluations
+/// per step and has no stability bound. Loads act with their mean over each half step; forces that depend on velocities
+/// use those at its start.
 class StepDoubling {
  public:
   StepDoubling(Forces& forces, const State& state);
 
-  // As take_step asks them:
+  // Called by take_step:
   double first_dt() const;
   Proposal propose(const State& state, double next_dt, double until) const;
   void attempt(State& state, const Proposal& proposal, StepReport& report);
-  /// Whether the error of an attempt is one to live with.
+  /// Whether the error of an attempt is acceptable.
   bool within_tolerance(const StepReport& report) const {
     return report.error <= model_.scene.time.alpha * model_.scene.time.target;
   }
@@ -31,11 +31,11 @@ class StepDoubling {
   double largest_dt() const { return std::numeric_limits<double>::infinity(); }  ///< s
   std::string governing() const { return "error control"; }
   template <class Visitor>
-  void visit(Visitor&&) {}                                                            ///< nothing outlives a step
-  void loaded() { trial_.memory.contact.layout = half_memory_.contact.layout = -1; }  // of another state
+  void visit(Visitor&&) {}                                                            ///< nothing is kept between steps
+  void loaded() { trial_.memory.contact.layout = half_memory_.contact.layout = -1; }  // these belong to another state
 
  private:
-  /// Void: contact candidates were found anew in the second half, whose memory is not of them.
+  /// `voided`: contact candidates were rebuilt in the second half, and its history does not belong to them.
   enum class Halves { done, failed, voided };
   Halves try_halves(State& state, const Proposal& proposal, StepReport& report);
   const OutlineField* start_of_step(const Outlines& outlines) const;
@@ -52,16 +52,16 @@ class StepDoubling {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;  ///< something meets it
+  const bool drag_;  ///< some degree of freedom has drag
   DragLoss drag_loss_;
-  double wave_time_;                ///< from node to node, s
-  Dofs moving_velocity_;            ///< with corrected mass only: C y
-  Dofs start_force_;                ///< of the first half step
+  double wave_time_;                ///< time of a wave between nodes, s
+  Dofs moving_velocity_;            ///< scratch with corrected mass: C y
+  Dofs start_force_;                ///< for the first half step
   Trial trial_;                     ///< at the half step, then at the end
   Memory half_memory_;              ///< at the half step
   OutlineField half_outlines_;      ///< likewise
   std::vector<Lanes> difference_;   ///< u2 - u1 of the compliant degrees of freedom
-  std::vector<Lanes> uncorrected_;  ///< scratch: the same before C
+  std::vector<Lanes> uncorrected_;  ///< scratch: difference before C
 };
 
 }  // namespace pliant

@@ -8,13 +8,13 @@
 
 namespace pliant {
 
-/// What the accepted steps of a run have met: for the diagnosis of its energy balance.
+/// Statistics of the accepted steps of a run, for the diagnosis of its energy balance.
 struct StepStatistics {
-  double deepest = 0;             ///< penetration over the longest segment near, the largest
+  double deepest = 0;             ///< largest penetration over the longest segment near
   double deepest_time = 0;        ///< s
-  std::int64_t contacts = 0;      ///< nodes in touch at once, the most
-  std::int64_t by_error = 0;      ///< steps whose length the error limited ...
-  std::int64_t by_stability = 0;  ///< ... and the bound of stability
+  std::int64_t contacts = 0;      ///< largest number of simultaneous contacts
+  std::int64_t by_error = 0;      ///< steps limited by the error ...
+  std::int64_t by_stability = 0;  ///< ... and by the stability bound
 
   void add(const StepReport& report, double time) {
     const PairTotals& contact = report.evaluation.contact;

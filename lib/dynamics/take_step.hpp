@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// One accepted step that ends at `until` at the latest, of whatever scheme: it proposes, attempts, judges and
-/// finishes. An observer, if any, sees what the step passes by, and the step is the same, or is not taken: then its
-/// report has no length.
+/// One accepted step that ends at `until` at the latest, for any scheme: it proposes, attempts, judges and finishes. An
+/// observer, if any, sees its samples within the step. The step does not depend on it, unless the observer is done;
+/// then no step is taken and the report has dt = 0.
 template <class Scheme>
 StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until, const Observer* observer = nullptr) {
   Verdict verdict{false, state.next_dt > 0 ? state.next_dt : scheme.first_dt()};
@@ -21,7 +21,7 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until,
       const Shown shown = show_on_the_way(scheme, forces, state, proposal, observer);
       if (shown == Shown::enough) return {};
       if (shown == Shown::failed) {
-        until = observer->next_time();  // by a step of its own, which may be rejected
+        until = observer->next_time();  // with a step of its own, which may be rejected
         continue;
       }
     }

@@ -10,20 +10,19 @@
 
 namespace pliant {
 
-/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6 with
-/// z for 2 z, where dashpots see the velocity of the half step): w^2 = 1.05 w_b^2 + w_c^2 and that of soft supports; z
-/// = c/(2 w), c the rate of dashpots and viscosity.
+/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6): w^2
+/// = 1.05 w_b^2 + w_c^2 plus that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);
 
   /// Two more power iterations on the internal forces of every compliant body.
   void update_internal(const Dofs& position, const Memory& memory, int iterations = 2);
-  /// The a-priori contact bound, of contact candidates found since the last time.
+  /// Updates the a-priori contact bound with the candidates found since the last call.
   void update_contact(const ContactSystem& contact);
 
-  /// s, with the safety factor; infinite when nothing is stiff. `contact_factor`: as if all contacts were that much
-  /// stiffer.
+  /// Largest step, s, with the safety factor; infinite without stiffness. `contact_factor`: factor on the stiffness of
+  /// all contacts.
   double largest_dt() const { return limit_.dt; }
   double largest_dt(double contact_factor) const { return limit(contact_factor).dt; }
   /// Name of the limiting body and share of contact in its w^2, for messages.
@@ -42,7 +41,7 @@ class TimeStepBound {
 
  private:
   struct Limit {
-    std::size_t body;  ///< that limits the step
+    std::size_t body;  ///< limiting body
     double dt;         ///< s
   };
 
@@ -56,18 +55,17 @@ class TimeStepBound {
 
   const Model& model_;
   StiffnessBound stiffness_;
-  std::vector<Lanes> direction_;  ///< power iteration's vectors, as Dofs::compliant, each in its body's frame
-  std::vector<Lanes> internal_;   ///< [batches] w_b^2, 1/s2
-  std::vector<double> contact_;   ///< [bodies] w_c^2, 1/s2
-  std::vector<double>
-      contact_floor_;               ///< [bodies] w_c^2 of one partner all around: what may come before the next refresh
-  std::vector<double> compliance_;  ///< [bodies] w^2 per unit contact stiffness
-  std::vector<double> support_;     ///< [bodies] w^2 of soft supports, 1/s2
-  std::vector<double> damping_;     ///< [bodies] largest rate of supports' dashpots, 1/s
-  std::vector<double> shortened_;   ///< [bodies] how many times shorter restitution makes contact's steps; empty: none
-  std::vector<double> limit_square_;                ///< [bodies] largest stable w^2 dt^2 without dashpots
+  std::vector<Lanes> direction_;       ///< power iteration vectors, as Dofs::compliant, each in its body's frame
+  std::vector<Lanes> internal_;        ///< [batches] w_b^2, 1/s2
+  std::vector<double> contact_;        ///< [bodies] w_c^2, 1/s2
+  std::vector<double> contact_floor_;  ///< [bodies] w_c^2 of one partner all around: possible before the next rebuild
+  std::vector<double> compliance_;     ///< [bodies] w^2 per unit contact stiffness
+  std::vector<double> support_;        ///< [bodies] w^2 of soft supports, 1/s2
+  std::vector<double> damping_;        ///< [bodies] largest rate of supports' dashpots, 1/s
+  std::vector<double> shortened_;      ///< [bodies] factor by which restitution shortens steps of contact; empty: none
+  std::vector<double> limit_square_;   ///< [bodies] largest stable w^2 dt^2 without dashpots
   std::vector<Lanes> viscous_direction_, viscous_;  ///< as direction_ and internal_, for Kelvin-Voigt: rates, 1/s
-  Limit limit_;                                     ///< of all of the above, found when they change: each step asks
+  Limit limit_;  ///< from all of the above, updated when they change: each step needs it
 };
 
 }  // namespace pliant

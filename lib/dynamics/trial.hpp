@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// A motion under trial and the forces that it meets: they become the state's own when the step is accepted.
+/// Motion of a trial and its forces, which become the state's when the step is accepted.
 struct Trial {
-  double time = 0;  ///< of the last evaluation, s
+  double time = 0;  ///< time of the last evaluation, s
   Dofs position, reduced_momentum, force;
   Memory memory;
   Outlines outlines;

@@ -7,26 +7,26 @@
 
 namespace pliant {
 
-/// Velocity Verlet with a stability bound and a free error control (docs/method.md 6): one force evaluation a step. Of
-/// second order with forces that depend
-/// on velocities too: drag (dynamics/drag.hpp) slows the motion by its exact exponential, all others see the velocity
-/// that the accelerations so far predict for the end of the step.
+/// Velocity Verlet with a stability bound and an error control without extra cost (docs/method.md 6): one force
+/// evaluation per step. It is of second order also with forces that depend on velocities: drag (dynamics/drag.hpp)
+/// slows the motion by its exact exponential, all others use the velocity that the accelerations so far predict for the
+/// end of the step.
 class Verlet {
  public:
   Verlet(Forces& forces, const State& state);
 
-  // As take_step asks them:
+  // Called by take_step:
   double first_dt() const;
   Proposal propose(const State& state, double next_dt, double until) const;
   void attempt(State& state, const Proposal& proposal, StepReport& report);
-  /// Whether the error of an attempt is one to live with.
+  /// Whether the error of an attempt is acceptable.
   bool within_tolerance(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
   Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
   void finish(const State& state, StepReport& report);
   void accepted(State& state, const StepReport& report);
   Trial& trial() { return trial_; }
 
-  // What benchmarks time alone:
+  // Timed separately by benchmarks:
   const RigidStep* rigid_steps(const State& state);
   void predict(const State& state, double dt);
   void finish_region(const State& state, double dt, int r);
@@ -38,7 +38,7 @@ class Verlet {
   void visit(Visitor&& visitor) {
     visitor("bound", bound_);
   }
-  void loaded() { trial_.memory.contact.layout = -1; }  // of another state
+  void loaded() { trial_.memory.contact.layout = -1; }  // it belongs to another state
 
  private:
   void predict_velocities(const State& state, double dt);
@@ -48,17 +48,17 @@ class Verlet {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;  ///< something meets it
+  const bool drag_;  ///< some degree of freedom has drag
   DragLoss drag_loss_;
   const bool needs_velocities_;  ///< with drag, rates or corrected mass
   TimeStepBound bound_;
   BodyDebts debts_;
   Trial trial_;
   std::vector<RigidStep> rigid_steps_;
-  Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as a state holds it
-  Dofs end_velocity_;           ///< that forces see at the end of the step, where needed
+  Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as in a state
+  Dofs end_velocity_;           ///< used by forces at the end of the step, where needed
   Dofs moving_velocity_;        ///< scratch: of reduced momenta, with corrected mass
-  std::vector<double> change_;  ///< [regions and rigid bodies], of the acceleration over the nodal distance, 1/s2
+  std::vector<double> change_;  ///< [regions, rigid bodies] change of the acceleration over the nodal distance, 1/s2
 };
 
 }  // namespace pliant
