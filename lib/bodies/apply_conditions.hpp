@@ -4,11 +4,11 @@
 
 namespace pliant {
 
-/// Lets a drive move a rigid degree of freedom of this mass; a pressure acts on `pressure_scale`, m.
+/// Applies a drive to a rigid degree of freedom of this mass; a pressure acts on `pressure_scale`, m.
 void apply_drive(RigidDof& dof, const Drive& drive, double mass, double pressure_scale);
 
-/// Gives the bodies of a model, complete otherwise, what acts on them from outside (Scene::boundary) and the damping
-/// of their materials. Throws InputError for a part that no segment of the outline lies in.
+/// Applies boundary conditions (Scene::boundary) and the damping of materials to the bodies of a model that is complete
+/// otherwise. Throws InputError for a part that contains no segment of the outline.
 void apply_conditions(Model& model);
 
 }  // namespace pliant

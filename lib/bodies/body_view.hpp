@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Where the degrees of freedom of one compliant body stand in Dofs::compliant, whatever its layout.
+/// Indices of the degrees of freedom of one compliant body in Dofs::compliant, for any layout.
 class BodyOffsets {
  public:
   BodyOffsets(const Model& model, const Body& body)
@@ -13,7 +13,7 @@ class BodyOffsets {
     const Batch& batch = model.batches[body.batch];
     if (batch.layout == Layout::spread) offset_ = model.spread_shape_of(batch).offset.data();
   }
-  /// Of a node's x, counted in doubles; its y stands lane_count further.
+  /// Index of a node's x, counted in doubles; its y is lane_count further.
   std::size_t operator[](std::size_t node) const {
     return first_ + (offset_ ? static_cast<std::size_t>(offset_[node]) : 2 * lane_count * node);
   }
@@ -23,7 +23,7 @@ class BodyOffsets {
   const int* offset_ = nullptr;
 };
 
-/// One body's degrees of freedom in the units they are stored in: those of its scale.
+/// One body's degrees of freedom in the units of storage, those of its scale.
 class BodyView {
  public:
   BodyView(const Model& model, const Body& body, const Dofs& dofs)

@@ -12,12 +12,11 @@ double drag_coefficient(const RigidDof& dof, const Instant& at);
 /// Adds the drag of a rigid body to its forces on [x, y, angle].
 void add_rigid_drag(const RigidBody& rigid, const Instant& at, const double* velocity, double* force);
 
-/// Adds what resists the velocity of each degree of freedom by itself, no matter what others do: mass-proportional
-/// damping, - c times the momentum, and the dashpots beside the loads of rigid bodies. `velocity` as a state holds it
-/// (bodies/mass_correction.hpp).
+/// Adds the forces that resist the velocity of each degree of freedom alone: mass-proportional damping, - c times the
+/// momentum, and the dashpots beside the loads of rigid bodies. `velocity` as in a state (bodies/mass_correction.hpp).
 void add_drag(const Model& model, const Instant& at, const Dofs& velocity, Dofs& force);
 
-/// Whether some degree of freedom, or one of a body, ever meets drag.
+/// Whether some degree of freedom, or one of a body, has drag at some time.
 bool has_drag(const Model& model);
 bool has_drag(const Model& model, const Body& body);
 

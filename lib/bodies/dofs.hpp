@@ -7,9 +7,9 @@
 
 namespace pliant {
 
-/// One quantity over all degrees of freedom of a model: positions, velocities or forces.
+/// One quantity at all degrees of freedom of a model: positions, velocities or forces.
 struct Dofs {
-  std::vector<Lanes> compliant;  ///< batch after batch: [nodes x 2 components] of its group
+  std::vector<Lanes> compliant;  ///< batch after batch: [slots x 2 components]
   std::vector<double> rigid;     ///< [rigid bodies x 3]: x, y, angle
 
   Dofs() = default;
@@ -23,10 +23,10 @@ struct Dofs {
   }
 };
 
-/// Where all bodies are and how they move.
+/// Positions and velocities of all bodies.
 struct Motion {
   const Dofs& position;
-  const Dofs& velocity;  ///< read only by models with forces that depend on it (Model::rates)
+  const Dofs& velocity;  ///< read only in models with forces that depend on it (Model::rates)
   double time = 0;       ///< s
   bool ends_step = false;
   Instant instant() const { return {time, ends_step}; }

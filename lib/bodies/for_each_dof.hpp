@@ -13,21 +13,21 @@ void for_each_dof_of(const Model& model, int rigid, Update&& update) {
   for (std::size_t c = 0; c < 3; ++c) update(3 * r + c, model.rigid_bodies[r].dof[c]);
 }
 
-/// Of all rigid bodies.
+/// The same for all rigid bodies.
 template <class Update>
 void for_each_rigid_dof(const Model& model, Update&& update) {
   for (int r = 0; r < static_cast<int>(model.rigid_bodies.size()); ++r) for_each_dof_of(model, r, update);
 }
 
 /// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i,
-/// dof) for each rigid one. The bodies are shared out over the threads; updates touch only index i.
+/// dof) for each rigid one. Threads share the bodies; updates may touch index i only.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
   const auto of_region = [&](int r) {
     const Region& region = model.regions[r];
     const Batch& batch = model.batches[region.batch];
     with_nodes(model, batch, [&](auto nodes) {
-      const Lanes inverse_density = batch.inverse_density;  // here it cannot alias what the updates write
+      const Lanes inverse_density = batch.inverse_density;  // a copy, which the writes of updates cannot alias
       std::size_t i = batch.offset + 2 * static_cast<std::size_t>(region.first);
       for (int slot = region.first; slot < region.last; ++slot) {
         const Lanes inverse_mass = nodes.inverse_mass_at_unit_density[slot] * inverse_density;

@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-/// Gives the bodies of all groups their batches, lanes and regions: see BuildOptions::least_sparse_nodes.
+/// Assigns batches, lanes and regions to the bodies of all groups: see BuildOptions::least_sparse_nodes.
 void make_batches(Model& model, int least_sparse_nodes);
 
 }  // namespace pliant

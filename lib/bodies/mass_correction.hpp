@@ -5,19 +5,19 @@
 
 namespace pliant {
 
-/// With corrected mass a state holds y = p/D, momentum over lumped mass, in the place of velocities. Positions move by
-/// v = C y, kinetic energy is y.D C y / 2, C = 2 I - D^-1 M (docs/method.md 2). With lumped mass C = I and v = y.
+/// With corrected mass a state holds y = p/D, momentum over lumped mass, in place of velocities. Positions move by v =
+/// C y, and kinetic energy is y.D C y / 2, with C = 2 I - D^-1 M (docs/method.md 2). With lumped mass C = I and v = y.
 
-/// v = C y of one batch, [slots x 2] each, not the same array.
+/// v = C y of one batch, [slots x 2] each; y and v must be different arrays.
 void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v);
 
-/// Velocities of all degrees of freedom from what a state holds.
+/// Velocities of all degrees of freedom from the reduced momenta of a state.
 Dofs material_velocity(const Model& model, const Dofs& y);
 
-/// The same without new memory: y itself with lumped mass, else in `scratch`, another array.
+/// The same without allocation: y itself with lumped mass, else `scratch`, which must be another array.
 const Dofs& material_velocity(const Model& model, const Dofs& y, Dofs& scratch);
 
-/// The y that gives these velocities.
+/// Reduced momenta y with these velocities.
 Dofs reduced_momentum(const Model& model, const Dofs& velocity);
 
 }  // namespace pliant

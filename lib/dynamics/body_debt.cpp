@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// Whether nothing on it dissipates or does work but contacts and a potential.
+/// Whether only contacts and a potential do work on the body, and nothing else dissipates its energy.
 bool keeps_debts(const Model& model, int body) {
   const Batch& batch = model.batches[model.bodies[body].batch];
   const auto on_body = [&](const auto& condition) { return condition.body == body; };
@@ -46,22 +46,23 @@ struct RigidMotion {
     spin = sum_over_body(batch, momentum) / sum_over_body(batch, inertia);
   }
 
-  /// Of a node's velocity, what is not rigid.
+  /// Velocity of a node without the rigid motion.
   LaneVector without(const Lanes* q, const Lanes* v) const {
     return {v[0] - velocity_x + spin * (q[1] - y), v[1] - velocity_y - spin * (q[0] - x)};
   }
 };
 
-/// Of each body of a batch after a step, K - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, J/m; of a
-/// spread one, lanes add up to it. The last terms are those of ways and forces beside the body's mean: its mean motion
-/// keeps to the first two, and with its own terms debts would depend on who looks on.
+/// K - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12 of each body of a batch after a step, J/m; for a
+/// spread body the lanes add up to it. The last terms have displacements and forces relative to the body's mean ones.
+/// The mean motion keeps the first two terms, and its share of the others would make the error depend on the frame of
+/// reference.
 Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial& before, const State& state,
                             double dt) {
   const Lanes *y = &state.reduced_momentum.compliant[batch.offset], *f = &state.force.compliant[batch.offset],
               *old_f = &before.force.compliant[batch.offset], *q = &state.position.compliant[batch.offset],
               *old_q = &before.position.compliant[batch.offset];
   const std::size_t size = 2 * static_cast<std::size_t>(batch.slots);
-  thread_local std::vector<Lanes> impulse, less, scratch;  // their memory is found once
+  thread_local std::vector<Lanes> impulse, less, scratch;  // memory is allocated once
   impulse.resize(size), less.resize(size), scratch.resize(size);
   return with_nodes(model, batch, [&](const auto& nodes) {
     Lanes mass{}, way[2]{}, old_mean[2]{};
@@ -84,7 +85,7 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
       less[i] = half_step * (f[i] - 2.0 / 3 * (old_f[i] - nodes.mass_at_unit_density[i / 2] * old_mean[i % 2]));
       change += (q[i] - old_q[i] - way[i % 2]) * (f[i] - old_f[i]);
     }
-    const auto product = [&](const Lanes* a, const Lanes* b) {  // of reduced momenta, by the mass
+    const auto product = [&](const Lanes* a, const Lanes* b) {  // product of reduced momenta, weighted by mass
       if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();
       Lanes total{};
       for (std::size_t i = 0; i < size; ++i) total += nodes.mass_at_unit_density[i / 2] * (a[i] * b[i]);
@@ -95,13 +96,13 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   });
 }
 
-/// Takes from the vibrations of a batch's bodies their share of what is owed, J/m.
+/// Removes the corrected share of the energy error `owed`, J/m, from the vibrations of a batch's bodies.
 void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State& state) {
   const Lanes* q = &state.position.compliant[batch.offset];
   Lanes* v = &state.reduced_momentum.compliant[batch.offset];
   with_nodes(model, batch, [&](const auto& nodes) {
     const RigidMotion rigid(batch, nodes, q, v);
-    Lanes twice{};  // their kinetic energy
+    Lanes twice{};  // twice their kinetic energy
     for (int i = 0; i < batch.slots; ++i) {
       const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
       twice += nodes.mass_at_unit_density[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
@@ -119,7 +120,7 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State&
   });
 }
 
-/// What the mean of the forces of contact on a body's outline does in a step, J/m.
+/// Work of the mean contact forces on a body's outline in a step, J/m.
 double contact_work(const Model& model, int body, const Trial& before, const State& after) {
   const OutlineField &old_place = before.outlines.position, &place = after.outlines.position,
                      &old_force = before.contact_force, &force = after.contact_force;
@@ -156,7 +157,7 @@ void BodyDebts::book(const Trial& before, State& state) const {
   });
 }
 
-/// In motion, strained, and in height, of each body of a batch, J/m.
+/// Kinetic, strain and gravitational energy of each body of a batch, J/m.
 Lanes BodyDebts::energy(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   return sum_over_body(batch, shadow_kinetic_energy(model_, batch, before, state, dt) +
@@ -167,7 +168,7 @@ Lanes BodyDebts::energy(const Trial& before, const State& state, int b, double d
 Lanes BodyDebts::owed(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   const int* bodies = &model_.groups[batch.group].bodies[batch.first];
-  Lanes work = broadcast(state.books.work[bodies[0]]);  // of a spread body in all lanes
+  Lanes work = broadcast(state.books.work[bodies[0]]);  // in all lanes for a spread body
   for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.books.work[bodies[lane]];
   return energy(before, state, b, dt) - state.books.opening[b] - work;
 }

@@ -12,13 +12,13 @@
 namespace pliant {
 namespace {
 
-/// Rounds in which the bound of contact is improved, and what stays of the vector before in each: it must stay
-/// positive.
+/// Rounds that improve the bound of contact, and the share of the previous vector that each round keeps. The vector
+/// must remain positive.
 constexpr int bound_rounds = 5;
 constexpr double blend = 0.1;
 
-/// product = D^-1 |C| x at the field nodes, C = Phi^T S Phi the stiffness that springs S, [outline nodes], N/m2, give
-/// them, D of density 1.
+/// product = D^-1 |C| x at the field nodes. C = Phi^T S Phi is the stiffness that springs S, [outline nodes], N/m2,
+/// give them, D the mass at density 1.
 void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, const std::vector<Lanes>& x,
                        std::vector<Lanes>& product) {
   const ShapeRows& rows = shape.space.outline_rows;
@@ -32,11 +32,11 @@ void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, cons
   for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_mass_at_unit_density[i];
 }
 
-/// Bounds of w^2 that springs of these stiffnesses, [outline nodes], N/m2, give eight bodies of a shape, of density 1,
-/// 1/s2. For any x > 0 the largest ratio of D^-1 |C| x to x bounds the eigenvalues of D^-1 C (Collatz 1942, Wielandt
-/// 1950); the best of all rounds.
+/// Bounds of w^2, 1/s2, of eight bodies of a shape, of density 1, with springs of these stiffnesses, [outline nodes],
+/// N/m2. For any x > 0 the largest ratio of D^-1 |C| x to x bounds the eigenvalues of D^-1 C (Collatz 1942, Wielandt
+/// 1950); the least of all rounds counts.
 Lanes contact_frequencies(const CompliantShape& shape, const Lanes* stiffness) {
-  thread_local std::vector<Lanes> x, product;  // their memory is found once
+  thread_local std::vector<Lanes> x, product;  // memory is allocated once
   x.assign(static_cast<std::size_t>(shape.nodes()), broadcast(1));
   product.resize(x.size());
   Lanes least = broadcast(std::numeric_limits<double>::infinity());
@@ -68,14 +68,14 @@ double rigid_frequency(const RigidBody& rigid, const OutlineShape& outline, cons
   return std::max(0.0, solver.eigenvalues()[2]);
 }
 
-/// Compliant bodies of one shape.
+/// Up to eight compliant bodies of one shape.
 struct Eight {
   int count = 0, body[lane_count];
 };
 
 std::vector<Eight> in_eights(const Model& model, const std::vector<int>& bodies) {
   std::vector<Eight> eights;
-  std::vector<int> open(model.shapes.size(), -1);  // of each shape the one with room, if any
+  std::vector<int> open(model.shapes.size(), -1);  // [shapes] the group with room, if any
   for (const int b : bodies) {
     if (model.bodies[b].kind != BodyKind::compliant) continue;
     int& eight = open[model.bodies[b].compliant_shape];
@@ -103,7 +103,7 @@ void find_contact_frequencies(const Model& model, const std::vector<int>& bodies
   const std::vector<Eight> eights = in_eights(model, bodies);
   parallel_for(static_cast<int>(eights.size()), [&](int e) {
     const Eight& eight = eights[e];
-    thread_local std::vector<Lanes> stiffness;  // its memory is found once
+    thread_local std::vector<Lanes> stiffness;  // memory is allocated once
     const Body& first = model.bodies[eight.body[0]];
     stiffness.assign(static_cast<std::size_t>(model.outlines[first.outline].count), Lanes{});
     for (int lane = 0; lane < eight.count; ++lane)

@@ -9,10 +9,10 @@
 namespace pliant {
 namespace {
 
-/// sum over k of (-z)^k / (k + n)!: what is left of exp(-z) after n terms, over (-z)^n. rest(n) = 1/n! - z rest(n + 1).
+/// sum over k of (-z)^k / (k + n)!: remainder of exp(-z) after n terms, over (-z)^n. rest(n) = 1/n! - z rest(n + 1).
 double rest_of_exponential(double z, int n) {
   double factorial = 1;
-  if (z > 1) {  // upwards from n = 1 nothing cancels then
+  if (z > 1) {  // the recursion upwards from n = 1 has no cancellation then
     double rest = -std::expm1(-z) / z;
     for (int k = 1; k < n; ++k) factorial *= k, rest = (1 / factorial - rest) / z;
     return rest;

@@ -17,7 +17,7 @@
 namespace pliant {
 namespace {
 
-/// Displacement gradients up to which linear elasticity errs by some percent.
+/// Displacement gradients up to which the error of linear elasticity is some percent.
 constexpr double small_strain = 0.03;
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : 0.0; }
@@ -51,7 +51,7 @@ EnergyAccountant::EnergyAccountant(const Model& model, const State& start) : mod
   energy_start_ = audit(start).energy.mechanical();
 }
 
-/// 0 with a history: its work is booked step by step.
+/// Moment of constant gravity; 0 with a history, whose work is added step by step.
 double EnergyAccountant::constant_gravity_moment(const Dofs& position) const {
   const Scene& scene = model_.scene;
   return scene.gravity_history.empty() ? gravity_moment(model_, scene.gravity, position) : 0;
@@ -97,9 +97,9 @@ double EnergyAccountant::balance_error(const Energies& energy) const {
                std::max({std::abs(energy.external_work), std::abs(energy_start_), energy.dissipated}));
 }
 
-/// Contact forces on all outlines: their sum and their moment about the origin. Periodic images move no force in x, but
-/// a force's lever by whole periods of y-forces, so moments are taken pair by pair in the tests and here only without a
-/// period.
+/// Imbalance of contact forces on all outlines: their sum and their moment about the origin. Between periodic images a
+/// force's lever changes by whole periods, so moments count here only without a period. The tests take them pair by
+/// pair.
 double EnergyAccountant::contact_imbalance(const State& state) const {
   const OutlineField &at = state.outlines.position, &force = state.contact_force;
   double fx = 0, fy = 0, moment = 0, magnitude = 0, lever = 0;
@@ -131,7 +131,7 @@ double EnergyAccountant::internal_imbalance(const State& state) const {
       lever += abs(q[2 * i] * f[2 * i + 1]) + abs(q[2 * i + 1] * f[2 * i]);
     }
     for (Lanes* total : {&fx, &fy, &moment, &magnitude, &lever}) *total = sum_over_body(batch, *total);
-    // Rounding of an unloaded grain is not an imbalance: forces count relative to the elastic scale of the grain.
+    // Rounding in an unloaded grain is no imbalance: forces count relative to the elastic scale of the grain.
     const Body& body = model_.bodies[model_.groups[batch.group].bodies[batch.first]];
     const double size = std::sqrt(body.area) / body.scale;
     const Lanes floor = batch.mu * (1e-3 * size);

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double least_share = 1e-9;  ///< of the largest time step: below, the motion cannot be followed
+constexpr double least_share = 1e-9;  ///< of the largest time step; smaller steps cannot follow the motion
 
 std::string name_of(const Model& model, int body) { return fmt::format("body {} '{}'", body, model.bodies[body].name); }
 
@@ -28,7 +28,7 @@ LeastJacobian least_jacobian(const Model& model, const Dofs& position) {
   return least;
 }
 
-/// Middle of the background triangles that an integration point stands for, of nodes there: of the mesh, or now.
+/// Centre of the background triangles that an integration point represents, with nodes of the mesh or at present.
 template <class Nodes>
 Vec2 middle(const Discretisation& space, int point, const Nodes& nodes) {
   Vec2 sum(0, 0);
@@ -54,7 +54,7 @@ Failure inversion(const Model& model, const Dofs& position) {
   return failure;
 }
 
-/// Where a number is none; node: of the field, of a compliant body.
+/// Describes the first value that is not finite; node: field node of a compliant body.
 std::string describe_nan(const Model& model, int body, const Dofs& dofs, std::optional<int>& node) {
   const Body& b = model.bodies[body];
   if (b.kind == BodyKind::rigid) {
@@ -73,7 +73,7 @@ std::string describe_nan(const Model& model, int body, const Dofs& dofs, std::op
   return {};
 }
 
-/// The first position, else the first force, that is not finite, if any.
+/// Failure by the first position, else the first force, that is not finite, if any.
 std::optional<Failure> number_that_is_none(const Model& model, const Dofs& position, const Dofs& force) {
   for (const auto& [dofs, what] : {std::pair(&position, "position"), std::pair(&force, "force")})
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
@@ -102,7 +102,8 @@ std::string contact_of(const Model& model, const DeepestNode& deepest) {
   return fmt::format("contact between {} and {}", slave, name_of(model, deepest.master));
 }
 
-/// What may help where contact is lost. Contact sees as deep as segments are long: where they are squeezed, soon.
+/// Advice for a lost contact. The detection depth is a segment length, which is soon exceeded where segments are
+/// compressed.
 std::string advice(const DeepestNode& deepest) {
   constexpr double squeezed = 0.5;
   if (deepest.squeeze >= squeezed)
@@ -131,7 +132,7 @@ Failure lost_contact(const Forces& forces, const Outlines& outlines) {
   return failure;
 }
 
-/// What an evaluation found wrong with a trial or a state, if anything.
+/// Failure that an evaluation found in a trial or a state, if any.
 template <class Tried>
 std::optional<Failure> found(const Evaluation& evaluation, const Tried& tried, const Forces& forces) {
   if (!(evaluation.least_jacobian > 0)) return inversion(forces.model(), tried.position);

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-/// Penetration over segment length: contacts are dropped a skin beyond 1; warned about when half of that is used.
+/// Penetration over segment length: contacts are lost a skin beyond 1, and a warning comes at half of that.
 constexpr double deep_penetration = 0.5, lost_penetration = 1;
 
 /// Padding lanes repeat a body, so that they need no masking here.
@@ -77,7 +77,7 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   return result;
 }
 
-/// What the points of a batch go through from a memory on.
+/// Motion of a batch from the history variables `from` on, with the new ones in `to`.
 BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const PreviousHistory& from, Memory& to) const {
   BatchMotion step = motion_of(batch, motion.position, from.memory);
   if (batch.viscous) step.velocity = &motion.velocity.compliant[batch.offset];
@@ -86,7 +86,7 @@ BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const Prev
   return step;
 }
 
-/// All forces on the bodies of a batch that stand one a lane.
+/// All forces on the bodies of a batch with one body per lane.
 void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
                          const Output& to) {
   const Batch& batch = model_.batches[b];
@@ -114,7 +114,7 @@ void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& posit
   add_rigid_loads(rigid, model_.scene.gravity_at(motion.time), motion.instant(), &force.rigid[3 * r]);
 }
 
-/// All forces on spread bodies: stresses first, because a region's nodes gather from points of others.
+/// All forces on spread bodies: stresses come first, because a region's nodes gather from points of other regions.
 void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
                            const Output& to, const PostForceHooks& hooks) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };

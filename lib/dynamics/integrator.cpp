@@ -14,15 +14,15 @@ namespace pliant {
 
 namespace {
 
-/// Of the evaluation that gave a state its forces.
+/// Stores the sums of the evaluation that gave a state its forces.
 void book_forces(const Evaluation& found, State& state) {
   state.damping_power = found.damping_power;
   state.contact_energy = found.contact.stored;
   state.contacts = found.contact.contacts;
 }
 
-/// What histories and windows change just at the time that a step has come to: forces from then on, and the energy of
-/// the springs that come or go.
+/// Applies changes of histories and windows at the end time of a step: of the forces from then on, and of the energy of
+/// springs that begin or end to act.
 void pass_switch(const Model& model, State& state) {
   const Instant before{state.time, true}, after{state.time};
   state.external_work +=
@@ -72,7 +72,7 @@ void swap_motion(State& state, Trial& trial) {
 
 void take_over(const Model& model, State& state, Trial& trial, const Verdict& verdict, const StepReport& report) {
   const double end_time = trial.time;
-  // Of velocities only those of rigid bodies count here: reduced momenta are no others.
+  // Only velocities of rigid bodies count here, and their reduced momenta equal them.
   const Motion before{state.position, state.reduced_momentum, state.time},
       after{trial.position, trial.reduced_momentum, end_time, true};
   state.external_work += external_work(model, before, state.force, after, trial.force) +

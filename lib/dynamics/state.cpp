@@ -27,7 +27,7 @@ BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& me
 
 std::uint64_t state_hash(const State& state) {
   HashLeaf leaf;
-  const_cast<State&>(state).visit_motion(Walk(leaf));  // this leaf only looks
+  const_cast<State&>(state).visit_motion(Walk(leaf));  // this leaf does not change it
   return leaf.hash.value();
 }
 

@@ -15,11 +15,11 @@
 namespace pliant {
 namespace {
 
-/// The controller's factor on dt: clamped, because the error may vanish or explode.
+/// Bounds of the controller's factor on dt, as the error may vanish or explode.
 constexpr double least_change = 0.2, largest_change = 2;
-constexpr double first_share = 1e-3;  ///< of the time a wave takes from node to node
+constexpr double first_share = 1e-3;  ///< of the time of a wave between nodes
 
-/// Least nodal distance over wave speed: a scale for the first step and the floor, not a limit.
+/// Least nodal distance over wave speed: scale for the first step and the smallest step, not a limit.
 double wave_time(const Model& model) {
   double result = model.scene.time.end;
   for (const Body& body : model.bodies) {
@@ -97,7 +97,7 @@ void StepDoubling::attempt(State& state, const Proposal& proposal, StepReport& r
   if (halves != Halves::done) report.error = std::numeric_limits<double>::infinity();
 }
 
-/// Two half steps and, when their error lets them stand, the forces at the end, which the next step starts from.
+/// Two half steps and, if their error is acceptable, the forces at the end, from which the next step starts.
 StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& proposal, StepReport& report) {
   const double half = 0.5 * proposal.dt, middle = state.time + half;
   const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
@@ -119,12 +119,13 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   return Halves::done;
 }
 
-/// Where it began, if contact asks.
+/// Outlines at the start of the step, if contact needs them.
 const OutlineField* StepDoubling::start_of_step(const Outlines& outlines) const {
   return forces_.contact().may_integrate() ? &outlines.position : nullptr;
 }
 
-/// With the mean of the loads over the half step: they are linear in time, as steps end at the points of histories.
+/// Forces at the start with the mean of the loads over the half step. Loads are linear in time within a step, as steps
+/// end at the points of histories.
 void StepDoubling::find_start_force(const State& state, double half) {
   start_force_ = state.force;
   if (model_.switch_times.empty() || state.time >= model_.switch_times.back()) return;
@@ -137,7 +138,7 @@ Motion StepDoubling::motion(const Instant& at) const {
   return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.reduced_momentum, at.time, at.ends_step};
 }
 
-/// The trial's outlines, and candidates that hold for them. `at`: the time of the loads.
+/// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads.
 Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
@@ -147,7 +148,7 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
   return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
 }
 
-/// Returns whether the forces are sound.
+/// Evaluates forces; returns whether they are valid.
 bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
   if (!drag_) return report.evaluation.sound;
@@ -156,7 +157,7 @@ bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memo
   return report.evaluation.sound;
 }
 
-/// v + half a and u + half v of that, from `time` on, into trial; the arguments may be the trial's own.
+/// Writes v + half a, and u + half times that v, from `time` on, to the trial; the arguments may be the trial's own.
 void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half) {
   const bool corrected = model_.corrected_mass;
   for_each_dof(
@@ -245,7 +246,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 }
 
 double StepDoubling::error(const State& state, double dt) {
-  // A spread body's region needs the differences of its neighbours: all first.
+  // A spread body's region needs the differences of its neighbours: all are computed first.
   parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], dt); });
   if (model_.corrected_mass) correct_difference();
   const double compliant =

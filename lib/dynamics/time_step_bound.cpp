@@ -26,17 +26,17 @@ constexpr double internal_margin = 1.05;
 constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.
 constexpr double probe_size = 1e-6;
-/// Of w^2 dt^2 under drag of whatever rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, which is least,
-/// 3.716, at z = 0.87.
+/// Bound of w^2 dt^2 with drag of any rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, whose least value
+/// is 3.716, at z = 0.87.
 constexpr double limit_with_drag = 3.7;
-/// Of bodies in touch by dashpots, to one that is stable: these pairs repay nothing, and at the limit what a bounce
-/// leaves would hang on the two steps that it lasts (docs/defaults.md).
+/// Steps per stable step of bodies whose contacts have dashpots. These pairs have no energy correction, and at the
+/// limit the rebound would depend on the two steps that it lasts (docs/defaults.md).
 constexpr double steps_with_dashpots = 2;
-/// Times as many steps.
+/// Factor on the number of steps from which a message mentions it.
 constexpr double worth_naming = 1.1;
 
-/// Where the power iterations start, in each body's own frame: of all bodies of a shape the same, whatever their place
-/// in the list.
+/// Start vectors of the power iterations, in each body's own frame: the same for all bodies of a shape, whatever their
+/// position in the list.
 std::vector<Lanes> start_directions(const Model& model) {
   int most_nodes = 0;
   for (const CompliantShape& shape : model.shapes) most_nodes = std::max(most_nodes, shape.nodes());
@@ -61,7 +61,7 @@ Lanes probe_step(const Model& model, const Batch& batch) {
                                                        : broadcast(model.shape_of(batch).space.nodal_distance[0]));
 }
 
-/// Divides each body's vector by that of its largest node.
+/// Divides each body's vector by its largest nodal value.
 void normalise(const Batch& batch, Lanes* u) {
   Lanes square = broadcast(1e-300);
   for (int i = 0; i < batch.slots; ++i) square = max(square, u[2 * i] * u[2 * i] + u[2 * i + 1] * u[2 * i + 1]);
@@ -77,7 +77,7 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const Weight* weight, int slo
   return total;
 }
 
-/// D C D^-1 of a force, so that the division by the lumped mass that follows makes it the acceleration W f.
+/// D C D^-1 of a force, so that the subsequent division by the lumped mass gives the acceleration W f.
 std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector<Lanes> force) {
   std::vector<Lanes> result(force.size());
   with_nodes(model, batch, [&](const auto& nodes) {
@@ -104,7 +104,7 @@ TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : mode
     contact_floor_[b] = compliance_[b] * laws.largest_stiffness(static_cast<int>(b));
 }
 
-/// Soft supports and dashpots that do not depend on the motion. Their sum bounds them together.
+/// Bounds of soft supports and dashpots that do not depend on the motion. Their sum bounds them together.
 void TimeStepBound::bound_conditions() {
   support_.assign(model_.bodies.size(), 0.0);
   damping_.assign(model_.bodies.size(), 0.0);
@@ -174,7 +174,7 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
       const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.mass_at_unit_density, batch.slots));
       const Lanes after = sum_over_body(
           batch, weighted_dot(response.data(), response.data(), nodes.inverse_mass_at_unit_density, batch.slots));
-      const LaneBits damped = after > 0.0;  // a batch may hold bodies without viscosity
+      const LaneBits damped = after > 0.0;  // a batch may contain bodies without viscosity
       viscous_[b] = select(damped, sqrt(after / before) * batch.inverse_density, Lanes{});
       for (std::size_t i = 0; i < response.size(); ++i)
         v[i] = select(damped, -response[i] * nodes.inverse_mass_at_unit_density[i / 2], v[i]);
@@ -202,7 +202,7 @@ void TimeStepBound::update_contact(const ContactSystem& contact) {
   for (const int b : changed) {
     contact_[b] = std::max(contact_floor_[b], contact_[b]);
     if (!shortened_.empty()) shortened_[b] = 1;
-    // A dashpot takes the longest stable step of its spring down to sqrt(1 + 4 z^2) - 2 z of it: see largest_dt_of.
+    // A dashpot reduces the longest stable step of its spring by the factor sqrt(1 + 4 z^2) - 2 z: see largest_dt_of.
     if (const double z = 2 * damping[b]; z > 0) {
       shortened_.resize(model_.bodies.size(), 1.0);
       shortened_[b] = steps_with_dashpots * (std::sqrt(1 + z * z) + z);
@@ -224,10 +224,10 @@ double TimeStepBound::damping(std::size_t b) const {
   return damping_[b] + (viscous ? internal_margin * viscous_[body.batch][body.lane] : 0.0);
 }
 
-/// Dashpots see the velocity v + dt a that the step's first acceleration a predicts for its end, so a mode x of rate c
-/// follows x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from w^2 dt^2 + 4 c dt = 4 on:
-/// dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w. The forms of stiffness, damping and mass are symmetric, so the largest
-/// w^2 and the largest c bound all modes.
+/// Dashpots use the velocity v + dt a that the first acceleration a of the step predicts for its end. A mode x of rate
+/// c then follows x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from w^2 dt^2 + 4 c dt
+/// = 4 on: dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w. The forms of stiffness, damping and mass are symmetric, so the
+/// largest w^2 and the largest c bound all modes.
 double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const {
   const double w2 = total(b, contact_factor), c = damping(b);
   const double square = limit_square_[b], rate = 2 * c + std::sqrt(4 * c * c + square * w2);

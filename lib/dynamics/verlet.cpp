@@ -18,17 +18,18 @@ namespace pliant {
 namespace {
 
 constexpr int bound_period = 50;     ///< steps between power iterations
-constexpr double first_step = 1e-3;  ///< of the bound
+constexpr double first_step = 1e-3;  ///< of the stability bound
 constexpr double least_factor = 0.5, largest_factor = 1.15;
 constexpr double exponent = 1.0 / 3.0;  ///< the estimate is of third order in dt
-/// A step that follows each error up and down, in time with the fastest vibrations, damps them (docs/defaults.md). So
-/// the largest error counts, of this span of steps and the one before: of many of their periods.
+/// Steps that follow each error up and down, in phase with the fastest vibrations, damp these (docs/defaults.md).
+/// Therefore the largest error of this span of steps and the one before counts, which is many of their periods.
 constexpr int span = 64;
-/// Steps shorter than this part of what was wished for are not remembered. Of equal steps to a stop none is.
+/// Steps shorter than this share of the controller's step do not enter the error history. Equalised steps before a stop
+/// are never that short.
 constexpr double least_step_share = 0.5;
 
 double controller_factor(double error, double tolerance) {
-  if (error <= 1e-3 * tolerance) return largest_factor;  // by far; the ratio may overflow
+  if (error <= 1e-3 * tolerance) return largest_factor;  // the ratio may overflow
   return std::clamp(std::pow(tolerance / error, exponent), least_factor, largest_factor);
 }
 
@@ -52,8 +53,8 @@ Verlet::Verlet(Forces& forces, const State& state)
 
 double Verlet::first_dt() const { return first_step * std::min(largest_dt(), model_.scene.time.end); }
 
-/// Equal steps up to the next stop, such as a point of a history: a short one before each would jolt the fastest
-/// vibrations time and again.
+/// Divides the time to the next stop, such as a point of a history, into equal steps. One short step before each stop
+/// would excite the fastest vibrations again and again.
 Proposal Verlet::propose(const State& state, double next_dt, double until) const {
   const double largest = std::min(largest_dt(), model_.scene.time.end), controller_dt = std::min(next_dt, largest);
   const double remaining = until - state.time, steps = std::max(1.0, std::ceil(remaining / controller_dt));
@@ -98,7 +99,7 @@ Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepRe
   return {true, std::min(next_dt, proposal.largest_dt), errors};
 }
 
-/// What rigid bodies do in the step, for what contacts owe.
+/// Motion of rigid bodies in the step, for the energy correction of contacts.
 const RigidStep* Verlet::rigid_steps(const State& state) {
   if (!model_.scene.keeps_energy_debts()) return nullptr;
   rigid_steps_.resize(model_.rigid_bodies.size());
@@ -113,7 +114,7 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
   return rigid_steps_.data();
 }
 
-/// Positions at the end of the step and, for forces that depend on them, velocities there.
+/// Predicts positions at the end of the step and, for forces that depend on them, velocities there.
 void Verlet::predict(const State& state, double dt) {
   if (needs_velocities_) {
     predict_velocities(state, dt);
@@ -133,7 +134,7 @@ void Verlet::predict(const State& state, double dt) {
       });
 }
 
-/// The mean of the step and what it ends with if accelerations stand still but for drag.
+/// Predicts the mean velocity of the step and the velocity at its end for constant accelerations, apart from drag.
 void Verlet::predict_velocities(const State& state, double dt) {
   parallel_for(static_cast<int>(model_.regions.size()), [&](int r) {
     const Region& region = model_.regions[r];
@@ -173,9 +174,9 @@ void Verlet::move_by_mean_velocity(const State& state, double dt) {
       });
 }
 
-/// Velocities at the end of the step, and the largest |a_new - a_old| / d. It is done here, before the step is
-/// accepted, because the forces come out of the cache then. Drag joins them at the end: the errors of the step are
-/// those of all others, which the step takes for constant.
+/// Computes velocities at the end of the step, and the largest |a_new - a_old| / d. It does so before the step is
+/// accepted, while forces are in the cache. Drag is added at the end: the errors of the step are those of all other
+/// forces, which the step takes as constant.
 void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];
@@ -187,7 +188,7 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Lanes upper_inverse_density =
       with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
-    Lanes worst{}, any_nan{};  // squares
+    Lanes worst{}, any_nan{};  // squared
     for (int slot = region.first; slot < region.last; ++slot) {
       const auto inverse_mass_at_unit_density = nodes.inverse_mass_at_unit_density[slot];
       Lanes square{};
@@ -235,7 +236,7 @@ void Verlet::finish_rigid(const State& state, double dt, int r) {
                                                                      : std::numeric_limits<double>::infinity();
 }
 
-/// max of dt^2 |a_new - a_old| / (6 d) over all nodes, along no axis in particular.
+/// Largest dt^2 |a_new - a_old| / (6 d) of all nodes, independent of the direction of the axes.
 double Verlet::error(double dt) const {
   double worst = 0;
   for (double change : change_) worst = std::max(change, worst);
@@ -247,7 +248,7 @@ void Verlet::finish(const State& state, StepReport& report) {
   if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
-/// The trial has become what the state was before the step.
+/// After acceptance the trial holds the state before the step.
 void Verlet::accepted(State& state, const StepReport& report) {
   if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(trial_, state, report.dt);
   if (state.steps % bound_period == 0)
