@@ -15,10 +15,10 @@
 namespace pliant {
 namespace {
 
-/// A segment of an outline at the start.
+/// Segment of an outline at the start.
 struct Segment {
   Vec2 middle{0, 0};
-  Vec2 normal{0, 0};  ///< outward, of the segment's length
+  Vec2 normal{0, 0};  ///< outward, with the segment's length
 };
 
 std::vector<Segment> segments_of(const Model& model, const OutlineField& outlines, int body) {
@@ -52,7 +52,7 @@ bool contains(const OutlinePart& part, const Segment& segment, const Vec2& centr
   return true;
 }
 
-/// One body as a condition meets it.
+/// One body with the part of its outline that a condition selects.
 class Target {
  public:
   Target(const Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int body)
@@ -149,14 +149,14 @@ void apply_scene_conditions(Model& model) {
   }
 }
 
-/// Compliant bodies have theirs in the lanes of their batches.
+/// Sets the damping of rigid grains; that of compliant bodies is in the lanes of their batches.
 void damp_rigid_grains(Model& model) {
   for (RigidBody& rigid : model.rigid_bodies)
     if (const Body& body = model.bodies[rigid.body]; !body.wall)
       for (RigidDof& dof : rigid.dof) dof.mass_damping = model.scene.materials[body.material].mass_damping;
 }
 
-/// When loads and imposed motions change their course: of all histories and windows of a scene.
+/// Times at which loads and imposed motions change their slope or jump: of all histories and windows of a scene.
 class SwitchTimes {
  public:
   explicit SwitchTimes(const Scene& scene) {
@@ -167,7 +167,7 @@ class SwitchTimes {
       add(condition.x), add(condition.y), add(condition.angle);
     }
   }
-  /// Growing, after the start.
+  /// Times after the start, ascending.
   std::vector<double> sorted() && {
     std::sort(times_.begin(), times_.end());
     times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
@@ -179,7 +179,7 @@ class SwitchTimes {
     if (t > 0 && std::isfinite(t)) times_.push_back(t);
   }
   void add(const Window& window) { add(window.from), add(window.until); }
-  /// One entry is a constant.
+  /// A history of one entry is constant.
   void add(const History& history) {
     if (history.time.size() > 1) std::for_each(history.time.begin(), history.time.end(), [&](double t) { add(t); });
   }

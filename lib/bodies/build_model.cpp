@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// Shapes met so far, each discretised once as compliant and once as rigid at most.
+/// Shapes found so far, each discretised at most once as compliant and once as rigid.
 class ShapeStore {
  public:
   explicit ShapeStore(Model& model) : model_(model) {}
@@ -40,10 +40,10 @@ class ShapeStore {
     return rigid_[name] = add_outline(located(spec.where, [&] { return make_outline(spec); }), 0);
   }
 
-  /// Meshes to be used instead of the shapes' own.
+  /// Sets meshes that replace the shapes' own.
   void relate(std::map<std::string, RelatedMesh> meshes) { related_ = std::move(meshes); }
 
-  /// The outline of that number for bodies of another size; bodies of one size share it.
+  /// Outline of that index for bodies of another size; bodies of one size share it.
   int scaled(int outline, double scale) {
     if (scale == 1) return outline;
     const auto [found, is_new] = scaled_.try_emplace({outline, scale}, 0);
@@ -117,7 +117,7 @@ class Builder {
     body.kind == BodyKind::compliant ? add_compliant(std::move(body), shape) : add_rigid(std::move(body), shape);
   }
 
-  /// Its shape is discretised later, when all bodies are known.
+  /// The body's shape is discretised later, when all bodies are known.
   void add_compliant(Body body, const std::string& shape) {
     compliant_.push_back({static_cast<int>(model_.bodies.size()), shape});
     model_.bodies.push_back(std::move(body));
@@ -155,7 +155,7 @@ class Builder {
     model_.bodies.push_back(std::move(body));
   }
 
-  /// Of all grains, m.
+  /// Finest outline spacing of all grains, m.
   double finest_spacing() const {
     double finest = 1e300;
     for (const Body& body : model_.bodies)

@@ -10,8 +10,8 @@
 namespace pliant {
 namespace {
 
-/// A table's arrays by their bare pointers: a store of Lanes may alias the vectors' own, which would be read anew each
-/// time.
+/// A table's arrays by plain pointers: a store of Lanes may alias the vectors' own pointers, which would be read again
+/// each time.
 template <class Gradient, class Weight>
 struct Rows {
   const int *start, *node;
@@ -20,7 +20,7 @@ struct Rows {
   int points;
 };
 
-/// Of an IntegrationTable or a LaneTable.
+/// Rows of an IntegrationTable or a LaneTable.
 template <class Table>
 auto rows_of(const Table& table) {
   return Rows{table.start.data(), table.node.data(), table.gradient.data(), table.weight.data(),
@@ -47,7 +47,7 @@ inline void subtract_forces(const Rows<T...>& rows, int point, const Tensor<Lane
     const auto bx = rows.gradient[e].x(), by = rows.gradient[e].y();
     Lanes* node = f + 2 * rows.node[e];
     Lanes fx = node[0], fy = node[1];
-    fx -= P.xx * bx;  // one statement a product: each becomes one fused operation
+    fx -= P.xx * bx;  // one statement per product: each becomes one fused operation
     fx -= P.xy * by;
     fy -= P.yx * bx;
     fy -= P.yy * by;
@@ -56,9 +56,9 @@ inline void subtract_forces(const Rows<T...>& rows, int point, const Tensor<Lane
   }
 }
 
-/// Three points are under way at once, each at another stage, so that the processor need not wait for the long chain of
-/// operations of one point's stress. The last one's is found twice and counts once. Law and motion are copies, which no
-/// store of Lanes can alias.
+/// Three points are processed at once, each at another stage, so that the processor does not wait for the long chain of
+/// operations of one point's stress. The last point is computed twice and counts once. Law and motion are copies, which
+/// no store of Lanes can alias.
 template <class Law, class... T>
 PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch, const BatchMotion motion, Lanes* f) {
   PointTotals totals;

@@ -125,7 +125,7 @@ class BatchMaker {
   std::map<int, int> spread_;  ///< by compliant shape: index of its spread shape
 };
 
-/// Nodes of bodies that would leave most of their lanes empty.
+/// Number of nodes of bodies that would leave most of their lanes empty.
 int sparse_nodes(const Model& model) {
   int nodes = 0;
   for (const CompliantGroup& group : model.groups)

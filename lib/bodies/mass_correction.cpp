@@ -6,7 +6,7 @@ namespace pliant {
 
 namespace {
 
-/// [x, y] sums of eight bodies, one a lane; Rows: ShapeRows or LaneRows.
+/// [x, y] sums of eight bodies, one per lane; Rows: ShapeRows or LaneRows.
 template <class Rows>
 void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
   Lanes x_sum{}, y_sum{};
@@ -18,7 +18,7 @@ void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
   v[2 * node + 1] = y_sum;
 }
 
-/// The same of one body, whose nodes stand at `offset`.
+/// The same for one body, whose nodes are at `offset`.
 void correct_spread(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
   double x_sum = 0, y_sum = 0;
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
@@ -63,7 +63,7 @@ Dofs material_velocity(const Model& model, const Dofs& y) {
 Dofs reduced_momentum(const Model& model, const Dofs& velocity) {
   Dofs y = velocity;
   if (!model.corrected_mass) return y;
-  // The eigenvalues of C lie in [1, 2], so that each step of y += 2/3 (v - C y) leaves at most a third of the error.
+  // The eigenvalues of C are in [1, 2], so each step of y += 2/3 (v - C y) leaves at most a third of the error.
   constexpr int steps = 40;
   for (int step = 0; step < steps; ++step) {
     const Dofs reached = material_velocity(model, y);

@@ -27,14 +27,14 @@ class Neighbourhood {
     std::ranges::sort(by_x_, {}, [&](int i) { return segments_[i].middle.x(); });
   }
 
-  /// Of a segment: offsets of numbers from its own, growing.
+  /// Medial neighbours of a segment: offsets of their numbers from its own, ascending.
   std::vector<int> of_segment(int i) const {
     return nearer(points_below(i), i, [&](int offset) { return is_near(offset, -1, 1); });
   }
   std::array<bool, 2> has_shorter_next(int i) const {
     return {is_shorter(segment(i - 1), segment(i)), is_shorter(segment(i + 1), segment(i))};
   }
-  /// Of a node: from its number.
+  /// Medial neighbours of a node: offsets from its number.
   std::vector<int> of_node(int i) const {
     return nearer(points_below_node(i), i, [&](int offset) { return is_near(offset, -1, 0); });
   }
@@ -46,12 +46,12 @@ class Neighbourhood {
                to = shape_.points[i + 1 - next_turn * n] + Vec2(next_turn * shape_.turn_shift, 0);
     return {from, (to - from).normalized(), 0.5 * (from + to), (to - from).norm()};
   }
-  /// By a sample or more. A bisector holds as far as the other segment is long: there feet on both are as far from the
-  /// node.
+  /// Whether the adjacent segment is shorter by a sample or more. A bisector applies over the length of the other
+  /// segment: there the projections onto both are equally far from the node.
   static bool is_shorter(const OutlineSegment& next, const OutlineSegment& s) {
     return next.length < (1 - 1.0 / samples) * s.length;
   }
-  /// A point inside, and how deep it is as seen from where it was put.
+  /// Point inside, and its depth below the place from which it was put.
   struct Inside {
     Vec2 point;
     double depth;
@@ -71,16 +71,16 @@ class Neighbourhood {
     std::ranges::sort(result);
     return result;
   }
-  /// Within [first, last], around a closed outline.
+  /// Whether an offset is in [first, last], cyclically on a closed outline.
   bool is_near(int offset, int first, int last) const {
     if (shape_.turn_shift != 0) return offset >= first && offset <= last;
     const int n = shape_.count;
     return ((offset - first) % n + n) % n <= last - first;
   }
 
-  /// As deep as points beside a segment are nearer to it than to its neighbours. How much deeper such a point is than
-  /// far from another segment grows on the way inward, as that distance changes by no more than the way: so the deepest
-  /// ones tell.
+  /// Deepest points beside a segment that are nearer to it than to its neighbours. The depth of such a point less its
+  /// distance to another segment increases inward, because that distance changes by no more than the path: so the
+  /// deepest points suffice.
   std::vector<Inside> points_below(int i) const {
     std::vector<Inside> points;
     const OutlineSegment before = segment(i - 1), s = segment(i), after = segment(i + 1);
@@ -104,7 +104,7 @@ class Neighbourhood {
     }
     return points;
   }
-  /// Between the normals of both segments.
+  /// Points below a node, between the normals of both segments.
   std::vector<Inside> points_below_node(int i) const {
     std::vector<Inside> points;
     const Vec2 before = segment(i - 1).outward(), after = segment(i).outward();
@@ -125,7 +125,7 @@ class Neighbourhood {
   }
 
   bool comes_nearer(const std::vector<Inside>& points, int k, const Vec2& shift) const {
-    const double between = 2 * shape_.longest / samples;  // by as much it may change from one of the points to the next
+    const double between = 2 * shape_.longest / samples;  // possible change from one of the points to the next
     return std::ranges::any_of(
         points, [&](const Inside& at) { return segments_[k].distance(at.point - shift) < at.depth + between; });
   }

@@ -15,65 +15,65 @@
 
 namespace pliant {
 
-/// A shape as compliant bodies use it: one table whatever the number of grains.
+/// Shape of compliant bodies: one table for any number of grains.
 struct CompliantShape {
   Discretisation space;
   std::vector<double> inverse_mass_at_unit_density;  ///< [nodes], 1/m2
   int outline = 0;                                   ///< index of its outline shape
-  int family = -1;  ///< related shapes, of one mesh topology, have one number; -1: alone
+  int family = -1;  ///< number of a family of related shapes, which share a mesh topology; -1: none
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
-/// Compliant bodies of one shape, or of one family of related shapes, and of one form of law, stored eight bodies a
-/// batch, one a lane (docs/design.md 4).
+/// Compliant bodies of one shape, or of one family of related shapes, with one form of law. They are stored eight per
+/// batch, one per lane (docs/design.md 4).
 struct CompliantGroup {
   int shape = 0;  ///< index of the compliant shape, or of the first of its family
   MaterialLaw law = MaterialLaw::neo_hookean;
   std::vector<int> bodies;  ///< [bodies], global index of the body in each lane; padding lanes are absent
 };
 
-/// Eight bodies of a group, or one body spread over the lanes. Padding lanes carry a copy of a resting body and weight
-/// 0. Degrees of freedom are stored in units of each body's scale s: positions q/s, velocities, and forces f/s. So F,
-/// stresses and nodal distances are those of the shape
-/// itself, and only constants differ: m/s^2 and f/s give q/s, and energies are those of s = 1 times s^2.
+/// Eight bodies of a group, or one body spread over the lanes. Padding lanes hold a copy of a resting body with weight
+/// 0. Degrees of freedom are stored in units of each body's scale s: positions q/s, velocities, and forces f/s. Thus F,
+/// stresses and nodal distances are those of the shape itself, and only constants differ: m/s^2 and f/s give q/s, and
+/// energies are those of s = 1 times s^2.
 struct Batch {
   int group = 0;
   int first = 0;           ///< index within the group of the body in lane 0
   int count = 0;           ///< bodies, 1 to 8; 1 when spread
-  std::size_t offset = 0;  ///< of slot 0, x, in Dofs::compliant
+  std::size_t offset = 0;  ///< index of slot 0, x, in Dofs::compliant
   int slots = 0;           ///< [slots x 2] entries there
   Layout layout = Layout::shared;
-  int shape = 0;                      ///< index of the compliant shape, of related ones that of lane 0
+  int shape = 0;                      ///< index of the compliant shape; for related shapes that of lane 0
   int tables = -1;                    ///< spread, related: index in Model::spread_shapes or related_shapes
   int first_region = 0, regions = 1;  ///< in Model::regions
-  LawConstants constants;             ///< of the group's law, a lane
-  Lanes mu, lambda;                   ///< Lame constants of small strains, before anything relaxes, Pa
-  std::size_t memory = 0;             ///< first entry in Memory::material, [fields x points], of a law that remembers
-  int points = 0;                     ///< integration points; of a spread body whole lanes of them
-  Lanes density, inverse_density;     ///< density x s^2, so that unit masses give the mass that belongs to f/s and q/s
+  LawConstants constants;             ///< of the group's law, by lanes
+  Lanes mu, lambda;                   ///< instantaneous Lame constants of small strain, Pa
+  std::size_t memory = 0;             ///< first entry in Memory::material, [variables x points]
+  int points = 0;                     ///< integration points; for a spread body rounded up to whole lanes
+  Lanes density, inverse_density;     ///< density x s^2: with masses at unit density it gives the mass for f/s and q/s
   Lanes scale, inverse_scale;         ///< s; all 1 unless `scaled`
   bool scaled = false;
   Lanes weight;                               ///< s^2 for a body, 0 for padding
   Lanes centre_x, centre_y;                   ///< fixed centres, m: positions are stored relative to them
   Lanes viscosity{}, mass_damping{};          ///< of Material
-  bool viscous = false, mass_damped = false;  ///< some lane's is not 0
+  bool viscous = false, mass_damped = false;  ///< nonzero in some lane
 };
 
-/// One degree of freedom of a rigid body and what moves it.
+/// One degree of freedom of a rigid body and its drive.
 struct RigidDof {
   Drive::Mode mode = Drive::Mode::free;
   History history;          ///< velocity, force or pressure
   double force_scale = 1;   ///< force = history x force_scale: signed period for a pressure
   double damping = 0;       ///< of the dashpot beside the load, N s/m2 (N s)
   double mass_damping = 0;  ///< of the material, 1/s
-  Window window;            ///< of the mode: free outside
+  Window window;            ///< interval in which the mode applies; free outside
   double mass = 0;          ///< kg/m, or kg m for the angle
-  double inverse_mass = 0;  ///< 0 when the motion is imposed all the time
+  double inverse_mass = 0;  ///< 0 if the motion is imposed at all times
   bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }  ///< at some time
   bool imposed(double time) const { return imposed() && window.contains(time); }
 
-  // What becomes of it in a step that begins at `time`: what is imposed there, the exact integral of its history, or
-  // else what the caller says of a free motion.
+  // Motion in a step that begins at `time`: the imposed motion, with the exact integral of its history, or else the
+  // free motion that the caller gives.
   double position_after(double time, double dt, double x, double free) const {
     if (!imposed(time)) return free;
     return mode == Drive::Mode::velocity ? x + history.integral(time, time + dt) : x;
@@ -85,7 +85,7 @@ struct RigidDof {
     if (!imposed(time)) return inverse_mass * force;
     return mode == Drive::Mode::velocity ? history.slope(time) : 0;
   }
-  /// Acceleration by unit force: none while the motion is imposed.
+  /// Acceleration per unit force: 0 while the motion is imposed.
   double inverse_mass_at(double time) const { return imposed(time) ? 0 : inverse_mass; }
   double imposed_velocity(double time) const { return mode == Drive::Mode::velocity ? history.at(time) : 0; }
 };
@@ -95,26 +95,26 @@ struct RigidBody {
   int outline = 0;  ///< index of its outline shape
   double max_radius = 0;
   RigidDof dof[3];      ///< x, y, angle
-  bool driven = false;  ///< some degree of freedom is imposed or loaded
+  bool driven = false;  ///< whether some degree of freedom is imposed or loaded
 };
 
 struct Body : PlacedBody {
   int compliant_shape = -1;   ///< compliant: index in Model::shapes
-  int batch = -1, lane = -1;  ///< compliant; a spread body counts as lane 0
+  int batch = -1, lane = -1;  ///< compliant; a spread body has lane 0
   int rigid = -1;             ///< rigid: index in Model::rigid_bodies
   int outline = 0;            ///< index of its outline shape
   double area = 0;            ///< m2
   double mass = 0;            ///< kg/m
 };
 
-/// Bodies and tables: built once from the scene, immutable.
+/// Bodies and tables: built once from the scene, then immutable.
 struct Model {
   Scene scene;
   std::vector<OutlineShape> outlines;
   std::vector<CompliantShape> shapes;
   std::vector<CompliantGroup> groups;
-  std::vector<Batch> batches;  ///< those of several bodies first, then spread ones
-  int lane_batches = 0;        ///< of several bodies: batches[0, lane_batches), each of them region of the same number
+  std::vector<Batch> batches;  ///< batches of several bodies first, then spread ones
+  int lane_batches = 0;        ///< batches of several bodies, [0, lane_batches); each is the region of the same number
   std::vector<Region> regions;
   std::vector<RelatedShapes> related_shapes;  ///< [batches of related bodies]
   std::vector<SpreadShape> spread_shapes;
@@ -123,17 +123,16 @@ struct Model {
   std::vector<Body> bodies;         ///< grains in the scene's order, then walls
   std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
   std::size_t compliant_size = 0;   ///< length of Dofs::compliant
-  std::size_t material_memory = 0;  ///< length of Memory::material: 0 unless laws remember
+  std::size_t material_memory = 0;  ///< length of Memory::material: 0 without internal variables
   bool corrected_mass = false;      ///< states hold momentum over lumped mass: see mass_correction.hpp
-  bool rates = false;  ///< some force but drag (damping_forces.hpp) depends on velocities: only then are rates formed
-  bool outline_rates = false;  ///< and on those of outline nodes
+  bool rates = false;  ///< some force except drag (damping_forces.hpp) depends on velocities: else no rates are formed
+  bool outline_rates = false;  ///< likewise, on velocities of outline nodes
   std::vector<OutlinePressure> pressures;
   std::vector<OutlineSupport> supports;
-  std::vector<double>
-      switch_times;  ///< growing, s: points of histories, and when a condition sets in or ends; steps end there
+  std::vector<double> switch_times;  ///< ascending, s: points of histories, and ends of windows; steps end there
 
   const OutlineShape& outline_of(int body) const { return outlines[bodies[body].outline]; }
-  int outline_end(int body) const { return outline_offset[body] + outline_of(body).count; }  ///< without copies
+  int outline_end(int body) const { return outline_offset[body] + outline_of(body).count; }  ///< without cyclic copies
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[batch.shape]; }
   const CompliantShape& shape_of(const Body& body) const { return shapes[body.compliant_shape]; }
   const SpreadShape& spread_shape_of(const Batch& batch) const { return spread_shapes[batch.tables]; }
@@ -141,18 +140,18 @@ struct Model {
   int node_count() const;  ///< field nodes of compliant bodies and outline nodes of rigid ones
 };
 
-/// What a caller may want to choose himself; no part of a scene.
+/// Options of a caller that are no part of a scene.
 struct BuildOptions {
-  /// Bodies that would leave their batch's lanes empty are united with those of related shapes, or spread, when their
-  /// shapes have so many nodes
-  /// together: below, nobody waits for the empty lanes. 0: always; a large number: never.
+  /// Number of nodes from which bodies that would leave lanes of their batches empty are united with those of related
+  /// shapes, or spread. The nodes of all such bodies count together; below, the cost of empty lanes is negligible. 0:
+  /// always; a large number: never.
   int least_sparse_nodes = pliant::least_sparse_nodes;
-  bool relate = true;          ///< unite related shapes then, where they would be spread
-  std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: as the scene says
+  bool relate = true;          ///< unite related shapes instead of spreading their bodies
+  std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: from the scene
 };
 
-/// Builds bodies, tables and masses. Throws InputError for what the scene reader cannot see (shapes that cannot be
-/// meshed).
+/// Builds bodies, tables and masses. Throws InputError for errors that the scene reader cannot detect, such as shapes
+/// that cannot be meshed.
 Model build_model(const Scene& scene, const BuildOptions& options = {});
 
 }  // namespace pliant

@@ -17,13 +17,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Step of the differences over the least distance of nodes: truncation of its fourth power, rounding over it, both
-/// some 1e-12 of a stiffness.
+/// Step of the differences over the least distance of nodes. Truncation grows with its fourth power and rounding with
+/// its inverse; both are some 1e-12 of a stiffness.
 constexpr double difference_step = 1e-3;
-/// In steps; four lanes do one column.
+/// Displacements in steps; four lanes compute one column.
 constexpr double way[] = {1, -1, 2, -2};
 constexpr int ways = 4, columns_at_once = lane_count / ways;
-/// w over the largest w: finite elements have some 1e-2 as their first, differences leave some 1e-6.
+/// Zero modes by w over the largest w: first modes of finite elements have some 1e-2, differences leave some 1e-6.
 constexpr double at_rest = 1e-4;
 
 void check_size(const Model& model, const Body& body) {
@@ -34,14 +34,14 @@ void check_size(const Model& model, const Body& body) {
         model.scene.file.string(), body.name, nodes, most_modal_nodes));
 }
 
-/// A batch of eight times this body.
+/// Batch with eight copies of this body.
 Batch repeated(const Model& model, const Body& body) {
   Batch batch = model.batches[body.batch];
   for (Lanes& constant : batch.constants) constant = broadcast(constant[body.lane]);
   return batch;
 }
 
-/// Each lane as this body starts, [2 nodes].
+/// Initial positions of this body in each lane, [2 nodes].
 std::vector<Lanes> repeated_positions(const Model& model, const Body& body) {
   const Batch& batch = model.batches[body.batch];
   const Dofs q = initial_positions(model);
@@ -54,11 +54,11 @@ double least_distance(const CompliantShape& shape) {
   return *std::min_element(shape.space.nodal_distance.begin(), shape.space.nodal_distance.end());
 }
 
-/// Central differences of fourth order, times the step, of values at the four ways. 0 where they are equal.
+/// Central differences of fourth order, times the step, of values at the four displacements. 0 where they are equal.
 double slope(const double* f) { return (f[0] - f[1]) * 2 / 3 - (f[2] - f[3]) / 12; }
 
-/// Forces of eight bodies whose degrees of freedom from `first` on are moved one after the other, four ways each: [2
-/// nodes].
+/// Forces, [2 nodes], of eight bodies whose degrees of freedom from `first` on are displaced one after the other, four
+/// times each.
 std::vector<Lanes> moved_forces(const Model& model, const Batch& batch, std::vector<Lanes> q, Index first, int columns,
                                 double step) {
   for (int lane = 0; lane < columns * ways; ++lane)
@@ -85,7 +85,7 @@ MatrixXd stiffness_of(const Model& model, const Body& body) {
   return (stiffness + stiffness.transpose()) / 2;
 }
 
-/// Velocities that unit momenta at one node after the other give: y = 1 / lumped mass there.
+/// Velocities by unit momenta at one node after the other: y = 1 / lumped mass there.
 MatrixXd inverse_mass_of(const Model& model, const Body& body) {
   const Batch& batch = model.batches[body.batch];
   const CompliantShape& shape = model.shape_of(body);

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Calls action(arrays) with the NodeArrays of a batch: chosen once, outside every loop.
+/// Calls action(arrays) with the NodeArrays of a batch: selected once, outside all loops.
 template <class Action>
 decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& action) {
   if (batch.layout == Layout::spread) {
@@ -23,16 +23,16 @@ decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& actio
                                    shape.space.nodal_distance.data()});
 }
 
-/// Calls action(tables) with what bodies in lanes compute with: the Discretisation of their shape, or the RelatedShapes
-/// of their batch.
+/// Calls action(tables) with the tables of bodies in lanes: the Discretisation of their shape, or the RelatedShapes of
+/// their batch.
 template <class Action>
 decltype(auto) with_tables(const Model& model, const Batch& batch, Action&& action) {
   return batch.layout == Layout::related ? action(model.related_shapes[batch.tables])
                                          : action(model.shape_of(batch).space);
 }
 
-/// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: a spread body's lanes belong
-/// together.
+/// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: all lanes of a spread body
+/// belong to one body.
 inline Lanes sum_over_body(const Batch& batch, Lanes lanes) {
   return batch.layout == Layout::spread ? broadcast(sum(lanes)) : lanes;
 }
@@ -40,8 +40,8 @@ inline Lanes largest_of_body(const Batch& batch, Lanes lanes) {
   return batch.layout == Layout::spread ? broadcast(largest(lanes)) : lanes;
 }
 
-/// Calls work(b) for each batch. Threads share the batches, but a spread body of many regions comes alone: its own work
-/// is shared.
+/// Calls work(b) for each batch. Threads share the batches, but a spread body of many regions is handled alone, as
+/// threads share its work.
 template <class Work>
 void for_each_batch(const Model& model, Work&& work) {
   const int count = static_cast<int>(model.batches.size());

@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace {
 
-/// From node i to the next.
+/// Vector from node i to the next.
 Vec2 segment(const OutlineShape& shape, int i) {
   const int next = (i + 1) % shape.count;
   return shape.points[next] + Vec2(next == 0 ? shape.turn_shift : 0, 0) - shape.points[i];
@@ -41,7 +41,7 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift) {
   shape.longest = *std::max_element(length.begin(), length.end());
   for (int i = 0; i < lane_count; ++i) length.push_back(length[i]);
   shape.corner = find_corners(shape);
-  find_medial_neighbours(shape, 1.5 * shape.longest);  // contact sees a segment and a skin
+  find_medial_neighbours(shape, 1.5 * shape.longest);  // detection depth: a segment and a skin
   return shape;
 }
 

@@ -17,7 +17,7 @@ void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
   }
 }
 
-/// A field of compliant bodies: places, relative to their bodies' centres, or what has no origin.
+/// Field of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
 struct Field {
   const Dofs& values;
   bool has_origin;
@@ -46,7 +46,8 @@ void show_batch(const Model& model, const Batch& batch, const Rows& rows, const 
       for (int k = 0; k < lane_count; ++k) x[k] *= batch.scale, y[k] *= batch.scale;
     transpose(x, x_of_body);
     transpose(y, y_of_body);
-    for (int lane = 0; lane < batch.count; ++lane) {  // the last ones reach into the cyclic copies, which come after
+    for (int lane = 0; lane < batch.count;
+         ++lane) {  // the last lanes reach into the cyclic copies, which are set later
       store(&outlines.x[model.outline_offset[bodies[lane]] + first], x_of_body[lane]);
       store(&outlines.y[model.outline_offset[bodies[lane]] + first], y_of_body[lane]);
     }
@@ -57,7 +58,7 @@ void show_batch(const Model& model, const Batch& batch, const Rows& rows, const 
   }
 }
 
-/// One chunk of a spread body's outline nodes.
+/// Computes one chunk of a spread body's outline nodes.
 void show_chunk(const Model& model, const Chunk& chunk, const Field& field, OutlineField& outlines) {
   const Batch& batch = model.batches[chunk.batch];
   const int number = model.groups[batch.group].bodies[batch.first];
@@ -85,7 +86,7 @@ void show_spread(const Model& model, const Field& field, OutlineField& outlines)
   }
 }
 
-/// And calls of_rigid(r) for `rigid` bodies.
+/// Computes a field at all outline nodes of compliant bodies, and calls of_rigid(r) for `rigid` bodies.
 template <class OfRigid>
 void show(const Model& model, const Field& field, OutlineField& outlines, std::size_t rigid, OfRigid&& of_rigid) {
   const auto of_batch = [&](int b) {

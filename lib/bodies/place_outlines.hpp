@@ -6,19 +6,20 @@
 
 namespace pliant {
 
-/// Where all outlines are: phi rows for compliant bodies, rotation for rigid ones.
+/// Computes the positions of all outlines: by phi rows for compliant bodies, by rotation for rigid ones.
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position);
 
-/// Values of a field at all outline nodes, of rigid bodies left as they are: velocities of compliant ones.
+/// Computes a field without origin, such as velocities, at the outline nodes of compliant bodies; those of rigid bodies
+/// are not changed.
 void update_outline_field(const Model& model, const Dofs& values, OutlineField& field);
 
-/// Where all outlines are, newly made.
+/// Positions of all outlines, in a new field.
 OutlineField placed_outlines(const Model& model, const Dofs& positions);
 
-/// All that a motion shows: positions, and velocities and present lengths in models that need them.
+/// Updates the outlines of a motion: positions, and velocities and current lengths in models that need them.
 void update_outlines(const Model& model, const Motion& motion, Outlines& outlines);
 
-/// Carries forces on the outline nodes of a batch's bodies to the degrees of freedom of one of its regions: forces,
+/// Transfers forces on the outline nodes of a batch's bodies to the degrees of freedom of one of its regions: forces,
 /// [slots x 2] of the batch, += phi^T f.
 void add_outline_forces(const Model& model, const Region& region, const OutlineField& on_outlines, Lanes* forces);
 

@@ -7,27 +7,27 @@
 
 namespace pliant {
 
-/// How the bodies of one batch stand and move, and what their integration points remember.
+/// Motion of the bodies of one batch, with the internal variables of their integration points.
 struct BatchMotion {
   const Lanes* position = nullptr;  ///< [slots x 2]
-  const Lanes* velocity = nullptr;  ///< likewise; without, viscosity does not count
-  const Lanes* memory = nullptr;    ///< [fields x points], of laws that remember
-  double elapsed = 0;               ///< since then, s
-  Lanes* new_memory = nullptr;      ///< likewise, where it is wanted
-  bool elastic = true;              ///< false: viscosity alone counts
-  // Positions and forces of the batch whose turn is next, asked for on the way (core/prefetch.hpp), and how many Lanes
-  // of each; null: none.
+  const Lanes* velocity = nullptr;  ///< likewise; null: no viscosity
+  const Lanes* memory = nullptr;    ///< [variables x points], if the law has internal variables
+  double elapsed = 0;               ///< time since these, s
+  Lanes* new_memory = nullptr;      ///< likewise, after the motion; null: not needed
+  bool elastic = true;              ///< false: only viscosity counts
+  // Positions and forces of the next batch, prefetched meanwhile (core/prefetch.hpp), and the number of Lanes of each;
+  // null: none.
   const Lanes *next_position = nullptr, *next_forces = nullptr;
   int next_count = 0;
 };
 
-/// What the points of a batch's bodies add up to, a lane a body.
+/// Sums over the points of a batch's bodies, one body per lane.
 struct PointTotals {
   Lanes least_jacobian = broadcast(1e300);
-  Lanes power{};  ///< dissipated, of bodies of scale 1, W/m
+  Lanes power{};  ///< dissipated, for bodies of scale 1, W/m
 };
 
-/// Calls action(law) with what the points of a batch answer to a motion.
+/// Calls action(law) with the response of a batch's points to a motion.
 template <class Action>
 auto with_point_law(const Model& model, const Batch& batch, const BatchMotion& motion, Action&& action) {
   if (!motion.elastic) return action(KelvinVoigt<Unresisting<Lanes>, Lanes>{{}, batch.viscosity});
@@ -37,7 +37,8 @@ auto with_point_law(const Model& model, const Batch& batch, const BatchMotion& m
   });
 }
 
-/// What the law remembers of a point, or of eight of a spread body. A motion without memory is at its start.
+/// Internal variables of a point, or of eight points of a spread body. Without stored variables these are the initial
+/// ones.
 template <class Law>
 Record<Law> load_record(const Batch& batch, const BatchMotion& motion, int point) {
   Record<Law> record;

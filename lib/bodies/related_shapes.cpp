@@ -7,7 +7,8 @@ namespace {
 
 using Shapes = const Discretisation* const (&)[lane_count];
 
-/// One row of neighbours, from those of each lane; `add` takes entry e of a lane's arrays into a node's united entry.
+/// Unites one row of neighbours from those of each lane; `add` copies entry e of a lane's arrays to a node's united
+/// entry.
 template <class Entry, class Rows, class Add>
 void unite_row(const Rows* const (&rows)[lane_count], int row, std::vector<int>& node, std::vector<Entry>& entries,
                Add&& add) {

@@ -7,8 +7,8 @@
 namespace pliant {
 namespace {
 
-/// Over the spacing: a block's steps become 1.05 times as many by an edge of 0.1 with `mls`, 1.3 by one of 0.01; 3.5
-/// and 26 with `es-t3`.
+/// Edge length over the spacing that gives a message. The number of steps of a block becomes 1.05 times as large by an
+/// edge of 0.1 with `mls`, 1.3 by one of 0.01; 3.5 and 26 with `es-t3`.
 constexpr double short_edge = 0.1;
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// A sentence on the shortest edge of a compliant outline, over its mean; nothing where all are a tenth of it or more.
+/// Sentence on the shortest edge of a compliant outline, over its mean; none if all edges are a tenth of it or more.
 std::optional<std::string> of_short_edges(const Model& model);
 
 }  // namespace pliant

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Largest entry of F - I, in absolute value, over the bodies of a material that holds for small strains only; 0
-/// without such bodies.
+/// Largest entry of F - I, in absolute value, over the bodies of materials that hold for small strains only; 0 without
+/// such bodies.
 double largest_small_strain(const Model& model, const Dofs& position);
 
 }  // namespace pliant

@@ -24,7 +24,7 @@ Quad twice_each(const Vec2* b) {
   return __builtin_shufflevector(pair, pair, 0, 0, 1, 1);
 }
 
-/// Deformation gradients of eight points, one a lane.
+/// Deformation gradients of eight points, one per lane.
 Tensor<Lanes> deformation_gradients(const SpreadShape& shape, int first, const double* q) {
   const int *start = shape.start.data(), *node = shape.node.data();
   const Vec2* gradient = shape.gradient.data();
@@ -120,7 +120,7 @@ PointTotals add_spread_forces(const Model& model, const Batch& batch, const Batc
   const int chunks = (points + step - 1) / step;
   scratch.resize(static_cast<std::size_t>(points));
   scratch_totals.resize(static_cast<std::size_t>(chunks));
-  StressColumns* stresses = scratch.data();  // of the calling thread, for all that share its work
+  StressColumns* stresses = scratch.data();  // of the calling thread, shared by all threads
   PointTotals* of_chunks = scratch_totals.data();
   parallel_for(chunks, [&](int c) {
     of_chunks[c] = spread_stresses(model, {number, c * step, std::min(points, (c + 1) * step)}, motion, stresses);

@@ -7,12 +7,13 @@ namespace pliant {
 /// Internal forces of spread bodies in two passes, so that no two threads write to one node (docs/design.md 4):
 /// stresses at all points, then each node gathers from its points. Forces: [slots x 2] of the batch.
 
-/// A weighted first Piola stress by columns, w P: what a gradient's x and y components go with.
+/// Weighted first Piola stress by columns, w P, which multiply a gradient's x and y components.
 struct StressColumns {
   double xx, yx, xy, yy;
 };
 
-/// Stresses of one chunk of points into stresses, [points] of the body. The totals' lanes are eight points each.
+/// Computes the stresses of one chunk of points into `stresses`, [points] of the body. The totals' lanes are eight
+/// points each.
 PointTotals spread_stresses(const Model& model, const Chunk& points, const BatchMotion& motion,
                             StressColumns* stresses);
 

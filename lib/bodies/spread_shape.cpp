@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-/// Every second bit of the result, from the 16 bits of x.
+/// Distributes the 16 bits of x over every second bit of the result.
 std::uint32_t with_gaps(std::uint32_t x) {
   x = (x | x << 8) & 0x00ff00ffU;
   x = (x | x << 4) & 0x0f0f0f0fU;
@@ -15,7 +15,7 @@ std::uint32_t with_gaps(std::uint32_t x) {
   return (x | x << 1) & 0x55555555U;
 }
 
-/// Numbers of the points in the order of a Z curve (Morton 1966): most neighbours in space are neighbours there.
+/// Numbers of the points in the order of a Z curve (Morton 1966), on which most neighbours in space are neighbours.
 std::vector<int> spatial_order(const Points& points) {
   Vec2 low = points[0], high = points[0];
   for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -30,7 +30,7 @@ std::vector<int> spatial_order(const Points& points) {
   return order;
 }
 
-/// Middle of the triangles that each integration point stands for.
+/// Centre of the triangles that each integration point represents.
 Points point_positions(const Discretisation& space) {
   Points result;
   for (const std::array<int, 2>& cells : space.table.cells) {
@@ -58,7 +58,7 @@ void add_nodes(const Discretisation& space, SpreadShape& shape) {
   }
 }
 
-/// Padding points have weight 0 and the last point's gradients, so that their J is a true one.
+/// Fills the tables by points. Padding points have weight 0 and the last point's gradients, so that their J is valid.
 void add_points(const Discretisation& space, SpreadShape& shape) {
   const IntegrationTable& table = space.table;
   std::vector<int> order = spatial_order(point_positions(space));
@@ -81,7 +81,7 @@ void add_points(const Discretisation& space, SpreadShape& shape) {
 /// Number, in the order of the shape, of the node at an offset.
 int number_of(int offset) { return offset / (2 * lane_count) * lane_count + offset % lane_count; }
 
-/// The table by nodes: each node's points in ascending order.
+/// Fills the tables by nodes: each node's points in ascending order.
 void transpose_points(SpreadShape& shape) {
   std::vector<int>& start = shape.node_start;
   start.assign(static_cast<std::size_t>(lane_count * shape.slots()) + 1, 0);

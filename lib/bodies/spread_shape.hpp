@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Lays a shape out for bodies that are spread over the lanes.
+/// Arranges a shape for bodies that are spread over the lanes.
 SpreadShape make_spread_shape(const Discretisation& space);
 
 }  // namespace pliant

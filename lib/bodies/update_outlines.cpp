@@ -6,7 +6,7 @@
 namespace pliant {
 namespace {
 
-/// `offset`: of the outline's first node; q, v: [x, y, angle] of the body.
+/// Velocities of a rigid body's outline. `offset`: of its first node; q, v: [x, y, angle] of the body.
 void rigid_velocities(const OutlineField& position, int offset, int count, const double* q, const double* v,
                       OutlineField& velocity) {
   for (int k = offset; k < offset + count + lane_count; ++k) {
@@ -28,7 +28,7 @@ void find_velocities(const Model& model, const Motion& motion, Outlines& outline
   });
 }
 
-/// Half of the two segments beside each node, as they are now.
+/// Computes current tributary lengths: half of the two segments at each node.
 void measure_lengths(const Model& model, Outlines& outlines) {
   outlines.tributary_length.resize(outlines.position.x.size());
   parallel_for(static_cast<int>(model.bodies.size()), [&](int b) {

@@ -14,7 +14,7 @@ using Gravity = Eigen::Vector3d;  ///< along x, y and the angle, m/s2
 Gravity gravity_of(const Vec2& g) { return {g.x(), g.y(), 0}; }
 Gravity gravity_of(const Model& model, const Instant& at) { return gravity_of(model.scene.gravity_at(at.time)); }
 
-/// Of the loads on rigid bodies, their dashpots and gravity.
+/// Adds the change of the loads on a rigid body, its dashpots and gravity.
 void add_rigid_load_change(const RigidBody& rigid, const Gravity& before, const Gravity& after, const Instant& from,
                            const Instant& to, const double* velocity, double* force) {
   for (int c = 0; c < 2; ++c) force[c] += rigid.dof[c].mass * (after[c] - before[c]);
@@ -36,7 +36,7 @@ double applied_load(const RigidDof& dof, const Instant& at, double g) {
 
 namespace {
 
-/// What weighs, of a batch's unit masses: rim_mass adds inertia, no weight.
+/// Density of gravitational mass for a batch's masses at unit density: rim_mass adds inertia but no weight.
 Lanes weighing_density(const Model& model, const Batch& batch) {
   const Lanes density =
       with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; });
@@ -48,7 +48,7 @@ Lanes weighing_density(const Model& model, const Batch& batch) {
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces) {
   if (g.x() == 0 && g.y() == 0) return;
   const Batch& batch = model.batches[region.batch];
-  // Padding lanes would fall for ever: nothing holds them.
+  // Padding lanes would fall without end, because nothing supports them.
   const Lanes density = select(batch.weight > 0.0, weighing_density(model, batch), Lanes{});
   with_nodes(model, batch, [&](const auto& nodes) {
     for (int i = region.first; i < region.last; ++i) {
@@ -103,7 +103,7 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
 
 namespace {
 
-/// Of slots [first, last).
+/// Gravity moment of slots [first, last).
 Lanes gravity_moment(const Model& model, const Batch& batch, int first, int last, const Vec2& g, const Dofs& position) {
   const Lanes* q = &position.compliant[batch.offset];
   return with_nodes(model, batch, [&](const auto& nodes) {

@@ -8,10 +8,10 @@
 namespace pliant {
 namespace {
 
-/// Node k of an outline, from wherever it is kept.
+/// Load on a node per unit of a following pressure. `at`: position of node k of the outline.
 template <class At>
 Vec2 following_load(const PartNode& node, int count, At&& at) {
-  Vec2 along(0, 0);  // of the segments of the part
+  Vec2 along(0, 0);  // sum of the segments of the part
   if (node.before) along += at(node.node) - at((node.node + count - 1) % count);
   if (node.after) along += at((node.node + 1) % count) - at(node.node);
   return 0.5 * Vec2(-along.y(), along.x());
@@ -30,7 +30,7 @@ void for_each_load(const OutlinePressure& load, int count, double pressure, At&&
            pressure * (load.dead_load.empty() ? following_load(load.nodes[i], count, at) : load.dead_load[i]));
 }
 
-/// Where a support's history has moved its far ends, m, and how fast.
+/// Displacement of the far ends of a support's springs by its history, m, and its rate.
 struct TargetMotion {
   Vec2 moved{0, 0}, velocity{0, 0};
 
@@ -48,19 +48,19 @@ struct TargetMotion {
   }
 };
 
-/// Zero along the axes that are free.
+/// Sets a vector to zero along the free axes.
 Vec2 held(const OutlineSupport& support, Vec2 value) {
   for (int c = 0; c < 2; ++c)
     if (support.drive[c].mode == Drive::Mode::free) value[c] = 0;
   return value;
 }
 
-/// What a node of the part at this place does to its spring.
+/// Elongation of the spring of a node at this position.
 Vec2 stretch(const OutlineSupport& support, std::size_t i, const TargetMotion& target, const Vec2& place) {
   return held(support, place - support.start[i] - target.moved);
 }
 
-/// What springs and dashpots of a support exert on one node of its part, N/m2, and what the dashpots dissipate, W/m2.
+/// Traction of springs and dashpots of a support on one node of its part, N/m2, and dissipation of the dashpots, W/m2.
 struct Pull {
   Vec2 force{0, 0};
   double power = 0;
@@ -83,7 +83,7 @@ void for_each_node(const Model& model, const OutlineSupport& support, const Outl
   }
 }
 
-/// Forces of a support on its body, together.
+/// Total force of a support on its body.
 Vec2 support_resultant(const Model& model, const OutlineSupport& support, const Outlines& outlines, const Instant& at) {
   const TargetMotion target(support, at);
   Vec2 total(0, 0);
@@ -103,7 +103,7 @@ double spring_energy(const Model& model, const OutlineSupport& support, const Ou
   return energy;
 }
 
-/// Calls action(node, force) for each outline node of the body under a pressure, where outlines are.
+/// Calls action(node, force) for each outline node of the body under a pressure, at these positions.
 template <class Action>
 void for_each_load(const Model& model, const OutlinePressure& load, const OutlineField& position, double pressure,
                    Action&& action) {
@@ -125,7 +125,7 @@ double pressure_work(const Model& model, const OutlinePressure& load, const Outl
   return work;
 }
 
-/// Steps end where windows do, so that a support acts during all of a step or not at all.
+/// Work of a support in a step. Steps end where windows do, so a support acts during a whole step or not at all.
 double support_work(const Model& model, const OutlineSupport& support, const Outlines& before, const Instant& from,
                     const Outlines& after, const Instant& to) {
   if (!contains(support.window, from)) return 0;
@@ -135,7 +135,7 @@ double support_work(const Model& model, const OutlineSupport& support, const Out
   return 0.5 * pull.dot(moved);
 }
 
-/// Gives forces on outline nodes of one body to its degrees of freedom.
+/// Transfers forces on outline nodes of one body to its degrees of freedom.
 class OutlineForces {
  public:
   OutlineForces(const Model& model, const Body& body, const Motion& motion, Dofs& force)
