@@ -12,10 +12,10 @@
 
 namespace pliant {
 
-/// What persists enumerates itself: `template <class V> void visit(V&& v) { v("time", time_); v("contact pairs",
-/// patches_); }`, each member once, in any order that stays. Members are plain values, arrays of them, strings, or
-/// enumerate themselves, or are arrays of what does. A class that derives more from what it enumerates has loaded(),
-/// which is called after its members have been read. Save, load, hash and comparison are then one mechanism.
+/// Persistent objects enumerate themselves: `template <class V> void visit(V&& v) { v("time", time_); v("contact
+/// pairs", contact_pairs_); }`, each member once, in any order that stays. Members are plain values, arrays of them,
+/// strings, objects that enumerate themselves, or arrays of such objects. A class with members derived from these has
+/// loaded(), which is called after its members have been read. Save, load, hash and comparison thus use one mechanism.
 template <class T>
 concept Enumerates = requires(T& object) { object.visit([](const char*, auto&) {}); };
 
@@ -54,7 +54,7 @@ class Walk {
   std::string path_;
 };
 
-/// An array whose elements' bytes are all there is to them.
+/// Array whose elements consist of their bytes only.
 template <class T>
 concept PlainArray = requires(T& array) {
   array.data();
@@ -93,12 +93,12 @@ struct HashLeaf {
 template <Enumerates T>
 std::uint64_t hash_of(const T& object) {
   HashLeaf leaf;
-  const_cast<T&>(object).visit(Walk(leaf));  // this leaf only looks
+  const_cast<T&>(object).visit(Walk(leaf));  // this leaf does not change it
   return leaf.hash.value();
 }
 
-/// Leaf that appends to a text of bytes or a file, member by member: path, 0, bytes an element, elements, and the
-/// elements as they lie in memory. `Sink` has append(const char*, std::size_t).
+/// Leaf that appends to a string of bytes or a file, member by member: path, 0, bytes per element, number of elements,
+/// and the elements as they are in memory. `Sink` has append(const char*, std::size_t).
 template <class Sink>
 class SaveLeaf {
  public:
@@ -124,12 +124,12 @@ class SaveLeaf {
   Sink& sink_;
 };
 
-/// The bytes are not those of this object: of another version of the program.
+/// Error for bytes that do not belong to this object, such as those of another version of the program.
 struct ArchiveError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Leaf that reads what SaveLeaf wrote, in the same order. Throws ArchiveError where it does not fit.
+/// Leaf that reads the output of SaveLeaf, in the same order. Throws ArchiveError if it does not fit.
 class LoadLeaf {
  public:
   static constexpr bool loads = true;
@@ -146,7 +146,7 @@ class LoadLeaf {
     values.resize(next(path, element));
     take(values.data(), values.size() * element);
   }
-  /// Before room is made for elements that follow: throws where fewer bytes are left than their names take.
+  /// Checks the size before memory for elements is allocated: throws if fewer bytes are left than their names take.
   void expect(const std::string& path, std::uint64_t elements) const {
     if (elements > rest_.size() / (path.size() + 1)) throw ArchiveError("'" + path + "' has another size");
   }

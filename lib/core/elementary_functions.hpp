@@ -6,23 +6,23 @@
 
 namespace pliant {
 
-// Functions that laws call at every point and step. For others, and constants of a step, core/lanes.hpp's in_each_lane
-// calls any function lane by lane.
+// Functions that laws call at every point and step. For others, and for constants of a step, in_each_lane in
+// core/lanes.hpp calls any function lane by lane.
 
-/// Scalars of any kind, complex numbers for complex-step checks among them.
+/// Natural logarithm of any scalar, complex numbers for complex-step checks included.
 template <class T>
 T natural_log(T x) {
   using std::log;
   return log(x);
 }
 
-/// All lanes at once, for positive normal x; relative error below 6e-16 also near x = 1.
-/// x = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172. (2 artanh s)/s is
-/// the minimax polynomial in s^2 (Remez, relative error of ln m 1.3e-18); its even and its odd powers make two short
-/// chains instead of a long one.
+/// Natural logarithm of all lanes at once, for positive normal x; relative error below 6e-16 also near x = 1. x = 2^e m
+/// with m in [1/sqrt 2, sqrt 2), ln m = 2 artanh s with s = (m - 1)/(m + 1), |s| < 0.172. (2 artanh s)/s is the minimax
+/// polynomial in s^2 (Remez, relative error of ln m 1.3e-18); its even and its odd powers make two short chains instead
+/// of a long one.
 template <>
 inline Lanes natural_log(Lanes x) {
-  // Unsigned words wrap: trial steps may turn an element inside out, and what becomes of a negative x is not used.
+  // Unsigned words wrap: trial steps may invert an element, and the result of a negative x is not used.
   using LaneWords = std::uint64_t __attribute__((vector_size(64)));
   constexpr std::uint64_t root_half_bits = 0x3fe6a09e667f3bcd;
   constexpr double ln2 = 0.693147180559945309417;

@@ -5,7 +5,7 @@
 
 namespace pliant {
 
-/// Process exit codes, as docs/results.md has them. Stopped by a signal: 128 and its number, as shells have it.
+/// Process exit codes, as in docs/results.md. After a signal: 128 plus its number, as in shells.
 enum class ExitCode {
   success = 0,
   bad_input = 2,
@@ -15,7 +15,7 @@ enum class ExitCode {
   terminated = 143
 };
 
-/// An error whose message is complete for the user: what, where, the value, the allowed range, the next step.
+/// Error whose message is complete for the user: what, where, the value, the allowed range, the next step.
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

@@ -4,15 +4,15 @@
 
 namespace pliant {
 
-/// In builds with assertions a number that comes to nothing stops the program where it does: a division by zero, an
-/// overflow, what is not a number made or compared. Threads that start later do as the one that starts them.
+/// In builds with assertions an invalid operation stops the program at its place: a division by zero, an overflow, or a
+/// number that is not finite, made or compared. Threads that start later inherit this from the thread that starts them.
 inline void trap_floating_point_errors() {
 #ifndef NDEBUG
   feenableexcept(FE_DIVBYZERO | FE_INVALID | FE_OVERFLOW);
 #endif
 }
 
-/// While it lives, nothing is trapped: for input, which may hold any number and is checked.
+/// Switches traps off during its lifetime: for input, which may contain any number and is checked.
 class Untrapped {
  public:
   Untrapped() { std::feholdexcept(&before_); }

@@ -9,12 +9,12 @@
 
 namespace pliant {
 
-/// A number that a law, of a material or of contact, remembers of each point from one accepted step to the next. A law
-/// that does lists them as `static constexpr InternalVariable remembered[]`; all others have no record and cost
-/// nothing.
+/// Internal variable of a law, of a material or of contact, which each point keeps from one accepted step to the next.
+/// A law lists its variables as `static constexpr InternalVariable internal_variables[]`; laws without them have no
+/// record and no cost.
 struct InternalVariable {
   const char* name;
-  double at_first;  ///< before anything has happened to the point
+  double at_first;  ///< initial value
 };
 
 template <class Law>
@@ -25,11 +25,11 @@ template <class Law>
   requires has_internal_variables<Law>
 constexpr std::size_t internal_variable_count<Law> = std::size(Law::internal_variables);
 
-/// What a law remembers of one point (T: double), or of eight (Lanes).
+/// Internal variables of one point (T: double), or of eight (Lanes).
 template <class Law, class T = Lanes>
 using Record = std::array<T, internal_variable_count<Law>>;
 
-/// Place in the record of what has this name; -1: the law remembers no such thing.
+/// Index in the record of the variable with this name; -1: the law has none.
 template <class Law>
 constexpr int index_of_remembered(std::string_view name) {
   if constexpr (has_internal_variables<Law>)

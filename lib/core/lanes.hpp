@@ -15,12 +15,12 @@
 
 namespace pliant {
 
-/// Eight doubles handled as one: a lane is one body of a batch (bodies/) or one outline node (contact/).
+/// Eight doubles handled as one vector: a lane is one body of a batch (bodies/) or one outline node (contact/).
 inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(64)));
 using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison results and bit patterns
 
-/// For arrays whose lanes begin with a line of the cache: others take two lines each.
+/// Allocator for arrays whose vectors begin at cache lines: others take two lines each.
 template <class T>
 struct LineAllocator : std::allocator<T> {
   LineAllocator() = default;
@@ -34,7 +34,7 @@ struct LineAllocator : std::allocator<T> {
 };
 using LinedNumbers = std::vector<double, LineAllocator<double>>;
 
-/// Room for this many numbers in whole lanes.
+/// This count rounded up to whole lanes.
 inline int padded(int count) { return (count + lane_count - 1) / lane_count * lane_count; }
 
 inline Lanes broadcast(double value) { return value - Lanes{}; }
@@ -67,7 +67,7 @@ inline Lanes sqrt(Lanes a) {
 #endif
 }
 
-/// 1 / sqrt(a) within 2e-16 of itself, for a > 0.
+/// 1 / sqrt(a) with a relative error of 2e-16, for a > 0.
 inline Lanes inverse_sqrt(Lanes a) {
 #if defined(__AVX512F__)
   Lanes y = reinterpret_cast<Lanes>(_mm512_rsqrt14_pd(reinterpret_cast<__m512d>(a)));  // 14 bits, doubled twice
@@ -97,7 +97,7 @@ inline Lanes round_to_integer(Lanes a) {
   return shifted - magic;
 }
 
-/// Of powers of two, below 2^52.
+/// Exponents of powers of two below 2^52.
 inline Lanes exponent_of(LaneBits power) {
   return __builtin_convertvector((std::bit_cast<LaneBits>(__builtin_convertvector(power, Lanes)) >> 52) - 1023, Lanes);
 }
@@ -112,7 +112,7 @@ inline bool any(LaneBits mask) {
 #endif
 }
 
-/// One bit a lane, lane 0 the lowest.
+/// One bit per lane, lane 0 the lowest.
 inline unsigned bits(LaneBits mask) {
 #if defined(__clang__)
   using Bools = bool __attribute__((ext_vector_type(8)));
@@ -124,13 +124,13 @@ inline unsigned bits(LaneBits mask) {
 #endif
 }
 
-/// Calls visit(lane) for those that are set, in order.
+/// Calls visit(lane) for the lanes that are set, in order.
 template <class Visit>
 void for_each_lane(LaneBits mask, Visit&& visit) {
   for (unsigned left = bits(mask); left != 0; left &= left - 1) visit(std::countr_zero(left));
 }
 
-/// Adds one lane after the other, so that a sum depends on the order of its terms and not on where eights begin.
+/// Adds one lane after the other, so that a sum depends on the order of its terms and not on the start of each eight.
 inline void add_in_order(Lanes terms, double& sum) {
   for_each_lane(terms != 0.0, [&](int lane) { sum += terms[lane]; });
 }
@@ -159,7 +159,7 @@ inline void transpose(const Lanes (&rows)[8], Lanes (&columns)[8]) {
   }
 }
 
-/// Entries of a table of 16 numbers, one a lane; indices in [0, 16).
+/// Entries of a table of 16 numbers, one per lane; indices in [0, 16).
 inline Lanes look_up(const double* table, LaneBits index) {
 #if defined(__AVX512F__)
   return reinterpret_cast<Lanes>(_mm512_permutex2var_pd(reinterpret_cast<__m512d>(load(table)),
@@ -172,7 +172,7 @@ inline Lanes look_up(const double* table, LaneBits index) {
 #endif
 }
 
-/// Entries of any table, one a lane.
+/// Entries of any table, one per lane.
 inline Lanes gather(const double* table, LaneBits index) {
 #if defined(__AVX512F__)
   return reinterpret_cast<Lanes>(_mm512_i64gather_pd(reinterpret_cast<__m512i>(index), table, sizeof(double)));

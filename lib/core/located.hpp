@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// What `make` returns; an InputError from it gets the place in the user's file before its message. `where`: as
-/// "scene.toml:12:1"; empty: not known, as of scenes put together in code.
+/// Returns the result of `make`; an InputError from it gets the position in the user's file before its message.
+/// `where`: as "scene.toml:12:1"; empty: unknown, as in scenes that code has made.
 template <class Make>
 decltype(auto) located(const std::string& where, Make&& make) {
   try {

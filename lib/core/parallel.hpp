@@ -9,8 +9,9 @@
 
 namespace pliant {
 
-/// In a parallel region: body(i) for this thread's share of [0, count), contiguous and equal to others' but for one. By
-/// hand, because libomp formats strings whenever an `omp for` begins: 7 to 15 % of the instructions of a small scene.
+/// In a parallel region: calls body(i) for this thread's share of [0, count). Shares are contiguous and differ by at
+/// most one. It is written by hand, because libomp formats strings whenever an `omp for` begins: 7 to 15 % of the
+/// instructions of a small scene.
 template <class Body>
 void for_own_share(int count, Body&& body) {
   const int threads = omp_get_num_threads(), thread = omp_get_thread_num();
@@ -26,7 +27,8 @@ void parallel_for(int count, Body&& body) {
   for_own_share(count, body);
 }
 
-/// Two loops that do not wait for each other: whoever is done with its share of the first goes on with the second.
+/// Two loops that do not wait for each other: a thread that has finished its share of the first continues with the
+/// second.
 template <class Body, class OtherBody>
 void parallel_for(int count, Body&& body, int other_count, OtherBody&& other_body) {
 #pragma omp parallel
@@ -37,7 +39,7 @@ void parallel_for(int count, Body&& body, int other_count, OtherBody&& other_bod
 }
 
 /// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19,
-/// whose threads steal from each other, now and then ends the program (llvm-project issues 86995 and 132164).
+/// whose threads steal from each other, sometimes aborts the program (llvm-project issues 86995 and 132164).
 template <class Body>
 void parallel_for_uneven(int count, int chunk, Body&& body) {
 #pragma omp parallel
@@ -48,7 +50,7 @@ void parallel_for_uneven(int count, int chunk, Body&& body) {
   }
 }
 
-/// Largest of each of values(i), an array, at least `start`. A maximum does not depend on the order.
+/// Largest value of each entry of values(i), an array, at least `start`. A maximum does not depend on the order.
 template <std::size_t size, class Values>
 std::array<double, size> parallel_max(int count, double start, Values&& values) {
   double result[size];
@@ -61,13 +63,13 @@ std::array<double, size> parallel_max(int count, double start, Values&& values) 
   return std::to_array(result);
 }
 
-/// The same of one value(i).
+/// The same for one value(i).
 template <class Value>
 double parallel_max(int count, double start, Value&& value) {
   return parallel_max<1>(count, start, [&](int i) { return std::array{value(i)}; })[0];
 }
 
-/// Whether holds(i) for some of them.
+/// Whether holds(i) for some i.
 template <class Holds>
 bool parallel_any(int count, Holds&& holds) {
   return parallel_max(count, 0, [&](int i) { return holds(i) ? 1.0 : 0.0; }) > 0;
@@ -77,7 +79,7 @@ bool parallel_any(int count, Holds&& holds) {
 template <int block = 256, class Value>
 double ordered_sum(int count, Value&& value) {
   const int blocks = (count + block - 1) / block;
-  thread_local std::vector<double> scratch;  // its memory is found once
+  thread_local std::vector<double> scratch;  // memory is allocated once
   std::vector<double>& partial = scratch;    // of the calling thread
   partial.assign(static_cast<std::size_t>(blocks), 0.0);
   parallel_for(blocks, [&](int b) {

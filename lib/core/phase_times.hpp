@@ -10,39 +10,39 @@
 namespace pliant {
 
 enum class Phase {
-  outlines,    ///< places of outline nodes
-  candidates,  ///< whether contact candidates hold, and finding them anew
+  outlines,    ///< positions of outline nodes
+  candidates,  ///< checks of contact candidates, and their rebuild
   contact,     ///< contact forces
-  internal,    ///< forces inside bodies and all others; verlet's new velocities, which follow body by body
-  update,      ///< motion, error, books
-  bound,       ///< of the stable step
+  internal,    ///< internal and other forces; new velocities of verlet, which follow body by body
+  update,      ///< motion, error, energy balance
+  bound,       ///< bound of the stable step
   output,
 };
 constexpr std::array phase_names{"outlines", "candidates", "contact", "internal", "update", "bound", "output"};
 
-/// Where a run's wall time goes. What happens in every step is timed in one of 16, so that the clock costs no scene as
-/// much as 0.5 %; what is rare is timed apart, each time.
+/// Wall time of a run by phases. Phases of every step are timed in one step of 16, so that the clock costs no scene as
+/// much as 0.5 %; rare work is timed separately, each time.
 template <class Clock>
 class PhaseTimesBy {
  public:
   static constexpr int period = 16;
   using Seconds = std::array<double, phase_names.size()>;
 
-  /// A step begins, with its update; what came after the one before it was output.
+  /// Begins a step, with its update; the time since the previous step was output.
   void begin_step(std::int64_t step) {
     enter(Phase::output);
     sampling_ = step % period == 0;
     if (sampling_) since_ = Clock::now(), phase_ = Phase::update;
   }
   void end_step() { enter(Phase::output); }
-  /// Within a step: the present phase ends, another begins.
+  /// Within a step: ends the present phase and begins another.
   void enter(Phase phase) {
     if (!sampling_) return;
     const auto now = Clock::now();
     sampled_[index(phase_)] += now - since_;
     since_ = now, phase_ = phase;
   }
-  /// Runs `action`, which is rare, and not part of the phase in which it happens.
+  /// Runs and times `action`, which is rare and does not belong to the current phase.
   template <class Action>
   void apart(Phase phase, Action&& action) {
     if (apart_) return action();
@@ -56,8 +56,8 @@ class PhaseTimesBy {
     since_ += taken, sampling_ = sampling;
   }
 
-  /// Seconds of each phase, which add up to `wall`, those of the run: what was not timed apart is divided as the
-  /// samples are. Without any sample it is output.
+  /// Seconds of each phase, which add up to `wall`, the wall time of the run. Time that was not measured separately is
+  /// divided in the ratio of the samples. Without any sample it is output.
   Seconds seconds(double wall) const {
     Seconds result{};
     double rest = wall;

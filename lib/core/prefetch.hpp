@@ -5,10 +5,10 @@
 
 namespace pliant {
 
-/// What numbers that are asked for are wanted for.
+/// Purpose of prefetched numbers.
 enum class Access { read, write };
 
-/// Asks ahead for all lines of the cache that a run of numbers takes, rounded up to whole lanes.
+/// Prefetches all cache lines of a range of numbers, rounded up to whole lanes.
 template <Access access = Access::read>
 void prefetch_run(const double* numbers, int count) {
   if (count == 0) return;
@@ -19,15 +19,15 @@ void prefetch_run(const double* numbers, int count) {
     __builtin_prefetch(reinterpret_cast<const void*>(at), access == Access::write);
 }
 
-/// Of a field's x and y, from one on.
+/// Prefetches a field's x and y from `first` on.
 template <Access access = Access::read, class Field>
 void prefetch_run(const Field& field, int first, int count) {
   prefetch_run<access>(field.x.data() + first, count);
   prefetch_run<access>(field.y.data() + first, count);
 }
 
-/// Lanes that are looked at after a loop, in an order that no processor foresees. Two are asked for in each of its
-/// rounds: all at once would hold it up.
+/// Prefetches lanes that are needed after a loop, in an order that no processor foresees. Each round of the loop
+/// requests two of them: all at once would stall it.
 template <Access access>
 class Upcoming {
  public:

@@ -8,14 +8,15 @@
 
 namespace pliant {
 
-// The standard fixes the bits of its engines, not those of its distributions: these give the same on every machine.
+// The standard fixes the bits of its engines, not those of its distributions. These distributions are the same on every
+// machine.
 
 /// Uniform in [0, 1).
 inline double uniform_number(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
-/// An engine of its own for each purpose, so that a change of one leaves the others as they are.
+/// Separate engine for each purpose, so that a change of one leaves the others unchanged.
 inline std::mt19937_64 random_stream(std::uint64_t seed, std::uint64_t purpose) {
-  return std::mt19937_64(seed + purpose * 0x9E3779B97F4A7C15);  // odd: purposes lie far apart whatever the seeds
+  return std::mt19937_64(seed + purpose * 0x9E3779B97F4A7C15);  // odd: purposes are far apart for any seeds
 }
 
 template <class Entry>
@@ -23,7 +24,7 @@ void shuffle(std::vector<Entry>& entries, std::mt19937_64& random) {
   for (std::size_t i = entries.size(); i > 1; --i) std::swap(entries[i - 1], entries[random() % i]);
 }
 
-/// For each of `count` things the index of its share: exact shares, rounded, randomly placed. Shares sum to 1.
+/// Index of the share of each of `count` items: exact shares, rounded, in random order. Shares sum to 1.
 inline std::vector<int> assign_shares(const std::vector<double>& shares, int count, std::mt19937_64& random) {
   std::vector<int> choice;
   double share = 0;

@@ -2,8 +2,8 @@
 
 namespace pliant {
 
-/// While one lives, SIGINT and SIGTERM are noted instead of ending the program; a second one ends it at once. Signals
-/// that the program was started to ignore stay ignored. One at a time.
+/// During its lifetime SIGINT and SIGTERM are recorded instead of ending the program; a second one ends it at once.
+/// Signals that were ignored at the program's start stay ignored. Only one object at a time.
 class StopSignals {
  public:
   StopSignals();
@@ -11,7 +11,7 @@ class StopSignals {
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
 
-  /// The signal that came, or 0.
+  /// The signal received, or 0.
   static int received();
 };
 

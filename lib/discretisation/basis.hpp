@@ -12,29 +12,29 @@ struct ShapeFunctions {
   std::vector<int> node;      ///< [neighbours], ascending
   std::vector<double> value;  ///< [neighbours], sum to 1
   Points gradient;            ///< [neighbours], 1/length
-  double condition = 1;       ///< estimate of the condition number of the system that they solve; 1 where there is none
+  double condition = 1;       ///< estimated condition number of the system that they solve; 1 without one
 };
 
-/// The shape functions of a mesh, at a point of a given triangle: all that tables and masses need of a recipe.
+/// Shape functions of a mesh, at a point of a given triangle: all that tables and masses need from a discretisation.
 using Basis = std::function<ShapeFunctions(const Vec2& x, int triangle)>;
 
-/// The shape functions of the scene's recipe, on a mesh in mean node distances that must outlive them. Throws
-/// InputError when the recipe's limits are exceeded.
+/// Shape functions of the scene's discretisation (`recipe`), on a mesh in mean node distances that must outlive them.
+/// Throws InputError if the limits of the discretisation are exceeded.
 Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings);
 
-/// Linear functions of the mesh's triangles.
+/// Linear shape functions of the mesh's triangles.
 Basis linear_triangles(const FieldMesh& mesh);
 
-/// What the shape functions of a mesh were like wherever they were asked for.
+/// Quality of the shape functions of a mesh at all points of evaluation.
 struct BasisQuality {
-  double least_value = 0;  ///< of phi: moving least squares reach below zero (docs/method.md 2)
-  double condition = 1;    ///< the largest
+  double least_value = 0;  ///< of phi: moving least squares are negative somewhere (docs/method.md 2)
+  double condition = 1;    ///< largest condition number
 };
 
-/// The same basis, which notes its quality as it is used. `quality` must outlive it.
+/// The same basis, which records its quality in use. `quality` must outlive it.
 Basis watched(const Basis& basis, BasisQuality& quality);
 
-/// Values at all field nodes, one row each. Functions that interpolate have one entry a row.
+/// Values at all field nodes, one row each. Interpolating functions have one entry per row.
 ShapeRows rows_at_nodes(const FieldMesh& mesh, const Basis& basis);
 
 /// The rows of the outline nodes, which come first.

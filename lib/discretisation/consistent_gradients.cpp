@@ -20,7 +20,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 constexpr double tolerance = 1e-12;
 constexpr int refinement_steps = 4;
 
-// Orthogonal projector onto the vectors over a point's neighbours that change neither completeness condition: the
+// Orthogonal projector onto the vectors over a point's neighbours that keep both completeness conditions: the
 // complement of span(1, X, Y), [neighbours x neighbours].
 MatrixXd completeness_projector(const IntegrationTable& table, const FieldMesh& mesh, std::size_t point) {
   const int begin = table.start[point], count = table.start[point + 1] - begin;
@@ -33,8 +33,8 @@ MatrixXd completeness_projector(const IntegrationTable& table, const FieldMesh& 
   return MatrixXd::Identity(count, count) - q * q.transpose();
 }
 
-// Three nodes far apart and off one line: their multipliers are set to zero, because linear fields over the nodes are
-// the kernel of the system below (rank 3 for each component) and do not change the correction.
+// Three nodes that are far apart and not collinear. Their multipliers are set to zero, because linear fields over the
+// nodes are the kernel of the system below (rank 3 for each component) and do not change the correction.
 std::array<int, 3> pinned_nodes(const Points& nodes) {
   const auto farthest = [&](auto measure) {
     return static_cast<int>(
@@ -47,8 +47,8 @@ std::array<int, 3> pinned_nodes(const Points& nodes) {
   return {a, b, c};
 }
 
-// Eliminating d_g = P_g lambda from the KKT system leaves, the same for both components,
-// (sum_g w_g P_g) lambda = what condition (2) lacks: symmetric, positive definite but for its kernel.
+// Elimination of d_g = P_g lambda from the KKT system leaves, for each of the components, (sum_g w_g P_g) lambda =
+// residual of condition (2): symmetric, and positive definite apart from its kernel.
 class MultiplierSystem {
  public:
   MultiplierSystem(const IntegrationTable& table, const FieldMesh& mesh) : pinned_(pinned_nodes(mesh.nodes)) {
@@ -94,7 +94,7 @@ class MultiplierSystem {
   Eigen::SimplicialLDLT<SparseMatrix> factorisation_;
 };
 
-// What condition (2) lacks, [nodes x 2].
+// Residual of condition (2), [nodes x 2].
 MatrixX2d lacking_moments(const IntegrationTable& table, const Points& moments) {
   MatrixX2d lacking(moments.size(), 2);
   for (std::size_t i = 0; i < moments.size(); ++i) lacking.row(i) = moments[i].transpose();
@@ -104,8 +104,8 @@ MatrixX2d lacking_moments(const IntegrationTable& table, const Points& moments) 
   return lacking;
 }
 
-// Changes each point's gradients by the least amount that gives condition (1) back: what rounding of large multipliers
-// leaves of it in meshes of tens of thousands of nodes.
+// Changes each point's gradients by the least amount that restores condition (1). Rounding of large multipliers
+// violates it in meshes of tens of thousands of nodes.
 void restore_completeness(IntegrationTable& table, const FieldMesh& mesh) {
   const Eigen::Matrix<double, 3, 2> wanted = (Eigen::Matrix<double, 3, 2>() << 0, 0, 1, 0, 0, 1).finished();
   for (std::size_t g = 0; g < table.weight.size(); ++g) {
@@ -128,7 +128,7 @@ double incompleteness(const IntegrationTable& table, const FieldMesh& mesh) {
   for (std::size_t g = 0; g < table.weight.size(); ++g) {
     Vec2 sum(0, 0);
     Eigen::Matrix2d gradient = -Eigen::Matrix2d::Identity();
-    const Vec2 origin = mesh.nodes[table.node[table.start[g]]];  // beside the point: far away, rounding alone is 1e-12
+    const Vec2 origin = mesh.nodes[table.node[table.start[g]]];  // near the point, as far away rounding alone is 1e-12
     for (int e = table.start[g]; e < table.start[g + 1]; ++e) {
       sum += table.gradient[e];
       gradient += table.gradient[e] * (mesh.nodes[table.node[e]] - origin).transpose();
@@ -167,7 +167,7 @@ double make_gradients_consistent(IntegrationTable& table, const FieldMesh& mesh,
   const Points moments = boundary_moments(mesh, outline_rows);
   const MultiplierSystem system(table, mesh);
   for (int step = 0; step < refinement_steps; ++step) system.correct(table, lacking_moments(table, moments));
-  // The pinned nodes take up what the sums of (1) over all points lack by rounding.
+  // The pinned nodes take up the rounding of the sums of (1) over all points.
   const double allowed =
       std::max(tolerance, std::numeric_limits<double>::epsilon() * static_cast<double>(mesh.nodes.size()));
   double residual = consistency_residual(table, mesh, outline_rows);

@@ -9,12 +9,12 @@
 namespace pliant {
 namespace {
 
-/// Sine of an angle that counts as none: rounding of the outline's nodes is some 1e-13 of its spacing.
+/// Sine of an angle that counts as zero: rounding of the outline's nodes is some 1e-13 of its spacing.
 constexpr double flat = 1e-9;
-/// The same of directions within a path: rounding alone.
+/// The same for directions within a path, with rounding alone.
 constexpr double aligned = 1e-13;
 
-/// cross(a, b) over both lengths: how far b has turned to the left of a; 0 where one has no length.
+/// cross(a, b) over both lengths: sine of the left turn from a to b; 0 if one has no length.
 double turn(const Vec2& a, const Vec2& b) {
   const double lengths = a.norm() * b.norm();
   return lengths > 0 ? cross(a, b) / lengths : 0;
@@ -25,7 +25,7 @@ double turn_at(const Points& outline, std::size_t k) {
   return turn(outline[k] - outline[(k + n - 1) % n], outline[(k + 1) % n] - outline[k]);
 }
 
-/// How deep x lies in a triangle; negative outside.
+/// Depth of x in a triangle; negative outside.
 double depth_in(const Triangle& t, const Points& corners, const Vec2& x) {
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
@@ -50,7 +50,7 @@ InnerPaths::InnerPaths(const Points& outline) : search_(outline) {
 }
 
 void InnerPaths::hang_up() {
-  std::map<std::pair<int, int>, std::pair<int, int>> beside;  // edge, in its triangle's direction: triangle, edge
+  std::map<std::pair<int, int>, std::pair<int, int>> beside;  // edge, in its triangle's direction, to triangle and edge
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (int k = 0; k < 3; ++k) beside[{triangles_[t][k], triangles_[t][(k + 1) % 3]}] = {static_cast<int>(t), k};
   parent_.assign(triangles_.size(), -1), edge_.assign(triangles_.size(), 0), depth_.assign(triangles_.size(), 0);
@@ -91,13 +91,14 @@ std::vector<InnerPaths::Portal> InnerPaths::portals(int first, int last) const {
   return up;
 }
 
-// The funnel: from its apex one ray to the left and one to the right, between which all portals so far are passed. A
-// portal's end narrows it; one beyond the other ray makes that ray's end the next apex, where the funnel begins anew.
+// Funnel algorithm: from the apex one ray to the left and one to the right bound the directions through all portals so
+// far. A portal's end narrows the funnel; one beyond the other ray makes that ray's end the next apex, where a new
+// funnel begins.
 Vec2 InnerPaths::way(const Vec2& from, int first, const Vec2& to, int last) const {
   std::vector<Portal> gates = portals(first, last);
   gates.push_back({to, to});
   Vec2 apex = from, left = from, right = from, direction(0, 0);
-  std::size_t of_left = 0, of_right = 0;  // gates whose ends they are
+  std::size_t of_left = 0, of_right = 0;  // portals of these ends
   double length = 0;
   const auto go_to = [&](const Vec2& corner) {
     const Vec2 leg = corner - apex;

@@ -4,14 +4,15 @@
 
 namespace pliant {
 
-/// Row-sum lumped mass at density 1, [nodes]: the integrals of the shape functions, 6 Gauss points a triangle whatever
-/// the recipe's own points (docs/method.md 2). Throws InputError when one is not positive.
+/// Row-sum lumped mass at density 1, [nodes]: integrals of the shape functions, with 6 Gauss points per triangle
+/// whatever the integration points of the discretisation (docs/method.md 2). Throws InputError if one is not positive.
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
-/// Makes the first `outline_count` nodes so many times as heavy. Returns what share of the mass was there before.
+/// Multiplies the mass of the first `outline_count` nodes by `times`. Returns the share of the mass that was there
+/// before.
 double add_rim_mass(int outline_count, double times, std::vector<double>& mass);
 
-/// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points a triangle: exact for
+/// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points per triangle: exact for
 /// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in M -
 /// D.
 ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped);
@@ -20,9 +21,9 @@ ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::
 /// semidefinite.
 double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped);
 
-/// Inertia of a rotation about the centroid over that of the polygon, which the consistent mass has: kinetic energy
-/// y.D C y / 2 of the y that moves nodes so (docs/method.md 2). `correction`: rows of C as mass_correction gives them;
-/// without any C = I.
+/// Rotational inertia about the centroid over that of the polygon, which the consistent mass has. It follows from the
+/// kinetic energy y.D C y / 2 of the y that moves nodes in a rotation (docs/method.md 2). `correction`: rows of C from
+/// mass_correction; empty: C = I.
 double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction);
 
 }  // namespace pliant

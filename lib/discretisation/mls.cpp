@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 // Share of the radius beyond which a node is no neighbour: value and gradient of its weight are below rounding there,
 // and a node at exactly the radius must not depend on the last bit.
 constexpr double support_edge = 1 - 1e-8;
-// Reciprocal condition of the moment matrix under which the neighbours count as collinear.
+// Reciprocal condition number of the moment matrix below which the neighbours count as collinear.
 constexpr double least_condition = 1e-12;
 
 struct Weight {
@@ -87,7 +87,7 @@ MlsNodes make_mls_nodes(const Points& nodes, int support) {
 
 namespace {
 
-// Distance through the body of a node to its support-th nearest other one.
+// Distance of a node, through the body, to its support-th nearest other one.
 double inner_radius(const MlsNodes& nodes, int i, int support) {
   const Vec2& x = nodes.position[i];
   for (double reach = nodes.radius[i];; reach *= 1.5) {
@@ -125,7 +125,7 @@ std::vector<int> MlsNodes::near(const Vec2& x) const {
 }
 
 // With c(x) the first row of M^-1 in the basis centred at the fixed point, phi_i = c . p_i w_i. Moving x moves the
-// point at which the basis is taken (first term of dc) and the weights in M (second term).
+// point of the basis (first term of dc) and the weights in M (second term).
 ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x) {
   const std::vector<Neighbour> neighbours = find_neighbours(nodes, x);
   const auto [inverse, condition] = inverse_moment(neighbours, x);

@@ -10,28 +10,28 @@
 
 namespace pliant {
 
-/// A mesh whose nodes are too far apart for their supports. The message lacks what to do: whoever knows the mesh adds
-/// it.
+/// Error for a mesh whose nodes are too far apart for their supports. Callers that know the mesh add advice to the
+/// message.
 struct TooFewNeighbours : InputError {
   using InputError::InputError;
 };
 
-/// Nodes with the radii of their supports: what moving least squares needs of a mesh.
+/// Nodes with the radii of their supports: the data that moving least squares need of a mesh.
 struct MlsNodes {
   Points position;                                 ///< [nodes]
   std::vector<double> radius;                      ///< [nodes]
-  double reach = 0;                                ///< the largest radius, when there is a grid
-  std::shared_ptr<const NodeGrid> grid = nullptr;  ///< finds the nodes near a point; without one all are looked at
-  /// Of concave bodies: distances are those through the body. Without it they are straight.
+  double reach = 0;                                ///< largest radius, if there is a grid
+  std::shared_ptr<const NodeGrid> grid = nullptr;  ///< finds the nodes near a point; null: all nodes are tested
+  /// Paths inside a concave body, along which distances are measured. Null: distances are straight.
   std::shared_ptr<const InnerPaths> paths = nullptr;
-  std::vector<int> triangle = {};  ///< [nodes] of `paths`
+  std::vector<int> triangle = {};  ///< [nodes] in `paths`
 
-  /// Numbers of nodes, ascending, that hold all whose support reaches x.
+  /// Numbers of nodes, ascending, among them all whose support contains x.
   std::vector<int> near(const Vec2& x) const;
 };
 
-/// Ways from one place to nodes that are at most `reach` away: as long as the distance through the body, in the
-/// direction in which it begins.
+/// Vectors from one point to nodes at most `reach` away: with the length of the path through the body, in the direction
+/// in which it begins.
 class WaysToNodes {
  public:
   /// `nodes` must outlive it.
@@ -52,17 +52,16 @@ class WaysToNodes {
   int triangle_ = 0;
 };
 
-/// Gives each node the distance to its support-th nearest other node as radius, distances through the body
-/// (docs/method.md 2). Throws InputError when there are not that many nodes. The mesh is in lengths of about one node
-/// distance.
+/// Nodes whose radius is the distance to the support-th nearest other node, through the body (docs/method.md 2). Throws
+/// InputError if there are not that many nodes. The mesh is in lengths of about one node distance.
 MlsNodes make_mls_nodes(const FieldMesh& mesh, int support);
 
-/// The same of nodes that lie in a convex body.
+/// The same for nodes in a convex body.
 MlsNodes make_mls_nodes(const Points& nodes, int support);
 
 /// Moving least squares at x: linear basis centred at x, cubic spline weight; the gradients are the full derivatives.
-/// Lengths should be of the order of one node distance for good conditioning. Throws TooFewNeighbours when x has not
-/// three off one line.
+/// Lengths should be of the order of one node distance for good conditioning. Throws TooFewNeighbours if x does not
+/// have three neighbours that are not collinear.
 ShapeFunctions evaluate_mls(const MlsNodes& nodes, const Vec2& x);
 
 /// evaluate_mls as the basis of a mesh.

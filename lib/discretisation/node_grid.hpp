@@ -4,16 +4,16 @@
 
 namespace pliant {
 
-/// Points in square cells, so that those near a place are found without a look at all.
+/// Points sorted into square cells, so that queries near a position test only some of them.
 class NodeGrid {
  public:
   NodeGrid(const Points& points, double cell);
 
-  /// Numbers of all points in the cells within `radius` of x, ascending: some lie further away, none nearer is missing.
+  /// Numbers of all points in the cells within `radius` of x, ascending: some are further away, none nearer is missing.
   std::vector<int> near(const Vec2& x, double radius) const;
 
-  /// Square of the distance of x to its number-th nearest point (0: the nearest, x itself if it is one of them). There
-  /// must be so many.
+  /// Squared distance of x to its number-th nearest point (0: the nearest, x itself if it is one of them). There must
+  /// be that many points.
   double square_distance_to_nearest(const Vec2& x, int number) const;
 
  private:
@@ -27,7 +27,7 @@ class NodeGrid {
   std::vector<int> start_, entries_;  ///< [cells + 1], rows of the other; [points], cell by cell
 };
 
-/// Cells of about one point each.
+/// Grid with about one point per cell.
 NodeGrid make_node_grid(const Points& points);
 
 }  // namespace pliant

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// One point of a rule on a triangle: barycentric coordinates and share of the area.
+/// Point of a quadrature rule on a triangle: barycentric coordinates and share of the area.
 struct QuadraturePoint {
   std::array<double, 3> barycentric;
   double share;

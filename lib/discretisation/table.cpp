@@ -54,7 +54,7 @@ std::vector<double> nearest_distances(const Points& nodes) {
 
 Points outline_of(const FieldMesh& mesh) { return {mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count}; }
 
-// Recipes work in mean node distances, so that conditioning does not depend on the user's units.
+// Discretisations use mean node distances, so that conditioning does not depend on the user's units.
 FieldMesh nondimensional(FieldMesh mesh, double length) {
   for (Vec2& x : mesh.nodes) x /= length;
   return mesh;
@@ -108,7 +108,7 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   return result;
 }
 
-/// Outlines may be that much finer than the interior: what nodes = N alone gives is 1.22 times finer.
+/// Outlines may be finer than the interior by this factor: nodes = N alone makes them 1.22 times finer.
 constexpr double finer_outline = 1.25;
 
 /// Nodes of a mesh of equilateral triangles whose outline has `outline` segments (Euler's formula).
@@ -117,7 +117,7 @@ double isotropic_nodes(const Points& polygon, double outline) {
   return 1 + outline / 2 + polygon_properties(polygon).area / (std::sqrt(3.0) / 2 * spacing * spacing);
 }
 
-/// What gives the nodes of a mesh more neighbours.
+/// Advice how to give the nodes of a mesh more neighbours.
 std::string more_neighbours(const FieldMesh& mesh) {
   const Points outline = outline_of(mesh);
   const int nodes = static_cast<int>(mesh.nodes.size());

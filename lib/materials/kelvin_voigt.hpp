@@ -35,7 +35,7 @@ struct KelvinVoigt : Law {
   }
 };
 
-/// Resists nothing: what viscosity alone does is a KelvinVoigt of this.
+/// Law without elastic stress: a KelvinVoigt of it has viscous stress alone.
 template <class T>
 struct Unresisting {
   template <class W>

@@ -6,25 +6,26 @@
 
 namespace pliant {
 
-/// Neo-Hookean solid with one Maxwell branch in parallel, for any strain: Lubliner's linear evolution (1985, Mech. Res.
-/// Commun. 12, 93-99) of a viscous strain. Of the branch, with C = F^T F and the inverse G of its viscous strain,
+/// Neo-Hookean solid with one Maxwell branch in parallel, for any strain: linear evolution of a viscous strain after
+/// Lubliner (1985, Mech. Res. Commun. 12, 93-99). In the branch, with C = F^T F and the inverse G of its viscous
+/// strain,
 ///
 ///     psi = m/2 (tr(C G) - 3 - ln det(C G)),   S = m H,   H = G - C^-1,   dG/dt = -H / t,
 ///
-/// so H' = -H / t - (C^-1)' : a step follows exactly where C^-1 is straight in time, and else at second order. It
-/// dissipates m / (2 t) (tr A + tr A^-1 - 6) >= 0, A = C G = 1 + C H. Out of the plane C and G stay 1.
-/// In small strains the branch is a spring of shear modulus m and a dashpot of viscosity m t in series.
+/// so H' = -H / t - (C^-1)' : a step is exact if C^-1 is linear in time, and else of second order. It dissipates m / (2
+/// t) (tr A + tr A^-1 - 6) >= 0, A = C G = 1 + C H. Out of the plane C and G stay 1. In small strains the branch is a
+/// spring of shear modulus m and a dashpot of viscosity m t in series.
 template <class T>
 struct NeoHookeanMaxwell {
-  T mu, lambda;                                 ///< of what never relaxes, Pa
+  T mu, lambda;                                 ///< of the equilibrium part, Pa
   T branch;                                     ///< m, Pa
   T relaxation_time;                            ///< t, s
-  T decay = T{} + 1.0, mean_decay = T{} + 1.0;  ///< of an overstress over the step: at its end, on average
+  T decay = T{} + 1.0, mean_decay = T{} + 1.0;  ///< of the non-equilibrium stress over the step: at its end, mean
 
   static constexpr InternalVariable internal_variables[] = {{"overstrain_xx", 0},     {"overstrain_xy", 0},
                                                             {"overstrain_yy", 0},     {"inverse_strain_xx", 1},
                                                             {"inverse_strain_xy", 0}, {"inverse_strain_yy", 1}};
-  using Record = std::array<T, 6>;  ///< H, and the C^-1 that goes with it
+  using Record = std::array<T, 6>;  ///< H, and the C^-1 at the same time
 
   static NeoHookeanMaxwell of(const Material& material) {
     const auto [mu, lambda] = lame_constants(material);
@@ -69,7 +70,7 @@ struct NeoHookeanMaxwell {
   struct Invariants {
     T trace, det;
   };
-  /// Of A = 1 + C H in the plane.
+  /// In-plane invariants of A = 1 + C H.
   static Invariants elastic_part(const Tensor<T>& F, const Record& record) {
     const T xx = F.xx * F.xx + F.yx * F.yx, xy = F.xx * F.xy + F.yx * F.yy, yy = F.xy * F.xy + F.yy * F.yy;
     const T a = 1.0 + xx * record[0] + xy * record[1], b = xx * record[1] + xy * record[2],

@@ -5,27 +5,28 @@
 
 namespace pliant {
 
-/// What a law answers at one point (T: double), or at eight (Lanes).
+/// Response of a law at one point (T: double), or at eight (Lanes).
 template <class T>
 struct Response {
   Tensor<T> P;  ///< first Piola stress, Pa
-  T J;          ///< the Jacobian, which it had to compute
-  T power{};    ///< dissipated per reference volume, W/m3; of laws that dissipate only
+  T J;          ///< Jacobian, a by-product
+  T power{};    ///< dissipated per reference volume, W/m3; of dissipative laws only
 };
 
-/// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first, and answers
+/// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first. It has
 ///
-///     Response<T> respond(F) const;            or respond(F, old, now) if it remembers (core/internal_variables.hpp),
+///     Response<T> respond(F) const;            or respond(F, old, now) with internal variables
+///                                              (core/internal_variables.hpp),
 ///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
 ///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
 ///     Law weighted(w) const;                   of w times as much material: with its constants in Pa times w, to which
 ///                                              stresses, energies and powers are proportional
-///     LameConstants<T> small_strains() const;  at once, before anything relaxes
+///     LameConstants<T> small_strains() const;  instantaneous, before relaxation
 ///     static Law of(const Material&);          of one material
 ///
-/// A law of the two Lame constants alone inherits the last three (LameLaw in elastic_constants.hpp). One that remembers
-/// has Law over(elapsed) too, as it answers so long after what it remembers, s; it dissipates.
+/// A law of the two Lame constants alone inherits the last three (LameLaw in elastic_constants.hpp). A law with
+/// internal variables also has Law over(elapsed), its update over a time increment, s; it dissipates.
 template <class Law, class T>
 Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
                     Record<Law, T>& now) {
@@ -37,7 +38,7 @@ Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, c
     return law.respond(F);
 }
 
-/// Stored at once at F, by a point that remembers this.
+/// Energy stored instantaneously at F, from these internal variables.
 template <class Law, class T>
 T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
   if constexpr (has_internal_variables<Law>) {

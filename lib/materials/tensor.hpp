@@ -2,7 +2,7 @@
 
 namespace pliant {
 
-/// A plane second-order tensor, e.g. the deformation gradient F (F33 = 1) or the first Piola stress P.
+/// Plane second-order tensor, such as the deformation gradient F (F33 = 1) or the first Piola stress P.
 template <class T>
 struct Tensor {
   T xx, xy, yx, yy;
@@ -25,7 +25,7 @@ T first_invariant(const Tensor<T>& F) {
   return F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy + 1.0;
 }
 
-/// a F + b cof(F): the form every isotropic plane stress takes.
+/// a F + b cof(F): the form of every isotropic plane stress.
 template <class T>
 Tensor<T> combine(T a, const Tensor<T>& F, T b) {
   return {a * F.xx + b * F.yy, a * F.xy - b * F.yx, a * F.yx - b * F.xy, a * F.yy + b * F.xx};

@@ -14,7 +14,7 @@
 
 namespace pliant {
 
-/// Calls action(type_identity<Law<T>>) with the law that was asked for: chosen once, outside every loop.
+/// Calls action(type_identity<Law<T>>) with the law of this name: selected once, outside all loops.
 template <class T, class Action>
 auto with_law_type(MaterialLaw law, Action&& action) {
   switch (law) {
@@ -41,7 +41,7 @@ auto with_law(const Material& material, Action&& action) {
                                [&]<class Law>(std::type_identity<Law>) { return action(Law::of(material)); });
 }
 
-/// Constants of eight materials of one form of law, one a lane, as the law has them one after the other.
+/// Constants of eight materials with one form of law, one per lane, in the order of the law's members.
 using LawConstants = std::vector<Lanes>;
 
 inline void set_law_constants(const Material& material, int lane, LawConstants& constants) {
