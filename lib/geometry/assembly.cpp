@@ -29,7 +29,7 @@ void require_all(const Grains& grains, const std::vector<int>& choice) {
           grains.mix[m].share, choice.size(), grains.mix[m].material));
 }
 
-/// Entry of the mix that each grain gets, [grains]. Throws InputError when one with a share gets no grain.
+/// [grains] entry of the mix of each grain. Throws InputError if an entry with a share gets no grain.
 std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
   std::vector<double> shares;
   for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);

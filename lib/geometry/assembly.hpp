@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// A body of the scene before any mechanics: what it is and where it lies at the start.
+/// Body of the scene before any mechanics: its type and its pose at the start.
 struct PlacedBody {
   std::string name;  ///< "grains 17", or the wall's name
   BodyKind kind = BodyKind::rigid;
@@ -17,17 +17,18 @@ struct PlacedBody {
   int number_of_wall = -1;  ///< index in Scene::walls; -1 for a grain
   int shape = -1;           ///< index in Scene::shapes; -1 for a wall
   int material = 0;         ///< index in Scene::materials
-  Vec2 centre{0, 0};        ///< m; of a wall (0, level)
+  Vec2 centre{0, 0};        ///< m; for a wall (0, level)
   double angle = 0;         ///< rad
-  double scale = 1;         ///< size over that of its shape as the scene gives it
+  double scale = 1;         ///< size over that of its shape in the scene
 };
 
-/// All bodies, grains in the scene's order, then walls. `scene` gains the shapes that packings fit to single grains.
-/// The same on any number of threads. Throws InputError for packings that cannot be made.
+/// All bodies, grains in the scene's order, then walls. Shapes that packings fit to single grains are added to `scene`.
+/// The result is the same on any number of threads. Throws InputError for packings that cannot be made.
 std::vector<PlacedBody> place_bodies(Scene& scene);
 
 /// Outline of a wall, [nodes], as wall_outline gives it, y from the wall's level. `finest`: mean segment of the finest
-/// outline of the grains, the spacing of walls that give none. Throws InputError for more than a million nodes.
+/// outline of the grains, which is the spacing of walls without their own. Throws InputError for more than a million
+/// nodes.
 Points wall_points(const Scene& scene, const Wall& wall, double finest);
 
 }  // namespace pliant

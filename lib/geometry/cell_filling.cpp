@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// One degree: next to the best angle the scale is off by some 1e-3 at most.
+// One degree: the error of the scale beside the best angle is some 1e-3 at most.
 constexpr int angles = 360;
 constexpr int contour_angles = 360;
 
@@ -37,7 +37,8 @@ std::vector<HalfPlane> half_planes(const Points& cell) {
   return planes;
 }
 
-/// Three half-planes that enclose a triangle: a basis of the dual programme, its normals balanced by positive weights.
+/// Three half-planes that enclose a triangle: a basis of the dual programme, whose normals balance with positive
+/// weights.
 struct Basis {
   int plane[3];
   double weight[3];
@@ -53,13 +54,13 @@ std::vector<Basis> enclosing_triples(const std::vector<HalfPlane>& planes) {
         const Vec2 &a = planes[i].normal, &b = planes[j].normal, &c = planes[k].normal;
         Basis basis{{i, j, k}, {cross(b, c), cross(c, a), cross(a, b)}, 0};
         for (int t = 0; t < 3; ++t) basis.offset += basis.weight[t] * planes[basis.plane[t]].offset;
-        // Edges run counter-clockwise, so all three are positive where the triple encloses something.
+        // Edges run counter-clockwise, so all three are positive if the triple encloses something.
         if (basis.weight[0] > 0 && basis.weight[1] > 0 && basis.weight[2] > 0) bases.push_back(basis);
       }
   return bases;
 }
 
-/// The binding triple and the scale that it allows, given the reach towards each plane.
+/// The binding triple and the scale that it allows, for given values of the support function towards each plane.
 std::pair<const Basis*, double> least_scale(const std::vector<Basis>& bases, const std::vector<double>& reach) {
   const Basis* binding = nullptr;
   double least = std::numeric_limits<double>::infinity();
@@ -71,7 +72,7 @@ std::pair<const Basis*, double> least_scale(const std::vector<Basis>& bases, con
   return {binding, least};
 }
 
-/// Where two of the binding planes are touched: those that stand most across each other.
+/// Centre at which two of the binding planes are touched: those that are closest to perpendicular.
 Vec2 centre_of(const Basis& basis, const std::vector<HalfPlane>& planes, const std::vector<double>& reach,
                double scale) {
   const int left_out = static_cast<int>(std::max_element(basis.weight, basis.weight + 3) - basis.weight);

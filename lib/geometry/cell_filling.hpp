@@ -7,12 +7,12 @@
 
 namespace pliant {
 
-/// Reach of an outline in every direction: h(theta) = max over its points p of p . (cos theta, sin theta), m. A body
-/// lies within a convex cell when its hull does, and that is what h describes.
+/// Support function of an outline: h(theta) = max over its points p of p . (cos theta, sin theta), m. A body is inside
+/// a convex cell if its convex hull is, which h describes.
 class SupportFunction {
  public:
   explicit SupportFunction(const Points& outline);
-  double nearest(double theta) const;  ///< of the nearest of many tabulated directions
+  double nearest(double theta) const;  ///< at the nearest of many tabulated directions
   double exact(double theta) const;
 
  private:
@@ -21,13 +21,13 @@ class SupportFunction {
   std::vector<double> table_;  ///< [directions]
 };
 
-/// The largest copy of a body that a convex cell holds.
+/// Largest copy of a body that fits into a convex cell.
 struct CellFit {
   double scale = 0, angle = 0;  ///< rad
   Vec2 centre{0, 0};            ///< m
 };
 
-/// The largest scale at which a body, moved and turned at will, lies within a convex polygon: the best of many angles,
+/// Largest scale at which a body, translated and rotated freely, fits into a convex polygon: the best of many angles,
 /// and for each angle the exact solution of the linear programme max s, n_i . c + s h(theta_i - angle) <= b_i over the
 /// cell's edges i.
 CellFit largest_in_cell(const Points& cell, const SupportFunction& body);

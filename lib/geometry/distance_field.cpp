@@ -10,7 +10,7 @@ DistanceField::DistanceField(const Points& polygon) {
   Vec2 low = polygon[0], high = polygon[0];
   for (const Vec2& p : polygon) low = low.cwiseMin(p), high = high.cwiseMax(p);
   spacing_ = (high - low).maxCoeff() / cells;
-  constexpr int margin = 3;  // cells: nodes that come near are still outside
+  constexpr int margin = 3;  // in cells: nodes that come near are still outside
   origin_ = low - Vec2(margin, margin) * spacing_;
   columns_ = static_cast<int>(std::ceil((high - low).x() / spacing_)) + 2 * margin + 1;
   rows_ = static_cast<int>(std::ceil((high - low).y() / spacing_)) + 2 * margin + 1;

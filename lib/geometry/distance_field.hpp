@@ -7,9 +7,9 @@
 
 namespace pliant {
 
-/// Signed distance from a closed polygon, negative inside, tabulated on a square grid around it: a look-up costs the
-/// same for any number of corners, whether convex or not. Between grid points bilinear: off by some percent of the grid
-/// spacing, more in corners.
+/// Signed distance from a closed polygon, negative inside, tabulated on a square grid around it. The cost of a query
+/// does not depend on the number of corners, convex or not. Interpolation is bilinear: the error is some percent of the
+/// grid spacing, more in corners.
 class DistanceField {
  public:
   explicit DistanceField(const Points& polygon);

@@ -17,7 +17,7 @@ namespace {
 
 struct Seed {
   Vec2 position;
-  double depth;  // distance to the outline, once they are sorted by it
+  double depth;  // distance to the outline, by which they are sorted
 };
 
 // Points of a hexagonal lattice inside the outline, deeper than the height of an equilateral triangle. The odd offset
@@ -39,7 +39,7 @@ std::vector<Seed> hexagonal_seeds(const Points& outline, const OutlineSearch& se
   return seeds;
 }
 
-// Exactly `count` seeds: the coarsest lattice with at least as many, less those nearest to the outline.
+// Exactly `count` seeds: the coarsest lattice with at least as many, without those nearest to the outline.
 Points interior_seeds(const Points& outline, int count) {
   const double area = polygon_properties(outline).area;
   const OutlineSearch search(outline);

@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// The step of the fast inertial relaxation engine (Bitzek and others 2006, Phys. Rev. Lett. 97, 170201) and how far it
-/// turns velocities to forces; the constants are those of its authors. Times are such that a node's contact has a
-/// stiffness of some 0.1, and a grain one of 1 in all, at mass 1.
+/// Time step of the fast inertial relaxation engine (Bitzek and others 2006, Phys. Rev. Lett. 97, 170201) and the share
+/// by which it rotates velocities towards forces; the constants are those of its authors. In the units of time a node's
+/// contact has a stiffness of some 0.1, and a grain one of 1 in all, at mass 1.
 struct Fire {
   static constexpr double first_step = 0.3, longest_step = 1.5;
   static constexpr int patience = 5;

@@ -12,12 +12,12 @@
 namespace pliant {
 namespace {
 
-// Grains keep this distance, over the mean radius of the circles around them: it hides the errors of distance tables
+// Distance that grains keep, over the mean radius of the circles around them. It hides the errors of distance tables
 // and of an unfinished relaxation, and costs about 1 % of solid fraction.
 constexpr double clearance = 0.01;
-// A stage is over when no node lies deeper in the clearance than this share of it.
+// A stage ends when no node is deeper in the clearance than this share of it.
 constexpr double settled_clearance = 0.9;
-constexpr double skin = 0.3;  // of the mean radius: neighbours further off are not watched
+constexpr double skin = 0.3;  // of the mean radius: neighbours further away are not in the list
 
 }  // namespace
 
@@ -69,21 +69,21 @@ bool GrainRelaxation::relax(int sweeps) {
     const double deepest = push_all();
     if (deepest < limit) {
       if (!overlapping()) return true;
-      limit /= 2;  // the tables did not see it: further apart
+      limit /= 2;  // the tables did not detect it: increase the distance
     }
     step(fire);
   }
   return false;
 }
 
-/// From one grain to the nearest image of another.
+/// Vector from one grain to the nearest image of another.
 Vec2 GrainRelaxation::apart(const Placement& from, const Placement& to) const {
   Vec2 d = to.centre - from.centre;
   if (region_.periodic) d.x() -= std::round(d.x() / region_.width()) * region_.width();
   return d;
 }
 
-/// All pairs that may come near before the next search, in the order of x.
+/// Finds all pairs that may come near before the next search, in the order of x.
 void GrainRelaxation::find_pairs() {
   found_at_.clear();
   for (Placement& grain : grains_) {
@@ -119,7 +119,7 @@ bool GrainRelaxation::pairs_are_stale() const {
   return std::sqrt(largest) > skin * unit_ / 2;
 }
 
-/// What the nodes of one grain do to another. Nodes are relative to their grain's centre, m.
+/// Forces of the nodes of one grain on another. Nodes are relative to their grain's centre, m.
 void GrainRelaxation::push(int slave, int master, const Vec2& to_slave, Push& on_slave, Push& on_master) const {
   const Placement& grain = grains_[master];
   const Shape& shape = shape_of(grain);
@@ -165,7 +165,7 @@ GrainRelaxation::Push GrainRelaxation::push_of_edges(int i) const {
   return result;
 }
 
-/// Nodes of the grain against the wall's line, and points of the line against the grain.
+/// Forces between nodes of the grain and the wall's line, and between points of the line and the grain.
 void GrainRelaxation::push_of_wall(int i, const WallProfile& wall, Push& result) const {
   const Placement& grain = grains_[i];
   const double outer = radius(grain) + clearance * unit_;
@@ -202,7 +202,8 @@ void GrainRelaxation::place_nodes() {
   });
 }
 
-/// Forces on all grains; returns the depth of the deepest node in the clearance of others or of the region's edges.
+/// Computes forces on all grains; returns the depth of the deepest node in the clearance of others or of the region's
+/// edges.
 double GrainRelaxation::push_all() {
   if (pairs_are_stale()) find_pairs();
   place_nodes();
@@ -226,7 +227,7 @@ double GrainRelaxation::push_all() {
   return deepest;
 }
 
-/// Inertia against turning of a grain of mass 1.
+/// Rotational inertia of a grain of mass 1.
 double GrainRelaxation::inertia(const Placement& grain) const {
   return std::pow(grain.scale * shape_of(grain).gyration / unit_, 2);
 }
@@ -236,7 +237,7 @@ void GrainRelaxation::step(Fire& fire) {
   for (std::size_t i = 0; i < grains_.size(); ++i) {
     const double lever = 1 / std::sqrt(inertia(grains_[i]));
     if (!turn_) pushes_[i].moment = 0;
-    pushes_[i].moment *= lever;  // the angle in units that have inertia 1
+    pushes_[i].moment *= lever;  // the angle is in units in which inertia is 1
     power += pushes_[i].force.dot(velocity_[i]) + pushes_[i].moment * spin_[i];
     speed += velocity_[i].squaredNorm() + spin_[i] * spin_[i];
     force += pushes_[i].force.squaredNorm() + pushes_[i].moment * pushes_[i].moment;
@@ -264,7 +265,7 @@ void GrainRelaxation::move(double dt) {
   }
 }
 
-/// The true outlines of all pairs, and of grains and walls.
+/// Whether the true outlines of some pair, or of a grain and a wall, overlap.
 bool GrainRelaxation::overlapping() const {
   std::vector<char> overlap(pairs_.size(), 0);
   parallel_for(static_cast<int>(pairs_.size()), [&](int p) {

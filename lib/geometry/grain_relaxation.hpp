@@ -9,29 +9,29 @@
 
 namespace pliant {
 
-/// Grains that repel each other and the edges of their region where they are nearer than a small clearance, and so
-/// slide into the gaps until no two overlap. Penalties act between the nodes of one outline and the signed distance
-/// from the other, the minimum is sought by FIRE (E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201). The same bits
-/// on any number of threads. Lengths inside are in units of the mean radius of the circles around the grains.
+/// Relaxation of grains that repel each other and the edges of their region within a small clearance, so that they move
+/// into gaps until no two overlap. Penalties act between the nodes of one outline and the signed distance from the
+/// other; FIRE seeks the minimum (E. Bitzek et al., Phys. Rev. Lett. 97 (2006) 170201). Results are bitwise equal on
+/// any number of threads. Internal lengths are in units of the mean radius of the circles around the grains.
 class GrainRelaxation {
  public:
-  /// `grains`: at their full size, wherever they are; outlines of their shapes by index. Both outlive the relaxation.
-  /// `walls`: those that reach into the region.
+  /// `grains`: at their full size, at any positions; outlines of their shapes by index. Both must outlive the
+  /// relaxation. `walls`: those that reach into the region.
   GrainRelaxation(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
                   const std::vector<WallProfile>& walls, bool turn);
 
-  /// Moves (and turns) the grains, at the size that they have now; whether they come free of each other: true outlines.
+  /// Moves (and rotates) the grains, at their present size. Returns whether their true outlines are free of overlap.
   bool relax(int sweeps);
 
   double radius(const Placement& grain) const { return grain.scale * shape_of(grain).radius; }  ///< of its circle, m
-  /// From one grain's centre to the nearest image of another's.
+  /// Vector from one grain's centre to the nearest image of another's.
   Vec2 apart(const Placement& from, const Placement& to) const;
 
  private:
-  /// A shape of size 1 as grains of any size show it.
+  /// Shape of size 1, for grains of any size.
   struct Shape {
     Points outline;
-    std::vector<double> weight;  // of each node: its share of the outline
+    std::vector<double> weight;  // [nodes] share of the outline
     DistanceField distance;
     double length = 0;    // of the outline
     double radius = 0;    // of the circle around it
@@ -52,7 +52,7 @@ class GrainRelaxation {
 
   static Shape make_shape(const Points& outline);
   const Shape& shape_of(const Placement& grain) const { return shapes_[index_[grain.shape]]; }
-  double inertia(const Placement& grain) const;  // against turning, of a grain of mass 1
+  double inertia(const Placement& grain) const;  // rotational, for a grain of mass 1
   double reach() const;
   void find_pairs();
   bool pairs_are_stale() const;
@@ -72,7 +72,7 @@ class GrainRelaxation {
   std::vector<Shape> shapes_;
   std::vector<int> index_;  // in shapes_, by index of the scene's shapes
   double unit_ = 0;
-  std::vector<Points> nodes_;  // about the centres, m
+  std::vector<Points> nodes_;  // relative to the centres, m
   Points velocity_, found_at_;
   std::vector<double> spin_;
   std::vector<Pair> pairs_;

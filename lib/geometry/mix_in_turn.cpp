@@ -3,7 +3,7 @@
 namespace pliant {
 
 std::vector<int> take_turns(const std::vector<double>& shares, int count) {
-  constexpr double clearly = 1 + 1e-9;  // shares are decimal numbers: equal needs are so to rounding
+  constexpr double clearly = 1 + 1e-9;  // shares are decimal numbers: equal needs agree to rounding only
   std::vector<int> taken(shares.size(), 0), choice;
   const auto need = [&](std::size_t m) { return shares[m] / (2 * taken[m] + 1); };
   for (int i = 0; i < count; ++i) {

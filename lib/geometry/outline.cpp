@@ -15,14 +15,14 @@ namespace pliant {
 namespace {
 
 using std::numbers::pi;
-using Segments = std::vector<int>;  // of each edge of a polygon
+using Segments = std::vector<int>;  // number of segments of each edge of a polygon
 
 // Euler's formula with equilateral triangles of side `spacing`: 2 nodes - 2 - outline triangles cover the area.
 double isotropic_node_count(double area, int outline_count, double spacing) {
   return 1 + outline_count / 2.0 + area / (std::sqrt(3.0) / 2 * spacing * spacing);
 }
 
-/// Outline nodes of a smooth shape; `roundness`: its perimeter over that of the circle of its area.
+/// Number of outline nodes of a smooth shape; `roundness`: its perimeter over that of the circle of its area.
 int smooth_outline_count(const ShapeSpec& shape, double perimeter, double roundness) {
   int n = 0;
   if (shape.outline_nodes)
@@ -71,7 +71,7 @@ int total(const Segments& segments) {
   return sum;
 }
 
-// Exactly `count` segments: each further one goes to the edge whose segments are longest.
+// Exactly `count` segments: each additional one goes to the edge with the longest segments.
 Segments segments_by_count(const std::vector<double>& lengths, int count) {
   Segments segments(lengths.size(), 1);
   for (int k = static_cast<int>(lengths.size()); k < count; ++k) {
@@ -83,7 +83,7 @@ Segments segments_by_count(const std::vector<double>& lengths, int count) {
   return segments;
 }
 
-// The largest spacing at which an isotropic mesh has at least the nodes asked for (bisection: the count falls with it).
+// Largest spacing at which an isotropic mesh has at least the requested nodes (bisection: the number falls with it).
 double spacing_for_nodes(const Points& polygon, const std::vector<double>& lengths, int nodes) {
   const double area = polygon_properties(polygon).area;
   double fine = std::sqrt(area / nodes) / 10, coarse = perimeter(polygon);
@@ -131,7 +131,7 @@ Points polygon_outline(const ShapeSpec& shape) {
   return outline;
 }
 
-/// Nodes at equal distances along a smooth curve, moved out a little so that their polygon has the curve's area.
+/// Nodes at equal distances along a smooth curve, moved outward a little so that their polygon has the curve's area.
 Points curve_outline(const ShapeSpec& shape) {
   const PolygonProperties curve = polygon_properties(shape.points);
   const double length = perimeter(shape.points);

@@ -4,8 +4,8 @@
 
 namespace pliant {
 
-/// Number of field nodes of a shape whose outline is given: `nodes`, or what an isotropic mesh of the given `spacing`
-/// needs. Throws InputError when it leaves no node for the interior.
+/// Number of field nodes of a shape with a given outline: `nodes`, or the number for an isotropic mesh of the given
+/// `spacing`. Throws InputError if it leaves no node for the interior.
 int field_node_count(const ShapeSpec& shape, const Points& outline);
 
 }  // namespace pliant

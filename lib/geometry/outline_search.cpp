@@ -9,7 +9,7 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t edges_of_leaf = 4;
-/// Rounding of a box's distance must not hide an edge that is as near.
+/// Rounding of a box's distance must not exclude an edge that is as near.
 constexpr double margin = 1 - 1e-12;
 
 double square_distance(const Vec2& low, const Vec2& high, const Vec2& x) {

@@ -4,17 +4,17 @@
 
 namespace pliant {
 
-/// is_inside and distance_to_outline of one polygon for many points: the same values, without a look at every edge.
+/// is_inside and distance_to_outline of one polygon for many points: the same values without a test of every edge.
 class OutlineSearch {
  public:
   explicit OutlineSearch(const Points& polygon);
 
   bool is_inside(const Vec2& x) const;
-  /// Distance to the outline, or `at_most` where it is larger: far from the outline the search then ends at once.
+  /// Distance to the outline, or `at_most` if it is larger: the search far from the outline then ends at once.
   double distance(const Vec2& x, double at_most = 1e150) const;
 
  private:
-  /// Bounds of the edges [first, last): node n's halves are nodes 2n + 1 and 2n + 2.
+  /// Bounds of the edges [first, last): the halves of node n are nodes 2n + 1 and 2n + 2.
   struct Box {
     Vec2 low, high;
   };
@@ -24,7 +24,7 @@ class OutlineSearch {
 
   Points polygon_;
   double bottom_ = 0, strips_per_length_ = 0;
-  std::vector<std::vector<int>> strips_;  ///< edges that reach into each strip of y
+  std::vector<std::vector<int>> strips_;  ///< edges that extend into each strip of y
   std::vector<Box> boxes_;
 };
 

@@ -14,7 +14,7 @@
 namespace pliant {
 namespace {
 
-/// Shapes and sizes, each in its own random order; nothing is placed yet.
+/// Draws shapes and sizes, each in its own random order; grains are not placed yet.
 std::vector<Placement> draw_grains(const Scene& scene, const Grains& grains) {
   const Packing& packing = grains.packing;
   const int count = static_cast<int>(packing.grain_count());
@@ -45,7 +45,7 @@ void place_on_lattice(const Scene& scene, const Grains& grains, std::mt19937_64&
   }
 }
 
-/// Outlines of the shapes that occur, [shapes].
+/// [shapes] outlines of the shapes that occur.
 std::vector<Points> outlines_of(const Scene& scene, const std::vector<Placement>& placements) {
   std::vector<Points> outlines(scene.shapes.size());
   for (const Placement& grain : placements)
@@ -56,11 +56,11 @@ std::vector<Points> outlines_of(const Scene& scene, const std::vector<Placement>
   return outlines;
 }
 
-/// The walls whose caps, or levels, reach into the region that grains fill.
+/// Walls whose caps, or levels, reach into the region that grains fill.
 std::vector<WallProfile> walls_in(const Scene& scene, const Strip& region) {
   std::vector<WallProfile> profiles;
   for (const Wall& wall : scene.walls) {
-    // Points on caps: what lies between them is off by 1e-3 of a cap's radius.
+    // Points on caps: the error between them is 1e-3 of a cap's radius.
     const double spacing = std::min(*scene.period / 8, wall.caps ? wall.caps->diameter / 20 : *scene.period / 8);
     WallProfile profile = located(wall.where, [&] { return WallProfile(wall, *scene.period, spacing); });
     if (profile.reaches_into(region)) profiles.push_back(std::move(profile));
@@ -68,7 +68,7 @@ std::vector<WallProfile> walls_in(const Scene& scene, const Strip& region) {
   return profiles;
 }
 
-/// For packings that know nothing of walls.
+/// Throws InputError if a grain overlaps a wall, for packings that ignore walls.
 void refuse_overlap(const Scene& scene, const Packed& packed, const std::vector<WallProfile>& walls) {
   for (const WallProfile& wall : walls)
     for (std::size_t i = 0; i < packed.grains.size(); ++i) {

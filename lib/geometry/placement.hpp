@@ -8,12 +8,12 @@
 
 namespace pliant {
 
-/// Where one grain lies and what it is.
+/// Pose, size and shape of one grain.
 struct Placement {
   Vec2 centre{0, 0};  ///< m
   double angle = 0;   ///< rad
   double scale = 1;   ///< size over that of its shape
-  int shape = 0;      ///< index in Scene::shapes; beyond its end: in Packed::fitted
+  int shape = 0;      ///< index in Scene::shapes; beyond its end, in Packed::fitted
 };
 
 struct Packed {
@@ -21,12 +21,12 @@ struct Packed {
   std::vector<ShapeSpec> fitted;  ///< shapes that belong to one grain each; most packings have none
 };
 
-/// Places a set of grains of the scene. `random` gives the angles of grains on lattices; what else is random has
-/// engines of its own, from the grains' seed. The same on any number of threads. Throws InputError when they do not
-/// fit.
+/// Places a set of grains of the scene. `random` gives the angles of grains on lattices; other random quantities have
+/// their own engines, from the grains' seed. The result is the same on any number of threads. Throws InputError if the
+/// grains do not fit.
 Packed place_grains(const Scene& scene, const Grains& grains, std::mt19937_64& random);
 
-/// Part of the plane that grains fill: a box, or a strip that repeats itself in x.
+/// Region that grains fill: a box, or a strip that is periodic in x.
 struct Strip {
   double left = 0, right = 0, bottom = 0, top = 0;  ///< m
   bool periodic = false;
@@ -40,20 +40,18 @@ class WallProfile;
 /// Outline of a placed grain, m.
 Points placed_outline(const Points& outline, const Placement& grain);
 
-/// Random packing without overlap: grains at random places grow to their size, pushing each other away. Sizes and
+/// Random packing without overlap: grains at random positions grow to their size and push each other away. Sizes and
 /// shapes are given; centres and, with `turn`, angles are found. `outlines`: of the shapes by index; `walls`: those
-/// that reach into the region.
-/// Throws InputError with the solid fraction that was reached when they do not come free of each other.
+/// that reach into the region. Throws InputError with the solid fraction that was reached if overlaps remain.
 void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
                    const std::vector<WallProfile>& walls, bool turn, std::uint64_t seed);
 
-/// Grains in the cells of a Voronoi diagram of a periodic strip, after G. Mollon and J. Zhao, Granular Matter 14 (2012)
-/// 621, doi 10.1007/s10035-012-0356-x: cells of areas in proportion to scale^2 x area, each filled by its grain, turned
-/// and moved so that it becomes as large as its cell allows. `grains` come with shapes and sizes relative to each other
-/// and leave with all; they keep to those sizes as far as their cells have room. A shape with descriptors is fitted to
-/// each of
-/// its cells: the returned shapes.
-/// Throws InputError with the largest possible solid fraction when the one asked for does not fit.
+/// Packing of grains in the cells of a Voronoi diagram of a periodic strip, after G. Mollon and J. Zhao, Granular
+/// Matter 14 (2012) 621, doi 10.1007/s10035-012-0356-x. Areas of cells are in proportion to scale^2 x area. Each cell
+/// is filled by its grain, rotated and translated so that it becomes as large as its cell allows. `grains` have shapes
+/// and sizes relative to each other at first, and a full placement then; these sizes are kept as far as their cells
+/// have room. A shape with descriptors is fitted to each of its cells: the returned shapes. Throws InputError with the
+/// largest possible solid fraction if the one asked for does not fit.
 std::vector<ShapeSpec> pack_voronoi(std::vector<Placement>& grains, const std::vector<ShapeSpec>& shapes,
                                     const Strip& region, double solid_fraction, std::uint64_t seed);
 

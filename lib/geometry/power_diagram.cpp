@@ -11,10 +11,10 @@
 namespace pliant {
 namespace {
 
-// More only makes the cells rounder and the packing more like a lattice; by then the areas agree to a percent or so.
+// More sweeps make cells rounder and the packing more like a lattice; by then the areas agree to a percent or so.
 constexpr int sweeps = 60;
 
-/// The part of a convex polygon where normal . x <= offset.
+/// Keeps the part of a convex polygon where normal . x <= offset.
 void clip(Points& polygon, const Vec2& normal, double offset) {
   Points kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -43,7 +43,7 @@ class Bins {
     }
   }
 
-  /// Calls visit(other, shift in x) for all in the bins `ring` bins away from that of point i.
+  /// Calls visit(other, shift in x) for all points in the bins `ring` bins away from that of point i.
   template <class Visit>
   void ring(int i, int ring, Visit&& visit) const {
     const auto [column, row] = place_[i];
@@ -59,7 +59,7 @@ class Bins {
     }
   }
 
-  /// Least distance of points in a ring and beyond from the point in its middle.
+  /// Least distance of points in a ring and beyond from the point in its centre.
   double distance(int ring) const { return (ring - 1) * std::min(width(), height()); }
 
  private:
@@ -90,7 +90,7 @@ Points power_cell(int i, const Points& generators, const std::vector<double>& we
               {x.x() + half, region.top},
               {x.x() - half, region.top}};
   for (int ring = 0; !cell.empty(); ++ring) {
-    // Bisectors with generators at a distance d lie at least (d^2 + w_i - w_max)/(2 d) away, growing with d.
+    // Bisectors with generators at a distance d are at least (d^2 + w_i - w_max)/(2 d) away, increasing with d.
     const double d = bins.distance(ring);
     if (d > 0 && (d * d + weights[i] - largest_weight) / (2 * d) >= radius_about(cell, x)) break;
     bins.ring(i, ring, [&](int j, double shift) {

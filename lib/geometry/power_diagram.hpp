@@ -6,15 +6,14 @@
 
 namespace pliant {
 
-/// Cells of a power (weighted Voronoi) diagram of a strip that repeats itself in x: the points x of the region with
-/// |x - generator|^2 - weight least. [cells], convex polygons, counter-clockwise, around their generator whatever the
-/// period; empty for a generator without a cell. Weights are in m2; equal ones give the Voronoi diagram.
+/// Cells of a power (weighted Voronoi) diagram of a strip that is periodic in x: the points x of the region with least
+/// x - generator|^2 - weight. [cells], convex polygons, counter-clockwise, around their generator whatever the period;
+/// empty for a generator without a cell. Weights are in m2; equal ones give the Voronoi diagram.
 std::vector<Points> power_cells(const Points& generators, const std::vector<double>& weights, const Strip& region);
 
-/// Generators from random places on moved until each cell has about its wanted area (m2, their sum the region's) and
-/// its
-/// generator near its centroid: Lloyd's iteration, with weights that follow the areas as those of a
-/// capacity-constrained diagram do (F. de Goes, K. Breeden, V. Ostromoukhov, M. Desbrun, ACM Trans. Graph. 31(6), 171,
+/// Moves generators from random positions until each cell has about its wanted area (m2, their sum the region's) and
+/// its generator is near its centroid. The method is Lloyd's iteration, with weights that follow the areas as in a
+/// capacity-constrained diagram (F. de Goes, K. Breeden, V. Ostromoukhov, M. Desbrun, ACM Trans. Graph. 31(6), 171,
 /// 2012). Returns the cells.
 std::vector<Points> cells_of_areas(const std::vector<double>& areas, const Strip& region, std::uint64_t seed);
 

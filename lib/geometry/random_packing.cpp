@@ -13,9 +13,9 @@
 namespace pliant {
 namespace {
 
-// The circles around the grains cover this share of the region at the start, where random places without overlap are
-// easily found. From there grains grow bit by bit, so that none ever lies deep in another, where the way out would be
-// unclear.
+// Share of the region that the circles around the grains cover at the start, where random positions without overlap are
+// easily found. From there grains grow in small steps, so that none penetrates another deeply, where the direction of
+// separation would be ambiguous.
 constexpr double first_coverage = 0.2;
 constexpr double fastest_growth = 1.15, slowest_growth = 1.01;
 constexpr int tries = 1000;
@@ -34,7 +34,7 @@ void require_room(double largest, const Strip& region) {
                   largest, region.width(), region.height()));
 }
 
-/// A centre with the circle around the grain in the region.
+/// Random centre with the circle around the grain inside the region.
 Vec2 random_place(double rim, const Strip& region, std::mt19937_64& random) {
   const double side = region.periodic ? 0 : rim;
   const double x = uniform_number(random), y = uniform_number(random);
@@ -58,7 +58,7 @@ class Growth {
     require_room(largest, region);
   }
 
-  /// Small grains at random places, their circles clear of each other; returns their share of the full size.
+  /// Places small grains at random positions without overlap of their circles; returns their share of the full size.
   double scatter(std::uint64_t seed) {
     std::mt19937_64 random = random_stream(seed, 4);
     double circles = 0;
@@ -73,7 +73,7 @@ class Growth {
     return share;
   }
 
-  /// Whether the grains at this share of their size come free of each other.
+  /// Relaxes the grains at this share of their size. Returns whether no overlap remains.
   bool relax(double share) {
     resize(share);
     return relaxation_.relax(share < 1 ? sweeps_while_growing : sweeps_at_full_size);
@@ -91,7 +91,7 @@ class Growth {
     for (std::size_t i = 0; i < grains_.size(); ++i) grains_[i].scale = share * full_[i];
   }
 
-  /// Whether the circle around a grain meets that of one placed before.
+  /// Whether the circle around a grain overlaps that of one placed before.
   bool near_others(std::size_t i) const {
     const double own = relaxation_.radius(grains_[i]);
     for (std::size_t j = 0; j < i; ++j)
@@ -104,7 +104,7 @@ class Growth {
   Strip region_;
   bool turn_;
   GrainRelaxation relaxation_;
-  std::vector<double> full_;  // scales of the full size
+  std::vector<double> full_;  // scales at full size
 };
 
 }  // namespace
@@ -118,7 +118,7 @@ void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& ou
     if (free && share == 1) return;
     if (free) reached = growth.solid_fraction();
     if (share == 1) break;
-    // Half of the way, within limits: growth becomes slow where it becomes crowded.
+    // Half of the remaining growth, within limits: growth becomes slow where it becomes crowded.
     share = std::min(1.0, share * std::clamp(1 + (1 - share) / 2, slowest_growth, fastest_growth));
   }
   throw InputError(

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// Smoothing ends when a step lowers the distortion by less than this share of it.
+/// Smoothing ends when a step reduces the distortion by less than this share of it.
 constexpr double settled_energy = 1e-5;
 constexpr int most_smoothing_steps = 200;
 constexpr double least_angle_allowed = 20 * std::numbers::pi / 180;
@@ -19,7 +19,7 @@ constexpr double least_angle_allowed = 20 * std::numbers::pi / 180;
 ShapeSpec disc(int nodes, int outline_nodes) {
   ShapeSpec shape;
   shape.name = "template";
-  shape.diameter = std::sqrt(static_cast<double>(nodes));  // about one node distance between neighbours
+  shape.diameter = std::sqrt(static_cast<double>(nodes));  // gives about unit node distance
   shape.nodes = nodes;
   shape.outline_nodes = outline_nodes;
   return shape;
@@ -27,7 +27,7 @@ ShapeSpec disc(int nodes, int outline_nodes) {
 
 }  // namespace
 
-/// The factorised Laplacian of the interior nodes, and what ties them to the outline.
+/// Factorised Laplacian of the interior nodes, and their coupling to the outline.
 struct MeshTemplate::Laplacian {
   Eigen::SparseMatrix<double> to_outline;  ///< [interior x outline], weights
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> interior;
@@ -63,8 +63,8 @@ MeshTemplate::MeshTemplate(MeshTemplate&&) noexcept = default;
 
 namespace {
 
-/// Distortion of a mesh against its template, triangle by triangle with F the linear map between them: |F|^2 / (2 J) +
-/// (J + 1/J) / 2, least where angles and areas are kept, infinite where a triangle loses its area.
+/// Distortion of a mesh relative to its template, by triangles with the linear map F between them: |F|^2 / (2 J) + (J +
+/// 1/J) / 2. It is least if angles and areas are kept, and infinite if a triangle loses its area.
 class Distortion {
  public:
   /// `scale`: lengths of the mesh over the template's.
@@ -77,7 +77,7 @@ class Distortion {
     }
   }
 
-  /// The energy, and its gradient by the interior nodes' positions, [interior x 2], where wanted.
+  /// The energy, and its gradient by the interior nodes' positions, [interior x 2], if requested.
   double operator()(const FieldMesh& mesh, Eigen::MatrixX2d* gradient = nullptr) const {
     if (gradient) gradient->setZero(static_cast<Eigen::Index>(mesh.nodes.size()) - mesh.outline_count, 2);
     double energy = 0;
@@ -113,7 +113,7 @@ Points outline_of(const FieldMesh& mesh) { return {mesh.nodes.begin(), mesh.node
 
 }  // namespace
 
-/// Steepest descent in the norm of the Laplacian, until a step gains next to nothing.
+/// Steepest descent in the norm of the Laplacian, until a step gains very little.
 void MeshTemplate::smooth(FieldMesh& mesh) const {
   const double scale =
       std::sqrt(polygon_properties(outline_of(mesh)).area / polygon_properties(outline_of(mesh_)).area);

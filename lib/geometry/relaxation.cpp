@@ -10,17 +10,17 @@
 namespace pliant {
 namespace {
 
-// Stops when no node moves by more than this share of the spacing: far below what changes a triangle's quality.
+// Stops when no node moves by more than this share of the spacing, far less than changes a triangle's quality.
 constexpr double settled_move = 1e-4;
 constexpr int max_sweeps = 300;
-// A large mesh is mended near its outline after few sweeps, and to even out its inside would take thousands: with 30 of
-// them the least angle of 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
+// Few sweeps improve a large mesh near its outline, and thousands would be needed for its interior. With 30 of them the
+// least angle of 50,000 nodes in a disc or a block is 32 degrees, as it is with 60.
 constexpr int min_sweeps = 30;
-constexpr double node_sweeps = 1.5e6;  // of all sweeps, from 5,000 nodes on
+constexpr double node_sweeps = 1.5e6;  // nodes times sweeps, from 5,000 nodes on
 // Least distance to the outline, in outline spacings; equilateral triangles would have 0.87.
 constexpr double least_depth = 0.7;
 
-// The node distance wanted at a place: `rim` at the outline, growing by `growth` a unit of depth.
+// Wanted node distance at a position: `rim` at the outline, growing by `growth` per unit of depth.
 struct SizeField {
   const OutlineSearch& outline;
   double rim, growth;
@@ -45,7 +45,8 @@ double triangle_demand(const FieldMesh& mesh, const SizeField& size, const std::
   return demand;
 }
 
-// The growth at which demand meets the number of triangles (bisection); none where the outline is coarse already.
+// Size field with the growth at which demand equals the number of triangles (bisection); none if the outline is coarse
+// already.
 SizeField fitted_size(const FieldMesh& mesh, const OutlineSearch& outline, double rim) {
   SizeField size{outline, rim, 0};
   std::vector<double> depth;
@@ -65,7 +66,7 @@ Vec2 weighted_circumcentre(const Vec2& b, const Vec2& c) {
          Vec2(c.y() * b.squaredNorm() - b.y() * c.squaredNorm(), b.x() * c.squaredNorm() - c.x() * b.squaredNorm());
 }
 
-// Where each node would go, [nodes]; meaningless for the outline. In two dimensions, density size^-4 gives that size.
+// [nodes] target of each node; meaningless for the outline. In two dimensions, density size^-4 gives that size.
 Points optimal_positions(const FieldMesh& mesh, const SizeField& size) {
   Points moment(mesh.nodes.size(), Vec2(0, 0));
   std::vector<double> weight(mesh.nodes.size(), 0);
@@ -82,7 +83,7 @@ Points optimal_positions(const FieldMesh& mesh, const SizeField& size) {
   return moment;
 }
 
-// A node that would come too near the outline, or cross it at a notch, waits for its neighbours to make room.
+// A node that would come too near the outline, or cross it at a notch, waits until its neighbours make room.
 bool may_move(const SizeField& size, const Vec2& from, const Vec2& to) {
   const double enough = least_depth * size.rim, depth = size.outline.distance(to, enough);
   return size.outline.is_inside(to) && (depth >= enough || depth >= size.outline.distance(from, enough));

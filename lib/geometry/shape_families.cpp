@@ -7,15 +7,15 @@
 namespace pliant {
 namespace {
 
-/// United, so many shapes cost less than one by one.
+/// Number of shapes from which they cost less united than one by one.
 constexpr std::size_t least_family = 3;
 
-/// A shape of few bodies.
+/// Shape of few bodies.
 struct Relative {
   const ShapeSpec* shape;
   Points outline;
-  int nodes;   ///< of its field
-  int bodies;  ///< that have it
+  int nodes;   ///< field nodes
+  int bodies;  ///< bodies of this shape
 };
 
 std::vector<Relative> sparse_shapes(const Scene& scene, const std::vector<PlacedBody>& bodies) {

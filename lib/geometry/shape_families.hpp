@@ -9,21 +9,21 @@
 
 namespace pliant {
 
-/// Shapes of at most so many compliant bodies may share a mesh's topology with others, so that their bodies can be
-/// computed together.
+/// Largest number of compliant bodies of a shape that may share a mesh's topology with others, so that their bodies can
+/// be computed together.
 inline constexpr int sparse_bodies = 2;
-/// It pays off when such shapes have so many field nodes together.
+/// Number of field nodes of such shapes together from which this is faster.
 inline constexpr int least_sparse_nodes = 1000;
 
-/// A shape's mesh with the topology of its family's.
+/// Mesh of a shape with the topology of its family.
 struct RelatedMesh {
   int family = 0;
   FieldMesh mesh;
 };
 
-/// Meshes, by shape, that take the place of the shapes' own: for smooth shapes of few bodies that agree in their
-/// numbers of nodes and outline nodes, where there are enough of them; those that the family's mesh would be bad for
-/// are left out. None when shapes of few bodies have fewer than `least_nodes` together.
+/// Meshes, by shape, that replace the shapes' own: for smooth shapes of few bodies that agree in their numbers of nodes
+/// and outline nodes, if there are enough of them. Shapes for which the family's mesh would be bad are left out. There
+/// are none if shapes of few bodies have fewer than `least_nodes` together.
 std::map<std::string, RelatedMesh> related_meshes(const Scene& scene, const std::vector<PlacedBody>& bodies,
                                                   int least_nodes = least_sparse_nodes);
 

@@ -31,7 +31,7 @@ Delaunay constrained_delaunay(const Points& points, int outline_count) {
   for (int i = 0; i < outline_count; ++i) {
     const int next = (i + 1) % outline_count;
     delaunay.insert_constraint(vertices[i], vertices[next]);
-    if (!delaunay.is_edge(vertices[i], vertices[next]))  // a point on it splits it
+    if (!delaunay.is_edge(vertices[i], vertices[next]))  // a point on the edge splits it
       throw InputError(fmt::format("mesh: a point lies on the outline's edge from point {} to {}", i + 1, next + 1));
   }
   return delaunay;

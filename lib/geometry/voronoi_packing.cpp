@@ -15,13 +15,14 @@
 namespace pliant {
 namespace {
 
-// Grains in cells with a common edge would touch: so much smaller than what fits, rounding cannot make them overlap.
+// Grains in cells with a common edge would touch. They are reduced by this share, so that rounding cannot make them
+// overlap.
 constexpr double clearance = 1e-6;
 
-/// A shape as it is put into cells.
+/// Shape for placement in cells.
 struct Body {
   SupportFunction reach;
-  double area = 0;  // m2, of its polygon
+  double area = 0;  // of its polygon, m2
 };
 
 Body make_body(const ShapeSpec& shape) {
@@ -29,12 +30,12 @@ Body make_body(const ShapeSpec& shape) {
   return {SupportFunction(outline), polygon_properties(outline).area};
 }
 
-/// A copy of a Fourier shape with the phases of a cell.
+/// Copy of a Fourier shape with the phases of a cell.
 ShapeSpec fitted_shape(const ShapeSpec& shape, const Points& cell, std::size_t number) {
   ShapeSpec fitted = shape;
   fitted.descriptors.clear();
   fitted.family = shape.name;
-  fitted.name = fmt::format("{}.{}", shape.name, number);  // a number of its own in the scene
+  fitted.name = fmt::format("{}.{}", shape.name, number);  // unique name in the scene
   fitted.points = fourier_grain(shape.diameter, shape.descriptors,
                                 phases_of_cell(cell, static_cast<int>(shape.descriptors.size())));
   if (fitted.points.empty())
@@ -45,8 +46,8 @@ ShapeSpec fitted_shape(const ShapeSpec& shape, const Points& cell, std::size_t n
   return fitted;
 }
 
-/// The common factor on all sizes at which the grains, none larger than its cell allows, cover `wanted` m2 (bisection:
-/// the area grows with it).
+/// Common factor on all sizes at which the grains, none larger than its cell allows, cover `wanted` m2 (bisection: the
+/// area grows with it).
 double common_factor(const std::vector<Placement>& grains, const std::vector<CellFit>& fits,
                      const std::vector<double>& areas, double wanted) {
   double low = 0, high = 0;
@@ -61,7 +62,7 @@ double common_factor(const std::vector<Placement>& grains, const std::vector<Cel
   return high;
 }
 
-/// Shapes by index, those of the scene that occur and those fitted to cells.
+/// Shapes by index: those of the scene that occur, and those fitted to cells.
 std::map<int, Body> make_bodies(const std::vector<Placement>& grains, const std::vector<ShapeSpec>& shapes,
                                 const std::vector<ShapeSpec>& fitted) {
   std::map<int, Body> bodies;

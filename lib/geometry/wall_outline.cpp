@@ -10,18 +10,18 @@
 namespace pliant {
 namespace {
 
-// Segments of at most `spacing`; the margin keeps rounding from adding one to an exact multiple.
+// Number of segments of at most `spacing`; the margin keeps rounding from adding one to an exact multiple.
 int segment_count(double length, double spacing) {
   return std::max(1, static_cast<int>(std::ceil(length / spacing - 1e-9)));
 }
 
-// Points from a to b, b left out.
+// Appends points from a to b, without b.
 void append_line(Points& chain, const Vec2& a, const Vec2& b, double spacing) {
   const int n = segment_count((b - a).norm(), spacing);
   for (int k = 0; k < n; ++k) chain.push_back(a + static_cast<double>(k) / n * (b - a));
 }
 
-// One cap's arc, from left to right.
+// Arc of one cap, from left to right.
 struct Arc {
   Vec2 centre;
   double radius, half_angle, side;  // side: +1 when the grains are above the wall, -1 below
@@ -48,7 +48,7 @@ void require_valid_caps(const Wall& wall) {
           fmt::format("wall '{}': cap half angle {:.6g} rad; allowed: above 0, below pi/2", wall.name, angle));
 }
 
-// The arcs of one period, and the first one repeated behind them.
+// Arcs of one period, followed by the first one, shifted.
 std::vector<Arc> cap_arcs(const Wall& wall, double period) {
   const Caps& caps = *wall.caps;
   const double side = wall.solid == Wall::Solid::below ? 1 : -1;
@@ -80,11 +80,11 @@ Points capped_chain(const Wall& wall, double period, double spacing) {
   return chain;
 }
 
-// The same periodic line, beginning with its first point in [0, period).
+// The same periodic line, starting at its first point in [0, period).
 Points wrapped(Points chain, double period) {
   for (Vec2& p : chain) {
     p.x() -= std::floor(p.x() / period) * period;
-    if (p.x() >= period) p.x() = 0;  // of a tiny negative number
+    if (p.x() >= period) p.x() = 0;  // from a tiny negative number
   }
   const auto leftmost = std::min_element(chain.begin(), chain.end(), [](auto& a, auto& b) { return a.x() < b.x(); });
   std::rotate(chain.begin(), leftmost, chain.end());
