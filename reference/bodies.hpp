@@ -17,29 +17,29 @@ using Vector = Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// Which mass matrix compliant bodies have (docs/method.md 2).
+/// Mass matrix of compliant bodies (docs/method.md 2).
 enum class MassMatrix {
-  lumped,     ///< row sums, as the engine's default
+  lumped,     ///< row sums, the engine's default
   corrected,  ///< inverse of the engine's 2 D^-1 - D^-1 M D^-1
   consistent
 };
 
-/// A body with its place in the vector of degrees of freedom: positions of the field nodes, absolute, or x, y, angle.
+/// Body with its range of the vector of degrees of freedom: absolute positions of the field nodes, or x, y, angle.
 struct Body {
   PlacedBody placed;
   int space = -1;         ///< compliant: index in Bodies::spaces
-  Points outline;         ///< [outline nodes], about its centre, in its own size and the angle 0, m
+  Points outline;         ///< [outline nodes], relative to the centre, in its own size and at angle 0, m
   double turn_shift = 0;  ///< x offset of a wall's outline after one turn
   int first_dof = 0, dofs = 0;
-  int first_outline = 0;         ///< of its nodes in the list of all outline nodes
+  int first_outline = 0;         ///< index of its first node in the list of all outline nodes
   double mass = 0, inertia = 0;  ///< kg/m, kg m
   bool compliant() const { return !placed.wall && placed.kind == BodyKind::compliant; }
 };
 
-/// All bodies of a scene: where they are in the list of degrees of freedom, their masses and their outlines.
+/// All bodies of a scene: their degrees of freedom, masses and outlines.
 class Bodies {
  public:
-  /// Throws InputError for what cannot be meshed or discretised.
+  /// Throws InputError for bodies that cannot be meshed or discretised.
   explicit Bodies(const Scene& scene);
 
   const Scene& scene() const { return scene_; }
@@ -54,13 +54,13 @@ class Bodies {
   Vector initial_velocities() const;
   SparseMatrix mass(MassMatrix kind) const;  ///< [dofs x dofs]
   Vector lumped_mass() const;                ///< [dofs]
-  Vector arms() const;                       ///< [dofs], largest motion of an outline per unit: 1, of angles m
+  Vector arms() const;  ///< [dofs], largest displacement of an outline per unit: 1, for angles in m
 
   Points outline_positions(const Vector& q) const;  ///< [outline nodes], m
   SparseMatrix outline_jacobian(
       const Vector& q) const;  ///< [2 outline nodes x dofs]: velocities of the outline by those of the bodies
-  /// What the turning of rigid outlines adds to the tangent of constant outline forces: `residual` [2 outline nodes],
-  /// N/m.
+  /// Adds the contribution of rotating rigid outlines to the tangent of constant outline forces: `residual` [2 outline
+  /// nodes], N/m.
   void add_turning(const Vector& q, const Vector& residual, Triplets& tangent) const;
   std::vector<ContactOutline> contact_outlines() const;
 
@@ -71,14 +71,14 @@ class Bodies {
   void place(Body body, int dofs);
 
   Scene scene_;
-  std::map<std::string, RelatedMesh> meshes_;  ///< of shapes that have not their own
+  std::map<std::string, RelatedMesh> meshes_;  ///< of shapes without their own
   std::vector<Space> spaces_;
   std::vector<Body> bodies_;
   int dofs_ = 0, outline_nodes_ = 0;
   double finest_spacing_ = 1e300;
 };
 
-/// Sum of a row's values times the vectors of its nodes; `first`: where those of node 0 stand in `values`.
+/// Sum of a row's values times the vectors of its nodes; `first`: index of those of node 0 in `values`.
 Vec2 interpolated(const Row& row, const Vector& values, int first);
 
 /// Mean segment length of an outline, m.

@@ -6,8 +6,8 @@
 namespace pliant::reference {
 
 /// Forward automatic differentiation of second order: a value with its gradient and Hessian by N variables. Energies
-/// are written once, with Jets they give residual and tangent. Comparisons look at values, so that a branch is
-/// differentiated as the branch that it takes.
+/// are written once; with Jets they give residual and tangent. Comparisons use values, so the active branch is
+/// differentiated.
 template <int N>
 struct Jet {
   using Gradient = Eigen::Matrix<double, N, 1>;
@@ -19,7 +19,7 @@ struct Jet {
 
   Jet() = default;
   Jet(double constant) : value(constant) {}  // NOLINT(google-explicit-constructor): constants mix with Jets in formulas
-  /// The variable of that number.
+  /// The variable of this number.
   Jet(double at, int variable) : value(at) { gradient[variable] = 1; }
 
   /// f(x) of this x, from f and its first two derivatives there.

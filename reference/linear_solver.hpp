@@ -6,8 +6,8 @@
 
 namespace pliant::reference {
 
-/// Solves sparse systems by SuiteSparse: CHOLMOD where the matrix is symmetric and positive definite, UMFPACK
-/// elsewhere. The symbolic factorisation is kept for as long as the pattern stands.
+/// Solves sparse systems by SuiteSparse: CHOLMOD for symmetric positive definite matrices, UMFPACK for others. The
+/// symbolic factorisation is kept as long as the pattern does not change.
 class LinearSolver {
  public:
   LinearSolver();

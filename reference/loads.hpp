@@ -7,7 +7,7 @@
 
 namespace pliant::reference {
 
-/// What acts on one rigid degree of freedom (docs/method.md 5).
+/// Load or prescribed motion of one rigid degree of freedom (docs/method.md 5).
 struct RigidLoad {
   int dof = 0;
   Drive drive;
@@ -20,7 +20,7 @@ struct RigidLoad {
   }
 };
 
-/// A node of an outline with the two neighbours that its chosen segments lead to; -1: that segment is not chosen.
+/// Node of an outline with the two neighbours of its chosen segments; -1: that segment is not chosen.
 struct LoadedNode {
   int node = 0, before = -1, after = -1;  ///< in the list of all outline nodes
   Vec2 start{0, 0};                       ///< m
@@ -28,7 +28,7 @@ struct LoadedNode {
   double length = 0;                      ///< half the sum of their lengths, m
 };
 
-/// A pressure or a soft support on a part of one body's outline.
+/// Pressure or soft support on a part of one body's outline.
 struct OutlineLoad {
   BoundaryCondition condition;
   std::vector<LoadedNode> nodes;
@@ -38,31 +38,32 @@ struct OutlineLoad {
 /// Forces on the outlines as residuals (minus the force), with their tangent.
 struct OutlineResidual {
   Vector residual;       ///< [2 outline nodes], N/m
-  Triplets tangent;      ///< of it by the outline's positions
+  Triplets tangent;      ///< of the residual by the outline's positions
   double stored = 0;     ///< in the supports' springs, J/m
-  double potential = 0;  ///< of pressures that do not follow, J/m
+  double potential = 0;  ///< of dead loads, J/m
   bool symmetric = true;
 };
 
-/// Dashpots of soft supports, of several at one node together: force = pull - coefficient x velocity. [2 outline nodes]
+/// Dashpots of soft supports, added up at each node: force = pull - coefficient x velocity. [2 outline nodes]
 struct Dashpots {
   Vector coefficient;  ///< Pa s
-  Vector pull;         ///< that of their targets' velocities, N/m
+  Vector pull;         ///< force from their targets' velocities, N/m
 };
 
-/// Everything that acts on bodies from outside.
+/// All external loads on bodies.
 class Loads {
  public:
   explicit Loads(const Bodies& bodies);
 
-  /// Forces of histories on the degrees of freedom: [dofs], N/m. A wall's pressure comes with what bears its weight.
+  /// Forces of histories on the degrees of freedom: [dofs], N/m. A wall's pressure includes the force that bears its
+  /// weight.
   Vector applied(const Instant& at) const;
   Vector gravity(double time) const;  ///< [dofs], N/m
-  /// Pressures and supports.
+  /// Forces of pressures and supports.
   OutlineResidual outlines(const Points& x, const Instant& at) const;
   /// Work of pressures, and of supports whose targets move, between two times, by the mean of the forces, J/m.
   double outline_work(const Points& x0, double t0, const Points& x1, const Instant& t1) const;
-  /// Forces of the dashpots beside loads are minus this times the velocities: [dofs].
+  /// Coefficients of the dashpots beside loads, whose forces are minus these times the velocities: [dofs].
   Vector load_dashpots(const Instant& at) const;
   /// Rates of mass-proportional damping, [dofs], 1/s.
   const Vector& mass_damping() const { return mass_damping_; }
@@ -75,7 +76,7 @@ class Loads {
   /// Position at t1 of a degree of freedom that is imposed from t0 on and was at q0 then.
   double imposed_position(int dof, double q0, double t0, double t1) const;
   double imposed_velocity(int dof, double time) const;
-  /// Points of histories, and when windows open and close: growing, after the start, s.
+  /// Points of histories, and ends of windows: ascending, after the start, s.
   std::vector<double> switch_times() const;
 
  private:
@@ -85,7 +86,7 @@ class Loads {
   const RigidLoad* of(int dof) const;
 
   const Bodies& bodies_;
-  Vector heavy_mass_;    ///< [dofs], what gravity acts on
+  Vector heavy_mass_;    ///< [dofs], mass on which gravity acts
   Vector mass_damping_;  ///< [dofs], 1/s
   std::vector<RigidLoad> rigid_;
   std::vector<int> load_of_dof_;  ///< [dofs], index in `rigid_`; -1: none

@@ -6,10 +6,10 @@
 
 namespace pliant::reference {
 
-/// Bodies that reach into each other at the start. Cohesion at a gap does not count.
+/// Overlaps of bodies at the start. Cohesion at a gap does not count.
 struct Overlap {
-  int pairs = 0;                ///< of bodies
-  double depth = 0, share = 0;  ///< the largest, m, and over the master's longest segment
+  int pairs = 0;                ///< pairs of bodies
+  double depth = 0, share = 0;  ///< largest penetration, m, and relative to the master's longest segment
   double stored = 0;            ///< in compression, J/m
   std::string first, second;    ///< the deepest pair
 };
@@ -17,7 +17,7 @@ struct Overlap {
 /// `start`: forces of the first motion, before any was accepted.
 Overlap find_overlap(const Bodies& bodies, const Forces& start);
 
-/// In words, with what to do; empty without any.
+/// Text with advice; empty without overlap.
 std::string advice_on(const Overlap& overlap);
 
 }  // namespace pliant::reference

@@ -7,21 +7,21 @@
 
 namespace pliant::reference {
 
-/// What a run has cost so far.
+/// Solver counters of a run so far.
 struct Effort {
   long steps = 0, bisections = 0, iterations = 0;
 };
 
-/// Says on the standard error how a run is doing: a line redrawn every second on a terminal, a line every ten seconds
-/// otherwise, or one a step.
+/// Reports the progress of a run on the standard error: a line redrawn every second on a terminal, a line every ten
+/// seconds otherwise, or one per step.
 class Progress {
  public:
   enum class Detail { none, periodic, steps };
   Progress(Detail detail, double end);
-  /// Cheap when no line is due.
+  /// Cheap if no line is due.
   void show_if_due(const TimeStepping& run, const StepRecord& last, const Effort& effort);
-  void say(const std::string& line);  ///< before the first step; nothing when empty
-  void finish();                      ///< leaves the line as it is, for what is printed next
+  void say(const std::string& line);  ///< before the first step; nothing if empty
+  void finish();                      ///< ends the line, so that further output can follow
   double seconds() const;             ///< since construction
 
  private:
@@ -32,7 +32,7 @@ class Progress {
   Clock::time_point start_, last_;
 };
 
-/// Of compliant bodies; 1 without any.
+/// Least Jacobian of compliant bodies; 1 without any.
 double least_jacobian(const Forces& forces);
 
 }  // namespace pliant::reference

@@ -6,7 +6,7 @@
 
 namespace pliant::reference {
 
-/// Picks the free degrees of freedom: [dofs x free].
+/// Matrix that selects the free degrees of freedom: [dofs x free].
 inline SparseMatrix selection(const std::vector<int>& free, int dofs) {
   Triplets entries;
   for (std::size_t i = 0; i < free.size(); ++i) entries.emplace_back(free[i], static_cast<int>(i), 1.0);
@@ -15,7 +15,7 @@ inline SparseMatrix selection(const std::vector<int>& free, int dofs) {
   return matrix;
 }
 
-/// Of the free degrees of freedom alone, which `select` picks in ascending order.
+/// Matrix restricted to the free degrees of freedom, which `select` gives in ascending order.
 inline SparseMatrix restricted(const SparseMatrix& matrix, const SparseMatrix& select) {
   std::vector<int> number(static_cast<std::size_t>(matrix.rows()), -1);
   for (int i = 0; i < select.cols(); ++i) number[static_cast<std::size_t>(select.innerIndexPtr()[i])] = i;

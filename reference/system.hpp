@@ -12,41 +12,41 @@ namespace pliant::reference {
 struct Motion {
   Vector q, v;
   double time = 0;
-  bool moves = true;  ///< else it stands still at each time: statics, without any damping
+  bool moves = true;  ///< false: at rest at each time, as in statics, without any damping
   bool ends_step = false;
   Instant instant() const { return {time, ends_step}; }
 };
 
-/// All forces at one motion, as residuals: mass x acceleration + residual = 0. Without mass-proportional damping, which
-/// goes with the mass matrix.
+/// All forces at one motion, as residuals: mass x acceleration + residual = 0. Mass-proportional damping is not
+/// included; it is treated with the mass matrix.
 struct Forces {
   Vector residual;          ///< [dofs]
-  Vector magnitude;         ///< [dofs], sum of the absolute values of what cancels in it
+  Vector magnitude;         ///< [dofs], sum of the absolute values of its terms
   Vector damping;           ///< [dofs], the part that depends on velocities
   Vector outline_velocity;  ///< [2 x outline nodes], m/s
-  SparseMatrix stiffness;   ///< of the residual by positions; empty unless asked for
-  SparseMatrix viscosity;   ///< of the residual by velocities; empty unless asked for
+  SparseMatrix stiffness;   ///< of the residual by positions; empty unless requested
+  SparseMatrix viscosity;   ///< of the residual by velocities; empty unless requested
   bool symmetric = true;
   double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
-  double potential = 0;                          ///< of all forces that have one: stored, less what loads can give, J/m
+  double potential = 0;                          ///< of all forces that have one: stored energy less that of loads, J/m
   double creep_power = 0;                        ///< dissipated by Maxwell branches, W/m
   double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
   double least_jacobian = 1e300;
-  int worst_body = -1;  ///< the one with it
+  int worst_body = -1;  ///< body with the least Jacobian
   double deepest = 0;   ///< penetration over the segment's length
   ContactResult contacts;
 };
 
-/// A scene as a system of equations.
+/// System of equations of a scene.
 class System {
  public:
   explicit System(const Scene& scene);
 
   const Bodies& bodies() const { return bodies_; }
   const Loads& loads() const { return loads_; }
-  /// With the tangent when asked to. Contacts remember what accept() has accepted.
+  /// Evaluates all forces, with the tangent if requested, from the history variables of the last accept().
   Forces evaluate(const Motion& motion, bool tangent);
-  /// Histories go on from the last motion evaluated.
+  /// Accepts the history variables of the last motion evaluated.
   void accept();
   /// [compliant bodies] in their order.
   const std::vector<InternalForces>& internal() const { return internal_; }

@@ -13,13 +13,13 @@ struct SolverOptions {
   MassMatrix mass = MassMatrix::lumped;
   double dt = 0;   ///< s
   double hht = 0;  ///< alpha of Hilber, Hughes and Taylor, in [-1/3, 0]; 0: Newmark's average acceleration
-  /// Static runs: where Newton's method fails, share of the largest stiffness that holds bodies at first while they
-  /// settle by pseudo-transient continuation; 0: never.
+  /// Static runs: initial pseudo-inertia as a share of the largest stiffness, for pseudo-transient continuation where
+  /// Newton's method fails; 0: never.
   double pseudo_inertia = 1e-3;
   NewtonOptions newton;
 };
 
-/// Energies of a run, J/m; as the engine's books (docs/method.md 6).
+/// Energy balance of a run, J/m, as in the engine (docs/method.md 6).
 struct Books {
   double kinetic = 0, strain = 0, contact = 0, boundary = 0;
   double dissipated_by_contact = 0, dissipated_by_damping = 0;
@@ -29,29 +29,29 @@ struct Books {
   double mechanical() const { return kinetic + strain + contact + boundary; }
   double dissipated() const { return dissipated_by_contact + dissipated_by_damping; }
   double external_work() const { return work_of_loads + work_of_gravity; }
-  double made() const;           ///< what no work has brought; negative: lost, J/m
-  double scale() const;          ///< the largest of external work, the start's energy and dissipation, J/m
+  double made() const;           ///< energy without a source; negative: lost, J/m
+  double scale() const;          ///< largest of external work, initial energy and dissipation, J/m
   double balance_error() const;  ///< |made| over scale
 };
 
-/// What became of one step that was asked for.
+/// Report of one requested step.
 struct StepRecord {
-  double dt = 0;       ///< of the shortest part, s
-  int iterations = 0;  ///< of all parts
+  double dt = 0;       ///< of the shortest substep, s
+  int iterations = 0;  ///< of all substeps
   int bisections = 0;
   double residual = 0;            ///< the last one, relative
-  std::vector<double> residuals;  ///< of the last part's iterations
-  std::string trouble;            ///< of the last part that did not converge
+  std::vector<double> residuals;  ///< of the last substep's iterations
+  std::string trouble;            ///< of the last substep that did not converge
 };
 
-/// The motion of a scene, step by step (docs/design.md 6).
+/// Time integration of a scene (docs/design.md 6).
 class TimeStepping {
  public:
   TimeStepping(System& system, const SolverOptions& options);
 
-  /// To a later time, with a step to each point of a history and each end of a window on the way; halves steps that do
-  /// not converge. Throws PhysicsError with the worst body, the residual and the last good time when even a thousandth
-  /// of it does not.
+  /// Advances to a later time, with a step to each point of a history and each end of a window before it; halves steps
+  /// that do not converge. Throws PhysicsError with the worst body, the residual and the last valid time if even a
+  /// thousandth of the step does not converge.
   StepRecord step(double until);
 
   const Motion& motion() const { return motion_; }
@@ -85,13 +85,13 @@ class TimeStepping {
   SparseMatrix mass_;
   std::vector<double> switch_times_;
   Vector holding_;  ///< static runs: [dofs], masses scaled to the largest stiffness, N/m2 (N)
-  Vector arms_;     ///< static runs: [dofs], motion of the outline per unit, 1 or m
+  Vector arms_;     ///< static runs: [dofs], displacement of the outline per unit, 1 or m
   LinearSolver solver_;
   Motion motion_;
   Vector acceleration_;
   Forces forces_;
   Books books_;
-  std::string worst_;  ///< the body with the largest residual of the last evaluation
+  std::string worst_;  ///< body with the largest residual of the last evaluation
 };
 
 }  // namespace pliant::reference

@@ -9,19 +9,19 @@
 
 namespace pliant::reference {
 
-/// All contacts of a scene as integrals over segments (docs/method.md 4, "Contact as an integral"), by brute force:
-/// every segment of every body against every segment of every other, and of its own periodic images.
+/// All integrated contacts of a scene (docs/method.md 4, "Contact as an integral"), by brute force: every segment of
+/// every body against every segment of every other, and of its own periodic images.
 class IntegratedContacts {
  public:
-  /// `has`: whether contacts of two bodies, by their numbers, are among these.
+  /// `has`: whether the contact of two bodies, by their numbers, is integrated.
   IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws,
                      std::function<bool(int, int)> has);
 
-  ContactResult evaluate(const Points& x);  ///< as Contacts does
+  ContactResult evaluate(const Points& x);  ///< as in Contacts
   void accept();
 
  private:
-  using Encounter = std::tuple<int, int, int>;  ///< slave, master, image; of walls always 0
+  using Encounter = std::tuple<int, int, int>;  ///< slave, master, image; image 0 for walls
   using Memories = std::map<Encounter, NodeSlips>;
 
   void meet(int slave, int master, ContactResult& result);
@@ -31,10 +31,10 @@ class IntegratedContacts {
   const PairLaws& laws_;
   std::function<bool(int, int)> has_;
   double period_ = 0;                         ///< m, 0: none
-  std::vector<std::vector<double>> lengths_;  ///< [bodies][segments] that count, m; empty: present ones
-  std::vector<double> longest_;               ///< [bodies], segment, m
+  std::vector<std::vector<double>> lengths_;  ///< [bodies][segments] reference lengths, m; empty: current lengths count
+  std::vector<double> longest_;               ///< [bodies] longest segment, m
   Memories accepted_, trial_;
-  Points x_, past_;  ///< all outline nodes, now and as last accepted; empty before that
+  Points x_, past_;  ///< all outline nodes, now and at the last accepted state; empty before that
 };
 
 }  // namespace pliant::reference

@@ -8,13 +8,13 @@
 
 namespace pliant::reference {
 
-/// Which law holds between which bodies, with all that the scene leaves open (docs/method.md 4).
+/// Contact laws between bodies, with all values that the scene leaves open (docs/method.md 4).
 class PairLaws {
  public:
-  /// Throws as Contacts does.
+  /// Throws like Contacts.
   PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlines);
 
-  /// Of a body with itself: with its periodic images.
+  /// Law between two bodies; of a body with itself: with its periodic images.
   const std::optional<Law>& between(int a, int b) const { return laws_[a * bodies_ + b]; }
 
  private:

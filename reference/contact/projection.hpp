@@ -7,8 +7,7 @@
 
 namespace pliant::reference {
 
-/// An outline where it is now. Nodes and segments are numbered on and on, turn after turn; segment i runs from node i
-/// to node i + 1.
+/// Current outline. Nodes and segments are numbered on over all turns; segment i is from node i to node i + 1.
 class PresentOutline {
  public:
   PresentOutline(const ContactOutline& outline, const Points& x) : outline_(outline), x_(x) {}
@@ -29,10 +28,10 @@ class PresentOutline {
   const Points& x_;
 };
 
-/// A vector that depends on six coordinates.
+/// Vector that depends on six coordinates.
 struct JetVector {
   Jet<6> x, y;
-  /// The point number 0, 1 or 2 of the three.
+  /// Point number 0, 1 or 2 of the three.
   static JetVector point(const Vec2& at, int number) { return {{at.x(), 2 * number}, {at.y(), 2 * number + 1}}; }
   friend JetVector operator-(const JetVector& a, const JetVector& b) { return {a.x - b.x, a.y - b.y}; }
 };
@@ -44,25 +43,25 @@ inline JetVector unit(const JetVector& a) {
   return {a.x / length, a.y / length};
 }
 
-/// Of the segments [first, first + count) whose wedge between the bisectors holds a point the one with the least
-/// height; for points steeply beyond an end, and not higher than `outward`, the one that is truly nearest.
+/// Among the segments [first, first + count) whose Voronoi region between the bisectors contains a point, the one with
+/// the least height. For points steeply beyond an end, and not higher than `outward`, it is the truly nearest one.
 struct Nearest {
   int segment = 0;
-  double height = 0;  ///< outside positive, m
+  double height = 0;  ///< positive outside, m
 };
 std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, int count, const Vec2& point,
                                        double outward);
 
-/// A point against a segment, by the coordinates of the point and of the segment's first and second node
+/// Projection of a point onto a segment, by the coordinates of the point and of the segment's first and second node
 /// (docs/method.md 4).
 struct Projection {
   Jet<6> gap;     ///< m
-  Jet<6> height;  ///< over the segment's line, m
+  Jet<6> height;  ///< above the segment's line, m
   Jet<6> length;  ///< of the segment, m
   Jet<6> xi;      ///< in [0, 1]
   Jet<6> angle;   ///< beyond an end: from the segment's normal to the point's, towards growing xi; else 0
   bool beyond = false;
-  /// Rates of motion along the outline by the coordinates, and the derivatives of those.
+  /// Rates of motion along the outline by the coordinates, and their derivatives.
   Jet<6>::Gradient rate() const;
   Jet<6>::Hessian rate_derivative() const;
 };

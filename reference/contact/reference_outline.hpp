@@ -7,14 +7,14 @@
 
 namespace pliant::reference {
 
-/// An outline in its reference shape. Segments are numbered on and on, turn after turn.
+/// Outline in its reference shape. Segments are numbered on over all turns.
 class ReferenceOutline {
  public:
   explicit ReferenceOutline(const ContactOutline& outline);
 
   double length(int segment) const;                  ///< m
-  double longest() const { return longest_; }        ///< segment, m
-  bool has_corners() const { return has_corners_; }  ///< it turns to the left by more than 35 degrees at a node
+  double longest() const { return longest_; }        ///< longest segment, m
+  bool has_corners() const { return has_corners_; }  ///< whether it turns left by more than 35 degrees at a node
 
  private:
   std::vector<double> length_;

@@ -7,14 +7,14 @@
 
 namespace pliant::reference {
 
-/// How far a node has moved along an outline, m.
+/// Displacement of a node along an outline, m.
 struct Motion {
-  Jet<6> by_element;  ///< with derivatives by the node and its present segment; first derivatives only are meant
+  Jet<6> by_element;  ///< with derivatives by the node and its present segment; only first derivatives are valid
   std::vector<std::pair<int, Vec2>>
-      others;  ///< derivatives by nodes that it passed, numbered as the outline does; sums
+      others;  ///< derivatives by nodes that it passed, numbered as in the outline; entries add up
 };
 
-/// From the remembered place to the present one on `segment`.
+/// Slip increment from the stored surface coordinate to the present one on `segment`.
 Motion motion_along(const PresentOutline& master, const ContactMemory& memory, int segment, const Projection& now);
 
 }  // namespace pliant::reference

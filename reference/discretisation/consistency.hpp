@@ -7,11 +7,11 @@
 
 namespace pliant::reference {
 
-/// The symmetric variationally consistent correction (docs/method.md 2): changes all gradients by the d that makes
-/// sum_g w_g |d_gi|^2 least under
+/// Symmetric variationally consistent correction (docs/method.md 2): changes all gradients by the d with the least
+/// sum_g w_g |d_gi|^2 under
 /// (1) at every point sum_i b_gi = 0, sum_i b_gi (x) X_i = I,
 /// (2) for every node sum_g w_g b_gi = sum_k s_k phi_i(x_k) over the outline nodes k with the rows `outline`.
-/// Lengths in mean node distances. Throws InputError when no solution is found to 1e-11.
+/// Lengths in mean node distances. Throws InputError if no solution is found to 1e-11.
 void make_consistent(std::vector<Point>& points, const Points& nodes, const std::vector<Row>& outline);
 
 /// Largest residuals of (1) and (2), in the same lengths.

@@ -8,18 +8,19 @@
 
 namespace pliant::reference {
 
-/// Moving least squares of a linear basis over scattered nodes (docs/method.md 2): cubic spline weights, a node's
-/// radius its distance to the `support`-th nearest other node, distances through the body. Every place is a dense least
-/// squares problem of its own, solved by orthogonalisation; gradients come from differentiating that whole solution.
+/// Moving least squares of a linear basis over scattered nodes (docs/method.md 2): cubic spline weights; a node's
+/// radius is its distance to the `support`-th nearest other node, with distances through the body. Each position has
+/// its own dense least squares problem, solved by orthogonalisation; gradients follow from differentiation of that
+/// whole solution.
 class MovingLeastSquares {
  public:
-  /// `nodes` in lengths of about the node distance: rounding is then the same for all sizes; the first `outline_count`
-  /// are the body's outline. Throws InputError when there are too few nodes.
+  /// `nodes` in lengths of about the node distance, so that rounding is the same for all sizes; the first
+  /// `outline_count` are the body's outline. Throws InputError if there are too few nodes.
   MovingLeastSquares(Points nodes, int outline_count, int support);
 
-  /// Values of all shape functions that do not vanish at x. Throws InputError where nodes do not determine them.
+  /// Values of all shape functions that do not vanish at x. Throws InputError if nodes do not determine them.
   Row values(const Vec2& x) const;
-  /// Their gradients by x as well, in an integration point without a weight.
+  /// Values and gradients by x, as an integration point without a weight.
   Point gradients(const Vec2& x) const;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace pliant::reference {
 
-/// A place in a triangle, barycentric, and its share of the area.
+/// Position in a triangle, barycentric, and its share of the area.
 struct QuadraturePoint {
   Eigen::Vector3d place;
   double share = 0;

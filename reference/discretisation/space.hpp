@@ -8,21 +8,21 @@
 
 namespace pliant::reference {
 
-/// Values of the shape functions at one place.
+/// Values of the shape functions at one position.
 struct Row {
   std::vector<int> node;      ///< [neighbours], ascending
   std::vector<double> value;  ///< [neighbours]
 };
 
-/// An integration point: F = sum of q_i (x) gradient_i over its nodes.
+/// Integration point: F = sum of q_i (x) gradient_i over its nodes.
 struct Point {
   double weight = 0;           ///< m2
   std::vector<int> node;       ///< [neighbours], ascending
   Points gradient;             ///< [neighbours], 1/m
-  std::vector<int> triangles;  ///< background triangles that it stands for in pictures
+  std::vector<int> triangles;  ///< background triangles that it represents in pictures
 };
 
-/// One shape, discretised: dense, slow, and without a line of the engine's mathematics (docs/method.md 2).
+/// Discretised shape: dense, slow, and independent of the engine's mathematics (docs/method.md 2).
 struct Space {
   FieldMesh mesh;
   std::vector<Point> points;
@@ -32,8 +32,8 @@ struct Space {
   Eigen::SparseMatrix<double> consistent;  ///< [nodes x nodes], density 1, m2
 };
 
-/// Discretises a mesh by the scene's recipe. Throws InputError for `rpim`, which this solver does not have, and for
-/// meshes without a solution.
+/// Discretises a mesh as the scene says. Throws InputError for `rpim`, which this solver does not have, and for meshes
+/// without a solution.
 Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings);
 
 }  // namespace pliant::reference

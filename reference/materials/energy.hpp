@@ -7,8 +7,8 @@
 
 namespace pliant::reference {
 
-/// Deformation gradient of plane strain, of numbers or of anything that is calculated with like numbers. zz is 1 in
-/// every solution: as a variable it gives the stress out of the plane.
+/// Deformation gradient of plane strain, of numbers or of any type with the same arithmetic. zz is 1 in every solution;
+/// as a variable it gives the stress out of the plane.
 template <class Scalar>
 struct Deformation {
   Scalar xx{}, xy{}, yx{}, yy{}, zz{1.0};
@@ -42,8 +42,8 @@ Scalar linear_elastic_energy(const Moduli& m, const Deformation<Scalar>& F) {
   return m.mu * (xx * xx + yy * yy + zz * zz + 2.0 * xy * xy) + 0.5 * m.lambda * trace * trace;
 }
 
-/// Strain energy per reference volume, Pa (docs/method.md 3), of what never relaxes. Not a number where J <= 0, but for
-/// `linear_elastic`.
+/// Strain energy of the equilibrium part per reference volume, Pa (docs/method.md 3). Not a number where J <= 0, except
+/// for `linear_elastic`.
 template <class Scalar>
 Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
   using std::log, std::pow;
@@ -80,10 +80,9 @@ Symmetric<Scalar> inverse_metric(const Deformation<Scalar>& F) {
           (F.xx * F.xx + F.yx * F.yx) / square};
 }
 
-/// What a Maxwell branch stores per reference volume, Pa: neo-Hookean in the part of the strain that its dashpot has
-/// not taken up, G the inverse of
-/// that, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt = ((F^T F)^-1 - G) /
-/// relaxation time.
+/// Energy of a Maxwell branch per reference volume, Pa: neo-Hookean in the elastic part of the strain, with G the
+/// inverse of the viscous strain, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt =
+/// ((F^T F)^-1 - G) / relaxation time.
 template <class Scalar>
 Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, const Symmetric<Scalar>& G) {
   using std::log;

@@ -10,7 +10,7 @@
 
 namespace pliant::reference {
 
-/// frames.h5 on the engine's grids, for the fields that this solver writes.
+/// Writes frames.h5 on the engine's grids, with the fields that this solver has.
 class FrameOutput {
  public:
   FrameOutput(const Bodies& bodies, const std::filesystem::path& folder);
@@ -28,7 +28,7 @@ class FrameOutput {
   const Bodies& bodies_;
   double period_;
   long count_ = 0;
-  std::vector<FieldMesh> meshes_;  ///< [bodies], of rigid ones; else empty
+  std::vector<FieldMesh> meshes_;  ///< [bodies] of rigid bodies; else empty
   std::vector<std::string> body_fields_, outline_fields_, left_out_;
   std::unique_ptr<FrameFile> file_;
 };

@@ -9,20 +9,20 @@
 
 namespace pliant::reference {
 
-/// probes.csv with the columns of the engine's, for the quantities that this solver measures.
+/// Writes probes.csv with the engine's columns, for the quantities that this solver has.
 class ProbeFile {
  public:
   ProbeFile(const Bodies& bodies, const std::filesystem::path& folder);
 
   double next_time() const;
   void record_due(const View& view);
-  /// Names of the scene's probes whose quantities are not measured here.
+  /// Names of the scene's probes whose quantities this solver does not have.
   const std::vector<std::string>& left_out() const { return left_out_; }
 
  private:
   struct Entry {
     Probe probe;
-    std::vector<int> bodies;  ///< that `of` names
+    std::vector<int> bodies;  ///< bodies that `of` names
     std::size_t columns = 0;
     long count = 0;  ///< rows so far
   };

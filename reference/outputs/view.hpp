@@ -4,7 +4,7 @@
 
 namespace pliant::reference {
 
-/// A run at one accepted motion, as outputs see it.
+/// Run at one accepted motion, for outputs.
 class View {
  public:
   View(const System& system, const TimeStepping& run) : system_(system), run_(run), acceleration_(run.acceleration()) {}
@@ -17,9 +17,9 @@ class View {
   const Vector& velocities() const { return run_.motion().v; }
   const Vector& accelerations() const { return acceleration_; }
 
-  /// Mean over mass of a vector of degrees of freedom: of positions the centre of mass.
+  /// Mass-weighted mean of a vector of degrees of freedom: for positions the centre of mass.
   Vec2 mean(const Body& body, const Vector& values) const;
-  /// At all nodes that probes and pictures name: field nodes of a compliant body, outline nodes of a rigid one.
+  /// Positions of all nodes for probes and pictures: field nodes of a compliant body, outline nodes of a rigid one.
   Points positions_of(const Body& body) const;
   Points start_of(const Body& body) const;
   Points velocities_of(const Body& body) const;
@@ -39,7 +39,7 @@ class View {
   const Vector& acceleration_;
 };
 
-/// Mean-free part of a plane stress with its part out of the plane, Pa.
+/// Von Mises stress of a plane stress with its part out of the plane, Pa.
 double von_mises(const PointStress& stress);
 
 }  // namespace pliant::reference
