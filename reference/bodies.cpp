@@ -11,8 +11,8 @@ namespace {
 
 Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
 
-/// D (2 D - M)^-1 D: what the engine's inverse mass 2 D^-1 - D^-1 M D^-1 is the inverse of. Dense: a body's nodes all
-/// meet.
+/// D (2 D - M)^-1 D: inverse of the engine's inverse mass 2 D^-1 - D^-1 M D^-1. It is dense: all nodes of a body are
+/// coupled.
 Eigen::MatrixXd corrected_mass(const Space& space) {
   const Eigen::MatrixXd lumped = space.lumped.asDiagonal();
   return lumped * (2 * lumped - Eigen::MatrixXd(space.consistent)).ldlt().solve(lumped);
@@ -93,7 +93,7 @@ void Bodies::add_wall(Body body) {
   const double period = *scene_.period;
   body.outline = wall_points(scene_, wall, finest_spacing_);
   body.turn_shift = wall.solid == Wall::Solid::below ? -period : period;
-  body.mass = body.inertia = material_of(body).density * period * wall.thickness;  // its angle is held
+  body.mass = body.inertia = material_of(body).density * period * wall.thickness;  // its angle is fixed
   place(std::move(body), 3);
 }
 
@@ -203,7 +203,7 @@ void Bodies::add_turning(const Vector& q, const Vector& residual, Triplets& tang
   for (const Body& body : bodies_) {
     if (body.compliant()) continue;
     const Eigen::Rotation2Dd turn(q[body.first_dof + 2]);
-    double stiffness = 0;  // the second derivative of a turned arm is minus the arm
+    double stiffness = 0;  // the second derivative of a rotated arm is minus the arm
     for (std::size_t k = 0; k < body.outline.size(); ++k)
       stiffness -= residual.segment<2>(2 * (body.first_outline + static_cast<int>(k))).dot(turn * body.outline[k]);
     tangent.emplace_back(body.first_dof + 2, body.first_dof + 2, stiffness);

@@ -13,7 +13,7 @@
 namespace pliant::reference {
 namespace {
 
-/// Where a matrix has entries.
+/// Sparsity pattern of a matrix.
 struct Pattern {
   std::vector<int> outer, inner;
   explicit Pattern(const SparseMatrix& matrix)
@@ -22,8 +22,7 @@ struct Pattern {
   bool operator==(const Pattern&) const = default;
 };
 
-/// Factors that tell how near to singular their matrix is: reciprocal condition number, roughly, of a matrix with ones
-/// on its diagonal.
+/// Factors with an estimate of the reciprocal condition number of a matrix with ones on its diagonal.
 struct Cholesky : Eigen::CholmodSupernodalLLT<SparseMatrix> {
   double reciprocal_condition() { return cholmod_rcond(m_cholmodFactor, &cholmod()); }
 };
@@ -31,11 +30,12 @@ struct Lu : Eigen::UmfPackLU<SparseMatrix> {
   double reciprocal_condition() const { return m_umfpackInfo[UMFPACK_RCOND]; }
 };
 
-/// Under this, rounding decides the solution.
+/// Reciprocal condition number below which rounding determines the solution.
 constexpr double singular = 1e-13;
 
-/// While it lives, no library of ours starts threads. CHOLMOD would start four for every supernode whatever OpenMP is
-/// told: with a thousand degrees of freedom, four fifths of the time is waiting for them, on busy machines nearly all.
+/// Keeps libraries from starting threads during its lifetime. CHOLMOD would start four for every supernode whatever
+/// OpenMP's settings: with a thousand degrees of freedom four fifths of the time is waiting for them, on busy machines
+/// nearly all.
 class OneThread {
  public:
   OneThread() { omp_set_max_active_levels(0); }
@@ -47,7 +47,7 @@ class OneThread {
   int levels_ = omp_get_max_active_levels();
 };
 
-/// One way to factorise, with the pattern that it has analysed.
+/// Factorisation method with the pattern that it has analysed.
 template <class Method>
 struct Factorisation {
   Method method;
@@ -66,7 +66,7 @@ struct Factorisation {
   }
 };
 
-/// Brings the diagonal of a matrix to one: degrees of freedom have different units.
+/// Scales that bring the diagonal of a matrix to one: degrees of freedom have different units.
 Vector scales_of(const SparseMatrix& matrix) {
   return matrix.diagonal().unaryExpr([](double d) { return d == 0 ? 1.0 : 1 / std::sqrt(std::abs(d)); });
 }

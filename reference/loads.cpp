@@ -38,8 +38,8 @@ bool in_part(const OutlinePart& part, const Vec2& a, const Vec2& b, const Vec2& 
   return true;
 }
 
-/// Displacement of a support's target along one axis, or its velocity. What began before the window began to act does
-/// not count.
+/// Displacement of a support's target along one axis. A velocity history is integrated from `from` on, when the window
+/// begins.
 double target(const Drive& drive, double time, double from) {
   if (drive.mode == Mode::displacement) return drive.history.at(time);
   return drive.mode == Mode::velocity ? drive.history.integral(from, time) : 0.0;
@@ -78,8 +78,7 @@ Vec2 stretch(const OutlineLoad& support, const LoadedNode& node, const Points& x
   return result;
 }
 
-/// Of minus p/2 (outward(before, node) + outward(node, after)): the node's own place drops out when both segments
-/// count.
+/// Tangent of minus p/2 (outward(before, node) + outward(node, after)), independent of the node if both segments count.
 void add_following_tangent(const LoadedNode& node, double pressure, Triplets& tangent) {
   const auto add = [&](int by, double sign) {  // residual = +p/2 outward(...): outward of e is (e_y, -e_x)
     tangent.emplace_back(2 * node.node, 2 * by + 1, sign * 0.5 * pressure);
@@ -111,7 +110,7 @@ Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
     }
   }
   load_of_dof_.assign(static_cast<std::size_t>(bodies.dofs()), -1);
-  for (std::size_t i = 0; i < rigid_.size(); ++i)  // scenes have one of an axis at most
+  for (std::size_t i = 0; i < rigid_.size(); ++i)  // scenes have at most one per axis
     load_of_dof_[static_cast<std::size_t>(rigid_[i].dof)] = static_cast<int>(i);
 }
 
@@ -219,7 +218,7 @@ double Loads::outline_work(const Points& x0, double t0, const Points& x1, const 
       }
       const double stiffness = load.stiffness * node.length;
       const Vec2 first = stretch(load, node, x0, t0), last = stretch(load, node, x1, t1.time);
-      // A moving target stretches its spring; one that sets in or ends brings or takes the spring's energy.
+      // A moving target stretches its spring; a support that begins or ends adds or removes the spring's energy.
       if (before) work -= 0.5 * stiffness * (first + last).dot(moved(load, t1.time) - moved(load, t0));
       if (before != after) work += (after ? 0.5 : -0.5) * stiffness * last.squaredNorm();
     }

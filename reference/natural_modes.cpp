@@ -14,9 +14,9 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double at_rest = 1e-4;  ///< of the largest frequency: motions without stiffness
+constexpr double at_rest = 1e-4;  ///< of the largest frequency: modes without stiffness
 
-/// Bodies that vibrate alike.
+/// Whether two bodies have the same natural frequencies.
 bool alike(const Body& a, const Body& b) {
   return a.space == b.space && a.placed.scale == b.placed.scale && a.placed.material == b.placed.material;
 }
@@ -32,7 +32,7 @@ Vector natural_frequencies(const Bodies& bodies, const Body& body, MassMatrix ki
   const Eigen::MatrixXd tangent(forces.evaluate(start, true).tangent);
   const Eigen::MatrixXd mass(bodies.mass(kind).block(body.first_dof, body.first_dof, body.dofs, body.dofs));
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(tangent, mass, Eigen::EigenvaluesOnly);
-  // One by one: Eigen's root of eight numbers takes 0 times infinity on the way to that of 0, which is trapped.
+  // One by one: Eigen's vectorised root computes 0 times infinity for 0, which is trapped.
   return solver.eigenvalues().unaryExpr([](double square) { return std::sqrt(std::max(square, 0.0)); });
 }
 

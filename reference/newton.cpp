@@ -10,12 +10,12 @@
 namespace pliant::reference {
 namespace {
 
-constexpr int halvings = 12;  ///< of the step, at most
-/// The residual may grow against the last one, but not against the largest of so many: forces of contact have kinks.
+constexpr int halvings = 12;  ///< maximum for one step
+/// The residual may exceed the last one, but not the largest of this many: contact forces have kinks.
 constexpr int memory = 4;
 constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
-/// The step's share that lowers the residual; of those that do not, the one with the least.
+/// Share of the step that reduces the residual; if none does, the one with the least residual.
 double search(const Equations& equations, const Measure& measure, const Vector& x, const Vector& step, double allowed,
               Linearisation& found) {
   double best = 0, least = std::numeric_limits<double>::infinity(), share = 1;

@@ -8,14 +8,14 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double touching = 1e-9;  ///< share of a segment up to which faces that touch are deep by rounding
+constexpr double touching = 1e-9;  ///< share of a segment up to which penetration of touching faces is rounding
 
 }  // namespace
 
 Overlap find_overlap(const Bodies& bodies, const Forces& start) {
   Overlap overlap;
   std::set<std::pair<int, int>> pairs;
-  /// Of a node or a pass, by its depth in m and over a segment.
+  /// Counts a node or a half pass, by its depth in m and over a segment.
   const auto count = [&](const auto& contact, double depth) {
     if (contact.depth <= touching) return;
     pairs.insert(std::minmax(contact.body[0], contact.body[1]));

@@ -9,8 +9,8 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double least = 1e-12, most = 1e4;           ///< of the share
-constexpr double faster = 0.1, slower = 2, back = 4;  ///< factors on it
+constexpr double least = 1e-12, most = 1e4;           ///< bounds of the share
+constexpr double faster = 0.1, slower = 2, back = 4;  ///< factors on the share
 constexpr double linear = 0.1, barely_linear = 0.5;   ///< error of the linear model over the residual at the start
 constexpr double creep = 0.1;                         ///< steps shorter than this share of the longest may cross kinks
 constexpr double flat = 1e-6;  ///< share of a potential within which rounding of small strains may decide its change
@@ -21,13 +21,13 @@ SparseMatrix held(const SparseMatrix& matrix, const Vector& holding) {
 
 double largest(const Vector& step, const Vector& arms) { return step.cwiseProduct(arms).lpNorm<Eigen::Infinity>(); }
 
-/// Of the forces after a step, over those before it.
+/// Error of the linear model of the forces after a step, over the forces before it.
 double model_error(const Measure& measure, const Linearisation& at, const Linearisation& next, const Vector& step) {
   return measure(next.residual - at.residual - at.matrix * step) / measure(at.residual);
 }
 
-/// Whether a step takes energy instead of giving it; where that is too little to tell, or forces have no potential, by
-/// the trapezoidal rule (as Hager and Zhang, SIAM J. Optim. 16, 170, 2005, end their line searches).
+/// Whether a step increases the energy. If the change is too small, or forces have no potential, the trapezoidal rule
+/// decides (as Hager and Zhang, SIAM J. Optim. 16, 170, 2005, end their line searches).
 bool climbs(const Measure& measure, const Linearisation& at, const Linearisation& next, const Vector& step) {
   if (at.symmetric && next.symmetric) {
     const double taken = next.potential - at.potential;

@@ -24,10 +24,11 @@
 namespace pliant::reference {
 namespace {
 
-/// Share of its energy that a run may make without a warning: well resolved bounces stay below (verify/energy_drift).
+/// Share of its energy that a run may create without a warning: well resolved rebounds stay below
+/// (verify/energy_drift).
 constexpr double made_energy = 0.01;
 
-/// Of strains of 1e-12, and of weights at coordinates with rounding, J/m.
+/// Energy of strains of 1e-12, and of weights at coordinates with rounding, J/m.
 double least_energy(const Bodies& bodies) {
   double energy = 0;
   const Vec2 gravity = bodies.scene().gravity_at(0);
@@ -39,7 +40,7 @@ double least_energy(const Bodies& bodies) {
   return energy;
 }
 
-/// What contacts were like in a run.
+/// Statistics of contacts in a run.
 struct ContactsSeen {
   bool any = false;
   double deepest = 0;  ///< over the master's longest segment
@@ -50,7 +51,7 @@ struct ContactsSeen {
   }
 };
 
-/// Why time steps have made energy, and what to do.
+/// Text with the reason why time steps have created energy, and advice.
 std::string cause(const ContactsSeen& seen, const Overlap& overlap, double dt, double hht) {
   constexpr double deep = 0.3, shallow = 0.1;  // over a segment
   const std::string shorter =
@@ -67,7 +68,7 @@ std::string cause(const ContactsSeen& seen, const Overlap& overlap, double dt, d
                      seen.any ? "contacts" : "bodies, which nothing touched", shorter);
 }
 
-/// A run's files.
+/// Output files of a run.
 class Outputs {
  public:
   Outputs(const System& system, const TimeStepping& run, const RunOptions& options)
@@ -126,7 +127,7 @@ class Outputs {
     write_file_atomically(options_.out / "summary.json", summary(status).dump(2) + "\n");
   }
 
-  /// The last summary, and what there is to say at the end.
+  /// Writes the last summary and the final messages.
   void finish(const std::string& status) {
     progress_.finish();
     write_summary(status);
@@ -177,7 +178,7 @@ class Outputs {
   const System& system_;
   const TimeStepping& run_;
   const RunOptions& options_;
-  double most_made_ = 0, most_made_at_ = 0;  ///< energy, J/m, and when, s
+  double most_made_ = 0, most_made_at_ = 0;  ///< spurious energy, J/m, and its time, s
   double longest_step_ = 0;                  ///< s
   ContactsSeen contacts_seen_;
   Overlap overlap_;
@@ -187,7 +188,7 @@ class Outputs {
   CsvFile steps_;
 };
 
-/// Equal steps from one output to the next.
+/// Advances with equal steps from one output to the next.
 void advance(const System& system, TimeStepping& run, Outputs& outputs, double dt) {
   const double end = system.bodies().scene().time.end;
   const std::vector<double> switches = system.loads().switch_times();
@@ -227,7 +228,7 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   if (solver.dt == 0) solver.dt = default_step(system.bodies(), solver.statics);
   TimeStepping run(system, solver);
   const std::string text =
-      read_text_file(scene.file, "a scene file (.toml)");  // before the folder is emptied: the scene may lie in it
+      read_text_file(scene.file, "a scene file (.toml)");  // before the folder is emptied, as it may contain the scene
   FolderLock::refuse_taken(options.out);
   prepare_output_folder(options.out, options.force);
   const FolderLock lock(options.out);

@@ -5,7 +5,7 @@
 namespace pliant::reference {
 namespace {
 
-/// Entries of a sparse matrix, to be added up with others from row and column `first` on.
+/// Appends entries of a sparse matrix, to be added to others from row and column `first` on.
 void append(const SparseMatrix& matrix, int first, Triplets& entries) {
   for (int column = 0; column < matrix.outerSize(); ++column)
     for (SparseMatrix::InnerIterator entry(matrix, column); entry; ++entry)
@@ -79,7 +79,7 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
   }
 }
 
-/// Contacts, pressures and supports act on outlines, and through them on the bodies.
+/// Adds contacts, pressures and supports, which act on outlines and through them on the bodies.
 void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
                           Triplets& entries) {
   const Points x = bodies_.outline_positions(motion.q);

@@ -12,11 +12,11 @@
 namespace pliant::reference {
 namespace {
 
-constexpr int most_bisections = 10;  ///< of a step: to a thousandth of it
-// Of pseudo-transient continuation, over a segment:
-constexpr double longest_pseudo_step = 0.2;  ///< contacts cannot be missed
-constexpr double furthest = 10;              ///< what moves on does not come to rest
-constexpr double lost_penetration = 1;       ///< over a segment's length: deeper ones cannot be told from the far side
+constexpr int most_bisections = 10;  ///< of a step, down to a thousandth of it
+// Limits of pseudo-transient continuation, over a segment:
+constexpr double longest_pseudo_step = 0.2;  ///< so that contacts are not missed
+constexpr double furthest = 10;              ///< bodies that move further do not come to rest
+constexpr double lost_penetration = 1;       ///< over a segment's length; deeper ones look like the far side
 
 std::string trouble_of(const Forces& forces, const Bodies& bodies) {
   if (!(forces.least_jacobian > 0))
@@ -27,7 +27,7 @@ std::string trouble_of(const Forces& forces, const Bodies& bodies) {
   return {};
 }
 
-/// The body whose degree of freedom has the largest residual, [dofs]. Reactions of imposed ones do not count.
+/// Body with the largest residual of a degree of freedom, [dofs]. Reactions of imposed ones do not count.
 std::string worst_body(const Vector& residual, const Bodies& bodies) {
   Eigen::Index worst = 0;
   if (residual.size() > 0) residual.cwiseAbs().maxCoeff(&worst);
@@ -118,7 +118,7 @@ void TimeStepping::step(double until, int depth, StepRecord& record) {
   step(until, depth + 1, record);
 }
 
-/// Mass-proportional damping joins the other forces.
+/// Evaluates forces with mass-proportional damping.
 Forces TimeStepping::evaluate(const Motion& motion, bool tangent) {
   Forces forces = system_.evaluate(motion, tangent);
   const Vector& rate = system_.loads().mass_damping();
@@ -129,8 +129,8 @@ Forces TimeStepping::evaluate(const Motion& motion, bool tangent) {
   return forces;
 }
 
-/// Positions after dt without the acceleration at its end. The unknowns are counted from there: in a short step a
-/// difference of positions would lose the acceleration to rounding. Statics: counted from the origin.
+/// Positions after dt without the acceleration at its end. The unknowns are relative to these: in a short step a
+/// difference of positions would lose the acceleration to rounding. Statics: relative to the origin.
 Vector TimeStepping::predicted(double dt) const {
   if (options_.statics) return Vector::Zero(motion_.q.size());
   return motion_.q + dt * motion_.v + dt * dt * (0.5 - beta_) * acceleration_;
@@ -145,7 +145,7 @@ Motion TimeStepping::motion_at(double until, const Vector& ahead) const {
   return {predicted(dt) + ahead, std::move(v), until, true, true};
 }
 
-/// `ahead`: of the predicted positions. `trial`: the motion and the forces there.
+/// `ahead`: displacement from the predicted positions. `trial`: motion and forces there.
 Linearisation TimeStepping::equations(double until, const SparseMatrix& select, const Vector& ahead, bool tangent,
                                       Trial& trial) {
   const double dt = until - motion_.time;
@@ -179,7 +179,7 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
 bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
   const double dt = until - motion_.time;
   Vector q = motion_.q;
-  // The search starts where bodies stand.
+  // The search starts at the present positions.
   Vector ahead = options_.statics ? q : Vector(-dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_);
   const Vector origin = predicted(dt);
   for (int i = 0; i < q.size(); ++i)
@@ -205,14 +205,14 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
                                      .furthest = furthest * system_.bodies().finest_spacing()};
     const SparseMatrix pick = select.transpose();
     found = note(relax(system, pick * holding_, pick * arms_, settling, solver_, free), record);
-    if (found) system(free, false);  // the last step that was tried may not be the one taken
+    if (found) system(free, false);  // the last trial may not be the accepted one
   }
   if (!found) return false;
   trial.acceleration = options_.statics ? Vector::Zero(q.size()) : acceleration_at(dt, imposed + select * free);
   return true;
 }
 
-/// Writes down what became of a solution; returns whether it is one.
+/// Records the result of a solution; returns whether it converged.
 bool TimeStepping::note(const NewtonResult& result, StepRecord& record) const {
   record.iterations += result.iterations;
   if (!result.residuals.empty()) record.residual = result.residuals.back(), record.residuals = result.residuals;
@@ -227,7 +227,7 @@ bool TimeStepping::moves_too_far(const Vector& q, StepRecord& record) const {
   return true;
 }
 
-/// Of the outlines, from the present motion; 0 where there is nothing to touch.
+/// Largest displacement of the outlines from the present motion; 0 if there is nothing to touch.
 double TimeStepping::largest_motion(const Vector& next) const {
   const Bodies& bodies = system_.bodies();
   if (bodies.all().size() < 2 || bodies.scene().contacts.empty()) return 0;
@@ -246,14 +246,14 @@ void TimeStepping::book(const Trial& trial) {
   books_.work_of_loads += 0.5 * (loads.applied({before.time}) + loads.applied(after.instant())).dot(moved) +
                           loads.outline_work(bodies.outline_positions(before.q), before.time,
                                              bodies.outline_positions(after.q), after.instant());
-  // A dashpot between a node and a moving target takes what both put in.
+  // A dashpot between a node and a moving target dissipates the work of both.
   if (after.moves) {
     const double by_targets =
         loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.instant());
     books_.work_of_loads += by_targets;
     books_.dissipated_by_damping += by_targets;
   }
-  // What holds an imposed motion gives it its kinetic energy and works against the other forces.
+  // The constraint of an imposed motion supplies its kinetic energy and works against the other forces.
   for (int i = 0; i < moved.size(); ++i)
     if (loads.imposed(i, before.time))
       books_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
@@ -275,8 +275,8 @@ void TimeStepping::accept(const Trial& trial) {
   if (std::binary_search(switch_times_.begin(), switch_times_.end(), motion_.time)) pass_switch();
 }
 
-/// Loads jump where windows open and close: the next step starts from their values after that. Springs that come or go
-/// bring or take their energy.
+/// Loads jump at ends of windows: the next step starts from the values after that. Springs that begin or end to act add
+/// or remove their energy.
 void TimeStepping::pass_switch() {
   if (options_.statics) return;
   motion_.ends_step = false;

@@ -6,7 +6,7 @@
 namespace pliant::reference {
 namespace {
 
-/// Places in [0, 1] and weights of the Gauss-Legendre rule, by Newton's method on the Legendre polynomial.
+/// Points in [0, 1] and weights of the Gauss-Legendre rule, by Newton's method on the Legendre polynomial.
 std::vector<std::pair<double, double>> gauss_rule(int points) {
   std::vector<std::pair<double, double>> rule;
   for (int i = 0; i < points; ++i) {
@@ -56,7 +56,7 @@ class Sampler {
     sample.s = s;
     sample.nearby = nearby;
     sample.at = project(stretch_.at(s), of_.master.node(j), of_.master.node(j + 1));
-    // The segment's other side, where the outline turns at the node by more than a right angle.
+    // The other side of the segment, if the outline turns at the node by more than a right angle.
     if (nearby.at_node && is_outside(of_.master, j, stretch_.at(s)) != (sample.at.gap.value > 0))
       sample.at.gap = -sample.at.gap;
     return sample;
@@ -71,8 +71,8 @@ class Sampler {
     }
   }
 
-  /// Distances to a node are roots: pieces no longer than their distance from it have errors of 4.2^-20, as the root's
-  /// branch points are on an ellipse of that size. What is nearer than a billionth of the stretch is one piece.
+  /// Distances to a node are roots. Pieces no longer than their distance from it have errors of 4.2^-20, as the root's
+  /// branch points are on an ellipse of that size. Parts nearer than a billionth of the stretch are one piece.
   void add_fan(const Part& part, double start, double end) {
     const Vec2 node = of_.master.node(part.nearby.segment), way = stretch_.along();
     const double foot = std::clamp((node - stretch_.first).dot(way) / way.squaredNorm(), start, end);
@@ -84,13 +84,13 @@ class Sampler {
     add_fan(part, half, end);
   }
 
-  /// Where a part ends: by the place at which its gap and the next one's are equal, or its gap is at a level, or on the
-  /// normal at an end of a segment, beyond which shear and motion go by a node.
+  /// Adds the end of a part: where its gap equals that of the next part, or reaches a level, or on the normal at an end
+  /// of a segment, beyond which shear and slip follow a node.
   void add_limit(const Part& part, const Part& next, double s, double sign) {
     const bool same = part.nearby == next.nearby;
     ContactSample limit = make(part.nearby, s);
     limit.weight = sign;
-    std::vector<std::pair<int, Vec2>> by_master;  // derivatives of what is zero at the limit
+    std::vector<std::pair<int, Vec2>> by_master;  // derivatives of the function that is zero at the limit
     Vec2 by_point = limit.at.gap.gradient.head<2>();
     if (!same && meet(part.nearby, next.nearby)) {
       const auto [node, segment] = part.nearby.at_node ? std::pair(part.nearby.segment, next.nearby.segment)
@@ -106,13 +106,13 @@ class Sampler {
       if (!same) by_point -= other.at.gap.gradient.head<2>();
     }
     const double slope = by_point.dot(stretch_.along());
-    if (!(std::abs(slope) > 1e-12 * stretch_.along().norm())) return;  // they touch, or are one line
+    if (!(std::abs(slope) > 1e-12 * stretch_.along().norm())) return;  // tangential, or on one line
     limit.moves = {{limit.node[0], -(1 - s) / slope * by_point}, {limit.node[1], -s / slope * by_point}};
     for (const auto& [node, by] : by_master) limit.moves.emplace_back(node, -by / slope);
     result_.limits.push_back(std::move(limit));
   }
 
-  /// Whether one is a segment and the other a node of it.
+  /// Whether one is a segment and the other one of its nodes.
   bool meet(const Nearby& one, const Nearby& other) const {
     if (one.at_node == other.at_node) return false;
     const Nearby &fan = one.at_node ? one : other, &beside = one.at_node ? other : one;

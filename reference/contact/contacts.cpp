@@ -17,12 +17,12 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double deepest = 1.5;  ///< that contact sees, over the master's longest segment
+constexpr double deepest = 1.5;  ///< detection depth over the master's longest segment
 
-/// A node of one body and a periodic image of another, or of its own.
+/// Key of a history: a node of one body and a periodic image of another, or of its own.
 struct Encounter {
-  int slave = 0, node = 0;    ///< node: of the slave's own outline
-  int master = 0, image = 0;  ///< image: 0 for a wall, whose segments are counted on instead
+  int slave = 0, node = 0;    ///< node: in the slave's own outline
+  int master = 0, image = 0;  ///< image: 0 for a wall, whose segments are numbered over all turns instead
   auto operator<=>(const Encounter&) const = default;
 };
 using Memories = std::map<Encounter, ContactMemory>;
@@ -35,7 +35,7 @@ struct Box {
   }
 };
 
-/// One body as it is now.
+/// Current configuration of one body.
 struct PresentBody {
   PresentOutline outline;
   Box box;
@@ -72,7 +72,7 @@ struct Contacts::Implementation {
     skin = scene.skin * finest;
   }
 
-  /// By default over segments where an outline has corners. Bonds are those of nodes.
+  /// Finds integrated contacts: by default those with an outline that has corners. Bonds belong to nodes.
   void find_integrated(ContactQuadrature quadrature) {
     std::vector<bool> has_corners;
     for (const ContactOutline& outline : outlines) has_corners.push_back(ReferenceOutline(outline).has_corners());
@@ -109,21 +109,21 @@ struct Contacts::Implementation {
     return std::move(result);
   }
 
-  /// What a node remembers is lost when it is no longer beside the other body.
+  /// Adds the energy that a node loses with its history when it no longer has a projection onto the other body.
   void part(const Encounter& encounter, const ContactMemory& memory) {
     result.dissipated +=
         weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory, std::nullopt);
   }
 
-  /// Of a node in one of the two passes, m.
+  /// Length of a node in one of the two half passes, m.
   double weight(const Encounter& encounter) const { return lengths[encounter.slave][encounter.node] / 2; }
 
   /// All nodes of one body against another and its periodic images.
   void meet(int slave, int master, const Law& law) {
     const Box &a = bodies[slave].box, &b = bodies[master].box;
     const double outward = law.reach + skin;
-    // Heights grow slower than distances beyond an end: of tips sharper than 29 degrees something may be missed beyond
-    // this, far from any contact.
+    // Heights grow slower than distances beyond an end. At tips sharper than 29 degrees nodes may be missed beyond this
+    // margin, far from any contact.
     const double margin = 4 * outward;
     if (a.low.y() > b.high.y() + margin || b.low.y() > a.high.y() + margin) return;
     if (period == 0) return meet_image(slave, master, 0, law, outward, margin);
@@ -145,7 +145,8 @@ struct Contacts::Implementation {
     }
   }
 
-  /// A wall goes on and on: its segments are counted so that each node sees one turn of it to either side.
+  /// Contact with a wall, which is periodic: its segments are numbered so that each node has one turn of it to either
+  /// side.
   void meet_wall(int slave, int master, const Law& law, double outward) {
     const PresentBody& on = bodies[master];
     const double middle = (on.box.low.x() + on.box.high.x()) / 2;
@@ -221,14 +222,14 @@ struct Contacts::Implementation {
 
   std::vector<ContactOutline> outlines;
   PairLaws laws;
-  std::vector<bool> integrated;  ///< [bodies x bodies] which contacts are integrals; others are those of nodes
+  std::vector<bool> integrated;  ///< [bodies x bodies] whether contact is integrated, not collocated at nodes
   std::optional<IntegratedContacts> integrals;
   double period = 0, skin = 0;               ///< m
   std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
   Memories accepted, trial;
   bool initial = true;  ///< nothing accepted yet
 
-  // Of the evaluation at hand.
+  // Of the current evaluation.
   std::vector<PresentBody> bodies;
   ContactResult result;
 };

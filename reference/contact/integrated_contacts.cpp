@@ -37,7 +37,7 @@ Extent extent_of(const PresentOutline& outline, int segment) {
   return extent;
 }
 
-/// Where the body is; of a wall, whose solid has no end, everywhere.
+/// Extent of the body; unbounded for a wall, whose solid has no end.
 Extent solid_of(const PresentOutline& outline, const Vec2& shift) {
   constexpr double far = std::numeric_limits<double>::infinity();
   if (!outline.closed()) return {Vec2(-far, -far), Vec2(far, far)};
@@ -50,7 +50,8 @@ struct Range {
   int first, count;
 };
 
-/// Of a wall as many turns as the other is wide, and one more on either side.
+/// Range of segments beside another extent. For a wall it has as many turns as the other is wide, and one more on
+/// either side.
 Range segments_beside(const PresentOutline& outline, const Extent& other) {
   if (outline.closed()) return {0, outline.count()};
   const Extent one = extent_of(outline);
@@ -100,7 +101,8 @@ void IntegratedContacts::accept() {
   past_ = x_;
 }
 
-/// All periodic images of the master. A wall goes on and on and is one body, beside each body where that is.
+/// Contact with all periodic images of the master. A wall is periodic itself and counts as one body, beside each other
+/// body.
 void IntegratedContacts::meet(int slave, int master, ContactResult& result) {
   if (period_ == 0 || outlines_[slave].wall || outlines_[master].wall) return meet_image({slave, master, 0}, result);
   const double reach = laws_.between(slave, master)->reach;
@@ -121,7 +123,7 @@ void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& r
   PassSetting setting{{from, to, shift, seen.first, seen.count, kinks(law), law.reach}, law, {}, lengths_[slave], {}};
   if (!past_.empty()) setting.past.emplace(past_from, past_to);
   const Extent extent = solid_of(to, shift);
-  // Of two walls one turn meets the other.
+  // For two walls one turn of the slave suffices.
   const Range own = to.closed() ? segments_beside(from, extent) : Range{0, from.count()};
   for (int i = own.first; i < own.first + own.count; ++i)
     if (!are_apart(extent_of(from, i), extent, law.reach)) setting.segments.push_back(i);

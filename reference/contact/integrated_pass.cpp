@@ -11,18 +11,18 @@ using Eigen::VectorXd;
 using PointVector = Eigen::Matrix<double, 8, 1>;  ///< by the coordinates of a sample's four nodes
 using PointMatrix = Eigen::Matrix<double, 8, 8>;
 
-/// A number at a sample with its derivatives.
+/// Number at a sample with its derivatives.
 struct Valued {
   double value = 0;
   PointVector by = PointVector::Zero();
 };
 
-/// A sample with what the law says there.
+/// Sample with the response of the law there.
 struct Touch {
   const ContactSample* sample;
-  int segment;             ///< of the slave, counted on
-  double weight = 0;       ///< of a point m; of a limit, too
-  PointVector stretching;  ///< derivatives of the weight over the weight, 1/m; 0 where reference lengths count
+  int segment;             ///< of the slave, numbered over all turns
+  double weight = 0;       ///< of a point or a limit, m
+  PointVector stretching;  ///< derivatives of the weight over the weight, 1/m; 0 with reference lengths
   Response normal;         ///< without shear
   Valued limit;            ///< of shear, Pa
   Valued moved;            ///< along the master since the last accepted state, m
@@ -32,13 +32,13 @@ struct Touch {
   PointMatrix rate_by;
 };
 
-/// An integral with its derivatives by the coordinates of all nodes of the pass.
+/// Integral with its derivatives by the coordinates of all nodes of the half pass.
 struct Sum {
   double value = 0;
   VectorXd by;
 };
 
-/// What is summed with the hat function of one of the slave's nodes.
+/// Integrals with the hat function of one of the slave's nodes.
 struct NodeSums {
   Sum length, limit, moved;  ///< m, N/m, m2
   VectorXd way;              ///< integral of the rates of motion: force of a unit of shear, m
@@ -73,7 +73,7 @@ class Pass {
     const bool present = of_.lengths.empty();
     const PresentOutline& slave = of_.where.slave;
     const double length = present ? slave.length(segment) : of_.lengths[within(segment)];
-    result.weight = sample.weight * length / 2;  // one of two passes
+    result.weight = sample.weight * length / 2;  // one of two half passes
     result.stretching.setZero();
     if (present) {
       const Vec2 t = slave.tangent(segment) / length;
@@ -102,8 +102,8 @@ class Pass {
     return static_cast<std::size_t>(((i % count) + count) % count);
   }
 
-  /// From where the same point of the slave was over the same segment of the master: in that segment's present length,
-  /// or across the direction from its first node.
+  /// Slip increment, from the former position of the same point of the slave over the same segment of the master: in
+  /// that segment's present length, or around its first node.
   Jet<6> motion_of(const ContactSample& sample, int segment) const {
     const auto& [slave, master] = *of_.past;
     const int j = sample.nearby.segment;
@@ -112,7 +112,8 @@ class Pass {
     const double along = from.dot(t), height = from.dot(Vec2(t.y(), -t.x()));
     const Projection& now = sample.at;
     if (!sample.nearby.at_node) return now.length * (now.xi - along / master.length(j));
-    const double side = now.gap.value * now.height.value < 0 ? -1 : 1;  // of the line, against that of the outline
+    const double side =
+        now.gap.value * now.height.value < 0 ? -1 : 1;  // side of the line relative to that of the outline
     return side * (sin(now.angle) * height - cos(now.angle) * along);
   }
 
@@ -138,14 +139,14 @@ class Pass {
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j) to(place(touch, i), place(touch, j)) += factor * part(i, j);
   }
-  /// Of a limit: derivatives of its place.
+  /// Derivatives of the position of a limit.
   VectorXd move(const Touch& touch) const {
     VectorXd by = VectorXd::Zero(size());
     for (const auto& [node, part] : touch.sample->moves) by.segment<2>(2 * number_.at(node)) += part;
     return by;
   }
 
-  /// The gradient of the integral of the normal energy, and its derivative.
+  /// Adds the gradient of the integral of the normal energy, and its derivative.
   void press() {
     ContactPatch& patch = result_.patch;
     const double untouched = respond(of_.law, {}, 0, 0, true).stored;
@@ -180,7 +181,7 @@ class Pass {
     std::map<int, NodeSums> nodes;
     const auto sums_of = [&](const Touch& touch, int end) -> NodeSums& {
       const VectorXd zero = VectorXd::Zero(size());
-      // Where a wall's turns follow each other its nodes are counted on, unless the other is a wall too.
+      // Nodes of a wall are numbered over all turns, unless the other is a wall too.
       const bool counts_on = !of_.where.slave.closed() && of_.where.master.closed();
       const int number = touch.segment + end, node = counts_on ? number : static_cast<int>(within(number));
       return nodes.try_emplace(node, NodeSums{{0, zero}, {0, zero}, {0, zero}, zero, MatrixXd::Zero(size(), size())})
@@ -212,7 +213,8 @@ class Pass {
     return nodes;
   }
 
-  /// Slip of slave nodes (docs/method.md 4): diluted by what newly touches, moved on, and cut at the limit.
+  /// Updates the slip of slave nodes (docs/method.md 4): reduced by new length in contact, advanced by the slip
+  /// increment, and cut at the limit.
   void shear() {
     const double kt = of_.law.kt;
     for (const auto& [node, sums] : sum_over_nodes()) {

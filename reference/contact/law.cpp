@@ -12,7 +12,7 @@ using Energy = Jet<4>;
 
 Energy squared(const Energy& x) { return x * x; }
 
-/// Zero without touch. p = kn x^2 / (2 w) for penetrations x < w, then kn (x - w / 2).
+/// Zero without contact. p = kn x^2 / (2 w) for penetrations x < w, then kn (x - w / 2).
 Energy penalty(const Energy& gap, double kn, double w) {
   const Energy x = -gap;
   if (x.value <= 0) return 0;
@@ -20,10 +20,10 @@ Energy penalty(const Energy& gap, double kn, double w) {
   return kn * (w * w / 6 + (x * x - w * x) / 2);
 }
 
-/// p = - kn g as far as `reach`, and nothing beyond.
+/// p = - kn g up to `reach`, and zero beyond.
 Energy cut_off(const Energy& gap, double kn, double reach) { return kn / 2 * (squared(gap) - reach * reach); }
 
-/// p = - kn g up to the strength, from there on straight to zero at `reach`.
+/// p = - kn g up to the strength, then linear to zero at `reach`.
 Energy adhesion(const Energy& gap, double kn, double strength, double reach) {
   const double critical = strength / kn, fall = reach - critical;
   if (gap.value > critical) return -strength / (2 * fall) * squared(reach - gap);
@@ -44,27 +44,27 @@ Energy normal_energy(const Law& law, const Energy& gap) {
   return 0;
 }
 
-/// Of surfaces that slide, or stick by friction.
+/// Energy of surfaces that slide, or stick by friction.
 Energy sliding_energy(const Law& law, const Energy& gap, const Energy& slip) {
   return normal_energy(law, gap) + law.kt / 2 * squared(slip);
 }
 
-/// A whole bond, and broken surfaces in the share of the damage.
+/// Energy of a bond: an intact share, and broken surfaces in the share of the damage.
 Energy bond_energy(const Law& law, const Energy& gap, const Energy& slip, const Energy& damage, const Energy& elastic) {
   const Energy whole = law.kn / 2 * squared(gap) + law.kt / 2 * squared(slip);
   return (1 - damage) * whole + damage * sliding_energy(law, gap, elastic);
 }
 
-// ---- how slip and damage follow from gap and motion
+// ---- slip and damage from gap and slip increment
 
 using Variable = Jet<2>;
 
 struct Internal {
   Variable slip = 0, damage = 1;  ///< of a bond
-  Variable elastic = 0;           ///< slip of what is broken
+  Variable elastic = 0;           ///< slip of broken surfaces
 };
 
-/// - d psi / d g. Its second derivatives are left out: nobody asks for them.
+/// - d psi / d g. Its second derivatives are omitted, because they are not needed.
 Variable pressure(const Law& law, const Variable& gap) {
   const Energy psi = normal_energy(law, Energy(gap.value, 0));
   return gap.chained(-psi.gradient[0], -psi.hessian(0, 0), 0);
@@ -95,14 +95,14 @@ Variable shear_limit(const Law& law, const Variable& gap) {
 
 namespace {
 
-/// Elastic slip that is left of this.
+/// Elastic slip after the return mapping.
 Variable slide(const Law& law, const Variable& gap, const Variable& trial) {
   if (!law.shears()) return 0;
   const Variable largest = shear_limit(law, gap) / law.kt;
   return trial > largest ? largest : trial < -largest ? -largest : trial;
 }
 
-/// Damage of the largest opening and slip so far.
+/// Damage by the largest opening and slip so far.
 Variable static_damage(const Law& law, const Variable& opening, const Variable& slip) {
   const Variable square = opening * opening + slip * slip / (law.ratio * law.ratio);
   const double critical = law.strength / law.kn;
@@ -111,7 +111,7 @@ Variable static_damage(const Law& law, const Variable& opening, const Variable& 
   return law.reach / (law.reach - critical) * (1 - critical / together);
 }
 
-/// Integral of rate (p - threshold) / (strength - threshold) dp over the part of the way from p_old to p on which p
+/// Integral of rate (p - threshold) / (strength - threshold) dp over the part of the path from p_old to p on which p
 /// grows above the threshold.
 Variable wear(const Law& law, double rate, double p_old, const Variable& p) {
   const double from = std::max(p_old, law.threshold);
@@ -121,8 +121,8 @@ Variable wear(const Law& law, double rate, double p_old, const Variable& p) {
   return rate / (2 * (law.strength - law.threshold)) * (after * after - before * before);
 }
 
-/// `elastic`: slip of what is broken. More damage turns the energy of the bond into that of friction, and must not take
-/// any.
+/// Bond with updated damage. `elastic`: slip of broken surfaces. Damage turns the energy of the bond into that of
+/// friction, and must not add energy.
 Internal hold(const Law& law, const ContactMemory& memory, const Variable& gap, const Variable& motion,
               const Variable& elastic) {
   const Variable slip = memory.slip + motion, opening = gap.value > 0 ? gap : Variable(0);
@@ -138,20 +138,20 @@ Internal hold(const Law& law, const ContactMemory& memory, const Variable& gap, 
   return {slip, damage.value < 1 ? damage : Variable(1), elastic};
 }
 
-// ---- books: what the mean traction of a step does along it, less what is then stored more
+// ---- energy balance: work of the mean traction of a step, less the increase of the stored energy
 
 double bond_loss(const Law& law, const ContactMemory& memory, double opening, double slip, double damage) {
   return (damage - memory.damage) / 2 * (law.kn * memory.opening * opening + law.kt * memory.slip * slip);
 }
 
-/// Of the share that is broken, of damage `before` and then `damage`: what its mean traction does along the motion,
-/// less what it stores. Exactly 0 where it sticks and the damage stays.
+/// Loss of the broken share, with damage `before` and then `damage`: work of its mean traction, less the stored energy.
+/// Exactly 0 if it sticks and the damage stays.
 double sliding_loss(const Law& law, double before, double damage, double old_slip, double slip, double motion) {
   const double slid = old_slip + motion - slip;
   return law.kt / 2 * ((before * old_slip + damage * slip) * slid - (damage - before) * old_slip * slip);
 }
 
-/// Residual adhesion is less than nothing, so that what damage makes of it is lost.
+/// The energy of residual adhesion is negative, so the energy that damage turns into it is lost.
 double adhesion_loss(const Law& law, const ContactMemory& memory, double opening, double damage) {
   const auto energy = [&](double gap) { return normal_energy(law, std::min(gap, law.reach)).value; };
   const double energies = energy(memory.opening) + energy(opening);

@@ -8,7 +8,7 @@
 namespace pliant::reference {
 namespace {
 
-/// c0 + c1 s + c2 s^2 along a stretch.
+/// c0 + c1 s + c2 s^2 along a piece.
 struct Parabola {
   double c0 = 0, c1 = 0, c2 = 0;
 };
@@ -27,12 +27,12 @@ void add_roots(const Parabola& of, std::vector<double>& cuts) {
   add_root(of.c0, sum, cuts);
 }
 
-/// Distances to the master along one stretch: to the lines of its segments linear, to its nodes the root of a parabola.
+/// Distances to the master along one piece: linear to the lines of its segments, the root of a parabola to its nodes.
 class Distances {
  public:
   Distances(const PresentOutline& master, const Stretch& stretch) : master_(master), stretch_(stretch) {}
 
-  /// Over the line of a segment, with its sign.
+  /// Signed height above the line of a segment.
   Parabola height(int segment) const {
     const Vec2 t = master_.tangent(segment), n(t.y(), -t.x());
     return {(stretch_.first - master_.node(segment)).dot(n), stretch_.along().dot(n), 0};
@@ -41,7 +41,7 @@ class Distances {
     const Vec2 t = master_.tangent(segment);
     return (point - master_.node(segment)).dot(Vec2(t.y(), -t.x()));
   }
-  /// From a node along a direction.
+  /// Coordinate from a node along a direction.
   Parabola along(int node, const Vec2& direction) const {
     return {(stretch_.first - master_.node(node)).dot(direction), stretch_.along().dot(direction), 0};
   }
@@ -61,7 +61,7 @@ double distance_to(const PresentOutline& master, int segment, const Vec2& point)
   return (point - a - share * way).norm();
 }
 
-/// Those that can be nearest anywhere along the stretch: distances change by no more than the way, and are nowhere
+/// Segments that can be nearest anywhere along the piece. Distances change by no more than the path, and are nowhere
 /// larger than at one of its ends.
 std::vector<int> possible(const PresentOutline& master, int first, int count, const Stretch& stretch) {
   const double half = stretch.along().norm() / 2;
@@ -85,10 +85,10 @@ Nearby nearest(const PresentOutline& master, const std::vector<int>& segments, c
   const auto along = [&](int i) { return (point - master.node(i)).dot(master.tangent(i)); };
   const auto beside = [&](int i) { return along(i) >= 0 && along(i) <= master.length(i); };
   if (beside(best)) return {best, false};
-  // Close to the normal of a node its distance and that to the other segment are one number.
+  // Close to the normal of a node its distance and that to the other segment are equal.
   const int node = along(best) < 0 ? best : best + 1, other = along(best) < 0 ? best - 1 : best + 1;
   if (beside(other)) return {other, false};
-  return {master.closed() && node == master.count() ? 0 : node, true};  // one number for each
+  return {master.closed() && node == master.count() ? 0 : node, true};  // unique numbers
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ bool is_outside(const PresentOutline& master, int node, const Vec2& point) {
 
 namespace {
 
-/// Outside everywhere by more than the reach.
+/// Whether the whole piece is outside by more than the reach.
 bool is_apart(const PresentOutline& master, const std::vector<int>& segments, const Stretch& stretch, double reach) {
   const Vec2 middle = stretch.at(0.5);
   const Nearby at = nearest(master, segments, middle);
@@ -111,7 +111,7 @@ bool is_apart(const PresentOutline& master, const std::vector<int>& segments, co
   return outside && distance_to(master, at.segment, middle) > reach + stretch.along().norm() / 2;
 }
 
-/// All places where the nearest may change: crossings of all distances, and ends of what a segment has.
+/// All points where the nearest part may change: crossings of all distances, and ends of each segment's strip.
 std::vector<double> all_cuts(const PresentOutline& master, const std::vector<int>& segments, const Stretch& stretch) {
   const Distances of(master, stretch);
   std::vector<double> cuts{0, 1};
@@ -142,7 +142,7 @@ std::vector<double> all_cuts(const PresentOutline& master, const std::vector<int
   return cuts;
 }
 
-/// The cuts of a part, where the distance passes a level.
+/// Adds the cuts of a part, where the distance passes a level.
 void add_levels(const PresentOutline& master, const Stretch& stretch, const Part& part, std::span<const double> levels,
                 std::vector<double>& cuts) {
   const Distances of(master, stretch);
@@ -152,7 +152,7 @@ void add_levels(const PresentOutline& master, const Stretch& stretch, const Part
     if (!part.nearby.at_node) {
       add_root(height.c0 - level, height.c1, cuts);
     } else if (level == 0) {
-      // A node between segments of one line may be passed right through.
+      // The piece may pass right through a node between collinear segments.
       const Parabola squared = of.squared(part.nearby.segment);
       add_root(squared.c1, 2 * squared.c2, cuts);
     } else if (outside == (level > 0)) {

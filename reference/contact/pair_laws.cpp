@@ -18,7 +18,7 @@ double segment_length(const ContactOutline& outline, int i) {
   return (end - outline.reference[i]).norm();
 }
 
-/// What makes the automatic stiffness: bodies that no rule tells apart.
+/// Parameters of the automatic stiffness, of bodies that no rule distinguishes.
 struct Stiffness {
   double young =
       std::numeric_limits<double>::infinity();  ///< of the softest compliant body, Pa; infinite: all are rigid
@@ -41,7 +41,7 @@ ContactGroup group_of(const Scene& scene, const ContactOutline& body) {
   return contact_group(scene, body.material, body.name, body.wall);
 }
 
-/// The largest automatic stiffness of pairs that have a rule, 0 when none has a compliant body.
+/// Largest automatic stiffness of pairs that have a rule, 0 if none has a compliant body.
 double largest_stiffness(const Scene& scene, const std::vector<ContactOutline>& outlines) {
   std::map<ContactGroup, Stiffness> groups;
   for (const ContactOutline& body : outlines) {
@@ -133,7 +133,7 @@ PairLaws::PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlin
   const double largest = largest_stiffness(scene, outlines);
   for (int a = 0; a < bodies_; ++a)
     for (int b = 0; b < bodies_; ++b) {
-      // Of its own kind a body meets only its periodic images, and a wall has none.
+      // A body meets itself only as a periodic image, and a wall has none.
       if (a == b && (!scene.period || outlines[a].wall)) continue;
       const ContactRule* rule = match_rule(scene, group_of(scene, outlines[a]), group_of(scene, outlines[b])).rule;
       if (rule == nullptr) continue;

@@ -16,7 +16,7 @@ double height_over(const PresentOutline& master, int segment, const Vec2& point)
   return (point - master.node(segment)).dot(Vec2(t.y(), -t.x()));
 }
 
-/// The segment whose points come nearest, wedges or not; of two that meet at the nearest point that which is seen more
+/// Segment with the nearest point, whatever its Voronoi region; of two that meet at the nearest point the one seen more
 /// steeply.
 Nearest truly_nearest(const PresentOutline& master, int first, int count, const Vec2& point) {
   Nearest nearest{first, 0};
@@ -53,8 +53,8 @@ std::optional<Nearest> nearest_segment(const PresentOutline& master, int first, 
     const double height = height_over(master, i, point);
     if (!nearest || std::abs(height) < std::abs(nearest->height)) nearest = Nearest{i, height};
   }
-  // Where a face ends before the bisector beside it does, as in a fold, wedges mislead: steeper than 8 degrees beyond
-  // an end they do not count.
+  // Where a face ends before the bisector beside it does, as in a fold, Voronoi regions mislead: they do not count for
+  // points steeper than 8 degrees beyond an end.
   if (nearest && nearest->height <= outward && std::abs(sine_beyond(master, nearest->segment, point)) > 0.14)
     return truly_nearest(master, first, count, point);
   return nearest;

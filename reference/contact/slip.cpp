@@ -6,14 +6,14 @@
 namespace pliant::reference {
 namespace {
 
-/// Sums up the way from one segment to another, forward. Everything is of the present shape.
+/// Sums the path length from one segment to another, forward, in the present shape.
 class Way {
  public:
   Way(const PresentOutline& master, int segment) : master_(master), segment_(segment) {}
 
   void add(const Jet<6>& part) { motion_.by_element += part; }
 
-  /// `share` of a segment.
+  /// Adds a share of a segment.
   void add_segment(int i, double share) {
     const Vec2 t = master_.tangent(i);
     add(share * master_.length(i));
@@ -21,8 +21,8 @@ class Way {
     depends(i + 1, share * t);
   }
 
-  /// A corner by a turn of the tangent: around it on its open side, at the distance of the gap; on the other side the
-  /// ends of both faces are cut off.
+  /// Adds a corner by the rotation of the tangent: on its open side the path goes around it at the distance of the gap;
+  /// on the other side the ends of both faces are cut off.
   void add_corner(int i, const Projection& now) {
     const JetVector before = JetVector::point(master_.node(i - 1), 0), corner = JetVector::point(master_.node(i), 1),
                     after = JetVector::point(master_.node(i + 1), 2);
@@ -34,7 +34,7 @@ class Way {
     for (int k = 0; k < 3; ++k) depends(i - 1 + k, distance.value * turn.gradient.segment<2>(2 * k));
   }
 
-  /// Back the way that was summed up.
+  /// Reverses the direction of the path.
   void reverse() {
     motion_.by_element = -motion_.by_element;
     for (auto& [node, derivative] : motion_.others) derivative = -derivative;
@@ -57,15 +57,15 @@ class Way {
   Motion motion_;
 };
 
-/// The old segment, counted so that the way to the present one is the short one.
+/// The old segment, numbered so that the path to the present one is the short one.
 int old_segment(const PresentOutline& master, int remembered, int segment) {
   if (!master.closed()) return remembered;
   const int turns = static_cast<int>(std::lround(static_cast<double>(segment - remembered) / master.count()));
   return remembered + turns * master.count();
 }
 
-/// Between the flanks of a fold: the displacement, the old gap taken as the present one, along the mean of the tangents
-/// at its ends. Derivatives by the old segment's nodes are left out: a Newton step over a fold converges slower.
+/// Slip between the flanks of a fold: the displacement at the present gap, along the mean of the tangents at its ends.
+/// Derivatives by the old segment's nodes are omitted: a Newton step over a fold converges more slowly.
 Jet<6> across_fold(const PresentOutline& master, const ContactMemory& memory, int old, int segment,
                    const Projection& now) {
   const JetVector a = JetVector::point(master.node(segment), 1), b = JetVector::point(master.node(segment + 1), 2);

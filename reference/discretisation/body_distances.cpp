@@ -9,10 +9,11 @@ namespace pliant::reference {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// What leaves the outline by less counts as inside: a path around the corner there is longer by the square of that.
+/// Points that leave the outline by less count as inside: the path around the corner there is longer by its square.
 constexpr double allowance = 1e-9;
 
-/// Shares of the way at which a segment may pass the outline: crossings with an edge, and its begin if that is near.
+/// Adds the shares of a segment at which it may pass the outline: crossings with an edge, and its start if that is
+/// near.
 void add_passages(std::vector<double>& shares, const Vec2& from, const Vec2& to, const Vec2& a, const Vec2& b) {
   const Vec2 way = to - from, edge = b - a;
   if (square_distance_to_edge(from, to, a) < allowance * allowance)

@@ -13,11 +13,11 @@
 namespace pliant::reference {
 namespace {
 
-using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;  ///< the two components of vectors, which never mix
+using Columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;  ///< both components of vectors, which are never coupled
 
 constexpr double consistent_to = 1e-11;
 
-/// Right side of (2) [nodes]: s_k is half the vector sum of the two outward segment vectors at outline node k.
+/// Right-hand side of (2) [nodes]: s_k is half the vector sum of the two outward segment vectors at outline node k.
 Columns outline_integrals(const Points& nodes, const std::vector<Row>& outline) {
   Columns integral = Columns::Zero(Eigen::Index(nodes.size()), 2);
   const std::size_t count = outline.size();
@@ -30,8 +30,8 @@ Columns outline_integrals(const Points& nodes, const std::vector<Row>& outline) 
   return integral;
 }
 
-/// All conditions as a matrix over the list of all gradients, and their right sides. Three rows a point for (1), with
-/// places relative to the point's first node, then a row a node for (2).
+/// All conditions as a matrix over the list of all gradients, with right-hand sides. There are three rows per point for
+/// (1), with positions relative to the point's first node, then one row per node for (2).
 struct Conditions {
   Eigen::SparseMatrix<double> matrix;
   Columns target;
@@ -68,7 +68,7 @@ Columns listed(const std::vector<Point>& points) {
   return result;
 }
 
-/// Three nodes far apart and off one line.
+/// Three nodes that are far apart and not collinear.
 std::array<std::size_t, 3> spanning_nodes(const Points& nodes) {
   const auto farthest = [&](auto&& distance) {
     std::size_t best = 0;
@@ -82,8 +82,8 @@ std::array<std::size_t, 3> spanning_nodes(const Points& nodes) {
   return {0, second, farthest([&](const Vec2& x) { return std::abs(pliant::cross(line, x - a)); })};
 }
 
-/// Conditions (2) of all nodes, weighted by any linear function of place, follow from (1): of three nodes, which fix
-/// a linear function, they are redundant and left out here.
+/// Rows without redundant conditions. Conditions (2) of all nodes, weighted by any linear function of position, follow
+/// from (1). They are redundant for three nodes, which fix a linear function, and left out there.
 std::vector<Eigen::Index> independent_rows(std::size_t points, const Points& nodes) {
   const std::array<std::size_t, 3> redundant = spanning_nodes(nodes);
   std::vector<Eigen::Index> rows;
@@ -130,7 +130,7 @@ void make_consistent(std::vector<Point>& points, const Points& nodes, const std:
   Columns right = Columns::Zero(matrix.rows(), 2);
   for (std::size_t r = 0; r < rows.size(); ++r) right.row(all.matrix.cols() + Eigen::Index(r)) = missing.row(rows[r]);
   Eigen::UmfPackLU<Eigen::SparseMatrix<double>> solver;
-  // A symmetric order of elimination fills far less: 10,000 nodes in a quarter of the time.
+  // A symmetric order of elimination has far less fill-in: 10,000 nodes in a quarter of the time.
   solver.umfpackControl()[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   solver.compute(matrix);
   Columns change = Columns::Zero(right.rows(), 2);

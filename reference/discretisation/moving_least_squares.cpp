@@ -13,9 +13,9 @@
 namespace pliant::reference {
 namespace {
 
-/// A node this close to its radius has no weight but rounding's: whether it counts must not hang on the last bit.
+/// A node this close to its radius has only a weight of rounding: whether it counts must not depend on the last bit.
 constexpr double reach = 1 - 1e-8;
-/// Smaller shares of the constant that the linear functions leave over come from nodes on one line.
+/// Least share of the constant that the linear functions leave: smaller shares come from collinear nodes.
 constexpr double least_remainder = 1e-8;
 
 template <class Scalar>
@@ -28,7 +28,7 @@ Scalar dot(const Column<Scalar>& a, const Column<Scalar>& b) {
   return sum;
 }
 
-/// Takes from `column` its part along `direction`.
+/// Removes the part of `column` along `direction`.
 template <class Scalar>
 void remove_part(Column<Scalar>& column, const Column<Scalar>& direction) {
   const Scalar share = dot(column, direction) / dot(direction, direction);
@@ -52,11 +52,11 @@ Scalar spline(const Scalar& square) {
   return 4.0 / 3 * rest * rest * rest;  // 4/3 - 4 q + 4 q^2 - 4/3 q^3 without its cancellation at q = 1
 }
 
-/// What one node's shape function needs of it at a place.
+/// Data of one node for its shape function at a position.
 struct Support {
   Vec2 node;
   double radius;
-  Leg leg;  ///< of the way to the node
+  Leg leg;  ///< of the path to the node
 };
 
 /// Square of the distance through the body over the radius.
@@ -72,8 +72,8 @@ Scalar square_distance(const Support& support, const Scalar& x, const Scalar& y)
   return square / (support.radius * support.radius);
 }
 
-/// Shape functions at (x, y) of nodes with their radii: QR of the weighted basis, the constant its last column. What
-/// the columns of the linear functions leave of it gives the value of the fit at (x, y).
+/// Shape functions at (x, y) of nodes with their radii: QR of the weighted basis with the constant as its last column.
+/// The remainder of that column after the linear functions gives the value of the fit at (x, y).
 template <class Scalar>
 Column<Scalar> shape_functions(const std::vector<Support>& supports, const Scalar& x, const Scalar& y) {
   using std::sqrt;
@@ -97,8 +97,8 @@ Column<Scalar> shape_functions(const std::vector<Support>& supports, const Scala
   return rest;
 }
 
-/// Distance of each node to its support-th nearest other one. A path is no shorter than a straight line: nodes further
-/// away than that of the moment are not asked.
+/// Distance of each node to its support-th nearest other one. A path is no shorter than a straight line, so nodes
+/// further away than the present radius are not tested.
 std::vector<double> support_radii(const Points& nodes, const BodyDistances& distances, int support) {
   std::vector<double> radius;
   std::vector<std::size_t> order(nodes.size());
@@ -139,7 +139,7 @@ std::vector<int> MovingLeastSquares::neighbours(const Vec2& x) const {
   return found;
 }
 
-/// The shape functions of some nodes at a place; throws where they do not exist.
+/// Shape functions of some nodes at a position; throws where they do not exist.
 template <class Scalar>
 std::vector<Scalar> MovingLeastSquares::functions_at(const std::vector<int>& chosen, const Scalar& x,
                                                      const Scalar& y) const {

@@ -9,7 +9,7 @@
 namespace pliant::reference {
 namespace {
 
-/// Three places, one near or opposite each corner: coordinate 1 - 2 a there, a at the other two.
+/// Adds three points, one near or opposite each corner: coordinate 1 - 2 a there, a at the other two.
 void add_orbit(std::vector<QuadraturePoint>& rule, double a, double share) {
   for (int corner = 0; corner < 3; ++corner) {
     Eigen::Vector3d place = Eigen::Vector3d::Constant(a);

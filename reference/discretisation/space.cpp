@@ -32,7 +32,7 @@ double mean_node_distance(const FieldMesh& mesh) {
   return std::sqrt(sum / double(mesh.nodes.size()));
 }
 
-/// Points at the places of a rule in every triangle, gradients by moving least squares.
+/// Points of a rule in every triangle, with gradients by moving least squares.
 std::vector<Point> gauss_points(const FieldMesh& mesh, const MovingLeastSquares& mls, int count) {
   std::vector<Point> points;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -44,7 +44,7 @@ std::vector<Point> gauss_points(const FieldMesh& mesh, const MovingLeastSquares&
   return points;
 }
 
-/// Collects what several triangles add to one point. [node] to the sum of weight x gradient.
+/// Adds the contribution of a triangle to one point: [node] to the sum of weight x gradient.
 void add_linear_triangle(std::map<int, Vec2>& sum, const FieldMesh& mesh, const Triangle& t, double weight) {
   for (int corner = 0; corner < 3; ++corner) {
     const Vec2 opposite = mesh.nodes[t[(corner + 2) % 3]] - mesh.nodes[t[(corner + 1) % 3]];
@@ -53,7 +53,7 @@ void add_linear_triangle(std::map<int, Vec2>& sum, const FieldMesh& mesh, const 
   }
 }
 
-/// A point that stands for a share of the area of some triangles: the mean of their gradients, weighted by area.
+/// Point that represents a share of the area of some triangles, with the mean of their gradients, weighted by area.
 Point mean_point(const FieldMesh& mesh, const std::vector<int>& triangles, double share) {
   Point point;
   std::map<int, Vec2> sum;
@@ -96,7 +96,7 @@ Row linear_row(const Triangle& t, const Eigen::Vector3d& barycentric) {
   return row;
 }
 
-/// Consistent and lumped mass by 6 points a triangle, from the shape functions of a triangle at a place in it.
+/// Adds consistent and lumped mass by 6 points per triangle, from the shape functions of a triangle at a point in it.
 void add_masses(Space& space, const std::function<Row(const Triangle&, const Eigen::Vector3d&)>& functions) {
   std::vector<Eigen::Triplet<double>> entries;
   std::vector<double> weights;
@@ -121,7 +121,7 @@ void add_masses(Space& space, const std::function<Row(const Triangle&, const Eig
                     worst, space.lumped[worst]));
 }
 
-/// The mesh recipes: values at nodes are nodal values.
+/// Discretisation by mesh functions, whose values at nodes are nodal values.
 void fill_with_triangles(Space& space, Recipe recipe) {
   space.points = recipe == Recipe::t3 ? triangle_points(space.mesh) : edge_points(space.mesh);
   for (int i = 0; i < int(space.mesh.nodes.size()); ++i) space.nodes.push_back({{i}, {1.0}});
@@ -144,7 +144,7 @@ Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings) 
   if (settings.recipe == Recipe::rpim)
     throw InputError(
         "the reference solver has no recipe \"rpim\": it has \"mls\", \"mls-gauss\", \"t3\" and \"es-t3\"");
-  const double unit = mean_node_distance(mesh);  // all lengths over it, until the last lines
+  const double unit = mean_node_distance(mesh);  // scale of all lengths, until the last lines
   Space space;
   space.mesh = mesh;
   for (Vec2& node : space.mesh.nodes) node /= unit;

@@ -13,7 +13,7 @@ Deformation<double> entries_at(const Eigen::VectorXd& F, Eigen::Index point) {
   return {F[4 * point], F[4 * point + 1], F[4 * point + 2], F[4 * point + 3]};
 }
 
-/// F with its entries as variables 0 to 3; of five variables zz is variable 4.
+/// F with its entries as variables 0 to 3; with five variables zz is variable 4.
 template <int N>
 Deformation<Jet<N>> as_variables(const Deformation<double>& F) {
   Deformation<Jet<N>> result{Jet<N>(F.xx, 0), Jet<N>(F.xy, 1), Jet<N>(F.yx, 2), Jet<N>(F.yy, 3)};
@@ -21,7 +21,7 @@ Deformation<Jet<N>> as_variables(const Deformation<double>& F) {
   return result;
 }
 
-/// Zeros where bodies that deform at some points have a stiffness: [n x n] of gradients [4 points x n].
+/// Zeros at the possible entries of a stiffness matrix: [n x n] from gradients [4 points x n].
 Eigen::SparseMatrix<double> pattern_of(const Eigen::SparseMatrix<double>& gradient) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int row = 0; row < gradient.rows(); ++row)
@@ -34,7 +34,7 @@ Eigen::SparseMatrix<double> pattern_of(const Eigen::SparseMatrix<double>& gradie
   return result;
 }
 
-/// Among a matrix's values.
+/// Index of an entry in a matrix's values.
 int place_of(const Eigen::SparseMatrix<double>& matrix, int row, int column) {
   const int *first = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column],
             *last = matrix.innerIndexPtr() + matrix.outerIndexPtr()[column + 1];
@@ -127,7 +127,7 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, d
     const double J = jacobian(entries_at(F, g));
     if (g == 0 || J < state.least_jacobian || std::isnan(J)) state.least_jacobian = J, state.least_point = int(g);
   }
-  if (!(state.least_jacobian > 0)) return state;  // no law has an energy there, but `linear_elastic`
+  if (!(state.least_jacobian > 0)) return state;  // only `linear_elastic` has an energy there
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
     state.energy += weight_[g] * energy.value;
@@ -165,7 +165,7 @@ std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) cons
   const Eigen::VectorXd all = gradient_ * q;
   std::vector<PointStress> result;
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
-    // Differentiated by the F that the law sees, which for small strains is also that of the stress.
+    // Derivative by the F of the law, which for small strains is also that of the stress.
     const Deformation<double> F = measured(entries_at(all, g));
     Jet<5> energy = strain_energy(material_, as_variables<5>(F));
     if (has_branch()) {

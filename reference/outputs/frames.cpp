@@ -26,7 +26,7 @@ void append(const Points& points, std::vector<float>& values) {
 
 using AtPoint = double (*)(const PointStress&);
 
-/// Fields of the cells of compliant bodies, and their value in rigid ones.
+/// Fields in the cells of compliant bodies, and their value in rigid ones.
 const std::map<std::string, std::pair<AtPoint, double>>& cell_fields() {
   static const std::map<std::string, std::pair<AtPoint, double>> all{
       {"von_mises", {von_mises, 0}},
@@ -55,7 +55,7 @@ const std::map<std::string, NodeField>& node_fields() {
   return all;
 }
 
-/// [triangles] mean over the points that stand for each.
+/// [triangles] mean over the points that represent each.
 std::vector<double> cell_values(const View& view, const Body& body, const FieldMesh& mesh, AtPoint at, double rigid) {
   std::vector<double> sum(mesh.triangles.size(), body.compliant() ? 0.0 : rigid), whole(mesh.triangles.size(), 1);
   if (!body.compliant()) return sum;
@@ -93,7 +93,7 @@ float kind_of(const Body& body) { return body.placed.wall ? 2 : body.compliant()
 
 }  // namespace
 
-/// Grows body by body.
+/// Grid to which bodies are added one by one.
 struct FrameOutput::NewGrid {
   Grid grid;
   GridTopology topology{{}, {{}, {}}};
@@ -183,7 +183,7 @@ void FrameOutput::record_due(const View& view) {
     }
   }
   append(bodies_.outline_positions(view.positions()), outlines.positions);
-  for (std::size_t f = 0; f < outline_fields_.size(); ++f) {  // contact_pressure, if anything
+  for (std::size_t f = 0; f < outline_fields_.size(); ++f) {  // contact_pressure, if any
     const std::vector<double> pressures = contact_pressures(view);
     outlines.values.emplace_back(pressures.begin(), pressures.end());
   }

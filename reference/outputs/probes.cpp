@@ -14,7 +14,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 using Values = std::vector<double>;
-/// The rows that a reduction goes over: one a body, or a point; with weights for the mean.
+/// Rows of a reduction: one per body or point, with weights for the mean.
 struct Rows {
   std::vector<Values> values;
   std::vector<double> weights;
@@ -39,7 +39,7 @@ Values reduced(const Rows& rows, Reduction how, std::size_t columns) {
   return result;
 }
 
-/// A vector of each body's nodes, or of the body as a whole.
+/// Vector of each body's nodes, or of the body as a whole.
 template <class AtNodes, class OfBody>
 Rows motion(const View& view, const Probe& probe, const std::vector<const Body*>& bodies, AtNodes&& at_nodes,
             OfBody&& of_body, const Vector* angles) {
@@ -176,7 +176,7 @@ Rows diameter(const View& view, const Probe&, const std::vector<const Body*>& bo
   return rows;
 }
 
-/// A value at each integration point. Means of J are over reference area, of stresses over the present one.
+/// Value at each integration point. Means of J are over reference area, those of stresses over current area.
 Measurement at_points(double (*value)(const PointStress&), bool present) {
   return [=](const View& view, const Probe&, const std::vector<const Body*>& bodies) {
     Rows rows;

@@ -9,7 +9,7 @@ namespace {
 
 Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
 
-/// Nodes of a rigid body at an angle about its centre.
+/// Nodes of a rigid body, rotated about its centre.
 Points turned(const Body& body, const Vec2& centre, double angle) {
   Points points;
   for (const Vec2& p : body.outline) points.push_back(centre + Eigen::Rotation2Dd(angle) * p);
