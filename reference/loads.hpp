@@ -68,8 +68,8 @@ class Loads {
   /// Rates of mass-proportional damping, [dofs], 1/s.
   const Vector& mass_damping() const { return mass_damping_; }
   Dashpots dashpots(const Instant& at) const;
-  /// Work of the targets on dashpots that act at t0, by the mean of the forces at outline velocities v0 and v1 [2
-  /// outline nodes], J/m.
+  /// Work of the targets on dashpots that act at t0, by the mean of the forces at outline velocities v0 and v1
+  /// [2 outline nodes], J/m.
   double dashpot_work(const Vector& v0, double t0, const Vector& v1, const Instant& t1) const;
 
   bool imposed(int dof, double time) const;

@@ -19,8 +19,8 @@ void for_each_rigid_dof(const Model& model, Update&& update) {
   for (int r = 0; r < static_cast<int>(model.rigid_bodies.size()); ++r) for_each_dof_of(model, r, update);
 }
 
-/// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and rigid(i,
-/// dof) for each rigid one. Threads share the bodies; updates may touch index i only.
+/// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and
+/// rigid(i, dof) for each rigid one. Threads share the bodies; updates may touch index i only.
 template <class CompliantUpdate, class RigidUpdate>
 void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
   const auto of_region = [&](int r) {

@@ -87,8 +87,8 @@ class ContactLaws {
 };
 
 /// Damping ratio z of a linear spring and dashpot that rebound with the restitution e in (0, 1]. With `pull` the force
-/// ends at g = 0: e = exp(-pi z / sqrt(1 - z^2)). Without, it ends when it would pull: e = exp(-2 z acos(z) / sqrt(1 -
-/// z^2)), for z > 1 with acosh and the root of z^2 - 1.
+/// ends at g = 0: e = exp(-pi z / sqrt(1 - z^2)). Without, it ends when it would pull:
+/// e = exp(-2 z acos(z) / sqrt(1 - z^2)), for z > 1 with acosh and the root of z^2 - 1.
 double damping_ratio(double restitution, bool pull);
 
 }  // namespace pliant

@@ -15,8 +15,8 @@ namespace pliant {
 
 class MasterWindow;
 
-/// Range of consecutive outline nodes or segments; a segment has the number of its first node. Numbers beyond [0,
-/// count) of the outline continue cyclically; on a wall they lie in neighbouring periods.
+/// Range of consecutive outline nodes or segments; a segment has the number of its first node. Numbers beyond
+/// [0, count) of the outline continue cyclically; on a wall they are in neighbouring periods.
 struct Arc {
   int begin = 0, count = 0;
   int end() const { return begin + count; }

@@ -10,7 +10,7 @@ namespace pliant {
 
 /// Kind of law between any two bodies, whether they are close or not.
 struct PairLaws {
-  std::vector<std::int32_t> groups;  ///< index of each body's group
+  std::vector<std::int32_t> groups;  ///< [bodies] index of each body's group
   std::vector<std::int32_t> kinds;   ///< [groups x groups] as ContactLaws::kind
   std::int32_t count = 0;            ///< number of groups
 

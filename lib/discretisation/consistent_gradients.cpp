@@ -47,8 +47,8 @@ std::array<int, 3> pinned_nodes(const Points& nodes) {
   return {a, b, c};
 }
 
-// Elimination of d_g = P_g lambda from the KKT system leaves, for each of the components, (sum_g w_g P_g) lambda =
-// residual of condition (2): symmetric, and positive definite apart from its kernel.
+// Elimination of d_g = P_g lambda from the KKT system leaves, for each of the components,
+// (sum_g w_g P_g) lambda = residual of condition (2): symmetric, and positive definite apart from its kernel.
 class MultiplierSystem {
  public:
   MultiplierSystem(const IntegrationTable& table, const FieldMesh& mesh) : pinned_(pinned_nodes(mesh.nodes)) {

@@ -13,8 +13,8 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 double add_rim_mass(int outline_count, double times, std::vector<double>& mass);
 
 /// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points per triangle: exact for
-/// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in M -
-/// D.
+/// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in
+/// M - D.
 ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped);
 
 /// Bound on the largest eigenvalue of C, 2 - min eig(D^-1 M): computed for up to 1000 nodes, else 2, as M is positive

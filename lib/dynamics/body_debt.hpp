@@ -18,13 +18,13 @@ constexpr double most_settled = 1e-5 * settling_period;
 /// body that is nearly at rest.
 constexpr double most_owed = 1;
 
-/// Energy correction of undamped compliant bodies (docs/method.md 6). Equal steps of velocity Verlet keep K + U - dt^2
-/// sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, with dx and dF of a step, up to third powers of the step; if
-/// forces are linear, up to rounding. Contacts correct the energy that they gain or lose (contact/energy_debt.hpp), and
-/// so keep energy that stresses would have returned to them: vibrating bodies gain energy. They also do when the step
-/// size changes. The energy error of a body, J/m, is its energy beyond its start and the work of contacts and gravity.
-/// The correction scales the velocities relative to the rigid motion slightly; momentum and angular momentum do not
-/// change.
+/// Energy correction of undamped compliant bodies (docs/method.md 6). Equal steps of velocity Verlet keep
+/// K + U - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, with dx and dF of a step, up to third powers of
+/// the step; if forces are linear, up to rounding. Contacts correct the energy that they gain or lose
+/// (contact/energy_debt.hpp), and so keep energy that stresses would have returned to them: vibrating bodies gain
+/// energy. They also do when the step size changes. The energy error of a body, J/m, is its energy beyond its start and
+/// the work of contacts and gravity. The correction scales the velocities relative to the rigid motion slightly;
+/// momentum and angular momentum do not change.
 class BodyDebts {
  public:
   explicit BodyDebts(const Model& model);

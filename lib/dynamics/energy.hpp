@@ -21,7 +21,7 @@ double kinetic_energy(const Model& model, const Dofs& velocity);
 /// Sums and checks of one state: energies, and residuals of the balances of momentum.
 struct EnergyBalance {
   Energies energy;
-  /// sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
+  /// |sum of contact forces|, of their moments, and of each body's internal forces, over the sums of magnitudes.
   double momentum_error = 0;
   int contacts = 0;
 };

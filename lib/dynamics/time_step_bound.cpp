@@ -225,9 +225,9 @@ double TimeStepBound::damping(std::size_t b) const {
 }
 
 /// Dashpots use the velocity v + dt a that the first acceleration a of the step predicts for its end. A mode x of rate
-/// c then follows x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from w^2 dt^2 + 4 c dt
-/// = 4 on: dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w. The forms of stiffness, damping and mass are symmetric, so the
-/// largest w^2 and the largest c bound all modes.
+/// c then follows x+ - 2 x + x- + w^2 dt^2 x + c dt (3 (x - x-) - (x- - x--)) / 2 = 0 and grows from
+/// w^2 dt^2 + 4 c dt = 4 on: dt = 2/w (sqrt(1 + 4 z^2) - 2 z), c = 2 z w. The forms of stiffness, damping and mass are
+/// symmetric, so the largest w^2 and the largest c bound all modes.
 double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const {
   const double w2 = total(b, contact_factor), c = damping(b);
   const double square = limit_square_[b], rate = 2 * c + std::sqrt(4 * c * c + square * w2);

@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6): w^2
-/// = 1.05 w_b^2 + w_c^2 plus that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
+/// Stability bound of velocity Verlet, dt <= safety x 2/w (sqrt(1 + 4 z^2) - 2 z), body by body (docs/method.md 6):
+/// w^2 = 1.05 w_b^2 + w_c^2 plus that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
   TimeStepBound(const Model& model, const ContactLaws& laws);

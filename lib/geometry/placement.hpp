@@ -51,7 +51,7 @@ void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& ou
 /// is filled by its grain, rotated and translated so that it becomes as large as its cell allows. `grains` have shapes
 /// and sizes relative to each other at first, and a full placement then; these sizes are kept as far as their cells
 /// have room. A shape with descriptors is fitted to each of its cells: the returned shapes. Throws InputError with the
-/// largest possible solid fraction if the one asked for does not fit.
+/// largest possible solid fraction if the requested one does not fit.
 std::vector<ShapeSpec> pack_voronoi(std::vector<Placement>& grains, const std::vector<ShapeSpec>& shapes,
                                     const Strip& region, double solid_fraction, std::uint64_t seed);
 

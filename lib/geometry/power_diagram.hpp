@@ -7,7 +7,7 @@
 namespace pliant {
 
 /// Cells of a power (weighted Voronoi) diagram of a strip that is periodic in x: the points x of the region with least
-/// x - generator|^2 - weight. [cells], convex polygons, counter-clockwise, around their generator whatever the period;
+/// |x - generator|^2 - weight. [cells], convex polygons, counter-clockwise, around their generator whatever the period;
 /// empty for a generator without a cell. Weights are in m2; equal ones give the Voronoi diagram.
 std::vector<Points> power_cells(const Points& generators, const std::vector<double>& weights, const Strip& region);
 

@@ -63,8 +63,8 @@ MeshTemplate::MeshTemplate(MeshTemplate&&) noexcept = default;
 
 namespace {
 
-/// Distortion of a mesh relative to its template, by triangles with the linear map F between them: |F|^2 / (2 J) + (J +
-/// 1/J) / 2. It is least if angles and areas are kept, and infinite if a triangle loses its area.
+/// Distortion of a mesh relative to its template, by triangles with the linear map F between them:
+/// |F|^2 / (2 J) + (J + 1/J) / 2. It is least if angles and areas are kept, and infinite if a triangle loses its area.
 class Distortion {
  public:
   /// `scale`: lengths of the mesh over the template's.

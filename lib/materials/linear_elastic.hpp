@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// Linear elasticity in plane strain, for checks at small strains only: psi = mu e:e + lambda/2 (tr e)^2, P = 2 mu e +
-/// lambda tr(e) I with the strain e = sym(F - I). Not objective: a rotation by r counts as a strain of r^2/2, so bodies
-/// must start without rotation (F = I) and hardly rotate.
+/// Linear elasticity in plane strain, for checks at small strains only: psi = mu e:e + lambda/2 (tr e)^2,
+/// P = 2 mu e + lambda tr(e) I with the strain e = sym(F - I). Not objective: a rotation by r counts as a strain of
+/// r^2/2, so bodies must start without rotation (F = I) and hardly rotate.
 template <class T>
 struct LinearElastic : LameLaw<LinearElastic, T> {
   using LameConstants<T>::mu, LameConstants<T>::lambda;

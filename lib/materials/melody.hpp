@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Hyperelastic law of the code MELODY (docs/method.md 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3), K = lambda + 2
-/// mu/3; P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
+/// Hyperelastic law of the code MELODY (docs/method.md 3): psi = K/2 (J - 1)^2 + mu/2 (J^(-2/3) I1 - 3),
+/// K = lambda + 2 mu/3; P = mu J^(-2/3) F + (K (J - 1) - mu/3 J^(-5/3) I1) cof F.
 template <class T>
 struct Melody : LameLaw<Melody, T> {
   using LameConstants<T>::mu, LameConstants<T>::lambda;

@@ -12,9 +12,9 @@ namespace pliant {
 ///
 ///     psi = m/2 (tr(C G) - 3 - ln det(C G)),   S = m H,   H = G - C^-1,   dG/dt = -H / t,
 ///
-/// so H' = -H / t - (C^-1)' : a step is exact if C^-1 is linear in time, and else of second order. It dissipates m / (2
-/// t) (tr A + tr A^-1 - 6) >= 0, A = C G = 1 + C H. Out of the plane C and G stay 1. In small strains the branch is a
-/// spring of shear modulus m and a dashpot of viscosity m t in series.
+/// so H' = -H / t - (C^-1)' : a step is exact if C^-1 is linear in time, and else of second order. It dissipates
+/// m / (2 t) (tr A + tr A^-1 - 6) >= 0, A = C G = 1 + C H. Out of the plane C and G stay 1. In small strains the branch
+/// is a spring of shear modulus m and a dashpot of viscosity m t in series.
 template <class T>
 struct NeoHookeanMaxwell {
   T mu, lambda;                                 ///< of the equilibrium part, Pa

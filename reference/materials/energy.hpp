@@ -81,8 +81,8 @@ Symmetric<Scalar> inverse_metric(const Deformation<Scalar>& F) {
 }
 
 /// Energy of a Maxwell branch per reference volume, Pa: neo-Hookean in the elastic part of the strain, with G the
-/// inverse of the viscous strain, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by dG/dt =
-/// ((F^T F)^-1 - G) / relaxation time.
+/// inverse of the viscous strain, as Symmetric: m/2 (tr(F^T F G) - 3 - ln det(F^T F G)). The dashpot creeps by
+/// dG/dt = ((F^T F)^-1 - G) / relaxation time.
 template <class Scalar>
 Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, const Symmetric<Scalar>& G) {
   using std::log;
@@ -91,9 +91,9 @@ Scalar branch_energy(const Material& material, const Deformation<Scalar>& F, con
   return 0.5 * material.branch_modulus * (trace - 3.0 - 2.0 * log(jacobian(F)) - log(G.xx * G.yy - G.xy * G.xy));
 }
 
-/// Kelvin-Voigt damping (docs/method.md 3): half of the power that it dissipates per reference volume, W/m3, eta E_dot
-/// : E_dot. Its derivative by the rate of F is F S with the second Piola stress S = 2 eta E_dot. E: Green-Lagrange
-/// strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
+/// Kelvin-Voigt damping (docs/method.md 3): half of the power that it dissipates per reference volume, W/m3,
+/// eta E_dot : E_dot. Its derivative by the rate of F is F S with the second Piola stress S = 2 eta E_dot. E:
+/// Green-Lagrange strain, so that 2 E_dot = F^T F_dot + F_dot^T F.
 template <class Scalar>
 Scalar viscous_potential(double viscosity, const Deformation<Scalar>& F, const Deformation<Scalar>& rate) {
   const Scalar xx = F.xx * rate.xx + F.yx * rate.yx, yy = F.xy * rate.xy + F.yy * rate.yy;

@@ -18,7 +18,7 @@ struct BranchPoint {
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
   Eigen::VectorXd residual;             ///< [2 nodes], minus the forces, N/m
-  Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty if not asked for
+  Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty unless requested
   double least_jacobian = 0;
   int least_point = 0;
   double power = 0;                 ///< dissipated by Maxwell branches, W/m
@@ -28,7 +28,7 @@ struct InternalState {
 /// Kelvin-Voigt damping of one body at one motion.
 struct ViscousState {
   Eigen::VectorXd residual;  ///< [2 nodes], minus the forces, N/m
-  /// [2 nodes x 2 nodes] of the residual by positions, unsymmetric, and by velocities; empty if not asked for.
+  /// [2 nodes x 2 nodes] of the residual by positions, unsymmetric, and by velocities; empty unless requested.
   Eigen::SparseMatrix<double> by_positions, by_velocities;
 };
 

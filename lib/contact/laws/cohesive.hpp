@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-/// Reversible cohesion (docs/method.md 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`; |tau| <=
-/// shear strength with the same taper. The energy is zero for separated surfaces, and less by the work of separation
-/// for surfaces in contact.
+/// Reversible cohesion (docs/method.md 4): p = -kn g up to g_c = strength/kn, then linear to zero at `reach`;
+/// |tau| <= shear strength with the same taper. The energy is zero for separated surfaces, and less by the work of
+/// separation for surfaces in contact.
 struct Cohesive {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive";

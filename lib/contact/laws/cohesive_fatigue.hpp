@@ -6,15 +6,15 @@
 namespace pliant {
 
 /// Bonds with damage D (docs/method.md 4). Tractions and energy are 1 - D times those of an intact bond and D times
-/// those of broken surfaces (Alfano and Sacco 2006, doi 10.1002/nme.1728). An intact bond has the energy (kn g^2 + kt
-/// s^2) / 2, so the shear stiffness is kn / r^2 for strengths in the ratio r. Broken surfaces have the cohesive law of
-/// the residual strength, and friction, whose elastic slip grows from the first step on. Both have one stiffness: while
-/// slip grows, a bond never bears less than friction alone. The opening is delta = sqrt(max(g, 0)^2 + (s/r)^2). Damage
-/// of an intact bond in tension releases kn delta^2 / 2. Along a growing opening D = g_max (delta - g_c) / (delta
-/// (g_max - g_c)) makes its traction fall linearly from the strength at g_c = strength / kn to zero at g_max, which
-/// takes strength g_max / 2. Above a threshold stress each growing stress p adds dD = rate (p - threshold) / (strength
-/// - threshold) dp, in shear with stresses times r. The slip of a bond is limited only by its damage, which grows only
-/// where that releases energy.
+/// those of broken surfaces (Alfano and Sacco 2006, doi 10.1002/nme.1728). An intact bond has the energy
+/// (kn g^2 + kt s^2) / 2, so the shear stiffness is kn / r^2 for strengths in the ratio r. Broken surfaces have the
+/// cohesive law of the residual strength, and friction, whose elastic slip grows from the first step on. Both have one
+/// stiffness: while slip grows, a bond never bears less than friction alone. The opening is
+/// delta = sqrt(max(g, 0)^2 + (s/r)^2). Damage of an intact bond in tension releases kn delta^2 / 2. Along a growing
+/// opening D = g_max (delta - g_c) / (delta (g_max - g_c)) makes its traction fall linearly from the strength at
+/// g_c = strength / kn to zero at g_max, which takes strength g_max / 2. Above a threshold stress each growing stress p
+/// adds dD = rate (p - threshold) / (strength - threshold) dp, in shear with stresses times r. The slip of a bond is
+/// limited only by its damage, which grows only where that releases energy.
 struct CohesiveFatigue {
   static constexpr bool has_shear = true;
   static constexpr const char* name = "cohesive-fatigue";
