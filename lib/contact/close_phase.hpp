@@ -5,11 +5,11 @@
 
 namespace pliant {
 
-/// Finds the nodes and segments through which both bodies of a contact pair can touch while their relative displacement
-/// stays below the skin (docs/method.md 4, stage 2), and sets them in the contact pair. The result is conservative: it
-/// contains each node within `margin` (reach + skin) of a segment of the other outline, or within the detection depth
-/// below it (compute_pair), and that segment. All counts are 0 if the bodies stay apart. Returns the least distance of
-/// the two outlines, m; if that exceeds `look`, any value between the two.
+/// Finds the nodes and segments through which both bodies of a contact pair can touch, and sets them in the pair. They
+/// are valid while the relative displacement of the bodies stays below the skin (docs/method.md 4, stage 2). The result
+/// is conservative: it contains each node within `margin` (reach + skin) of a segment of the other outline, or within
+/// the detection depth below it (compute_pair), and that segment. All counts are 0 if the bodies stay apart. Returns
+/// the least distance of the two outlines, m; if that exceeds `look`, any value between the two.
 double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
                  double skin, MasterWindow& scratch, double look = 0);
 

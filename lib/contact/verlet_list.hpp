@@ -29,7 +29,7 @@ class VerletList {
   /// Discards the list: the next update() runs the broad phase, and all its pairs must be searched.
   void forget();
   /// Call after skin_is_exceeded(trial), before pairs are searched at the positions `here`. Sets new references, and
-  /// runs the broad phase if it is due. Pairs then have other numbers, and true is returned.
+  /// runs the broad phase if it is due. It then returns true, and pairs have other numbers.
   bool update(const OutlineField& here, const OutlineField& trial);
 
   int count() const { return static_cast<int>(pairs_.size()); }
