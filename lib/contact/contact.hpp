@@ -135,7 +135,7 @@ class ContactSystem {
   void make_room(Evaluated& evaluated) const;
   bool integrates(int first, int second, const ContactLaw& law) const;
   const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
-  bool keeps_debts() const { return model_.scene.keeps_energy_debts(); }
+  bool keeps_debts() const { return most_repaid_ > 0 && model_.scene.keeps_energy_debts(); }
   PairTotals settle(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
                     ContactHistory& to, PairForceBuffer& forces);
   void add_self_pairs(std::vector<ContactPair>& all);

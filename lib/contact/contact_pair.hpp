@@ -96,10 +96,10 @@ struct PairTotals {
   double damping_power = 0;  ///< power of dashpots, W/m
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< active slave nodes; slave segments if integrated
-  // For energy_debt.hpp; work and pull are 0 without a step:
+  // For energy_debt.hpp; work and kept energy are 0 without a step:
   double work_before = 0;  ///< work of the forces at the step's start over its displacements, J/m
   double work = 0;         ///< work of the present forces over the same displacements, J/m
-  double pull = 0;         ///< forces at the start on rigid bodies times their accelerations then, W/(m s)
+  double kept = 0;         ///< energy that rigid bodies keep where the step changes or forces jump, J/m
   double squares = 0;      ///< squared pressures over kn, integrated over length, J/m
 
   /// Adds the sums of another contact pair, except those of the energy correction, which belong to one pair alone.
@@ -112,7 +112,7 @@ struct PairTotals {
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts);
-    visitor("work_before", work_before), visitor("work", work), visitor("pull", pull), visitor("squares", squares);
+    visitor("work_before", work_before), visitor("work", work), visitor("kept", kept), visitor("squares", squares);
   }
 };
 

@@ -26,10 +26,11 @@ inline double most_repaid(double safety) { return std::clamp(0.5 * (0.9 / (safet
 
 /// Motion of a rigid body in a step.
 struct RigidStep {
-  Vec2 from, to;             ///< centre at the start and the end, m
-  double turn;               ///< rotation, rad
-  Vec2 acceleration;         ///< by the forces at the start, m/s2
-  double spin_acceleration;  ///< likewise, 1/s2
+  Vec2 from, to;  ///< centre at the start and the end, m
+  double turn;    ///< rotation, rad
+  /// Accelerations by the forces at the start of the step, and by those there that ended the previous step: x, y, m/s2,
+  /// and rotation, 1/s2. They differ where loads jump and where a motion is let go.
+  double acceleration[3], acceleration_before[3];
 };
 
 /// The step that led to an evaluation, as a contact pair sees it.
@@ -37,14 +38,13 @@ struct PairStep {
   const OutlineField* before;            ///< outlines at the start, with their cyclic copies
   const PairForceBuffer& forces_before;  ///< at the start
   const RigidStep* rigid[2];             ///< by side; null: compliant
+  double elapsed, elapsed_before;        ///< sizes of this step and of the previous one, s
 };
 
 /// Kinetic energy that the present and the previous forces add in a step, J/m, without dt^2 F^2/(8 m). That term is
-/// reversible unless the step size changes; then the energy that rigid bodies keep counts. Compliant bodies account for
-/// it themselves (lib/dynamics/body_debt.hpp). `before`: size of the previous step, s.
-inline double gain(const PairTotals& now, double dt, double before) {
-  return 0.5 * (now.work_before + now.work) - 0.125 * (dt * dt - before * before) * now.pull;
-}
+/// reversible unless the step size changes, or forces jump; then the energy that rigid bodies keep counts. Compliant
+/// bodies account for it themselves (lib/dynamics/body_debt.hpp).
+inline double gain(const PairTotals& now) { return 0.5 * (now.work_before + now.work) + now.kept; }
 
 /// Transfers the forces of a contact pair that was searched or stored again to the present entries of its nodes.
 void carry_forces(const Model& model, const ContactPair& old, const PairForceBuffer& from, const ContactPair& now,

@@ -165,7 +165,11 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
 class StepWork {
  public:
   StepWork(const PairView& view, const PairStep& step, int side)
-      : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {}
+      : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {
+    const double now = 0.125 * step.elapsed * step.elapsed, before = 0.125 * step.elapsed_before * step.elapsed_before;
+    for (int c = 0; rigid_ && c < 3; ++c)
+      kept_by_force_[c] = before * rigid_->acceleration_before[c] - now * rigid_->acceleration[c];
+  }
 
   /// Adds a vector of nodes from `node` on, whose entries in force buffers begin at `entry`, with their present forces.
   void add(std::size_t node, std::size_t entry, Lanes x, Lanes y) {
@@ -183,19 +187,19 @@ class StepWork {
     const Lanes arm_x = x0 - r.from.x(), arm_y = y0 - r.from.y();
     add_in_order(old_x * (way_x - r.turn * arm_y) + old_y * (way_y + r.turn * arm_x), before_);
     add_in_order(x * (way_x - r.turn * (y1 - r.to.y())) + y * (way_y + r.turn * (x1 - r.to.x())), now_work_);
-    add_in_order(old_x * (r.acceleration.x() - r.spin_acceleration * arm_y) +
-                     old_y * (r.acceleration.y() + r.spin_acceleration * arm_x),
-                 pull_);
+    const auto& [kept_x, kept_y, kept_turn] = kept_by_force_;
+    add_in_order(old_x * (kept_x - kept_turn * arm_y) + old_y * (kept_y + kept_turn * arm_x), kept_);
   }
   void add_to(PairTotals& totals) const {
-    totals.work_before += before_, totals.work += now_work_, totals.pull += pull_;
+    totals.work_before += before_, totals.work += now_work_, totals.kept += kept_;
   }
 
  private:
   const OutlineField& now_;
   const PairStep& step_;
   const RigidStep* rigid_;
-  double before_ = 0, now_work_ = 0, pull_ = 0;
+  double kept_by_force_[3] = {};  ///< of a unit force or moment on a rigid body, m or 1
+  double before_ = 0, now_work_ = 0, kept_ = 0;
 };
 
 /// Copies one side's forces into the buffer of all contact pairs, in whole lanes, 0 beyond the last node. `work`: null

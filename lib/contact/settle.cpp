@@ -15,9 +15,10 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
                      (!view.contact_pair.of_itself() || view.contact_pair.found <= last_.refreshes);
   const auto rigid = [&](int side) {
     const int number = model_.bodies[view.body(side)].rigid;
-    return known && number >= 0 ? &step->rigid[number] : nullptr;
+    return known && step->rigid && number >= 0 ? &step->rigid[number] : nullptr;
   };
-  const PairStep way{known ? &step->position : nullptr, last_.forces, {rigid(0), rigid(1)}};
+  const PairStep way{
+      known ? &step->position : nullptr, last_.forces, {rigid(0), rigid(1)}, view.elapsed, last_.elapsed};
   const auto compute = [&](const PairView& as) { return compute_pair(as, known ? &way : nullptr, from, to, forces); };
   // The error that is left when a pair separates is corrected by the forces of a law that still reaches it.
   const auto compute_apart = [&] {
@@ -32,12 +33,12 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
   if (was_apart) repaying = compute_apart();
   const bool still_apart = was_apart && repaying.deepest == 0;
   if (still_apart)
-    now.work_before = repaying.work_before, now.pull = repaying.pull;
+    now.work_before = repaying.work_before, now.kept = repaying.kept;
   else
     now = compute(view);
   // The work of a dashpot depends on the step size: the difference is not an energy error.
   if (is_damped(view.contact_pair.law)) return now;
-  if (known) owed += gain(now, step->elapsed, last_.elapsed) - (before.stored - now.stored - now.dissipated);
+  if (known) owed += gain(now) - (before.stored - now.stored - now.dissipated);
   if (now.contacts > 0) {
     if (step) repaid = repayment(owed, most_repaid_, now, before.contacts > 0 ? before.work : 0);
     scale_forces(view.contact_pair, 1 + repaid, forces);

@@ -103,13 +103,21 @@ Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepRe
 const RigidStep* Verlet::rigid_steps(const State& state) {
   if (!model_.scene.keeps_energy_debts()) return nullptr;
   rigid_steps_.resize(model_.rigid_bodies.size());
+  const Vec2 gravity = model_.scene.gravity_at(state.time);
+  const double just_before = std::nextafter(state.time, -std::numeric_limits<double>::infinity());
   for (std::size_t r = 0; r < rigid_steps_.size(); ++r) {
     const double *from = &state.position.rigid[3 * r], *to = &trial_.position.rigid[3 * r];
-    const auto acceleration = [&](std::size_t c) {
-      return model_.rigid_bodies[r].dof[c].inverse_mass_at(state.time) * state.force.rigid[3 * r + c];
-    };
-    rigid_steps_[r] = {
-        {from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {acceleration(0), acceleration(1)}, acceleration(2)};
+    RigidStep& step = rigid_steps_[r] = {{from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {}, {}};
+    // Loads as the step before ended with, and as this one begins.
+    double ended[3] = {}, begins[3] = {};
+    add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time, true}, ended);
+    add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time}, begins);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const RigidDof& dof = model_.rigid_bodies[r].dof[c];
+      const double force = state.force.rigid[3 * r + c];
+      step.acceleration[c] = dof.inverse_mass_at(state.time) * force;
+      step.acceleration_before[c] = dof.inverse_mass_at(just_before) * (force - begins[c] + ended[c]);
+    }
   }
   return rigid_steps_.data();
 }

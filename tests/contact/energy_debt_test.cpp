@@ -185,6 +185,36 @@ TEST(EnergyDebt, is_what_bodies_and_contacts_gain) {
   expect_debts_to_be_gains(cohesive(100, 1, 0.03, 1));
 }
 
+/// Spurious energy of a disc that is pressed onto another one, let go and thrown off, over the energy that was stored.
+double gained_by_letting_go(const Drive& push) {
+  Scene scene = empty_scene(1000);
+  scene.shapes = {disc_shape("disc", 2, 60)};
+  scene.grains = {grains("held", "disc", BodyKind::rigid, {{0, 0}}, {}),
+                  grains("pushed", "disc", BodyKind::rigid, {{2.01, 0.3}}, {})};
+  BoundaryCondition hold, press;
+  hold.grains = "held", hold.x = hold.y = hold.angle = {Drive::Mode::fixed};
+  press.grains = "pushed", press.x = push;
+  scene.boundary = {hold, press};
+  scene.contacts = {frictionless(100)};
+  without_error_control(scene, 0.8);
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  double stored = 0;
+  while (simulation.state().time < 8 || simulation.state().contact_energy > 0) {
+    simulation.step(1000);
+    stored = std::max(stored, simulation.state().contact_energy);
+  }
+  EXPECT_GT(stored, 1e-6);
+  return std::abs(gained(simulation)) / stored;
+}
+
+/// EXACT: accelerations jump where an imposed motion or a load ends, and with them what velocity Verlet keeps.
+TEST(EnergyDebt, counts_loads_that_jump_while_bodies_touch) {
+  const Window until_four{.until = 4};
+  EXPECT_LT(gained_by_letting_go({Drive::Mode::velocity, constant(-0.02), 0, until_four}), 1e-11);
+  EXPECT_LT(gained_by_letting_go({Drive::Mode::force, constant(-0.01), 0, until_four}), 1e-11);
+}
+
 /// What a contact pair does to each node of a side, however often it shows the node, N/m.
 std::vector<double> on_nodes(const Model& model, const ContactPair& contact_pair, int side,
                              const PairForceBuffer& forces) {
