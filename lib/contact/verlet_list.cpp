@@ -14,7 +14,7 @@ constexpr double extra_skins = 4;
 /// Spread of a body's displacements, as a share of the skin, from which the body gets a new reference.
 constexpr double blurred = 0.25;
 /// Share of the skin up to which a pair is kept when others are searched; likewise for the broad phase. Few pairs move
-/// by much more than the others (docs/defaults.md).
+/// by much more than the others (docs/notes/contact_search.md).
 constexpr double kept = 0.75;
 /// Bound of the rounding of stored displacements of some skins, over the skin, with a wide margin.
 constexpr double rounded = 1e-4;

@@ -99,16 +99,17 @@ Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepRe
   return {true, std::min(next_dt, proposal.largest_dt), errors};
 }
 
-/// Motion of rigid bodies in the step, for the energy correction of contacts.
+/// Motion of rigid bodies in the step, for the energy correction of contacts. Accelerations differ between the end of
+/// the previous step and the start of this one where a load jumps, or where an imposed motion begins or ends.
 const RigidStep* Verlet::rigid_steps(const State& state) {
   if (!model_.scene.keeps_energy_debts()) return nullptr;
   rigid_steps_.resize(model_.rigid_bodies.size());
   const Vec2 gravity = model_.scene.gravity_at(state.time);
   const double just_before = std::nextafter(state.time, -std::numeric_limits<double>::infinity());
-  for (std::size_t r = 0; r < rigid_steps_.size(); ++r) {
+  parallel_for(static_cast<int>(rigid_steps_.size()), [&](int r) {
     const double *from = &state.position.rigid[3 * r], *to = &trial_.position.rigid[3 * r];
     RigidStep& step = rigid_steps_[r] = {{from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {}, {}};
-    // Loads as the step before ended with, and as this one begins.
+    // Loads at the end of the previous step and at the start of this one.
     double ended[3] = {}, begins[3] = {};
     add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time, true}, ended);
     add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time}, begins);
@@ -118,7 +119,7 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
       step.acceleration[c] = dof.inverse_mass_at(state.time) * force;
       step.acceleration_before[c] = dof.inverse_mass_at(just_before) * (force - begins[c] + ended[c]);
     }
-  }
+  });
   return rigid_steps_.data();
 }
 

@@ -25,15 +25,6 @@ bool same_bits(const Dofs& a, const Dofs& b) {
   return same_bits(a.compliant, b.compliant) && same_bits(a.rigid, b.rigid);
 }
 
-double largest_difference(const Dofs& a, const Dofs& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.rigid.size(); ++i) largest = std::max(largest, std::abs(a.rigid[i] - b.rigid[i]));
-  for (std::size_t i = 0; i < a.compliant.size(); ++i)
-    for (int lane = 0; lane < lane_count; ++lane)
-      largest = std::max(largest, std::abs(a.compliant[i][lane] - b.compliant[i][lane]));
-  return largest;
-}
-
 /// Arc coordinates and slips of the nodes that slip, in an order of their own: a refresh may move records, and know
 /// more or fewer nodes that are near but not in touch.
 std::vector<std::pair<double, double>> records(const ContactHistory& history) {

@@ -33,15 +33,6 @@ StartPoint point_of(const Simulation& simulation) {
   return read;
 }
 
-double largest_difference(const Dofs& a, const Dofs& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.rigid.size(); ++i) largest = std::max(largest, std::abs(a.rigid[i] - b.rigid[i]));
-  for (std::size_t i = 0; i < a.compliant.size(); ++i)
-    for (int lane = 0; lane < lane_count; ++lane)
-      largest = std::max(largest, std::abs(a.compliant[i][lane] - b.compliant[i][lane]));
-  return largest;
-}
-
 /// Grains of both kinds that rub under a lid; nothing acts at a time of its own.
 Scene rubbing(ContactRule rule) {
   Scene scene = small_third_body(1000);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -21,6 +22,16 @@ inline void advance(Simulation& simulation, double until) {
 inline Eigen::Vector3d rigid(const Dofs& dofs, int index) {
   return {dofs.rigid[3 * static_cast<std::size_t>(index)], dofs.rigid[3 * static_cast<std::size_t>(index) + 1],
           dofs.rigid[3 * static_cast<std::size_t>(index) + 2]};
+}
+
+/// Over all degrees of freedom.
+inline double largest_difference(const Dofs& a, const Dofs& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.rigid.size(); ++i) largest = std::max(largest, std::abs(a.rigid[i] - b.rigid[i]));
+  for (std::size_t i = 0; i < a.compliant.size(); ++i)
+    for (int lane = 0; lane < lane_count; ++lane)
+      largest = std::max(largest, std::abs(a.compliant[i][lane] - b.compliant[i][lane]));
+  return largest;
 }
 
 /// A node's degrees of freedom in a compliant body; positions are relative to the body's centre.
