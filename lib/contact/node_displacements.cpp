@@ -15,8 +15,8 @@ namespace {
 constexpr int small_outline = 512;
 
 /// Mean of the displacements, displacement(node), of four nodes: it rotates with the axes.
-template <class Way>
-DisplacementDisc about_four(int count, Way&& displacement) {
+template <class Displacement>
+DisplacementDisc about_four(int count, Displacement&& displacement) {
   DisplacementDisc disc{0, 0, 0};
   for (int quarter = 0; quarter < 4; ++quarter) {
     const auto [x, y] = displacement(quarter * count / 4);
@@ -27,8 +27,8 @@ DisplacementDisc about_four(int count, Way&& displacement) {
 
 /// Widens a disc so that it contains the displacements of an outline's nodes; displacements(i): eight at once from node
 /// i on. The last lanes may reach into the cyclic copies, which move as their originals.
-template <class Ways>
-DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& displacements) {
+template <class Displacements>
+DisplacementDisc widened(DisplacementDisc disc, int count, Displacements&& displacements) {
   Lanes square{};
   for (int i = 0; i < count; i += lane_count) {
     const auto [x, y] = displacements(i);
@@ -40,24 +40,24 @@ DisplacementDisc widened(DisplacementDisc disc, int count, Ways&& displacements)
 
 using Floats = float __attribute__((vector_size(4 * lane_count)));
 
-Lanes load_ways(const float* from) {
+Lanes load_displacements(const float* from) {
   Floats value;
   std::memcpy(&value, from, sizeof value);
   return __builtin_convertvector(value, Lanes);
 }
 
 void store_displacements(float* to, Lanes value) {
-  const Floats rounded_ways = __builtin_convertvector(value, Floats);
-  std::memcpy(to, &rounded_ways, sizeof rounded_ways);
+  const Floats rounded = __builtin_convertvector(value, Floats);
+  std::memcpy(to, &rounded, sizeof rounded);
 }
 
 /// Displacement of one node.
-std::pair<double, double> way_at(const OutlineField& now, const OutlineField& reference, int node) {
+std::pair<double, double> displacement_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {now.x[node] - reference.x[node], now.y[node] - reference.y[node]};
 }
 
 /// Displacements of eight nodes.
-std::pair<Lanes, Lanes> ways_at(const OutlineField& now, const OutlineField& reference, int node) {
+std::pair<Lanes, Lanes> displacements_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {load(&now.x[node]) - load(&reference.x[node]), load(&now.y[node]) - load(&reference.y[node])};
 }
 
@@ -69,8 +69,8 @@ bool is_known(const DisplacementDisc& disc) { return disc.radius < 0.5 * unknown
 DisplacementDisc displacement_disc(const Model& model, int body, const OutlineField& now,
                                    const OutlineField& reference) {
   const int first = model.outline_offset[body], count = model.outline_of(body).count;
-  const DisplacementDisc middle = about_four(count, [&](int i) { return way_at(now, reference, first + i); });
-  return widened(middle, count, [&](int i) { return ways_at(now, reference, first + i); });
+  const DisplacementDisc middle = about_four(count, [&](int i) { return displacement_at(now, reference, first + i); });
+  return widened(middle, count, [&](int i) { return displacements_at(now, reference, first + i); });
 }
 
 DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to) {
@@ -140,9 +140,9 @@ void NodeDisplacements::look(int entry, const DisplacementsSoFar& displacements)
   const Common common = common_[entry] = displacement_of_first(b, displacements);
   const bool keeps = keeps_nodes(entry);
   const DisplacementDisc middle =
-      about_four(count, [&](int i) { return way_at(displacements.now, displacements.reference, first + i); });
+      about_four(count, [&](int i) { return displacement_at(displacements.now, displacements.reference, first + i); });
   start_[entry] = widened(middle, count, [&](int i) {
-    const auto [x, y] = ways_at(displacements.now, displacements.reference, first + i);
+    const auto [x, y] = displacements_at(displacements.now, displacements.reference, first + i);
     if (keeps)
       store_displacements(&x_[at_[entry] + i], x - common.x), store_displacements(&y_[at_[entry] + i], y - common.y);
     return std::pair(x, y);
@@ -159,12 +159,12 @@ DisplacementDisc NodeDisplacements::displacement(int entry, const DisplacementsS
   const Common common = common_[entry];
   const float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
   const DisplacementDisc middle = about_four(count, [&](int i) {
-    const auto [x, y] = way_at(displacements.now, displacements.reference, first + i);
+    const auto [x, y] = displacement_at(displacements.now, displacements.reference, first + i);
     return std::pair(x - common.x - x_then[i], y - common.y - y_then[i]);
   });
   return widened(middle, count, [&](int i) {
-    const auto [x, y] = ways_at(displacements.now, displacements.reference, first + i);
-    return std::pair(x - common.x - load_ways(x_then + i), y - common.y - load_ways(y_then + i));
+    const auto [x, y] = displacements_at(displacements.now, displacements.reference, first + i);
+    return std::pair(x - common.x - load_displacements(x_then + i), y - common.y - load_displacements(y_then + i));
   });
 }
 
@@ -180,12 +180,13 @@ void NodeDisplacements::reset_reference(int entry, const DisplacementsSoFar& dis
   Common& common = common_[entry];
   float *x_then = &x_[at_[entry]], *y_then = &y_[at_[entry]];
   const DisplacementDisc middle = about_four(count, [&](int i) {
-    const auto [dx, dy] = way_at(displacements.now, displacements.reference, first + i);
+    const auto [dx, dy] = displacement_at(displacements.now, displacements.reference, first + i);
     return std::pair(common.x - back.x + (x_then[i] - (dx - back.x)), common.y - back.y + (y_then[i] - (dy - back.y)));
   });
   start = widened(middle, count, [&](int i) {
-    const auto [dx, dy] = ways_at(displacements.now, displacements.reference, first + i);
-    const Lanes back_x = load_ways(x_then + i) - (dx - back.x), back_y = load_ways(y_then + i) - (dy - back.y);
+    const auto [dx, dy] = displacements_at(displacements.now, displacements.reference, first + i);
+    const Lanes back_x = load_displacements(x_then + i) - (dx - back.x),
+                back_y = load_displacements(y_then + i) - (dy - back.y);
     store_displacements(x_then + i, back_x), store_displacements(y_then + i, back_y);
     return std::pair(common.x - back.x + back_x, common.y - back.y + back_y);
   });
