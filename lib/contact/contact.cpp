@@ -51,7 +51,7 @@ ContactSystem::ContactSystem(const Model& model)
       may_integrate_(some_may_be_integrated(model)),
       verlet_list_(model, skin_, laws_.max_reach()),
       table_(model),
-      most_repaid_(most_repaid(model.scene.time.safety)) {}
+      largest_correction_(largest_correction(model.scene.time.safety)) {}
 
 /// Bonds belong to nodes, so laws with internal variables are collocated.
 bool ContactSystem::integrates(int first, int second, const ContactLaw& law) const {
@@ -137,7 +137,7 @@ bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField
   const std::vector<ContactPair> found = search(exceeded);
   found_ = exceeded;  // contact pairs are ordered as the pairs, unless there is self-contact
   const auto carry = [&](const ContactPair& old, const ContactPair& now) {
-    if (keeps_debts()) carry_forces(model_, old, last_.forces, now, last_.forces);
+    if (corrects_energy()) carry_forces(model_, old, last_.forces, now, last_.forces);
   };
   if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
   parallel_for(static_cast<int>(found_.size()),
@@ -179,7 +179,7 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
   const Evaluated before = std::exchange(last_, {});
   make_room(last_);
-  if (!keeps_debts()) return;
+  if (!corrects_energy()) return;
   make_room(trial_);
   last_.number = before.number, last_.refreshes = before.refreshes, last_.elapsed = before.elapsed;
   auto from = old.begin();
@@ -216,7 +216,7 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
     prefetch_run(reinterpret_cast<const double*>(from.at(record)), numbers);
     prefetch_run<Access::write>(reinterpret_cast<const double*>(to.at(record)), numbers);
     prefetch_run<Access::write>(forces, contact_pair.entry[side], arc.count);
-    if (!keeps_debts() || !step) continue;
+    if (!corrects_energy() || !step) continue;
     prefetch_run(step->position, node, arc.count);
     prefetch_run(last_.forces, contact_pair.entry[side], arc.count);
   }
@@ -235,13 +235,13 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
                                  OutlineField& force, const StepStart* step) {
   table_.follow(from, to);  // also where no contact pair writes: states are compared bitwise
   to.evaluation = from.evaluation;
-  if (keeps_debts()) {
+  if (corrects_energy()) {
     accept(from);
     trial_.number = step ? ++to.evaluation : 0;
     trial_.refreshes = refreshes_;
     trial_.elapsed = step ? step->elapsed : 0;
   }
-  Evaluated& now = keeps_debts() ? trial_ : last_;
+  Evaluated& now = corrects_energy() ? trial_ : last_;
   const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
@@ -252,8 +252,8 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
     PairTotals& totals = now.totals[p];
     if (view.contact_pair.is_empty())
       totals = {};
-    else if (keeps_debts())
-      totals = settle(view, p, step, from, to, now.forces);
+    else if (corrects_energy())
+      totals = corrected_forces(view, p, step, from, to, now.forces);
     else
       totals = compute_pair(view, nullptr, from, to, now.forces);
   });

@@ -10,7 +10,7 @@
 #include "bodies/outline.hpp"
 #include "contact/contact_laws.hpp"
 #include "contact/contact_pair.hpp"
-#include "contact/energy_debt.hpp"
+#include "contact/energy_correction.hpp"
 #include "contact/history.hpp"
 #include "contact/inherited.hpp"
 #include "contact/pair_table.hpp"
@@ -116,12 +116,12 @@ class ContactSystem {
     visitor("refreshed", refreshed_);
     visitor("refreshes", refreshes_);
     visitor("pairs_searched", pairs_searched_);
-    if (!keeps_debts()) return;
+    if (!corrects_energy()) return;
     visitor("last", last_);
   }
   void loaded() {
     table_.set_laws([&](const ContactPair& p) { return laws_.between(p.first, p.second, refreshed_.time); });
-    make_room(keeps_debts() ? trial_ : last_);
+    make_room(corrects_energy() ? trial_ : last_);
   }
 
  private:
@@ -135,9 +135,9 @@ class ContactSystem {
   void make_room(Evaluated& evaluated) const;
   bool integrates(int first, int second, const ContactLaw& law) const;
   const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
-  bool keeps_debts() const { return most_repaid_ > 0 && model_.scene.keeps_energy_debts(); }
-  PairTotals settle(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
-                    ContactHistory& to, PairForceBuffer& forces);
+  bool corrects_energy() const { return largest_correction_ > 0 && model_.scene.corrects_energy(); }
+  PairTotals corrected_forces(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
+                              ContactHistory& to, PairForceBuffer& forces);
   void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
   bool starts_from_a_state() const { return laws_before_.count > 0; }
@@ -152,7 +152,7 @@ class ContactSystem {
   bool may_integrate_;
   VerletList verlet_list_;
   PairTable table_;                       ///< ordered as the Verlet list, unless there is self-contact
-  double most_repaid_;                    ///< limit of the energy correction, see energy_debt.hpp
+  double largest_correction_;             ///< limit of the energy correction, see energy_correction.hpp
   Evaluated last_, trial_;                ///< of the last accepted step and, with energy correction, of the trial
   std::vector<PairTotals> block_totals_;  ///< scratch
   OutlineField moved_;                    ///< scratch, displacements in a step, m

@@ -96,7 +96,7 @@ struct PairTotals {
   double damping_power = 0;  ///< power of dashpots, W/m
   double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
   int contacts = 0;          ///< active slave nodes; slave segments if integrated
-  // For energy_debt.hpp; work and kept energy are 0 without a step:
+  // For energy_correction.hpp; work and kept energy are 0 without a step:
   double work_before = 0;  ///< work of the forces at the step's start over its displacements, J/m
   double work = 0;         ///< work of the present forces over the same displacements, J/m
   double kept = 0;         ///< energy that rigid bodies keep where the step changes or forces jump, J/m

@@ -52,7 +52,7 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   history.set_columns(static_cast<int>(laws_.internal_variables()));
   history.resize(from.history.records());
   history.clear(0, history.records());
-  if (keeps_debts()) history.set_debts(contact_pairs().size());
+  if (corrects_energy()) history.start_energy_errors(contact_pairs().size());
   const int fields = std::min(history.fields(), from.history.fields());
   for (int record = 0; record < history.records(); record += lane_count) {
     Lanes* to = history.at(record);

@@ -25,9 +25,9 @@ struct ContactHistory {
 
   std::vector<Lanes> numbers;  ///< [eights of records][columns]
   std::int32_t columns = first_of_law;
-  std::vector<double> owed;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
-  /// [contact pairs] likewise: factor of the correcting forces, which add to the others, see energy_debt.hpp.
-  std::vector<double> repaid;
+  std::vector<double> energy_error;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
+  /// [contact pairs] likewise: factor of the correcting forces, which add to the others, see energy_correction.hpp.
+  std::vector<double> correction;
   /// Number of the force evaluation that wrote it, if energy errors are corrected; 0: none.
   std::int64_t evaluation = 0;
   /// Version of the storage layout (pair_table.hpp): histories with the same number store each node's record at the
@@ -39,9 +39,12 @@ struct ContactHistory {
     columns = first_of_law + fields;
     numbers.clear();
   }
-  void set_debts(std::size_t contact_pairs) { owed.assign(contact_pairs, 0.0), repaid.assign(contact_pairs, 0.0); }
-  void copy_debt(const ContactHistory& from, int old_contact_pair, int contact_pair) {
-    owed[contact_pair] = from.owed[old_contact_pair], repaid[contact_pair] = from.repaid[old_contact_pair];
+  void start_energy_errors(std::size_t contact_pairs) {
+    energy_error.assign(contact_pairs, 0.0), correction.assign(contact_pairs, 0.0);
+  }
+  void copy_energy_error(const ContactHistory& from, int old_contact_pair, int contact_pair) {
+    energy_error[contact_pair] = from.energy_error[old_contact_pair],
+    correction[contact_pair] = from.correction[old_contact_pair];
   }
   void resize(int records) { numbers.resize(static_cast<std::size_t>(records / lane_count * columns)); }
   int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }
@@ -63,7 +66,8 @@ struct ContactHistory {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("numbers", numbers), visitor("columns", columns);
-    visitor("owed", owed), visitor("repaid", repaid), visitor("evaluation", evaluation), visitor("layout", layout);
+    visitor("energy_error", energy_error), visitor("correction", correction), visitor("evaluation", evaluation),
+        visitor("layout", layout);
   }
   void loaded() const {
     const bool fits = columns >= first_of_law && numbers.size() % static_cast<std::size_t>(columns) == 0;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "contact/energy_debt.hpp"
+#include "contact/energy_correction.hpp"
 #include "contact/gap_and_slip.hpp"
 #include "contact/node_pass.hpp"
 #include "contact/pair_queries.hpp"

@@ -86,7 +86,7 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fiel
   next.resize(record_room_);
   next.clear(0, record_room_);
   next.evaluation = history.evaluation;
-  if (model_.scene.keeps_energy_debts()) next.set_debts(contact_pairs.size());
+  if (model_.scene.corrects_energy()) next.start_energy_errors(contact_pairs.size());
   parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
     const ContactPair* from = find(contact_pair.pair(), contact_pair.part);
@@ -95,7 +95,8 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fiel
         carry(model_, *from, history, contact_pair, side, next);
       else
         forget_all(contact_pair, side, next);
-    if (from && !next.owed.empty()) next.copy_debt(history, static_cast<int>(from - contact_pairs_.data()), p);
+    if (from && !next.energy_error.empty())
+      next.copy_energy_error(history, static_cast<int>(from - contact_pairs_.data()), p);
   });
   history = std::move(next);
   history.layout = laid_out_ = ++layout_;
@@ -155,7 +156,7 @@ void PairTable::follow(const ContactHistory& from, ContactHistory& to) const {
   }
   parallel_for(static_cast<int>(moved_.size()),
                [&](int i) { copy_eights(from, moved_[i][0], moved_[i][1], to, moved_[i][0]); });
-  to.owed = from.owed, to.repaid = from.repaid;
+  to.energy_error = from.energy_error, to.correction = from.correction;
   to.evaluation = from.evaluation;
   to.layout = from.layout;
 }

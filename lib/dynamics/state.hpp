@@ -7,7 +7,7 @@
 #include "bodies/model.hpp"
 #include "bodies/outline.hpp"
 #include "bodies/point_law.hpp"
-#include "contact/energy_debt.hpp"
+#include "contact/energy_correction.hpp"
 #include "contact/history.hpp"
 
 namespace pliant {
@@ -40,8 +40,9 @@ Memory initial_memory(const Model& model);
 /// Motion of a batch at a state's positions, with its history variables, at rest.
 BatchMotion motion_of(const Batch& batch, const Dofs& position, const Memory& memory);
 
-/// Energy balance of bodies with energy correction (dynamics/body_debt.hpp); empty before the first correction.
-struct BodyBooks {
+/// Energy balance of bodies with energy correction (dynamics/body_energy_correction.hpp); empty before the first
+/// correction.
+struct BodyBalance {
   std::vector<Lanes> opening;  ///< [batches] energies of bodies at the start of the balance, J/m
   std::vector<double> work;    ///< [bodies] work of contacts since, J/m
 
@@ -82,7 +83,7 @@ struct State : StateNumbers {
   Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
   Dofs force;             ///< N/m
   Memory memory;
-  BodyBooks books;
+  BodyBalance body_balance;
   // These follow from the positions and are no part of the motion, like contact_energy and contacts:
   Outlines outlines;           ///< with the velocities that dashpots used
   OutlineField contact_force;  ///< on outline nodes, N/m
@@ -113,7 +114,7 @@ struct State : StateNumbers {
     visitor("reduced_momentum", reduced_momentum);
     visitor("force", force);
     visitor("memory", memory);
-    visitor("books", books);
+    visitor("body_balance", body_balance);
   }
 };
 

@@ -42,7 +42,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       drag_loss_(forces.model()),
       needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
-      debts_(model_),
+      body_correction_(model_),
       trial_(model_),
       mean_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
@@ -102,7 +102,7 @@ Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepRe
 /// Motion of rigid bodies in the step, for the energy correction of contacts. Accelerations differ between the end of
 /// the previous step and the start of this one where a load jumps, or where an imposed motion begins or ends.
 const RigidStep* Verlet::rigid_steps(const State& state) {
-  if (!model_.scene.keeps_energy_debts()) return nullptr;
+  if (!model_.scene.corrects_energy()) return nullptr;
   rigid_steps_.resize(model_.rigid_bodies.size());
   const Vec2 gravity = model_.scene.gravity_at(state.time);
   const double just_before = std::nextafter(state.time, -std::numeric_limits<double>::infinity());
@@ -259,7 +259,8 @@ void Verlet::finish(const State& state, StepReport& report) {
 
 /// After acceptance the trial holds the state before the step.
 void Verlet::accepted(State& state, const StepReport& report) {
-  if (debts_.are_kept()) debts_.book(trial_, state), debts_.settle(trial_, state, report.dt);
+  if (body_correction_.is_active())
+    body_correction_.add_work(trial_, state), body_correction_.correct(trial_, state, report.dt);
   if (state.steps % bound_period == 0)
     forces_.phases().apart(Phase::bound, [&] { bound_.update_internal(state.position, state.memory); });
 }

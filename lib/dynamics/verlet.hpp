@@ -1,6 +1,6 @@
 #pragma once
 
-#include "dynamics/body_debt.hpp"
+#include "dynamics/body_energy_correction.hpp"
 #include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
 #include "dynamics/time_step_bound.hpp"
@@ -52,7 +52,7 @@ class Verlet {
   DragLoss drag_loss_;
   const bool needs_velocities_;  ///< with drag, rates or corrected mass
   TimeStepBound bound_;
-  BodyDebts debts_;
+  BodyEnergyCorrection body_correction_;
   Trial trial_;
   std::vector<RigidStep> rigid_steps_;
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as in a state

@@ -158,7 +158,7 @@ std::vector<ProbeQuantity> contacts() {
       by_contact("contact_gap", "m", "negative: penetration"),
       by_contact("contact_slip", "m", "elastic tangential displacement, which carries the shear"),
       by_contact("contact_pressure", "Pa",
-                 "of the law, without what dashpots add and pairs repay; means are weighted by length"),
+                 "of the law, without dashpots and energy correction; means are weighted by length"),
       by_contact("contact_shear", "Pa",
                  "of the law, on the node, positive to the left of the normal of the body touched"),
       by_contact("contact_damage", "-", "of bonds, 0 whole to 1 torn; NaN for laws without"),

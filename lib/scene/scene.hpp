@@ -233,7 +233,7 @@ struct ContactSettings {
   int refresh_steps = 0;                            ///< rebuild candidates every so many steps; 0: when needed
   double refresh_period = 0;                        ///< the same in time, s
   bool self_contact = false;                        ///< compliant bodies may touch themselves
-  bool energy_consistent = true;                    ///< see Scene::keeps_energy_debts
+  bool energy_consistent = true;                    ///< see Scene::corrects_energy
 };
 
 /// A rectangle.
@@ -305,9 +305,9 @@ struct Scene {
   std::vector<std::string> warnings{};              ///< of values that are allowed but hardly meant, with their place
 
   Vec2 gravity_at(double time) const;
-  /// Contacts repay the energy that steps gain or lose (contact/energy_debt.hpp): those that have an energy, of steps
-  /// whose work is known.
-  bool keeps_energy_debts() const {
+  /// Contacts correct the energy that steps gain or lose (contact/energy_correction.hpp): those that have an energy, of
+  /// steps whose work is known.
+  bool corrects_energy() const {
     return contact.energy_consistent && contact.length == ContactLength::reference &&
            time.integrator == Integrator::verlet;
   }

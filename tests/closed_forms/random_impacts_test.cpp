@@ -24,10 +24,10 @@ Points random_shape(Random& random) {
   }
 }
 
-Scene random_impact(Random& random, double safety, bool repays) {
+Scene random_impact(Random& random, double safety, bool corrects) {
   Scene scene = bare_scene();
   scene.contact.quadrature = ContactQuadrature::segments;
-  scene.contact.energy_consistent = repays;
+  scene.contact.energy_consistent = corrects;
   scene.contacts = {frictionless(stiffness)};
   scene.time.safety = safety;
   scene.time.end = 100;
@@ -69,12 +69,12 @@ double change_of_energy(const Scene& scene) {
   return touched ? (kinetic_energy(simulation) + simulation.state().contact_energy) / before - 1 : 0;
 }
 
-double root_mean_square(double safety, bool repays) {
+double root_mean_square(double safety, bool corrects) {
   double sum = 0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Random random(seed);
-    const double change = change_of_energy(random_impact(random, safety, repays));
+    const double change = change_of_energy(random_impact(random, safety, corrects));
     sum += change * change, count += change != 0;
   }
   return std::sqrt(sum / count);

@@ -93,7 +93,7 @@ double largest_difference(const End& a, const End& b) {
 /// Each step rounds positions as far out as `reach` by 2^-52 of it at most; and the step's bound comes from finite
 /// differences over 1e-6 of the nodal distance, 0.1, which rounding of positions within a body changes by 1e-9, and so
 /// the steps, and the integration's error of less than 1e-3, by 1e-12. What pairs owe is a force times the way of a
-/// step: rounded positions are repaid by pressures as far off as the gap's way goes into the depth, and touches last
+/// step: rounded positions are removed by pressures as far off as the gap's way goes into the depth, and touches last
 /// some 20 steps.
 double tolerance(const End& end, double reach) {
   constexpr double depth_over_way = 10;
@@ -129,7 +129,7 @@ TEST_P(Invariance, same_steps_and_motion) {
 /// EXACT: what undamped bodies repay, by whoever looks on. Rounded positions are a share of 1e-12 of what vibrates.
 TEST(Invariance, undamped_bodies_repay_the_same) {
   const End plain = run({}, Integrator::verlet, Grit::undamped);
-  EXPECT_GT(plain.steps, 400) << "books are open, and settled";
+  EXPECT_GT(plain.steps, 400) << "the balance has started, and was corrected";
   for (const Telling& telling : {Telling{{}, {5, -4.9}}, Telling{{}, {0, 0}, 0.65}, Telling{{}, {-500, 70}, 2.2}}) {
     SCOPED_TRACE(telling.drift.x());
     const End end = run(telling, Integrator::verlet, Grit::undamped);

@@ -179,7 +179,7 @@ def overlap(run: Run, frame: int) -> float:
 @pytest.mark.parametrize("solver", ["engine", "reference"])
 def test_force_of_the_overlap(references: list[np.ndarray], solver: str) -> None:
     """The motion hardly feels the contact stiffness: depths are a thousandth of the disc's squeeze. They show it, where
-    contacts repay nothing beside."""
+    contacts correct nothing."""
     run = (CASE.engine("law_alone", scene(VARIANTS[0], 340, SPEED, repays=False)) if solver == "engine" else
            Run(CASE.out / f"reference_{STEPS[1]:g}"))
     times = FRAMES * np.arange(1, 7)  # in touch

@@ -5,10 +5,10 @@ namespace pliant {
 
 /// Computes the forces of a contact pair after a step with the correction of its energy error, and updates that error.
 /// Without a step it applies the stored correction again.
-PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const StepStart* step,
-                                 const ContactHistory& from, ContactHistory& to, PairForceBuffer& forces) {
-  double &owed = to.owed[contact_pair] = from.owed[contact_pair],
-         &repaid = to.repaid[contact_pair] = from.repaid[contact_pair];
+PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pair, const StepStart* step,
+                                           const ContactHistory& from, ContactHistory& to, PairForceBuffer& forces) {
+  double &energy_error = to.energy_error[contact_pair] = from.energy_error[contact_pair],
+         &correction = to.correction[contact_pair] = from.correction[contact_pair];
   const PairTotals& before = last_.totals[contact_pair];
   // Parts of a body with self-contact change with a search.
   const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
@@ -27,29 +27,30 @@ PairTotals ContactSystem::settle(const PairView& view, int contact_pair, const S
     return compute(PairView{model_, view.outlines, near, skin_, view.window, view.elapsed});
   };
 
-  PairTotals now, repaying;
+  PairTotals now, correcting;
   // For a pair that was apart these forces also show whether it still is.
-  const bool was_apart = known && owed != 0 && before.contacts == 0 && reach_of(view.contact_pair.law) == 0;
-  if (was_apart) repaying = compute_apart();
-  const bool still_apart = was_apart && repaying.deepest == 0;
+  const bool was_apart = known && energy_error != 0 && before.contacts == 0 && reach_of(view.contact_pair.law) == 0;
+  if (was_apart) correcting = compute_apart();
+  const bool still_apart = was_apart && correcting.deepest == 0;
   if (still_apart)
-    now.work_before = repaying.work_before, now.kept = repaying.kept;
+    now.work_before = correcting.work_before, now.kept = correcting.kept;
   else
     now = compute(view);
   // The work of a dashpot depends on the step size: the difference is not an energy error.
   if (is_damped(view.contact_pair.law)) return now;
-  if (known) owed += gain(now) - (before.stored - now.stored - now.dissipated);
+  if (known) energy_error += gain(now) - (before.stored - now.stored - now.dissipated);
   if (now.contacts > 0) {
-    if (step) repaid = repayment(owed, most_repaid_, now, before.contacts > 0 ? before.work : 0);
-    scale_forces(view.contact_pair, 1 + repaid, forces);
-  } else if (owed != 0 || still_apart) {
-    if (!still_apart) repaying = compute_apart();
-    now.work = repaying.work;
-    if (step && repaying.contacts > 0 && is_rounding(owed, repaying)) owed = 0;
-    if (step) repaid = repayment(owed, most_repaid_, repaying);
-    scale_forces(view.contact_pair, repaid, forces);
+    if (step)
+      correction = relative_correction(energy_error, largest_correction_, now, before.contacts > 0 ? before.work : 0);
+    scale_forces(view.contact_pair, 1 + correction, forces);
+  } else if (energy_error != 0 || still_apart) {
+    if (!still_apart) correcting = compute_apart();
+    now.work = correcting.work;
+    if (step && correcting.contacts > 0 && is_rounding(energy_error, correcting)) energy_error = 0;
+    if (step) correction = relative_correction(energy_error, largest_correction_, correcting);
+    scale_forces(view.contact_pair, correction, forces);
   }
-  if (known) owed += 0.5 * repaid * now.work;
+  if (known) energy_error += 0.5 * correction * now.work;
   return now;
 }
 

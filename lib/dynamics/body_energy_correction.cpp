@@ -1,4 +1,4 @@
-#include "dynamics/body_debt.hpp"
+#include "dynamics/body_energy_correction.hpp"
 
 #include <algorithm>
 
@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 /// Whether only contacts and a potential do work on the body, and nothing else dissipates its energy.
-bool keeps_debts(const Model& model, int body) {
+bool is_corrected(const Model& model, int body) {
   const Batch& batch = model.batches[model.bodies[body].batch];
   const auto on_body = [&](const auto& condition) { return condition.body == body; };
   const bool law_dissipates = with_law_type<double>(model.groups[batch.group].law,
@@ -96,8 +96,8 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   });
 }
 
-/// Removes the corrected share of the energy error `owed`, J/m, from the vibrations of a batch's bodies.
-void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State& state) {
+/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies.
+void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State& state) {
   const Lanes* q = &state.position.compliant[batch.offset];
   Lanes* v = &state.reduced_momentum.compliant[batch.offset];
   with_nodes(model, batch, [&](const auto& nodes) {
@@ -108,9 +108,10 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes owed, State&
       twice += nodes.mass_at_unit_density[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
     }
     twice = sum_over_body(batch, twice * batch.density * batch.weight);
-    owed = select(abs(owed) < 0.5 * most_owed * twice, owed, Lanes{});
-    const Lanes wanted = settled_share * owed / max(twice, broadcast(1e-300));
-    const Lanes taken = max(min(wanted, broadcast(most_settled)), broadcast(-most_settled));
+    error = select(abs(error) < 0.5 * largest_error * twice, error, Lanes{});
+    const Lanes wanted = corrected_share * error / max(twice, broadcast(1e-300));
+    const Lanes taken =
+        max(min(wanted, broadcast(largest_correction_of_bodies)), broadcast(-largest_correction_of_bodies));
     for (int i = 0; i < batch.slots; ++i) {
       const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
       // 0 in padding
@@ -135,54 +136,54 @@ double contact_work(const Model& model, int body, const Trial& before, const Sta
 
 }  // namespace
 
-BodyDebts::BodyDebts(const Model& model) : model_(model) {
-  if (!model.scene.keeps_energy_debts() || !model.scene.gravity_history.empty()) return;
+BodyEnergyCorrection::BodyEnergyCorrection(const Model& model) : model_(model) {
+  if (!model.scene.corrects_energy() || !model.scene.gravity_history.empty()) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
-    if (body.batch < 0 || !keeps_debts(model, static_cast<int>(b))) continue;
-    repays_.resize(model.batches.size());
+    if (body.batch < 0 || !is_corrected(model, static_cast<int>(b))) continue;
+    corrected_.resize(model.batches.size());
     if (model.batches[body.batch].layout == Layout::spread)
-      repays_[body.batch] = broadcast(1);
+      corrected_[body.batch] = broadcast(1);
     else
-      repays_[body.batch][body.lane] = 1;
+      corrected_[body.batch][body.lane] = 1;
   }
 }
 
-void BodyDebts::book(const Trial& before, State& state) const {
-  if (state.books.work.empty()) return;
+void BodyEnergyCorrection::add_work(const Trial& before, State& state) const {
+  if (state.body_balance.work.empty()) return;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     const Body& body = model_.bodies[b];
-    if (body.batch >= 0 && repays_[body.batch][body.lane] > 0)
-      state.books.work[b] += contact_work(model_, b, before, state);
+    if (body.batch >= 0 && corrected_[body.batch][body.lane] > 0)
+      state.body_balance.work[b] += contact_work(model_, b, before, state);
   });
 }
 
 /// Kinetic, strain and gravitational energy of each body of a batch, J/m.
-Lanes BodyDebts::energy(const Trial& before, const State& state, int b, double dt) const {
+Lanes BodyEnergyCorrection::energy(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   return sum_over_body(batch, shadow_kinetic_energy(model_, batch, before, state, dt) +
                                   strain_energy(model_, batch, motion_of(batch, state.position, state.memory)) -
                                   gravity_moment(model_, batch, model_.scene.gravity, state.position));
 }
 
-Lanes BodyDebts::owed(const Trial& before, const State& state, int b, double dt) const {
+Lanes BodyEnergyCorrection::error(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   const int* bodies = &model_.groups[batch.group].bodies[batch.first];
-  Lanes work = broadcast(state.books.work[bodies[0]]);  // in all lanes for a spread body
-  for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.books.work[bodies[lane]];
-  return energy(before, state, b, dt) - state.books.opening[b] - work;
+  Lanes work = broadcast(state.body_balance.work[bodies[0]]);  // in all lanes for a spread body
+  for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.body_balance.work[bodies[lane]];
+  return energy(before, state, b, dt) - state.body_balance.opening[b] - work;
 }
 
-void BodyDebts::settle(const Trial& before, State& state, double dt) const {
-  if (state.steps % settling_period != 0) return;
-  if (state.books.opening.empty()) {
-    state.books.work.resize(model_.bodies.size());
-    state.books.opening.resize(model_.batches.size());
-    return for_each_batch(model_, [&](int b) { state.books.opening[b] = energy(before, state, b, dt); });
+void BodyEnergyCorrection::correct(const Trial& before, State& state, double dt) const {
+  if (state.steps % correction_period != 0) return;
+  if (state.body_balance.opening.empty()) {
+    state.body_balance.work.resize(model_.bodies.size());
+    state.body_balance.opening.resize(model_.batches.size());
+    return for_each_batch(model_, [&](int b) { state.body_balance.opening[b] = energy(before, state, b, dt); });
   }
   for_each_batch(model_, [&](int b) {
-    if (sum(repays_[b]) > 0)
-      scale_vibrations(model_, model_.batches[b], repays_[b] * owed(before, state, b, dt), state);
+    if (sum(corrected_[b]) > 0)
+      scale_vibrations(model_, model_.batches[b], corrected_[b] * error(before, state, b, dt), state);
   });
 }
 

@@ -1,5 +1,5 @@
 // Bodies that keep their energy (docs/method.md 6): what they owe, and how they repay it.
-#include "dynamics/body_debt.hpp"
+#include "dynamics/body_energy_correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -35,12 +35,12 @@ Trial standing_still(const Bench& bench) {
   return before;
 }
 
-double owed_together(const BodyDebts& debts, const Bench& bench) {
+double total_error(const BodyEnergyCorrection& correction, const Bench& bench) {
   const Trial before = standing_still(bench);
   double total = 0;
   for (int b = 0; b < static_cast<int>(bench.model.batches.size()); ++b) {
-    const Lanes owed = debts.owed(before, bench.state, b, 0);
-    total += bench.model.batches[b].layout == Layout::spread ? owed[0] : sum(owed);
+    const Lanes error = correction.error(before, bench.state, b, 0);
+    total += bench.model.batches[b].layout == Layout::spread ? error[0] : sum(error);
   }
   return total;
 }
@@ -72,31 +72,32 @@ struct Case {
   BuildOptions options;
 };
 
-class BodyDebt : public ::testing::TestWithParam<Case> {};
+class BodyEnergyError : public ::testing::TestWithParam<Case> {};
 
-TEST_P(BodyDebt, is_what_bodies_have_too_much_and_repay_by_vibrations) {
+TEST_P(BodyEnergyError, is_what_bodies_have_too_much_and_repay_by_vibrations) {
   const auto& [mass, options] = GetParam();
   Bench bench(build_model(ringing_discs(mass), options));
-  const BodyDebts debts(bench.model);
-  ASSERT_TRUE(debts.are_kept());
-  debts.settle(standing_still(bench), bench.state, 0);  // opens the books
+  const BodyEnergyCorrection correction(bench.model);
+  ASSERT_TRUE(correction.is_active());
+  correction.correct(standing_still(bench), bench.state, 0);  // starts the balance
   const auto kinetic = [&] { return kinetic_energy(bench.model, bench.state.reduced_momentum); };
   const double start = kinetic();
   make_faster(bench.state, 1e-5);
-  const double faster = kinetic(), owed = owed_together(debts, bench);
-  EXPECT_NEAR(owed, faster - start, 1e-14 * start) << "INDEPENDENT: kinetic energy";
+  const double faster = kinetic(), error = total_error(correction, bench);
+  EXPECT_NEAR(error, faster - start, 1e-14 * start) << "INDEPENDENT: kinetic energy";
 
   const Eigen::Vector3d before = momenta(bench);
-  debts.settle(standing_still(bench), bench.state, 0);
-  const double repaid = faster - kinetic();
+  correction.correct(standing_still(bench), bench.state, 0);
+  const double removed = faster - kinetic();
   EXPECT_LT((momenta(bench) - before).cwiseAbs().maxCoeff(), 1e-14 * before.cwiseAbs().maxCoeff())
       << "EXACT: momentum and angular momentum stay";
-  EXPECT_NEAR(owed_together(debts, bench), owed - repaid, 1e-14 * start) << "INDEPENDENT: kinetic energy";
+  EXPECT_NEAR(total_error(correction, bench), error - removed, 1e-14 * start) << "INDEPENDENT: kinetic energy";
   if (mass == Mass::lumped)
-    EXPECT_NEAR(repaid, settled_share * owed, most_settled * owed) << "EXACT: but for the square of a small change";
+    EXPECT_NEAR(removed, corrected_share * error, largest_correction_of_bodies * error)
+        << "EXACT: but for the square of a small change";
   else
-    EXPECT_TRUE(repaid > settled_share * owed && repaid < 2 * settled_share * owed)
-        << "EXACT: v = C y, the eigenvalues of C lie in [1, 2]: " << repaid / owed;
+    EXPECT_TRUE(removed > corrected_share * error && removed < 2 * corrected_share * error)
+        << "EXACT: v = C y, the eigenvalues of C lie in [1, 2]: " << removed / error;
 }
 
 const Case cases[] = {{Mass::lumped, {1 << 30, true, {}}},
@@ -104,38 +105,39 @@ const Case cases[] = {{Mass::lumped, {1 << 30, true, {}}},
                       {Mass::lumped, {0, false, {}}},
                       {Mass::corrected, {1 << 30, true, {}}},
                       {Mass::corrected, {0, false, {}}}};
-INSTANTIATE_TEST_SUITE_P(LanesAndSpread, BodyDebt, ::testing::ValuesIn(cases));
+INSTANTIATE_TEST_SUITE_P(LanesAndSpread, BodyEnergyError, ::testing::ValuesIn(cases));
 
-TEST(BodyDebts, take_a_hundred_thousandth_a_step_at_most) {
+TEST(BodyEnergyCorrection, take_a_hundred_thousandth_a_step_at_most) {
   Bench bench(ringing_discs(Mass::lumped));
-  const BodyDebts debts(bench.model);
-  debts.settle(standing_still(bench), bench.state, 0);
+  const BodyEnergyCorrection correction(bench.model);
+  correction.correct(standing_still(bench), bench.state, 0);
   make_faster(bench.state, 0.02);
   const std::vector<Lanes> before = bench.state.reduced_momentum.compliant;
-  debts.settle(standing_still(bench), bench.state, 0);
+  correction.correct(standing_still(bench), bench.state, 0);
   double change = 0, reach = 0;  // of a disc as it was meshed vibrations are the stretching
   for (std::size_t i = 0; i < before.size(); ++i) {
     change = std::max(change, std::abs(before[i][0] - bench.state.reduced_momentum.compliant[i][0]));
     reach = std::max(reach, std::abs(bench.state.position.compliant[i][0]));
   }
-  EXPECT_NEAR(change, most_settled * 1.02 * 0.3 * reach, 1e-15) << "EXACT: stretched by 0.3 x, faster by 2 %";
+  EXPECT_NEAR(change, largest_correction_of_bodies * 1.02 * 0.3 * reach, 1e-15)
+      << "EXACT: stretched by 0.3 x, faster by 2 %";
 }
 
-TEST(BodyDebts, wait_where_there_is_less_to_take_from) {
+TEST(BodyEnergyCorrection, wait_where_there_is_less_to_take_from) {
   Bench bench(ringing_discs(Mass::lumped));
-  const BodyDebts debts(bench.model);
-  debts.settle(standing_still(bench), bench.state, 0);
-  make_faster(bench.state, 0.5);  // owed is 1.25 times all kinetic energy, of which vibrations have 0.4
+  const BodyEnergyCorrection correction(bench.model);
+  correction.correct(standing_still(bench), bench.state, 0);
+  make_faster(bench.state, 0.5);  // error is 1.25 times all kinetic energy, of which vibrations have 0.4
   const Dofs before = bench.state.reduced_momentum;
-  debts.settle(standing_still(bench), bench.state, 0);
+  correction.correct(standing_still(bench), bench.state, 0);
   EXPECT_EQ(kinetic_energy(bench.model, bench.state.reduced_momentum), kinetic_energy(bench.model, before)) << "EXACT";
 }
 
-TEST(BodyDebts, are_kept_where_energy_has_no_other_way) {
+TEST(BodyEnergyCorrection, are_kept_where_energy_has_no_other_way) {
   const auto kept = [](auto&& change) {
     Scene scene = ringing_discs(Mass::lumped);
     change(scene);
-    return BodyDebts(build_model(scene)).are_kept();
+    return BodyEnergyCorrection(build_model(scene)).is_active();
   };
   EXPECT_TRUE(kept([](Scene&) {}));
   EXPECT_FALSE(kept([](Scene& scene) { scene.materials[0].viscosity = 0.1; }));
@@ -184,27 +186,27 @@ Lanes owed_by_linear(const Bench& bench, const Trial& before, const Batch& batch
   return total / 12;
 }
 
-struct Debts {
+struct Errors {
   double largest = 0;     ///< of one body's, J/m
   double off_linear = 0;  ///< largest difference from owed_by_linear, J/m
   double lost = 0;        ///< largest loss of kinetic energy, J/m
 };
 
 /// In equal steps, by settlements too.
-Debts debts_over(const Scene& scene, double dt, double end) {
+Errors errors_over(const Scene& scene, double dt, double end) {
   Bench bench(scene);
   Verlet verlet(bench.forces, bench.state);
-  const BodyDebts debts(bench.model);
-  bench.state.steps = -1;  // so that the first step opens the books
+  const BodyEnergyCorrection correction(bench.model);
+  bench.state.steps = -1;  // so that the first step starts the balance
   const double start = kinetic_energy(bench.model, bench.state.reduced_momentum);
-  Debts result;
+  Errors result;
   for (int step = 0; step < std::lround(end / dt); ++step) {
     bench.state.next_dt = dt;
     take_step(verlet, bench.forces, bench.state, 1e9);
     result.lost = std::max(result.lost, start - kinetic_energy(bench.model, bench.state.reduced_momentum));
     for (int b = 0; b < static_cast<int>(bench.model.batches.size()); ++b) {
       const Batch& batch = bench.model.batches[b];
-      const Lanes each = debts.owed(verlet.trial(), bench.state, b, dt),
+      const Lanes each = correction.error(verlet.trial(), bench.state, b, dt),
                   off = each - owed_by_linear(bench, verlet.trial(), batch, dt);
       for (int lane = 0; lane < batch.count; ++lane) {
         result.largest = std::max(result.largest, std::abs(each[lane]));
@@ -216,19 +218,19 @@ Debts debts_over(const Scene& scene, double dt, double end) {
 }
 
 /// The work of the mean of linear forces is what they store, in touch as well.
-TEST(BodyDebts, of_linear_bodies_are_those_of_the_moment) {
+TEST(BodyEnergyCorrection, of_linear_bodies_are_those_of_the_moment) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
     Scene scene = two_discs_meet(MaterialLaw::linear_elastic);
     scene.discretisation.mass = mass;
-    const Debts debts = debts_over(scene, 0.02, 3.9);  // up to the first settlement
-    EXPECT_GT(debts.lost, 0.01) << "or they did not meet";
-    EXPECT_LT(debts.off_linear, 1e-13 * debts.lost) << "EXACT: rounding of some hundred steps";
-    EXPECT_GT(debts.largest, 1e-6 * debts.lost) << "or there is nothing to see";
+    const Errors errors = errors_over(scene, 0.02, 3.9);  // up to the first settlement
+    EXPECT_GT(errors.lost, 0.01) << "or they did not meet";
+    EXPECT_LT(errors.off_linear, 1e-13 * errors.lost) << "EXACT: rounding of some hundred steps";
+    EXPECT_GT(errors.largest, 1e-6 * errors.lost) << "or there is nothing to see";
   }
 }
 
 /// Of free linear bodies nothing flickers.
-TEST(BodyDebts, of_linear_bodies_that_ring_are_none) {
+TEST(BodyEnergyCorrection, of_linear_bodies_that_ring_are_none) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
     Scene scene = free_disc(30, 20, stretching(0.01));
     scene.materials[0].law = MaterialLaw::linear_elastic;
@@ -236,35 +238,36 @@ TEST(BodyDebts, of_linear_bodies_that_ring_are_none) {
     without_error_control(scene, 1);
     const Bench start(scene);
     const double energy = kinetic_energy(start.model, start.state.reduced_momentum);
-    EXPECT_LT(debts_over(scene, 0.05, 9.9).largest, 1e-13 * energy) << "EXACT: rounding of some hundred steps";
+    EXPECT_LT(errors_over(scene, 0.05, 9.9).largest, 1e-13 * energy) << "EXACT: rounding of some hundred steps";
   }
 }
 
 void expect_order(const Scene& scene, const std::vector<double>& steps, double end, double order, double tolerance) {
-  std::vector<double> owed;
-  for (const double dt : steps) owed.push_back(debts_over(scene, dt, end).largest);
-  for (std::size_t i = 0; i + 1 < owed.size(); ++i)
-    EXPECT_NEAR(observed_order(owed[i], owed[i + 1]), order, tolerance) << "RATE: " << owed[i] << ", " << owed[i + 1];
+  std::vector<double> error;
+  for (const double dt : steps) error.push_back(errors_over(scene, dt, end).largest);
+  for (std::size_t i = 0; i + 1 < error.size(); ++i)
+    EXPECT_NEAR(observed_order(error[i], error[i + 1]), order, tolerance)
+        << "RATE: " << error[i] << ", " << error[i + 1];
 }
 
-TEST(BodyDebts, of_bodies_that_meet_fall_with_the_square_of_the_step) {
+TEST(BodyEnergyCorrection, of_bodies_that_meet_fall_with_the_square_of_the_step) {
   expect_order(two_discs_meet(MaterialLaw::neo_hookean), {0.02, 0.01, 0.005}, 4, 2, 0.3);
 }
 
 /// What velocity Verlet keeps of nonlinear vibrations, but for half of the last step's gain; without the terms of the
 /// step, debts fall with the square.
-TEST(BodyDebts, of_a_free_body_fall_with_the_third_power_of_the_step) {
+TEST(BodyEnergyCorrection, of_a_free_body_fall_with_the_third_power_of_the_step) {
   Scene scene = free_disc(60, 20, stretching(0.1));
   without_error_control(scene, 1);
   expect_order(scene, {0.04, 0.02, 0.01}, 20, 3, 0.5);
 }
 
-TEST(BodyDebts, a_fall_owes_nothing) {
+TEST(BodyEnergyCorrection, a_fall_owes_nothing) {
   Scene scene = free_disc(30, 20, moving({0.1, 0.3}));
   scene.gravity = {0.02, -0.2};
   without_error_control(scene, 1);
   const double weight = 0.2 * M_PI, fallen = 0.5 * 0.2 * 25 - 0.3 * 5;
-  EXPECT_LT(debts_over(scene, 0.02, 5).largest, 1e-13 * weight * fallen) << "EXACT: rounding of steps";
+  EXPECT_LT(errors_over(scene, 0.02, 5).largest, 1e-13 * weight * fallen) << "EXACT: rounding of steps";
 }
 
 }  // namespace

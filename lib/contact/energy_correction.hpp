@@ -23,7 +23,7 @@ namespace pliant {
 /// most. A share that changes its sign from step to step can excite such a motion well below that limit. With nine
 /// tenths of the limit no contact at rest was seen to chatter, with all of it one was
 /// (docs/notes/energy_correction.md).
-inline double most_repaid(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
+inline double largest_correction(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
 
 /// Motion of a rigid body in a step.
 struct RigidStep {
@@ -44,7 +44,7 @@ struct PairStep {
 
 /// Kinetic energy that the present and the previous forces add in a step, J/m, without dt^2 F^2/(8 m). That term is
 /// reversible unless the step size changes, or forces jump; then the energy that rigid bodies keep counts. Compliant
-/// bodies account for it themselves (lib/dynamics/body_debt.hpp).
+/// bodies account for it themselves (lib/dynamics/body_energy_correction.hpp).
 inline double gain(const PairTotals& now) { return 0.5 * (now.work_before + now.work) + now.kept; }
 
 /// Transfers the forces of a contact pair that was searched or stored again to the present entries of its nodes.
@@ -54,10 +54,10 @@ void carry_forces(const Model& model, const ContactPair& old, const PairForceBuf
 /// Relative change -c W of a contact pair's forces that corrects an energy error, J/m. `work_before`: work of the same
 /// law's forces in the last step. The larger work counts, because where the motion reverses the next displacement may
 /// be many times this one.
-double repayment(double debt, double most, const PairTotals& now, double work_before = 0);
+double relative_correction(double error, double most, const PairTotals& now, double work_before = 0);
 /// Whether the energy error is so small that it may be rounding of energies. Each correction removes about half of the
 /// error, which would never end. `now`: totals of parting_law(), whose gaps are about half a spacing.
-inline bool is_rounding(double debt, const PairTotals& now) { return std::abs(debt) < 1e-15 * now.squares; }
+inline bool is_rounding(double error, const PairTotals& now) { return std::abs(error) < 1e-15 * now.squares; }
 void scale_forces(const ContactPair& contact_pair, double factor, PairForceBuffer& forces);
 /// Law whose forces correct the energy error after a pair has separated, up to a skin beyond its own law's reach. Their
 /// magnitude does not matter.

@@ -1,5 +1,5 @@
 // What contacts gain or lose in a step, and that they give it back.
-#include "contact/energy_debt.hpp"
+#include "contact/energy_correction.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,33 +38,33 @@ double squares(const Model& model, const Dofs& force) {
 
 double gained(Simulation& simulation) { return simulation.energy_gained(simulation.energy_balance().energy); }
 
-double owed(const Simulation& simulation) {
-  const std::vector<double>& all = simulation.state().memory.contact.owed;
+double energy_error(const Simulation& simulation) {
+  const std::vector<double>& all = simulation.state().memory.contact.energy_error;
   return std::accumulate(all.begin(), all.end(), 0.0);
 }
 
-/// INDEPENDENT: debts grow by what the energies of bodies and contacts gain in a step, but for the term that velocity
-/// Verlet gives and takes, dt^2 sum F^2/m / 8 with the step before each force. Steps change, and bodies turn. To
-/// rounding.
-void expect_debts_to_be_gains(const ContactRule& rule) {
+/// INDEPENDENT: energy errors grow by what the energies of bodies and contacts gain in a step, but for the term that
+/// velocity Verlet gives and takes, dt^2 sum F^2/m / 8 with the step before each force. Steps change, and bodies turn.
+/// To rounding.
+void expect_errors_to_be_gains(const ContactRule& rule) {
   const Model model = build_model(glancing_blow(rule));
   Simulation simulation(model);
-  double debts = 0, left = 0, dt_before = 0;
+  double errors = 0, left = 0, dt_before = 0;
   for (int step = 0;; ++step) {
     const State before = simulation.state();
-    const double energy = gained(simulation), debt = owed(simulation);
+    const double energy = gained(simulation), error = energy_error(simulation);
     simulation.step(step % 3 == 0 ? simulation.state().time + 0.7 * dt_before + 1e-3 : 1000);
     if (simulation.state().time > 1 && simulation.forces().contact().contact_pairs().empty()) break;  // out of sight
     const State& after = simulation.state();
-    const double dt = after.time - before.time, grown = owed(simulation) - debt;
+    const double dt = after.time - before.time, grown = energy_error(simulation) - error;
     const double gain = gained(simulation) - energy - dt * dt / 8 * squares(model, after.force) +
                         dt_before * dt_before / 8 * squares(model, before.force);
     EXPECT_NEAR(grown, gain, 1e-13) << "step " << step;
     dt_before = dt;
-    debts += std::abs(grown), left = std::abs(owed(simulation));
+    errors += std::abs(grown), left = std::abs(energy_error(simulation));
   }
-  EXPECT_GT(debts, 1e-5) << "or there is nothing to see";
-  EXPECT_LT(left, 1e-9 * debts) << "repaid";
+  EXPECT_GT(errors, 1e-5) << "or there is nothing to see";
+  EXPECT_LT(left, 1e-9 * errors) << "repaid";
 }
 
 /// Squares of four nodes and discs that slide on a periodic floor, over its seam too, on and beside each other.
@@ -123,7 +123,7 @@ double pull_on(const Model& model, int body, const State& at) {
 /// contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four units in the
 /// last place of energies, and of places in each force's work: the floor's nodes beyond its seam stand a period off.
 /// And but for what pairs that have parted drop as rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
-void expect_debts_to_be_work(const ContactRule& rule) {
+void expect_errors_to_be_work(const ContactRule& rule) {
   const Scene scene = crowded_floor(rule);
   const double period = *scene.period, rounding = 4 * std::numeric_limits<double>::epsilon(), dropped = 1e-17;
   const Model model = build_model(scene);
@@ -132,7 +132,7 @@ void expect_debts_to_be_work(const ContactRule& rule) {
   double dt_before = 0;
   for (int step = 0; step < 3000; ++step) {
     const State before = simulation.state();
-    const double debt = owed(simulation);
+    const double error = energy_error(simulation);
     const auto layout = simulation.forces().contact().table().laid_out();
     const long refreshes = simulation.forces().contact().refreshes();
     simulation.step(1e9);
@@ -147,7 +147,7 @@ void expect_debts_to_be_work(const ContactRule& rule) {
       work += 0.5 * (on_body.before + on_body.after) - pull, size += on_body.size + std::abs(pull);
     }
     const double lost = before.contact_energy - after.contact_energy - (after.dissipated - before.dissipated);
-    EXPECT_NEAR(owed(simulation) - debt, work - lost, rounding * size + dropped) << "step " << step;
+    EXPECT_NEAR(energy_error(simulation) - error, work - lost, rounding * size + dropped) << "step " << step;
     searched += simulation.forces().contact().refreshes() != refreshes;
     seen += work != 0;
   }
@@ -155,34 +155,34 @@ void expect_debts_to_be_work(const ContactRule& rule) {
   EXPECT_GT(seen, 1000);
 }
 
-TEST(EnergyDebt, is_the_work_of_all_nodes_less_what_contacts_lose) {
+TEST(EnergyCorrection, is_the_work_of_all_nodes_less_what_contacts_lose) {
   for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.3), cohesive(100, 0.1, 0.02, 0.1)})
-    expect_debts_to_be_work(rule);
+    expect_errors_to_be_work(rule);
 }
 
 /// EXACT: what a dashpot takes depends on the step; repaid, the difference would be restitution lost.
-TEST(EnergyDebt, is_none_of_pairs_with_dashpots) {
+TEST(EnergyCorrection, is_none_of_pairs_with_dashpots) {
   ContactRule rule = mohr_coulomb(100, 0.5);
   rule.restitution = 0.5;
   std::vector<double> velocity[2];
-  for (const bool repays : {false, true}) {
+  for (const bool corrects : {false, true}) {
     Scene scene = glancing_blow(rule);
-    scene.contact.energy_consistent = repays;
+    scene.contact.energy_consistent = corrects;
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 20);
-    velocity[repays] = simulation.state().reduced_momentum.rigid;
-    EXPECT_EQ(repays ? owed(simulation) : 0, 0);
+    velocity[corrects] = simulation.state().reduced_momentum.rigid;
+    EXPECT_EQ(corrects ? energy_error(simulation) : 0, 0);
   }
   EXPECT_EQ(velocity[false], velocity[true]);
   EXPECT_LT(std::abs(velocity[true][0]), 0.019) << "they have met";
 }
 
-TEST(EnergyDebt, is_what_bodies_and_contacts_gain) {
-  expect_debts_to_be_gains(frictionless(100));
-  expect_debts_to_be_gains(mohr_coulomb(100, 0.5));
-  expect_debts_to_be_gains(mohr_coulomb(100, 0.3, 0.2, 1));
-  expect_debts_to_be_gains(cohesive(100, 1, 0.03, 1));
+TEST(EnergyCorrection, is_what_bodies_and_contacts_gain) {
+  expect_errors_to_be_gains(frictionless(100));
+  expect_errors_to_be_gains(mohr_coulomb(100, 0.5));
+  expect_errors_to_be_gains(mohr_coulomb(100, 0.3, 0.2, 1));
+  expect_errors_to_be_gains(cohesive(100, 1, 0.03, 1));
 }
 
 /// Spurious energy of a disc that is pressed onto another one, let go and thrown off, over the energy that was stored.
@@ -209,7 +209,7 @@ double gained_by_letting_go(const Drive& push) {
 }
 
 /// EXACT: accelerations jump where an imposed motion or a load ends, and with them what velocity Verlet keeps.
-TEST(EnergyDebt, counts_loads_that_jump_while_bodies_touch) {
+TEST(EnergyCorrection, counts_loads_that_jump_while_bodies_touch) {
   const Window until_four{.until = 4};
   EXPECT_LT(gained_by_letting_go({Drive::Mode::velocity, constant(-0.02), 0, until_four}), 1e-11);
   EXPECT_LT(gained_by_letting_go({Drive::Mode::force, constant(-0.01), 0, until_four}), 1e-11);
@@ -227,7 +227,7 @@ std::vector<double> on_nodes(const Model& model, const ContactPair& contact_pair
 
 /// EXACT: a contact pair that goes all the way around a body and further shows some nodes twice. Laid out anew, with
 /// other nodes twice, it did to each node what it did before.
-TEST(EnergyDebt, forces_go_along_with_their_nodes) {
+TEST(EnergyCorrection, forces_go_along_with_their_nodes) {
   const Model model = build_model(glancing_blow(frictionless(100)));
   const int n = model.outline_of(0).count, room = 2 * n;
   ContactPair old, now;
@@ -255,7 +255,7 @@ double bounce_gain(double height, double stiffness, bool consistent) {
 
 /// What is left is not of contacts: Verlet keeps K + U - dt^2 sum m a^2 / 8, which of a disc that rings differs by some
 /// 1e-4 from what it was in flight.
-TEST(EnergyDebt, bounces_keep_their_energy) {
+TEST(EnergyCorrection, bounces_keep_their_energy) {
   double plain = 0, consistent = 0;
   for (const double height : {1.05, 1.1, 1.21, 1.37, 1.5}) {
     plain = std::max(plain, bounce_gain(height, 3000, false));
@@ -288,7 +288,7 @@ double flat_bounces(double speed, bool consistent) {
 
 /// EXACT: what one node owes is repaid to rounding while it is in sight, a skin of 0.125 here: ways of 0.0016 a step
 /// are short beside it, those of an impact that goes through a sixth of a segment are not.
-TEST(EnergyDebt, bounces_of_rigid_bodies_are_exact) {
+TEST(EnergyCorrection, bounces_of_rigid_bodies_are_exact) {
   EXPECT_GT(flat_bounces(0.01, false), 0.05) << "or there is nothing to see";
   EXPECT_LT(flat_bounces(0.01, true), 1e-12);
   EXPECT_LT(flat_bounces(0.03, true), 1e-12);
@@ -326,7 +326,7 @@ double agitated(double speed, bool consistent, int seed) {
 
 /// EXACT: in 10,000 steps plain contacts gain 1e-2, corrected ones nothing but rounding: that many sums of energies,
 /// each to 1e-15 of the whole.
-TEST(EnergyDebt, discs_between_walls_keep_their_energy) {
+TEST(EnergyCorrection, discs_between_walls_keep_their_energy) {
   EXPECT_GT(agitated(0.01, false, 2), 5e-3) << "or there is nothing to see";
   EXPECT_LT(agitated(0.01, true, 2), 1e-11);
 }

@@ -1,4 +1,4 @@
-#include "contact/energy_debt.hpp"
+#include "contact/energy_correction.hpp"
 
 #include <algorithm>
 
@@ -26,11 +26,11 @@ void carry_forces(const Model& model, const ContactPair& old, const PairForceBuf
   }
 }
 
-double repayment(double debt, double most, const PairTotals& now, double work_before) {
+double relative_correction(double error, double most, const PairTotals& now, double work_before) {
   const double square = std::max(now.work * now.work, work_before * work_before);
   if (square == 0 || now.squares == 0) return 0;
   const double limit = most / now.squares;
-  return -std::clamp(debt / square, -limit, limit) * now.work;
+  return -std::clamp(error / square, -limit, limit) * now.work;
 }
 
 void scale_forces(const ContactPair& contact_pair, double factor, PairForceBuffer& forces) {
