@@ -26,7 +26,7 @@ void Progress::show_if_due(const TimeStepping& run, const StepRecord& last, cons
       "t = {:.4g} of {:.4g} s | dt {:.3g} s | Newton iterations {}, residual {:.1e} | least J {:.4f} | balance {:.1e} "
       "| "
       "{} steps, {} halved | {:.0f} s left",
-      time, end_, last.dt, last.iterations, last.residual, least_jacobian(run.forces()), run.books().balance_error(),
+      time, end_, last.dt, last.iterations, last.residual, least_jacobian(run.forces()), run.balance().balance_error(),
       effort.steps, effort.bisections, seconds() * (end_ - time) / time);
   open_ = terminal_ && !each;
   std::fprintf(stderr, open_ ? "\r\033[K%s" : "%s\n", line.c_str());

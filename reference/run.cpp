@@ -105,7 +105,7 @@ class Outputs {
     ++effort.steps;
     longest_step_ = std::max(longest_step_, record.dt);
     effort.bisections += record.bisections, effort.iterations += record.iterations;
-    if (run_.books().made() > most_made_) most_made_ = run_.books().made(), most_made_at_ = run_.motion().time;
+    if (run_.balance().made() > most_made_) most_made_ = run_.balance().made(), most_made_at_ = run_.motion().time;
     const Forces& forces = run_.forces();
     contacts_seen_.add(forces);
     steps_.row({run_.motion().time, record.dt, record.residual, static_cast<double>(effort.bisections),
@@ -131,7 +131,7 @@ class Outputs {
   void finish(const std::string& status) {
     progress_.finish();
     write_summary(status);
-    const double scale = run_.books().scale();
+    const double scale = run_.balance().scale();
     if (options_.solver.statics || most_made_ <= made_energy * scale + least_energy(system_.bodies())) return;
     spdlog::warn(
         "the time steps have made energy: up to {:.2g} % of what the scene had or took up, at t = {:.6g} s; {}",
@@ -141,7 +141,7 @@ class Outputs {
  private:
   nlohmann::ordered_json summary(const std::string& status) const {
     const Scene& scene = system_.bodies().scene();
-    const Books& books = run_.books();
+    const EnergyBalance& balance = run_.balance();
     const LinearSolver::Counts& counts = run_.solver_counts();
     nlohmann::ordered_json json;
     json["scene"] = scene.name;
@@ -154,13 +154,13 @@ class Outputs {
     json["rejections"] = effort.bisections;
     json["evaluations"] = effort.iterations;
     json["wall_seconds"] = progress_.seconds();
-    json["energy"] = {{"kinetic", books.kinetic},
-                      {"strain", books.strain},
-                      {"contact", books.contact},
-                      {"boundary", books.boundary},
-                      {"dissipated", books.dissipated()},
-                      {"external_work", books.external_work()},
-                      {"balance_error", books.balance_error()}};
+    json["energy"] = {{"kinetic", balance.kinetic},
+                      {"strain", balance.strain},
+                      {"contact", balance.contact},
+                      {"boundary", balance.boundary},
+                      {"dissipated", balance.dissipated()},
+                      {"external_work", balance.external_work()},
+                      {"balance_error", balance.balance_error()}};
     json["initial_overlap"] = {{"pairs", overlap_.pairs},
                                {"depth", overlap_.depth},
                                {"depth_over_segment", overlap_.share},
@@ -249,7 +249,7 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   if (options.quiet) return;
   fmt::print("{}: t = {:.6g} s, {} steps, {} halved, {} Newton iterations, energy balance {:.2e}\n",
              options.out.string(), run.motion().time, outputs.effort.steps, outputs.effort.bisections,
-             outputs.effort.iterations, run.books().balance_error());
+             outputs.effort.iterations, run.balance().balance_error());
 }
 
 }  // namespace pliant::reference

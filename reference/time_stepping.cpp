@@ -38,11 +38,11 @@ std::string worst_body(const Vector& residual, const Bodies& bodies) {
 
 }  // namespace
 
-double Books::made() const { return mechanical() - at_start - external_work() + dissipated(); }
+double EnergyBalance::made() const { return mechanical() - at_start - external_work() + dissipated(); }
 
-double Books::scale() const { return std::max({std::abs(external_work()), std::abs(at_start), dissipated()}); }
+double EnergyBalance::scale() const { return std::max({std::abs(external_work()), std::abs(at_start), dissipated()}); }
 
-double Books::balance_error() const { return scale() > 0 ? std::abs(made()) / scale() : 0.0; }
+double EnergyBalance::balance_error() const { return scale() > 0 ? std::abs(made()) / scale() : 0.0; }
 
 struct TimeStepping::Trial {
   Motion motion;
@@ -75,9 +75,9 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   } else {
     find_acceleration();
   }
-  books_.kinetic = 0.5 * motion_.v.dot(mass_ * motion_.v);
-  books_.strain = forces_.strain, books_.contact = forces_.contact, books_.boundary = forces_.boundary;
-  books_.at_start = books_.mechanical();
+  balance_.kinetic = 0.5 * motion_.v.dot(mass_ * motion_.v);
+  balance_.strain = forces_.strain, balance_.contact = forces_.contact, balance_.boundary = forces_.boundary;
+  balance_.at_start = balance_.mechanical();
 }
 
 std::vector<int> TimeStepping::free_dofs(double time) const {
@@ -237,37 +237,39 @@ double TimeStepping::largest_motion(const Vector& next) const {
   return largest;
 }
 
-void TimeStepping::book(const Trial& trial) {
+void TimeStepping::update_balance(const Trial& trial) {
   const Loads& loads = system_.loads();
   const Motion &before = motion_, &after = trial.motion;
   const Vector moved = after.q - before.q;
   const Bodies& bodies = system_.bodies();
-  books_.work_of_gravity += 0.5 * (loads.gravity(before.time) + loads.gravity(after.time)).dot(moved);
-  books_.work_of_loads += 0.5 * (loads.applied({before.time}) + loads.applied(after.instant())).dot(moved) +
-                          loads.outline_work(bodies.outline_positions(before.q), before.time,
-                                             bodies.outline_positions(after.q), after.instant());
+  balance_.work_of_gravity += 0.5 * (loads.gravity(before.time) + loads.gravity(after.time)).dot(moved);
+  balance_.work_of_loads += 0.5 * (loads.applied({before.time}) + loads.applied(after.instant())).dot(moved) +
+                            loads.outline_work(bodies.outline_positions(before.q), before.time,
+                                               bodies.outline_positions(after.q), after.instant());
   // A dashpot between a node and a moving target dissipates the work of both.
   if (after.moves) {
     const double by_targets =
         loads.dashpot_work(forces_.outline_velocity, before.time, trial.forces.outline_velocity, after.instant());
-    books_.work_of_loads += by_targets;
-    books_.dissipated_by_damping += by_targets;
+    balance_.work_of_loads += by_targets;
+    balance_.dissipated_by_damping += by_targets;
   }
   // The constraint of an imposed motion supplies its kinetic energy and works against the other forces.
   for (int i = 0; i < moved.size(); ++i)
     if (loads.imposed(i, before.time))
-      books_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
-                              0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
-  books_.dissipated_by_contact += trial.forces.dissipated;
-  books_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
+      balance_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
+                                0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
+  balance_.dissipated_by_contact += trial.forces.dissipated;
+  balance_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
   if (after.moves)
-    books_.dissipated_by_damping += 0.5 * (after.time - before.time) * (forces_.creep_power + trial.forces.creep_power);
-  books_.kinetic = 0.5 * after.v.dot(mass_ * after.v);
-  books_.strain = trial.forces.strain, books_.contact = trial.forces.contact, books_.boundary = trial.forces.boundary;
+    balance_.dissipated_by_damping +=
+        0.5 * (after.time - before.time) * (forces_.creep_power + trial.forces.creep_power);
+  balance_.kinetic = 0.5 * after.v.dot(mass_ * after.v);
+  balance_.strain = trial.forces.strain, balance_.contact = trial.forces.contact,
+  balance_.boundary = trial.forces.boundary;
 }
 
 void TimeStepping::accept(const Trial& trial) {
-  book(trial);
+  update_balance(trial);
   system_.accept();
   motion_ = trial.motion;
   acceleration_ = trial.acceleration;
@@ -283,8 +285,8 @@ void TimeStepping::pass_switch() {
   const double stored = forces_.boundary;
   forces_ = evaluate(motion_, false);
   find_acceleration();
-  books_.work_of_loads += forces_.boundary - stored;
-  books_.boundary = forces_.boundary;
+  balance_.work_of_loads += forces_.boundary - stored;
+  balance_.boundary = forces_.boundary;
 }
 
 }  // namespace pliant::reference

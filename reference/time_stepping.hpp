@@ -20,7 +20,7 @@ struct SolverOptions {
 };
 
 /// Energy balance of a run, J/m, as in the engine (docs/method.md 6).
-struct Books {
+struct EnergyBalance {
   double kinetic = 0, strain = 0, contact = 0, boundary = 0;
   double dissipated_by_contact = 0, dissipated_by_damping = 0;
   double work_of_loads = 0, work_of_gravity = 0;
@@ -58,7 +58,7 @@ class TimeStepping {
   const Forces& forces() const { return forces_; }  ///< at the present motion
   const Vector& acceleration() const { return acceleration_; }
   const SparseMatrix& mass() const { return mass_; }
-  const Books& books() const { return books_; }
+  const EnergyBalance& balance() const { return balance_; }
   const LinearSolver::Counts& solver_counts() const { return solver_.counts(); }
 
  private:
@@ -66,7 +66,7 @@ class TimeStepping {
   void step(double until, int depth, StepRecord& record);
   bool try_step(double until, Trial& trial, StepRecord& record);
   void accept(const Trial& trial);
-  void book(const Trial& trial);
+  void update_balance(const Trial& trial);
   void pass_switch();
   Forces evaluate(const Motion& motion, bool tangent);
   Vector predicted(double dt) const;
@@ -90,7 +90,7 @@ class TimeStepping {
   Motion motion_;
   Vector acceleration_;
   Forces forces_;
-  Books books_;
+  EnergyBalance balance_;
   std::string worst_;  ///< body with the largest residual of the last evaluation
 };
 

@@ -15,7 +15,7 @@ namespace pliant {
 namespace {
 
 /// Stores the sums of the evaluation that gave a state its forces.
-void book_forces(const Evaluation& found, State& state) {
+void take_over_sums(const Evaluation& found, State& state) {
   state.damping_power = found.damping_power;
   state.contact_energy = found.contact.stored;
   state.contacts = found.contact.contacts;
@@ -57,7 +57,7 @@ Evaluation find_forces(Forces& forces, State& state) {
   std::swap(state.contact_force, trial.contact_force);
   std::swap(state.memory, trial.memory);
   add_drag(forces.model(), {state.time}, state.reduced_momentum, state.force);
-  book_forces(found, state);
+  take_over_sums(found, state);
   return found;
 }
 
@@ -86,7 +86,7 @@ void take_over(const Model& model, State& state, Trial& trial, const Verdict& ve
   ++state.steps;
   state.rejections += report.rejections;
   state.evaluations += report.evaluations;
-  book_forces(report.evaluation, state);
+  take_over_sums(report.evaluation, state);
   if (std::binary_search(model.switch_times.begin(), model.switch_times.end(), end_time)) pass_switch(model, state);
 }
 

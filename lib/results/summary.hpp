@@ -18,7 +18,7 @@ struct RunFigures {
   double checkpoint_time = -1;  ///< s of the scene; -1: none yet
 };
 
-/// summary.json: what a run was, what it cost and how well its books balance. `status`: "running" (at the last
+/// summary.json: what a run was, what it cost and how well its energy balance closes. `status`: "running" (at the last
 /// checkpoint, or the start), "finished", "stopped: SIGINT" or "failed: ..." with the reason.
 std::string summary_json(Simulation& simulation, const RunFigures& figures, const std::string& status);
 

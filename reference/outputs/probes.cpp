@@ -120,17 +120,18 @@ double momentum_error(const View& view) {
 }
 
 Rows energy(const View& view, const Probe&, const std::vector<const Body*>&) {
-  const Books& books = view.run().books();
+  const EnergyBalance& balance = view.run().balance();
   Rows rows;
-  rows.add({books.kinetic, books.strain, books.contact, books.boundary, books.dissipated(), books.external_work(),
-            books.balance_error(), momentum_error(view)});
+  rows.add({balance.kinetic, balance.strain, balance.contact, balance.boundary, balance.dissipated(),
+            balance.external_work(), balance.balance_error(), momentum_error(view)});
   return rows;
 }
 
 Rows works(const View& view, const Probe&, const std::vector<const Body*>&) {
-  const Books& books = view.run().books();
+  const EnergyBalance& balance = view.run().balance();
   Rows rows;
-  rows.add({books.work_of_loads, books.work_of_gravity, books.dissipated_by_contact, books.dissipated_by_damping});
+  rows.add(
+      {balance.work_of_loads, balance.work_of_gravity, balance.dissipated_by_contact, balance.dissipated_by_damping});
   return rows;
 }
 

@@ -227,8 +227,8 @@ TEST(Work, of_an_imposed_motion_is_that_of_the_contact_forces_against_it) {
   const double weight_work = -0.02 * model.bodies[2].mass * -0.15;
   EXPECT_GT(work, 1e-4);
   EXPECT_NEAR(simulation.state().external_work, work - weight_work, 1e-10) << "EXACT";
-  const double books = simulation.balance_error(simulation.energy_balance().energy);
-  EXPECT_LT(books, 0.01) << "EXACT: the promise of 1 %";
+  const double balance = simulation.balance_error(simulation.energy_balance().energy);
+  EXPECT_LT(balance, 0.01) << "EXACT: the promise of 1 %";
 }
 
 /// The largest imbalance met while a plate sets itself in motion, touches a disc and squeezes it.

@@ -1,4 +1,4 @@
-// Pressures and soft supports on parts of outlines (docs/method.md 5): forces, work, books.
+// Pressures and soft supports on parts of outlines (docs/method.md 5): forces, work, energy balance.
 #include "boundary/outline_loads.hpp"
 
 #include <gtest/gtest.h>
@@ -220,7 +220,7 @@ TEST(Support, lets_a_body_swing_at_the_frequency_of_spring_and_mass) {
   EXPECT_NEAR(time / quarter, 1, 2e-3) << "EXACT: to the step and (w/w_body)^2";
 }
 
-/// Dragged through its dashpots, let go, caught again: all energies are booked.
+/// Dragged through its dashpots, let go, caught again: all energies are accounted for.
 TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
   BoundaryCondition bottom = support_of("square", 5, 0.5);
   bottom.part = side({0, -1});
@@ -257,9 +257,9 @@ TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
   EXPECT_NEAR(observed_order(middle, fine), 2, 0.5) << "RATE";
 }
 
-/// A pulled square is let go at one side while the other holds on: what the books lose over the step of the release,
-/// over the energy in the springs that end. RATE: the cube of the step, as in any other; with the energy of the springs
-/// alone it is the first order.
+/// A pulled square is let go at one side while the other holds on: what the energy balance lose over the step of the
+/// release, over the energy in the springs that end. RATE: the cube of the step, as in any other; with the energy of
+/// the springs alone it is the first order.
 TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
   const auto loss = [](double safety) {
     BoundaryCondition bottom = support_of("square", 5, 0), top = bottom;

@@ -105,7 +105,7 @@ quantity = "position"
 of = "grains"
 period = 0.015
 [[probes]]
-name = "books"
+name = "balance"
 quantity = "energy"
 period = 0.5
 [frames]

@@ -131,11 +131,11 @@ def test_other_times_and_columns_are_told(half) -> None:
     assert half.run("--out", "short", "--until", "6 ns", "--quiet").returncode == 0
     text = compared(half, 1, "out", "short", "--tolerance", "1e9")
     assert "probes: 6 and 4 times, 4 in common" in text and "frames: 2 and 1 times, 1 in common" in text
-    half.write(TWO_DISCS.replace('name = "energies"', 'name = "books"').replace('["velocity", ', '['))
+    half.write(TWO_DISCS.replace('name = "energies"', 'name = "balance"').replace('["velocity", ', '['))
     assert half.run("--out", "other", "--until", "10 ns", "--quiet").returncode == 0
     text = compared(half, 1, "out", "other", "--tolerance", "1e9")
     assert "probes energies.kinetic [J/m]: only in the first run" in text
-    assert "probes books.kinetic [J/m]: only in the second run" in text
+    assert "probes balance.kinetic [J/m]: only in the second run" in text
     assert "frames bodies/velocity: only in the first run" in text
 
 

@@ -53,7 +53,7 @@ def test_is_told_of_at_the_start_and_in_the_summary(desk, solver: str) -> None:
 
 
 def test_what_it_gives_is_what_the_bodies_gain(desk) -> None:
-    """At the default step the books of so short a push err by 0.6 %; RATE: of second order in it."""
+    """At the default step the energy balance of so short a push err by 0.6 %; RATE: of second order in it."""
     desk.write(DISCS.format(distance=1).replace("[time]", "[time]\nsafety = 0.1"))
     assert desk.run("--out", "out", "--quiet").returncode == 0
     assert desk.summary("out")["energy"]["kinetic"] == pytest.approx(ENERGY, rel=6e-3 / 8**2 * 10)

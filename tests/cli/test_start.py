@@ -47,7 +47,7 @@ def at(desk: Desk, out: str, time: float) -> dict[str, float]:
 
 
 def test_it_begins_where_the_other_one_ended(desk, finished) -> None:
-    """EXACT: positions, forces and energies to the digits that are written; books take none of it for work."""
+    """EXACT: positions, forces and energies to the digits that are written; energy balance take none of it for work."""
     result = desk.run("--out", "next")
     assert result.returncode == 0, result.stderr
     assert "starting from 'scene' at its t = 2 s" in result.stdout

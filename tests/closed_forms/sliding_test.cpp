@@ -1,4 +1,4 @@
-// Sliding and rolling on a floor with Coulomb friction, and the books of energy while friction works.
+// Sliding and rolling on a floor with Coulomb friction, and the energy balance while friction works.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -89,7 +89,7 @@ TEST(BalanceError, is_the_missing_energy_over_the_larger_of_work_and_start) {
   EXPECT_NEAR(error(0, 0, 0), 0, 1e-15) << "EXACT";
   EXPECT_NEAR(error(0.1 * start, 0, 0), 0.1, 1e-14) << "EXACT: over the start, work is smaller";
   EXPECT_NEAR(error(0, 0, 0.2 * start), 0.2, 1e-14) << "EXACT: dissipation out of nothing";
-  EXPECT_NEAR(error(3 * start, 4 * start, start), 0, 1e-14) << "EXACT: all booked";
+  EXPECT_NEAR(error(3 * start, 4 * start, start), 0, 1e-14) << "EXACT: all accounted for";
   EXPECT_NEAR(error(0, 4 * start, 0), 1, 1e-14) << "EXACT: over the work, which is larger";
   EXPECT_NEAR(error(0, -4 * start, 0), 1, 1e-14) << "EXACT: work of either sign";
 }

@@ -1,4 +1,4 @@
-// Bonds with damage: the books against the work of the tractions, and what a run starts with.
+// Bonds with damage: the energy balance against the work of the tractions, and what a run starts with.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Scene block_on_bar(const ContactRule& rule, double gap = 0) {
   return scene;
 }
 
-// Moves the block along a path and books what moving it takes.
+// Moves the block along a path and energy balance what moving it takes.
 class Path {
  public:
   explicit Path(const ContactRule& rule) : rig(block_on_bar(rule)) {
@@ -148,8 +148,8 @@ TEST(Fatigue, FrictionActsInTheBrokenShare) {
 }
 
 // EXACT: a bond weaker than friction changes nothing of what friction bears while slip grows: nowhere less than
-// min(kt s, friction p), and just kt s until both give way. Back and forth, with the pressure changing, the books stay
-// whole.
+// min(kt s, friction p), and just kt s until both give way. Back and forth, with the pressure changing, the energy
+// balance stay whole.
 TEST(Fatigue, AWeakBondWeakensNothing) {
   ContactRule rule = cohesive_fatigue(kn, 0.02, range, ratio, 0.001);
   rule.friction = 0.5;

@@ -180,8 +180,8 @@ void follow_heap(const ContactRule& rule) {
 
 TEST(ContactSearch, MissesNoContactInAMovingHeap) { follow_heap(rules[2]); }
 
-// INDEPENDENT: bonds that stretch, wear and break, and the slip and cohesion of what they leave; the books against the
-// work of the tractions.
+// INDEPENDENT: bonds that stretch, wear and break, and the slip and cohesion of what they leave; the energy balance
+// against the work of the tractions.
 TEST(ContactSearch, DamageEqualsBruteForceInAMovingHeap) {
   ContactRule rule = cohesive_fatigue(stiffness, 0.5, 0.02, 1.3, 0.005);
   follow_heap(rule);

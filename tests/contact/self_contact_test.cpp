@@ -27,7 +27,7 @@ Scene clamp(bool self_contact, double friction = 0, double safety = 0.4) {
   return scene;
 }
 
-/// Least width of the slot at its mouth, and what the books say meanwhile.
+/// Least width of the slot at its mouth, and what the energy balance say meanwhile.
 struct Closing {
   double width = 1e300, stored = 0, momentum = 0, balance = 0, dissipated = 0;
 };

@@ -139,9 +139,9 @@ TEST(ContactSlip, WorkOnATurningSurfaceConverges) {
 }
 
 // A disc slid over a bar, past many corners: nodes inside a convex outline travel less than the outline is long, and
-// what is booked as dissipated is what is done as work. EXACT up to the finite steps in which corners are passed, where
-// the normal turns: these err by chance to either side. Counting the outline's own length would book 0.45 of depth/R
-// too much, 15 times the limit.
+// what is accounted for as dissipated is what is done as work. EXACT up to the finite steps in which corners are
+// passed, where the normal turns: these err by chance to either side. Counting the outline's own length would count
+// 0.45 of depth/R too much, 15 times the limit.
 TEST(ContactSlip, WorkPastConvexCorners) {
   for (const double depth : {0.005, 0.02}) {
     Scene scene = nodal_scene();

@@ -31,7 +31,7 @@ TEST(RimMass, makes_outline_nodes_heavier) {
   }
 }
 
-/// EXACT: weight is what it was, so that a grain with more inertia falls more slowly; the books close.
+/// EXACT: weight is what it was, so that a grain with more inertia falls more slowly; the energy balance closes.
 TEST(RimMass, adds_no_weight) {
   for (const int count : {1, 9}) {
     Scene scene = empty_scene(1);

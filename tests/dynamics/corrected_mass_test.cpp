@@ -205,12 +205,13 @@ DampedRun damped_run(Integrator integrator, int steps) {
   return {run.bench.state, run.auditor.balance_error(energy)};
 }
 
-/// RATE, INDEPENDENT: the motion, and its books, go to those of another scheme as the step falls: the paper's by its
-/// first order, Verlet by its second.
+/// RATE, INDEPENDENT: the motion, and its energy balance, go to those of another scheme as the step falls: the paper's
+/// by its first order, Verlet by its second.
 TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
   const State truth = runge_kutta(640);
   ASSERT_LT(distance(runge_kutta(320), truth), 1e-6) << "of fourth order: the finer one is good to a fifteenth of that";
-  // The paper's scheme has errors of both signs in its books: only below these steps does the first order show.
+  // The paper's scheme has errors of both signs in its energy balance: only below these steps does the first order
+  // show.
   const int steps = GetParam() == Integrator::step_doubling ? 1280 : 320;
   const DampedRun coarse = damped_run(GetParam(), steps), fine = damped_run(GetParam(), 2 * steps);
   const double order = observed_order(distance(coarse.state, truth), distance(fine.state, truth)),

@@ -1,5 +1,5 @@
-// Kelvin-Voigt and mass-proportional damping (docs/method.md 3): forces, power, decay, books and the time step that is
-// stable.
+// Kelvin-Voigt and mass-proportional damping (docs/method.md 3): forces, power, decay, energy balance and the time step
+// that is stable.
 #include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
 
@@ -198,7 +198,7 @@ TEST(MassDamping, speed_falls_exponentially) {
   EXPECT_NEAR(observed_order(coarse, fine, long_step / short_step), 1, 0.3) << "RATE";
 }
 
-TEST(Books, close_for_damped_bodies_as_the_step_falls) {
+TEST(EnergyBalance, close_for_damped_bodies_as_the_step_falls) {
   for (const auto& [viscosity, mass_damping] : {std::pair(0.05, 0.0), std::pair(0.0, 0.4)}) {
     const auto imbalance = [&](double safety) {
       Scene scene = damped_disc(60, viscosity, mass_damping, 0.4, stretching(0.3));

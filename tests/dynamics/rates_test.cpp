@@ -1,4 +1,5 @@
-// Forces that depend on velocities are of second order in the step, and so are their books; drag by itself is exact.
+// Forces that depend on velocities are of second order in the step, and so are their energy balance; drag by itself is
+// exact.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +36,8 @@ Scene falling(double rate, Mass mass) {
   return scene;
 }
 
-/// EXACT: v = g/c + (v0 - g/c) exp(-c t) at default settings, in steps of whatever size, and what is lost is booked.
+/// EXACT: v = g/c + (v0 - g/c) exp(-c t) at default settings, in steps of whatever size, and what is lost is accounted
+/// for.
 TEST(Drag, of_falling_bodies_is_exact) {
   for (const double rate : {0.4, 30.0})
     for (const Mass mass : {Mass::lumped, Mass::corrected}) {

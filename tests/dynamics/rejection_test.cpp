@@ -195,7 +195,7 @@ TEST(Rejection, leaves_no_trace_in_step_doubling) {
   EXPECT_GT(refreshed, 3);
 }
 
-/// Neither does looking at the books: audits between the steps change no bit of the run.
+/// Neither does looking at the energy balance: audits between the steps change no bit of the run.
 TEST(Rejection, audits_leave_no_trace) {
   const Model model = build_model(impact(Integrator::verlet));
   Simulation watched(model), alone(model);

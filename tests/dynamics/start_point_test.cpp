@@ -129,7 +129,7 @@ TEST(StartPoint, takes_the_new_scenes_friction_and_drives) {
   advance(second, 1);
   // Of the weight 1 m; what the block rocks by as its shear gets less, 0.1 m of 100 Pa/m on 2 m, is 1e-3 of a second.
   EXPECT_NEAR(rigid(second.state().reduced_momentum, 0)[0], 0.2 - 0.1, 1e-3) << "EXACT";
-  EXPECT_LT(second.balance_error(second.energy_balance().energy), 0.01) << "EXACT: books from here on";
+  EXPECT_LT(second.balance_error(second.energy_balance().energy), 0.01) << "EXACT: energy balance from here on";
   Scene driven = on_a_slope(0.5, 0);
   driven.walls[0].x = {Drive::Mode::velocity, constant(0.3)};
   const Model moving_floor = build_model(driven);

@@ -1,4 +1,4 @@
-// Neo-Hookean solid with a Maxwell branch: closed forms of a point, its books, and bodies in motion.
+// Neo-Hookean solid with a Maxwell branch: closed forms of a point, its energy balance, and bodies in motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -269,8 +269,8 @@ Scene oscillating_disc(Integrator integrator) {
   return scene;
 }
 
-// RATE: the books of a disc that swings and comes to rest close, at second order in the step with Verlet once steps are
-// short for all modes, at first with step doubling; most of its energy is dissipated.
+// RATE: the energy balance of a disc that swings and comes to rest close, at second order in the step with Verlet once
+// steps are short for all modes, at first with step doubling; most of its energy is dissipated.
 TEST(NeoHookeanMaxwell, books_of_a_disc_close) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     double errors[2];

@@ -1,4 +1,4 @@
-// Contact of the reference solver by itself: derivatives, balances, books.
+// Contact of the reference solver by itself: derivatives, balances, balance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ using reference::ContactResult;
 
 // ---- every branch of every law: derivatives and balances
 
-enum class Books { none, loses };
+enum class Dissipation { none, some };
 
 struct Branch {
   const char* name;
@@ -26,7 +26,7 @@ struct Branch {
   double first_along, first_gap;
   int segment;
   double along, gap, angle;
-  Books books;
+  Dissipation dissipation;
   bool notch = false;  ///< node 1 of the polygon lies in a re-entrant corner
 };
 
@@ -44,40 +44,42 @@ ContactRule unworn(double residual) {
 }
 
 const Branch branches[] = {
-    {"pressed", frictionless(kn), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Books::none},
-    {"quadratic start", smoothed(frictionless(kn), 0.05), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Books::none},
-    {"beyond the quadratic start", smoothed(frictionless(kn), 0.01), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Books::none},
-    {"stick", mohr_coulomb(kn, 0.5), 0, 0.3, -0.02, 0, 0.305, -0.03, 0, Books::none},
-    {"slip", mohr_coulomb(kn, 0.5), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Books::loses},
-    {"slip backward", mohr_coulomb(kn, 0.5, 0.1), 0, 0.5, -0.02, 0, 0.4, -0.03, 0, Books::loses},
-    {"slip without pressure", mohr_coulomb(kn, 0.5, 0.1, 3), 0, 0.5, -0.02, 0, 0.4, 0.02, 0, Books::loses},
-    {"stick beyond an end", cohesive(kn, 0.5, 0.05, 9), 0, 0.98, 0.02, 0, 1, 0.03, 0.2, Books::none},
-    {"stick before an end", cohesive(kn, 0.5, 0.05, 9), 0, 0.02, 0.02, 0, 0, 0.03, -0.2, Books::none},
-    {"slip beyond an end", cohesive(kn, 0.5, 0.05, 0.4), 0, 0.98, 0.02, 0, 1, 0.03, 0.2, Books::loses},
-    {"cohesion before the taper", cohesive(kn, 0.5, 0.05, 9), 0, 0.3, 0.002, 0, 0.31, 0.003, 0, Books::none},
-    {"taper, stick", cohesive(kn, 0.5, 0.05, 9), 0, 0.3, 0.02, 0, 0.31, 0.03, 0, Books::none},
-    {"taper, slip", cohesive(kn, 0.5, 0.05, 0.4), 0, 0.3, 0.02, 0, 0.4, 0.03, 0, Books::loses},
-    {"around a corner outside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, 0.02, 1, 0.03, 0.03, 0, Books::none},
-    {"around a corner inside, stick", mohr_coulomb(kn, 0.5, 900), 0, 0.95, -0.02, 1, 0.06, -0.03, 0, Books::none},
-    {"around a corner backward, slip", mohr_coulomb(kn, 0.5), 0, 0.06, -0.02, 11, 0.95, -0.03, 0, Books::loses},
-    {"around two corners, stick", cohesive(kn, 0.5, 0.05, 999), 10, 0.9, 0.02, 0, 0, 0.03, -0.15, Books::none},
-    {"stick beyond an end inside", cohesive(kn, 0.5, 0.05, 9), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Books::none, true},
-    {"slip beyond an end inside", mohr_coulomb(kn, 0.1), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Books::loses, true},
-    {"slip before an end inside", mohr_coulomb(kn, 0.1), 1, 0.03, -0.02, 1, 0, -0.03, 0.2, Books::loses, true},
+    {"pressed", frictionless(kn), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Dissipation::none},
+    {"quadratic start", smoothed(frictionless(kn), 0.05), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Dissipation::none},
+    {"beyond the quadratic start", smoothed(frictionless(kn), 0.01), 0, 0.3, -0.02, 0, 0.4, -0.03, 0,
+     Dissipation::none},
+    {"stick", mohr_coulomb(kn, 0.5), 0, 0.3, -0.02, 0, 0.305, -0.03, 0, Dissipation::none},
+    {"slip", mohr_coulomb(kn, 0.5), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Dissipation::some},
+    {"slip backward", mohr_coulomb(kn, 0.5, 0.1), 0, 0.5, -0.02, 0, 0.4, -0.03, 0, Dissipation::some},
+    {"slip without pressure", mohr_coulomb(kn, 0.5, 0.1, 3), 0, 0.5, -0.02, 0, 0.4, 0.02, 0, Dissipation::some},
+    {"stick beyond an end", cohesive(kn, 0.5, 0.05, 9), 0, 0.98, 0.02, 0, 1, 0.03, 0.2, Dissipation::none},
+    {"stick before an end", cohesive(kn, 0.5, 0.05, 9), 0, 0.02, 0.02, 0, 0, 0.03, -0.2, Dissipation::none},
+    {"slip beyond an end", cohesive(kn, 0.5, 0.05, 0.4), 0, 0.98, 0.02, 0, 1, 0.03, 0.2, Dissipation::some},
+    {"cohesion before the taper", cohesive(kn, 0.5, 0.05, 9), 0, 0.3, 0.002, 0, 0.31, 0.003, 0, Dissipation::none},
+    {"taper, stick", cohesive(kn, 0.5, 0.05, 9), 0, 0.3, 0.02, 0, 0.31, 0.03, 0, Dissipation::none},
+    {"taper, slip", cohesive(kn, 0.5, 0.05, 0.4), 0, 0.3, 0.02, 0, 0.4, 0.03, 0, Dissipation::some},
+    {"around a corner outside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, 0.02, 1, 0.03, 0.03, 0, Dissipation::none},
+    {"around a corner inside, stick", mohr_coulomb(kn, 0.5, 900), 0, 0.95, -0.02, 1, 0.06, -0.03, 0, Dissipation::none},
+    {"around a corner backward, slip", mohr_coulomb(kn, 0.5), 0, 0.06, -0.02, 11, 0.95, -0.03, 0, Dissipation::some},
+    {"around two corners, stick", cohesive(kn, 0.5, 0.05, 999), 10, 0.9, 0.02, 0, 0, 0.03, -0.15, Dissipation::none},
+    {"stick beyond an end inside", cohesive(kn, 0.5, 0.05, 9), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Dissipation::none,
+     true},
+    {"slip beyond an end inside", mohr_coulomb(kn, 0.1), 0, 0.97, -0.02, 0, 1, -0.03, -0.2, Dissipation::some, true},
+    {"slip before an end inside", mohr_coulomb(kn, 0.1), 1, 0.03, -0.02, 1, 0, -0.03, 0.2, Dissipation::some, true},
     {"around a re-entrant corner inside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, -0.02, 1, 0.03, -0.03, 0,
-     Books::none, true},
+     Dissipation::none, true},
     {"around a re-entrant corner outside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, 0.02, 1, 0.06, 0.03, 0,
-     Books::none, true},
-    {"bond around a corner", unworn(0), 0, 0.99, 0, 1, 0.005, 0.006, 0, Books::none},
-    {"bond, elastic", worn(0.45, 0), 0, 0.3, 0, 0, 0.302, 0.002, 0, Books::none},
-    {"bond, pressed", worn(0.1, 0), 0, 0.3, 0, 0, 0.309, -0.002, 0, Books::loses},
-    {"bond, worn by loads", worn(0.1, 0), 0, 0.3, 0, 0, 0.299, 0.004, 0, Books::loses},
-    {"bond, worn by shear", worn(0.1, 0), 0, 0.3, 0, 0, 0.296, 0.0007, 0, Books::loses},
-    {"bond, statically damaged", unworn(0), 0, 0.3, 0, 0, 0.31, 0.015, 0, Books::loses},
-    {"bond, torn by shear", unworn(0.3), 0, 0.3, 0, 0, 0.35, 0.002, 0, Books::loses},
-    {"never bonded, stick", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.301, 0.001, 0, Books::none},
-    {"never bonded, slip", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, 0.01, 0, Books::loses},
-    {"never bonded, slip pressed", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, -0.01, 0, Books::loses}};
+     Dissipation::none, true},
+    {"bond around a corner", unworn(0), 0, 0.99, 0, 1, 0.005, 0.006, 0, Dissipation::none},
+    {"bond, elastic", worn(0.45, 0), 0, 0.3, 0, 0, 0.302, 0.002, 0, Dissipation::none},
+    {"bond, pressed", worn(0.1, 0), 0, 0.3, 0, 0, 0.309, -0.002, 0, Dissipation::some},
+    {"bond, worn by loads", worn(0.1, 0), 0, 0.3, 0, 0, 0.299, 0.004, 0, Dissipation::some},
+    {"bond, worn by shear", worn(0.1, 0), 0, 0.3, 0, 0, 0.296, 0.0007, 0, Dissipation::some},
+    {"bond, statically damaged", unworn(0), 0, 0.3, 0, 0, 0.31, 0.015, 0, Dissipation::some},
+    {"bond, torn by shear", unworn(0.3), 0, 0.3, 0, 0, 0.35, 0.002, 0, Dissipation::some},
+    {"never bonded, stick", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.301, 0.001, 0, Dissipation::none},
+    {"never bonded, slip", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, 0.01, 0, Dissipation::some},
+    {"never bonded, slip pressed", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, -0.01, 0, Dissipation::some}};
 
 // The branch with all nodes shaken, the first state accepted and, on the same segment, one half way.
 Needle on_branch(const Branch& branch, int sample) {
@@ -110,7 +112,7 @@ void on_all_branches(const std::function<void(Needle&)>& check) {
       EXPECT_NEAR(element.gap, branch.gap, 1e-12);
       EXPECT_EQ(element.node[1], branch.segment);
       EXPECT_EQ(element.further.empty(), branch.segment == branch.first_segment);
-      EXPECT_EQ(needle.result.dissipated > 1e-6, branch.books == Books::loses) << needle.result.dissipated;
+      EXPECT_EQ(needle.result.dissipated > 1e-6, branch.dissipation == Dissipation::some) << needle.result.dissipated;
       EXPECT_GT(needle.result.dissipated, -1e-16);
       check(needle);
     }
@@ -200,7 +202,7 @@ TEST(ReferenceContactElements, TrialsLeaveNoTrace) {
   }
 }
 
-// ---- books along paths
+// ---- energy balance along paths
 
 using Way = std::function<Vec2(double)>;
 

@@ -1,4 +1,5 @@
-// Everything that acts on bodies from outside, and the books of its work: against the engine, and in closed form.
+// Everything that acts on bodies from outside, and the energy balance of its work: against the engine, and in closed
+// form.
 #include "reference/loads.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace pliant::reference_tests {
 namespace {
 
 using namespace dynamics_tests;
-using reference::Books;
+using reference::EnergyBalance;
 using reference::SolverOptions;
 using reference::Vector;
 using Kind = BoundaryCondition::Kind;
@@ -37,7 +38,7 @@ Outcome by_engine(Scene scene, double safety) {
 Outcome by_reference(const Scene& scene, int steps, const SolverOptions& options = {}) {
   ReferenceRun run(scene, options);
   run.run(steps);
-  const Books& b = run.stepping.books();
+  const EnergyBalance& b = run.stepping.balance();
   return {run.stepping.motion().q,
           (Vector(5) << b.kinetic, b.strain, b.boundary, b.dissipated(), b.external_work()).finished()};
 }
@@ -226,12 +227,12 @@ TEST(ReferenceLoads, targets_that_move_their_dashpots_work) {
   for (const int halved : {0, 1}) {
     ReferenceRun run(scene, {});
     run.run(20 << halved);
-    const Books& books = run.stepping.books();
+    const EnergyBalance& balance = run.stepping.balance();
     const Vector p = run.stepping.mass() * run.stepping.motion().v;
     momentum = 0;
     for (int i = 0; i < p.size(); i += 2) momentum += p[i];
-    EXPECT_NEAR(books.work_of_loads, speed * momentum, 1e-9 * speed * momentum) << "EXACT: Newton's tolerance";
-    missing[halved] = std::abs(books.made());
+    EXPECT_NEAR(balance.work_of_loads, speed * momentum, 1e-9 * speed * momentum) << "EXACT: Newton's tolerance";
+    missing[halved] = std::abs(balance.made());
   }
   EXPECT_GT(momentum, 0.5) << "most of the disc's mass x speed has come about";
   // RATE: the mean of the ends' forces errs by the third power of the step's stretch: at least second order.
@@ -283,9 +284,9 @@ TEST(ReferenceLoads, scenes_without_free_bodies_move_as_told) {
   EXPECT_NEAR(q[1], 2 - 1, 1e-12);
   EXPECT_NEAR(q[2], 1, 1e-12);
   const double inertia = 2 * (4 + 1) / 12.0;
-  EXPECT_NEAR(run.stepping.books().kinetic, 0.5 * 2 * (9 + 0.25), 1e-12);
-  EXPECT_NEAR(run.stepping.books().work_of_loads, 0.5 * 2 * 9 - 0.5 * inertia, 1e-12);
-  EXPECT_LT(run.stepping.books().balance_error(), 1e-14);
+  EXPECT_NEAR(run.stepping.balance().kinetic, 0.5 * 2 * (9 + 0.25), 1e-12);
+  EXPECT_NEAR(run.stepping.balance().work_of_loads, 0.5 * 2 * 9 - 0.5 * inertia, 1e-12);
+  EXPECT_LT(run.stepping.balance().balance_error(), 1e-14);
   SolverOptions statics;
   statics.statics = true;
   EXPECT_NEAR(run_reference(scene, 3, statics)[0], 1 + 3, 1e-12) << "EXACT: the same";

@@ -82,9 +82,9 @@ TEST(ReferenceNewton, converges_quadratically_in_frictionless_contact) {
 TEST(ReferenceNewton, converges_quadratically_in_sticking_contact) {
   ReferenceRun run(pressed(mohr_coulomb(40, 5)), {});
   run.stepping.step(0.02);
-  const double before = run.stepping.books().dissipated_by_contact;
+  const double before = run.stepping.balance().dissipated_by_contact;
   expect_quadratic(run.stepping.step(0.12));
-  EXPECT_LT(run.stepping.books().dissipated_by_contact - before, 1e-12);  // it sticks
+  EXPECT_LT(run.stepping.balance().dissipated_by_contact - before, 1e-12);  // it sticks
 }
 
 /// x^3 = c, from far off.

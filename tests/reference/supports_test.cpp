@@ -66,8 +66,8 @@ TEST(ReferenceSupports, add_up_on_a_node) {
 TEST(ReferenceSupports, balance_energy_together) {
   ReferenceRun run(held({dragged(0.2, 3), dragged(-0.1, 1)}, 0.5), {});
   run.run(200);
-  EXPECT_GT(run.stepping.books().dissipated_by_damping, 1e-3);
-  EXPECT_LT(run.stepping.books().balance_error(), 1e-4) << "RATE: trapezoidal rule, steps of 0.0025";
+  EXPECT_GT(run.stepping.balance().dissipated_by_damping, 1e-3);
+  EXPECT_LT(run.stepping.balance().balance_error(), 1e-4) << "RATE: trapezoidal rule, steps of 0.0025";
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ quantity = "diameter"
 of = "first"
 period = 0.5
 [[probes]]
-name = "books"
+name = "balance"
 quantity = "energy"
 period = 0.25
 [[probes]]
@@ -210,7 +210,7 @@ TEST_F(RunScene, files_tell_the_same_as_a_simulation) {
   const Table probes = read_table(out() / "probes.csv");
   const std::vector<double> time = probes.column("time [s]"), force = probes.column("push.force_y [N/m]"),
                             spin = probes.column("how_fast.angular_velocity [rad/s]"),
-                            kinetic = probes.column("books.kinetic [J/m]");
+                            kinetic = probes.column("balance.kinetic [J/m]");
   std::size_t row = 0;
   std::string hash;
   const auto compare = [&] {
@@ -241,14 +241,14 @@ TEST_F(RunScene, probes_have_units_periods_and_empty_cells) {
                                              "how_fast.angular_velocity [rad/s]",
                                              "wide.diameter_x [m]",
                                              "wide.diameter_y [m]",
-                                             "books.kinetic [J/m]",
-                                             "books.strain [J/m]",
-                                             "books.contact [J/m]",
-                                             "books.boundary [J/m]",
-                                             "books.dissipated [J/m]",
-                                             "books.external_work [J/m]",
-                                             "books.balance_error [-]",
-                                             "books.momentum_error [-]",
+                                             "balance.kinetic [J/m]",
+                                             "balance.strain [J/m]",
+                                             "balance.contact [J/m]",
+                                             "balance.boundary [J/m]",
+                                             "balance.dissipated [J/m]",
+                                             "balance.external_work [J/m]",
+                                             "balance.balance_error [-]",
+                                             "balance.momentum_error [-]",
                                              "drag.friction_factor [-]"};
   EXPECT_EQ(table.header, expected) << "EXACT";
   ASSERT_EQ(table.rows.size(), 9u) << "EXACT: 0 to 2 by 0.25";

@@ -193,7 +193,7 @@ def test_dissipation(pull: bool) -> None:
     # What is lost is more than the heights that are left.
     tolerance = max(bound(name, pull, SAFETIES[-1], 1) for name in DAMPED) + of.balance_error
     CASE.check(Label.EXACT, f"{rule}: dissipated in the first impacts", first / lost, 1, tolerance,
-               "weight times heights lost, of the equation of motion; as heights, and the books")
+               "weight times heights lost, of the equation of motion; as heights, and the energy balance")
 
 
 def test_picture() -> None:

@@ -102,7 +102,7 @@ def kicks(of: Run, start: Start, floor: Floor) -> float:
 
 
 def within_steps(of: Run, times: tuple[float, float], start: Start, floor: Floor) -> float:
-    """Most that the books of friction's work may be off, over the work. What a node has in touch when it goes, (v dt)^2/(4 s)
+    """Most that the energy balance of friction's work may be off, over the work. What a node has in touch when it goes, (v dt)^2/(4 s)
     at most, rubs for half of its last step unbooked, once in s. And the share of a node's length that is beside a flank changes in
     a step, while its motion is that of the step's end: at either end, d v dt for each node times the integral of N dw/w, 2.4."""
     when = of.times("motion.velocity_x")

@@ -15,7 +15,7 @@ Samples energy(const Snapshot& snapshot, const Selection&) {
   return samples;
 }
 
-/// The books of the state hold the work of walls and loads alone; the audit adds gravity's.
+/// The state holds the work of walls and loads alone; the audit adds gravity's.
 Samples works(const Snapshot& snapshot, const Selection&) {
   const State& state = snapshot.state();
   Samples samples(4);
