@@ -90,8 +90,8 @@ void step(benchmark::State& state) {
 }
 BENCHMARK(step)->Apply(one_and_two_threads);
 
-/// Steps of a fixed size, as plain codes take them: what the engine's step has besides, new candidates, bounds, debts
-/// and the motion of rigid bodies, is left out.
+/// Steps of a fixed size, as plain codes take them: what the engine's step has besides, new candidates, bounds, energy
+/// correction and the motion of rigid bodies, is left out.
 void plain_step(benchmark::State& state) {
   const ContactScene& scene = third_body_with(ContactLawKind::cohesive);
   PlainScene plain(scene);

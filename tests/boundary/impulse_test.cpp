@@ -168,7 +168,7 @@ TEST(Impulse, of_a_support_whose_target_leaps) {
 
 /// EXACT: a load that ends leaves no work unbooked, and what still acts at the time of its end has done half of
 /// nothing.
-TEST(Impulse, of_windows_closes_the_books) {
+TEST(Impulse, of_windows_closes_the_balance) {
   Scene scene = two_boxes(Integrator::verlet, 2);
   BoundaryCondition drive;
   drive.grains = "hard";

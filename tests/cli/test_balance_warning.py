@@ -59,7 +59,7 @@ friction = 0.3
 stiffness = 900
 shear_stiffness = 900
 
-# Else they repay what steps make, and there is nothing to be warned of.
+# The energy correction would remove the error of which this warns.
 [contact]
 energy_consistent = false
 """

@@ -111,7 +111,7 @@ def fields_of(folder: Path) -> Values:
 def folders(tmp_path_factory) -> dict[str, list[Path]]:
     """Of both solvers a run in short steps and one in steps half as long. The last contacts set in 0.04 before the end:
     the engine's longest steps, 0.0033 at a safety of 0.05, are short against that, and so are the few in which contacts
-    repay. In three steps of four times that length, what changes with the step is where in a step nodes meet: it may
+    have no energy correction. In three steps of four times that length, what changes with the step is where in a step nodes meet: it may
     vanish by chance, whatever is left."""
     desk = Desk(tmp_path_factory.mktemp("outputs"))
     for k, (safety, dt) in enumerate([(0.05, "0.004"), (0.025, "0.002")]):

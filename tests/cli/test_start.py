@@ -9,7 +9,7 @@ import pytest
 from conftest import Desk
 from scenes import LAYER, line_of
 
-# Contacts repay no energy: what they owe at the end is not carried, and friction feels what they just repay.
+# Without energy correction: a start does not carry it, and friction depends on it.
 STEADY = LAYER.replace("[[contacts]]", "[contact]\nenergy_consistent = false\n[[contacts]]", 1).replace("velocity = [[0, 0.3], [1, 0.6]]", "velocity = 0.3").replace(
     "pressure = [[0, 0], [2, 0.1]]", "pressure = 0.05").replace('of = "grains"\nperiod = 0.015', 'of = "grains 4"\nperiod = 0.01')
 AFTER = STEADY.replace("[time]\nend = 4", '[start]\nfrom = "first"\n[time]\nend = 1')
@@ -86,7 +86,7 @@ CHANGES = {
     "gravity": ("period = 6", "period = 6\ngravity = [0, -0.01]"),
     "integrator": ("end = 1", 'end = 0.1\nintegrator = "step-doubling"'),
     "contact": ("energy_consistent = false", 'skin = 1\nlength = "current"'),
-    "debts": ("energy_consistent = false", "energy_consistent = true"),
+    "correction": ("energy_consistent = false", "energy_consistent = true"),
     "outputs": ("period = 0.5", "period = 0.1"),
 }
 

@@ -57,7 +57,7 @@ Scene thrown_block(const ContactRule& rule, double slide, double safety) {
   upright.angle = {Drive::Mode::velocity, constant(0)};
   scene.boundary = {upright};
   scene.contacts = {rule};
-  scene.contact.energy_consistent = false;              // what is repaid after the touch has no friction
+  scene.contact.energy_consistent = false;              // forces of the correction after contact have no friction
   scene.contact.quadrature = ContactQuadrature::nodes;  // over segments flanks that are in the floor touch it too
   without_error_control(scene, safety);
   return scene;

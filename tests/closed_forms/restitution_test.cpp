@@ -209,8 +209,8 @@ TEST(Restitution, laws_follow_drives_in_time) {
 }
 
 /// EXACT: the bound of the time step falls with the damping ratio of docs/method.md 6; the run at full safety stays
-/// bounded: a block at rest settles.
-TEST(Restitution, shortens_the_time_step_and_settles) {
+/// bounded: a block comes to rest.
+TEST(Restitution, shortens_the_time_step_and_comes_to_rest) {
   const Model elastic = build_model(block_above_floor(frictionless(100), -0.001, 0, {0, -0.1}, 0.8)),
               damped = build_model(block_above_floor(bouncing(0.1, false), 0, 0, {0, -0.1}, 0.8));
   Simulation without(elastic), with(damped);

@@ -46,7 +46,7 @@ Scene on_a_slope(const Block& block, double speed, const History& down, const Hi
   scene.grains = {grains("block", "block", block.compliant ? BodyKind::compliant : BodyKind::rigid,
                          {{block.place, height / 2}}, moving({speed, 0}))};
   scene.contacts = {mohr_coulomb(stiffness, friction)};
-  scene.contact.energy_consistent = false;  // what nodes repay that have left has no friction
+  scene.contact.energy_consistent = false;  // forces of the correction after contact have no friction
   return scene;
 }
 

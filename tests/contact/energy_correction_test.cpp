@@ -64,7 +64,7 @@ void expect_errors_to_be_gains(const ContactRule& rule) {
     errors += std::abs(grown), left = std::abs(energy_error(simulation));
   }
   EXPECT_GT(errors, 1e-5) << "or there is nothing to see";
-  EXPECT_LT(left, 1e-9 * errors) << "repaid";
+  EXPECT_LT(left, 1e-9 * errors) << "corrected";
 }
 
 /// Squares of four nodes and discs that slide on a periodic floor, over its seam too, on and beside each other.
@@ -119,10 +119,11 @@ double pull_on(const Model& model, int body, const State& at) {
   return sum;
 }
 
-/// INDEPENDENT: what all pairs owe grows by what the mean of all forces at the ends of a step does, less what the
-/// contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four units in the
-/// last place of energies, and of places in each force's work: the floor's nodes beyond its seam stand a period off.
-/// And but for what pairs that have parted drop as rounding, 1e-15 of the energy of gaps of a twentieth of a spacing.
+/// INDEPENDENT: the energy error of all pairs grows by the work of the mean of all forces at the ends of a step, less
+/// what the contacts' energies lose, and what a change of the step takes from rigid bodies. But for rounding, four
+/// units in the last place of energies, and of places in each force's work: the floor's nodes beyond its seam stand a
+/// period off. And but for what pairs that have parted drop as rounding, 1e-15 of the energy of gaps of a twentieth of
+/// a spacing.
 void expect_errors_to_be_work(const ContactRule& rule) {
   const Scene scene = crowded_floor(rule);
   const double period = *scene.period, rounding = 4 * std::numeric_limits<double>::epsilon(), dropped = 1e-17;
@@ -160,7 +161,7 @@ TEST(EnergyCorrection, is_the_work_of_all_nodes_less_what_contacts_lose) {
     expect_errors_to_be_work(rule);
 }
 
-/// EXACT: what a dashpot takes depends on the step; repaid, the difference would be restitution lost.
+/// EXACT: what a dashpot takes depends on the step; corrected, the difference would be restitution lost.
 TEST(EnergyCorrection, is_none_of_pairs_with_dashpots) {
   ContactRule rule = mohr_coulomb(100, 0.5);
   rule.restitution = 0.5;
@@ -286,8 +287,8 @@ double flat_bounces(double speed, bool consistent) {
   return worst;
 }
 
-/// EXACT: what one node owes is repaid to rounding while it is in sight, a skin of 0.125 here: ways of 0.0016 a step
-/// are short beside it, those of an impact that goes through a sixth of a segment are not.
+/// EXACT: the energy error of one node is corrected to rounding while it is in sight, a skin of 0.125 here: ways of
+/// 0.0016 a step are short beside it, those of an impact that goes through a sixth of a segment are not.
 TEST(EnergyCorrection, bounces_of_rigid_bodies_are_exact) {
   EXPECT_GT(flat_bounces(0.01, false), 0.05) << "or there is nothing to see";
   EXPECT_LT(flat_bounces(0.01, true), 1e-12);

@@ -32,7 +32,7 @@ TEST(FixedRefresh, keeps_its_period) {
 }
 
 /// EXACT: often enough, it sees all that the safe refresh sees. Equal steps, as the bound of the step is looked up at
-/// each refresh; without what pairs repay once they have parted, by as many nodes as the last search found.
+/// each refresh; without the energy correction of pairs that have parted, by as many nodes as the last search found.
 TEST(FixedRefresh, often_enough_changes_nothing) {
   const auto position = [](int refresh_steps) {
     Scene scene = flight_and_impact(1e300);

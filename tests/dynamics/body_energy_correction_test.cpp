@@ -1,4 +1,4 @@
-// Bodies that keep their energy (docs/method.md 6): what they owe, and how they repay it.
+// Bodies that keep their energy (docs/method.md 6): their energy error, and its correction.
 #include "dynamics/body_energy_correction.hpp"
 
 #include <gtest/gtest.h>
@@ -74,7 +74,7 @@ struct Case {
 
 class BodyEnergyError : public ::testing::TestWithParam<Case> {};
 
-TEST_P(BodyEnergyError, is_what_bodies_have_too_much_and_repay_by_vibrations) {
+TEST_P(BodyEnergyError, is_excess_energy_and_is_removed_from_vibrations) {
   const auto& [mass, options] = GetParam();
   Bench bench(build_model(ringing_discs(mass), options));
   const BodyEnergyCorrection correction(bench.model);
@@ -159,7 +159,8 @@ Scene two_discs_meet(MaterialLaw law) {
 }
 
 /// Of each body of a batch, (dt^2 sum F F_before/m - sum dx dF)/12, ways and forces without the body's mean: what a
-/// body owes for whose forces the work of their mean is what they store, J/m. It is the same whoever looks on.
+/// body has as an energy error if the work of the mean of its forces is what they store, J/m. It is the same whoever
+/// looks on.
 Lanes owed_by_linear(const Bench& bench, const Trial& before, const Batch& batch, double dt) {
   Dofs kick = before.force, response;
   Lanes way[2]{};
@@ -192,7 +193,7 @@ struct Errors {
   double lost = 0;        ///< largest loss of kinetic energy, J/m
 };
 
-/// In equal steps, by settlements too.
+/// In equal steps, across corrections too.
 Errors errors_over(const Scene& scene, double dt, double end) {
   Bench bench(scene);
   Verlet verlet(bench.forces, bench.state);
@@ -222,7 +223,7 @@ TEST(BodyEnergyCorrection, of_linear_bodies_are_those_of_the_moment) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
     Scene scene = two_discs_meet(MaterialLaw::linear_elastic);
     scene.discretisation.mass = mass;
-    const Errors errors = errors_over(scene, 0.02, 3.9);  // up to the first settlement
+    const Errors errors = errors_over(scene, 0.02, 3.9);  // up to the first correction
     EXPECT_GT(errors.lost, 0.01) << "or they did not meet";
     EXPECT_LT(errors.off_linear, 1e-13 * errors.lost) << "EXACT: rounding of some hundred steps";
     EXPECT_GT(errors.largest, 1e-6 * errors.lost) << "or there is nothing to see";
@@ -255,14 +256,14 @@ TEST(BodyEnergyCorrection, of_bodies_that_meet_fall_with_the_square_of_the_step)
 }
 
 /// What velocity Verlet keeps of nonlinear vibrations, but for half of the last step's gain; without the terms of the
-/// step, debts fall with the square.
+/// step, errors fall with the square.
 TEST(BodyEnergyCorrection, of_a_free_body_fall_with_the_third_power_of_the_step) {
   Scene scene = free_disc(60, 20, stretching(0.1));
   without_error_control(scene, 1);
   expect_order(scene, {0.04, 0.02, 0.01}, 20, 3, 0.5);
 }
 
-TEST(BodyEnergyCorrection, a_fall_owes_nothing) {
+TEST(BodyEnergyCorrection, a_fall_has_none) {
   Scene scene = free_disc(30, 20, moving({0.1, 0.3}));
   scene.gravity = {0.02, -0.2};
   without_error_control(scene, 1);

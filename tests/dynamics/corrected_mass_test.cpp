@@ -215,12 +215,12 @@ TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
   const int steps = GetParam() == Integrator::step_doubling ? 1280 : 320;
   const DampedRun coarse = damped_run(GetParam(), steps), fine = damped_run(GetParam(), 2 * steps);
   const double order = observed_order(distance(coarse.state, truth), distance(fine.state, truth)),
-               of_books = observed_order(coarse.balance_error, fine.balance_error);
+               of_balance = observed_order(coarse.balance_error, fine.balance_error);
   RecordProperty("order", std::to_string(order));
-  RecordProperty("order_of_books", std::to_string(of_books));
+  RecordProperty("order_of_balance", std::to_string(of_balance));
   const double expected = GetParam() == Integrator::step_doubling ? 1 : 2;
   EXPECT_NEAR(order, expected, 0.2);
-  EXPECT_NEAR(of_books, expected, 0.2);
+  EXPECT_NEAR(of_balance, expected, 0.2);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Telling {
 enum class Grit { viscous, undamped };
 
 /// A cloud of compliant and rigid grains of two sizes that falls in upon itself with gravity aside. Undamped bodies
-/// repay energy: the cloud lasts over two settlements.
+/// correct energy: the cloud lasts over two corrections.
 Scene cloud(const Telling& telling, Grit grit) {
   testing::Random random(4);
   const bool viscous = grit == Grit::viscous;
@@ -92,9 +92,9 @@ double largest_difference(const End& a, const End& b) {
 
 /// Each step rounds positions as far out as `reach` by 2^-52 of it at most; and the step's bound comes from finite
 /// differences over 1e-6 of the nodal distance, 0.1, which rounding of positions within a body changes by 1e-9, and so
-/// the steps, and the integration's error of less than 1e-3, by 1e-12. What pairs owe is a force times the way of a
-/// step: rounded positions are removed by pressures as far off as the gap's way goes into the depth, and touches last
-/// some 20 steps.
+/// the steps, and the integration's error of less than 1e-3, by 1e-12. The energy error of pairs is a force times the
+/// way of a step: rounded positions are removed by pressures as far off as the gap's way goes into the depth, and
+/// touches last some 20 steps.
 double tolerance(const End& end, double reach) {
   constexpr double depth_over_way = 10;
   return static_cast<double>(end.steps) * depth_over_way * reach * std::numeric_limits<double>::epsilon() + 1e-12;
@@ -126,8 +126,9 @@ TEST_P(Invariance, same_steps_and_motion) {
   }
 }
 
-/// EXACT: what undamped bodies repay, by whoever looks on. Rounded positions are a share of 1e-12 of what vibrates.
-TEST(Invariance, undamped_bodies_repay_the_same) {
+/// EXACT: the energy correction of undamped bodies does not depend on the observer. Rounded positions are a share of
+/// 1e-12 of what vibrates.
+TEST(Invariance, undamped_bodies_are_corrected_equally) {
   const End plain = run({}, Integrator::verlet, Grit::undamped);
   EXPECT_GT(plain.steps, 400) << "the balance has started, and was corrected";
   for (const Telling& telling : {Telling{{}, {5, -4.9}}, Telling{{}, {0, 0}, 0.65}, Telling{{}, {-500, 70}, 2.2}}) {

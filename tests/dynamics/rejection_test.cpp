@@ -95,7 +95,8 @@ Scene fast_slide(Integrator integrator) {
 void expect_equal(const Twins& twins) {
   EXPECT_EQ(twins.retried.time, twins.direct.time) << "EXACT";
   EXPECT_TRUE(same_bits(twins.retried.position, twins.direct.position)) << "EXACT, t = " << twins.direct.time;
-  // After a refresh nodes stand in other lanes, in which energies, and so what contacts repay, are added up.
+  // After a refresh nodes stand in other lanes, in which energies, and so the energy correction of contacts, are added
+  // up.
   const double rounding = twins.refreshed ? 1e-14 : 0;
   EXPECT_LE(largest_difference(twins.retried.reduced_momentum, twins.direct.reduced_momentum), rounding)
       << "EXACT, t = " << twins.direct.time;

@@ -245,7 +245,7 @@ const ContactRule sliding_rules[] = {mohr_coulomb(kn, 0.3, 0.05, 0.9), cohesive(
 // RATE: kinks of the laws cost the error of the step in which they lie, as does a corner, at which forces turn: order
 // 1, a factor of 16, of which half is asked for. The largest: a tensile cut-off amid the step of 2.6e-5 at s = 0.2, 0.9
 // Pa x 1.3e-5 over a traffic of 0.9 Pa x 0.009 / 2: 3e-3.
-TEST(ReferenceContactBooks, WorkIsStoredOrDissipated) {
+TEST(ReferenceContactBalance, WorkIsStoredOrDissipated) {
   const Needle still(frictionless(kn));
   const Way to_and_fro = [&](double s) {
     return still.place(0, 0.5 + 0.3 * std::sin(5 * s), -0.015 + 0.019 * std::sin(9 * s));

@@ -14,7 +14,7 @@ using namespace testing;
 
 Scene integrated(Scene scene) {
   scene.contact.quadrature = ContactQuadrature::segments;
-  scene.contact.energy_consistent = false;  // the reference solver owes nothing
+  scene.contact.energy_consistent = false;  // the reference solver has no energy correction
   scene.skin = 1;                           // so that no state asks for new candidates
   return scene;
 }

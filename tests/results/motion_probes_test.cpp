@@ -167,7 +167,7 @@ TEST(ForceProbes, nodes_carry_the_bodys_force) {
   }
 }
 
-TEST(EnergyProbes, bodies_add_up_to_the_books) {
+TEST(EnergyProbes, bodies_add_up_to_the_balance) {
   const Model model = build_model(loaded_layer());
   Simulation simulation(model);
   advance(simulation, 1);

@@ -140,7 +140,7 @@ def test_segments_pass(segments: Statics, ratio: str) -> None:
 
 def test_matching_nodes_pass(nodes: Statics) -> None:
     """Of two corners on each other the inner one touches with half of both its sides in one pass, which is what both
-    passes together owe it; the outer one touches nothing and receives that."""
+    passes together give it; the outer one touches nothing and receives that."""
     face = FACES["1:1"][-1]
     check_patch("nodes, 1:1, reference", nodes["1:1"], blur(face) + (NARROWER + GLIDING) * max(face),
                 f"{BLUR}; of the outer corner's half spacing h/2 1e-6 is not loaded; {GLIDES}")

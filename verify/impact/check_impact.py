@@ -38,9 +38,9 @@ def engine_run(variant: tuple[str, str], nodes: int, speed: float, safety: float
     return CASE.engine(name, scene(variant, nodes, speed, safety))
 
 
-def scene(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY, repays: bool = True) -> str:
+def scene(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY, corrects: bool = True) -> str:
     return CASE.scene(end=END, period=PERIOD, frames=FRAMES, recipe=variant[0], mass=variant[1], nodes=nodes,
-                      speed=-speed, safety=safety, repays=str(repays).lower())
+                      speed=-speed, safety=safety, corrects=str(corrects).lower())
 
 
 def velocity(run: Run) -> np.ndarray:
@@ -113,7 +113,7 @@ def test_impact(runs: dict, elements: dict, variant: tuple[str, str], speed: flo
     CASE.check(Label.EXACT, f"{name}: balance of energy, after", balance[-1], 0, 1e-3,
                "energy is conserved; the default safety keeps a bounce to 0.1 % (docs/notes/impacts.md)")
     CASE.check(Label.EXACT, f"{name}: balance of energy, on the way", balance.max(), 0, 1e-2,
-               "promised: 1 %; what Verlet keeps differs from it by dt^2 sum m a^2 / 8, and debts are under way")
+               "promised: 1 %; what Verlet keeps differs from it by dt^2 sum m a^2 / 8, and corrections are under way")
 
 
 @pytest.mark.parametrize("variant", VARIANTS, ids="-".join)
@@ -180,7 +180,7 @@ def overlap(run: Run, frame: int) -> float:
 def test_force_of_the_overlap(references: list[np.ndarray], solver: str) -> None:
     """The motion hardly feels the contact stiffness: depths are a thousandth of the disc's squeeze. They show it, where
     contacts correct nothing."""
-    run = (CASE.engine("law_alone", scene(VARIANTS[0], 340, SPEED, repays=False)) if solver == "engine" else
+    run = (CASE.engine("law_alone", scene(VARIANTS[0], 340, SPEED, corrects=False)) if solver == "engine" else
            Run(CASE.out / f"reference_{STEPS[1]:g}"))
     times = FRAMES * np.arange(1, 7)  # in touch
     forces = -run.at("wall.force_y", times)

@@ -68,7 +68,7 @@ def test_creep(small: dict[str, Run]) -> None:
                    "mass), which shows as 1e-3 of the way while it swings, and its stretch by as much")
 
 
-def test_books(small: dict[str, Run], large: dict[str, Run]) -> None:
+def test_energy_balance(small: dict[str, Run], large: dict[str, Run]) -> None:
     instant = np.sqrt(2 * (MU + BRANCH)) * np.pi / 2  # frequency of the first mode, 1/s
     for name, run in {**small, "large strains, engine": large["engine"],
                       "large strains, reference": large[f"{STEPS[-1]:g}"]}.items():

@@ -48,17 +48,17 @@ def runs() -> dict[str, Run]:
 
 def off(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Times at which nothing touches, and how far the kinetic energy is from the start's then."""
-    kinetic, free = run.probe("books.kinetic"), run.probe("books.contact") == 0
-    return run.times("books.kinetic")[free], np.abs(kinetic[free] / kinetic[0] - 1)
+    kinetic, free = run.probe("energies.kinetic"), run.probe("energies.contact") == 0
+    return run.times("energies.kinetic")[free], np.abs(kinetic[free] / kinetic[0] - 1)
 
 
 @pytest.mark.parametrize("grain", GRAINS)
 def test_keeps_its_energy(runs: dict[str, Run], grain: str) -> None:
     _, errors = off(runs[grain])
     CASE.check(Label.EXACT, f"{grain}s: kinetic energy when nothing touches, most", errors.max(), 0, 1e-2,
-               "conserved; promised: 1 % on the way, as pairs that have just parted may still owe what they gained")
+               "conserved; promised: 1 % on the way, as pairs that have just parted may still have an energy error")
     CASE.check(Label.EXACT, f"{grain}s: the same, median", float(np.median(errors)), 0, 1e-10,
-               "repaid to rounding: some 1e4 sums of energies, each to 1e-15 of the whole")
+               "corrected to rounding: some 1e4 sums of energies, each to 1e-15 of the whole")
 
 
 def test_picture(runs: dict[str, Run]) -> None:

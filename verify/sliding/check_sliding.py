@@ -159,7 +159,7 @@ def test_stop(solver: str) -> None:
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_books(solver: str) -> None:
+def test_energy_balance(solver: str) -> None:
     for start in STARTS:
         of = run(start, solver)
         CASE.check(Label.EXACT, f"{start.name}, {solver}: balance of energy", of.balance_error, 0,

@@ -164,7 +164,7 @@ def test_plateau_of_friction(groups: dict[str, list[Layer]]) -> None:
 def test_energy(layers: list[Layer]) -> None:
     for layer in layers:
         CASE.check(Label.EXACT, f"{layer.name}: error of the energy balance", layer.run.balance_error, 0, 0.01,
-                   "books of energy; time steps near the stability limit lose up to 1 %")
+                   "energy balance; time steps near the stability limit lose up to 1 %")
 
 
 @pytest.fixture(scope="module")
