@@ -21,7 +21,7 @@ Cloud& mls_gauss() { return grains_of(Recipe::mls_gauss); }
 Cloud& es_t3() { return grains_of(Recipe::es_t3); }
 Cloud& t3() { return grains_of(Recipe::t3); }
 
-/// Batches of lanes are shared out as in a step; of a spread body its parts are.
+/// Batches of lanes are shared out as in a step; of a nodewise body its parts are.
 void add_all(const Model& model, const Dofs& position, Dofs& force) {
   const auto add = [&](int b) {
     const Batch& batch = model.batches[b];
@@ -46,7 +46,7 @@ INTERNAL_FORCES(mls_gauss, "mls-gauss");
 INTERNAL_FORCES(es_t3, "es-t3");
 INTERNAL_FORCES(t3, "t3");
 INTERNAL_FORCES(related_grains, "mls-related");
-INTERNAL_FORCES(large_body, "mls-spread");
+INTERNAL_FORCES(large_body, "mls-nodewise");
 
 void plain_internal_forces(benchmark::State& state, Cloud& (*cloud)()) {
   const Cloud& grains = cloud();

@@ -24,7 +24,7 @@ struct Cloud {
 Cloud& grains_of(Recipe recipe);
 /// 200 Fourier grains of 168 nodes, each of its own shape, with common connectivity.
 Cloud& related_grains();
-/// One disc of 10,000 nodes, spread over slots, lanes and threads.
+/// One disc of 10,000 nodes, vectorised over its nodes.
 Cloud& large_body();
 
 /// The full third body after a few hundred steps with a pressed-on wall; PLIANT_BENCH_FROM=DIR: the scene and state of

@@ -16,7 +16,7 @@ double over_compliant(const Model& model, Count&& count) {
 }
 
 /// Bytes of the tables that a model's batches read in an evaluation, each once: those of a shared shape, those of each
-/// body of related ones, with connectivity once a batch, those of spread ones.
+/// body of related ones, with connectivity once a batch, those of nodewise ones.
 template <class Own, class Common>
 double table_bytes(const Model& model, Own&& own, Common&& common) {
   double bytes = 0;
@@ -70,18 +70,18 @@ namespace work {
 
 /// A neighbour of a point: 4 fused operations for F and 4 for the forces. A point: the weighted neo-Hookean stress: 2
 /// products of constants, 3 for J, 22 for ln J, 3 for (lambda ln J - mu)/J, 12 for P. A node: its place is read, its
-/// force read and written. A table: gradients and nodes of the entries, weights and rows of the points. A spread body's
-/// points stand in two orders, and hand on their stresses.
+/// force read and written. A table: gradients and nodes of the entries, weights and rows of the points. A nodewise
+/// body's points stand in two orders, and hand on their stresses.
 Work internal_forces(const Model& model) {
   const double of_entries =
       over_compliant(model, [](const CompliantShape& s, const Body&) { return 16 * entries(s.space.table); });
-  const double spread = over_compliant(model, [&](const CompliantShape& s, const Body& body) {
-    if (model.batches[body.batch].layout != Layout::spread) return 0.0;
+  const double nodewise = over_compliant(model, [&](const CompliantShape& s, const Body& body) {
+    if (model.batches[body.batch].layout != Layout::nodewise) return 0.0;
     return entries(s.space.table) * (vector + index) + points(s.space.table) * 2 * 2 * vector;
   });
   return {
       of_entries + 42 * integration_points(model),
-      3 * vector * field_nodes(model) + spread +
+      3 * vector * field_nodes(model) + nodewise +
           table_bytes(
               model,
               [](const CompliantShape& s) { return vector * entries(s.space.table) + number * points(s.space.table); },

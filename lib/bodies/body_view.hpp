@@ -11,7 +11,7 @@ class BodyOffsets {
   BodyOffsets(const Model& model, const Body& body)
       : first_(model.batches[body.batch].offset * lane_count + static_cast<std::size_t>(body.lane)) {
     const Batch& batch = model.batches[body.batch];
-    if (batch.layout == Layout::spread) offset_ = model.spread_shape_of(batch).offset.data();
+    if (batch.layout == Layout::nodewise) offset_ = model.nodewise_shape_of(batch).offset.data();
   }
   /// Index of a node's x, counted in doubles; its y is lane_count further.
   std::size_t operator[](std::size_t node) const {

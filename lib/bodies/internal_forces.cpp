@@ -4,7 +4,7 @@
 
 #include "bodies/body_view.hpp"
 #include "bodies/node_arrays.hpp"
-#include "bodies/spread_forces.hpp"
+#include "bodies/nodewise_forces.hpp"
 #include "core/prefetch.hpp"
 
 namespace pliant {
@@ -101,7 +101,7 @@ Lanes energy(const Law& law, const Rows<T...>& rows, const Batch& batch, const B
 }  // namespace
 
 PointTotals add_internal_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces) {
-  if (batch.layout == Layout::spread) return add_spread_forces(model, batch, motion, forces);
+  if (batch.layout == Layout::nodewise) return add_nodewise_forces(model, batch, motion, forces);
   return with_tables(model, batch, [&](const auto& tables) {
     return with_point_law(model, batch, motion, [&](const auto& law) {
       return add_forces(law, rows_of(tables.table), batch, motion, forces);
@@ -110,7 +110,7 @@ PointTotals add_internal_forces(const Model& model, const Batch& batch, const Ba
 }
 
 Lanes strain_energy(const Model& model, const Batch& batch, const BatchMotion& motion) {
-  if (batch.layout == Layout::spread) return spread_strain_energy(model, batch, motion);
+  if (batch.layout == Layout::nodewise) return nodewise_strain_energy(model, batch, motion);
   return batch.weight * with_tables(model, batch, [&](const auto& tables) {
            return with_law(model.groups[batch.group].law, batch.constants,
                            [&](const auto& law) { return energy(law, rows_of(tables.table), batch, motion); });

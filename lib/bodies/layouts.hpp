@@ -12,8 +12,8 @@ namespace pliant {
 /// (docs/design.md 4):
 /// shared: one body per lane, node i of each in slot i, all copies of one shape and so with one table;
 /// related: the same, for shapes with one mesh topology: one connectivity, values by lane;
-/// spread: one body alone, its nodes over slots and lanes. It does not cost as much as eight, and threads share it.
-enum class Layout { shared, related, spread };
+/// nodewise: one body alone, its nodes over slots and lanes. It does not cost as much as eight, and threads share it.
+enum class Layout { shared, same_topology, nodewise };
 
 /// Nodal data of a batch by slots: one value for all lanes (double), or one per lane (Lanes).
 template <class T>
@@ -23,14 +23,14 @@ struct NodeArrays {
   const T* nodal_distance;            ///< [slots], m
 };
 
-/// Part of a batch that one thread handles at once: the whole batch, or a range of a spread body.
+/// Part of a batch that one thread handles at once: the whole batch, or a range of a nodewise body.
 struct Region {
   int batch = 0;
   int number = 0;           ///< within its batch
   int first = 0, last = 0;  ///< slots [first, last)
 };
 
-/// Range of a spread body's integration points, or of its outline nodes.
+/// Range of a nodewise body's integration points, or of its outline nodes.
 struct Chunk {
   int batch = 0;
   int first = 0, last = 0;
@@ -67,10 +67,10 @@ struct RelatedShapes {
   Lanes correction_bound{}, weight_share{};
 };
 
-/// Shape of spread bodies. Its tables are ordered so that neighbours in space are neighbours in memory: slots, points
+/// Shape of nodewise bodies. Its tables are ordered so that neighbours in space are neighbours in memory: slots, points
 /// and the threads' shares of them are patches of the body. An `offset` is the position of a node's x relative to the
 /// batch's first entry, counted in doubles; y is lane_count further.
-struct SpreadShape {
+struct NodewiseShape {
   static constexpr int region_slots = 64;    ///< slots of a region: 512 nodes
   static constexpr int chunk_points = 1024;  ///< integration points of a chunk, a multiple of lane_count
   static constexpr int chunk_nodes = 128;    ///< outline nodes of a chunk
@@ -103,7 +103,7 @@ struct SpreadShape {
   int points() const { return static_cast<int>(weight.size()); }
 };
 
-/// Offset of the number-th node in the order of a spread shape.
+/// Offset of the number-th node in the order of a nodewise shape.
 inline int offset_of(int number) { return number / lane_count * 2 * lane_count + number % lane_count; }
 
 }  // namespace pliant

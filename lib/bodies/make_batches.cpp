@@ -4,8 +4,8 @@
 #include <map>
 
 #include "bodies/node_arrays.hpp"
+#include "bodies/nodewise_shape.hpp"
 #include "bodies/related_shapes.hpp"
-#include "bodies/spread_shape.hpp"
 #include "materials/with_law.hpp"
 
 namespace pliant {
@@ -34,20 +34,20 @@ class BatchMaker {
  public:
   explicit BatchMaker(Model& model) : model_(model) {}
 
-  void make(bool spread) {
-    std::vector<std::pair<int, int>> alone;  // group and index in it of bodies to be spread
+  void make(bool nodewise) {
+    std::vector<std::pair<int, int>> alone;  // group and index in it of bodies to be vectorised nodewise
     for (int g = 0; g < static_cast<int>(model_.groups.size()); ++g) {
       const int count = static_cast<int>(model_.groups[g].bodies.size());
       for (int first = 0; first < count; first += lane_count) {
         const int bodies = std::min(lane_count, count - first);
-        if (!spread || bodies > sparse_bodies)
+        if (!nodewise || bodies > sparse_bodies)
           add(g, first, bodies, Layout::shared);
         else
           for (int i = 0; i < bodies; ++i) alone.emplace_back(g, first + i);
       }
     }
     model_.lane_batches = static_cast<int>(model_.batches.size());
-    for (const auto& [group, body] : alone) add(group, body, 1, Layout::spread);
+    for (const auto& [group, body] : alone) add(group, body, 1, Layout::nodewise);
   }
 
  private:
@@ -63,13 +63,13 @@ class BatchMaker {
     for (int lane = 0; lane < lane_count; ++lane) {
       Body& body = body_in(lane);
       alike &= body.compliant_shape == batch.shape;
-      set_constants(model_.scene, body, lane < count || layout == Layout::spread, lane, batch);
+      set_constants(model_.scene, body, lane < count || layout == Layout::nodewise, lane, batch);
       if (lane < count) body.batch = static_cast<int>(model_.batches.size()), body.lane = lane;
     }
     batch.viscous = largest(batch.viscosity) > 0;
     batch.mass_damped = largest(batch.mass_damping) > 0;
     batch.slots = model_.shape_of(batch).nodes();
-    if (layout == Layout::spread) spread(batch);
+    if (layout == Layout::nodewise) make_nodewise(batch);
     if (!alike) relate(batch, body_in);
     model_.compliant_size += 2 * static_cast<std::size_t>(batch.slots);
     lay_out_memory(batch);
@@ -78,21 +78,21 @@ class BatchMaker {
   }
 
   void lay_out_memory(Batch& batch) {
-    batch.points = batch.layout == Layout::spread ? model_.spread_shape_of(batch).points() / lane_count
-                                                  : static_cast<int>(with_tables(model_, batch, [](const auto& tables) {
-                                                      return tables.table.weight.size();
-                                                    }));
+    batch.points = batch.layout == Layout::nodewise
+                       ? model_.nodewise_shape_of(batch).points() / lane_count
+                       : static_cast<int>(
+                             with_tables(model_, batch, [](const auto& tables) { return tables.table.weight.size(); }));
     batch.memory = model_.material_memory;
     with_law_type<Lanes>(model_.groups[batch.group].law, [&]<class Law>(std::type_identity<Law>) {
       model_.material_memory += internal_variable_count<Law> * static_cast<std::size_t>(batch.points);
     });
   }
 
-  void spread(Batch& batch) {
-    const auto [found, is_new] = spread_.try_emplace(batch.shape, static_cast<int>(model_.spread_shapes.size()));
-    if (is_new) model_.spread_shapes.push_back(make_spread_shape(model_.shape_of(batch).space));
+  void make_nodewise(Batch& batch) {
+    const auto [found, is_new] = nodewise_.try_emplace(batch.shape, static_cast<int>(model_.nodewise_shapes.size()));
+    if (is_new) model_.nodewise_shapes.push_back(make_nodewise_shape(model_.shape_of(batch).space));
     batch.tables = found->second;
-    batch.slots = model_.spread_shape_of(batch).slots();
+    batch.slots = model_.nodewise_shape_of(batch).slots();
   }
 
   template <class BodyIn>
@@ -107,22 +107,22 @@ class BatchMaker {
   void add_regions(Batch& batch) {
     const int number = static_cast<int>(model_.batches.size());
     batch.first_region = static_cast<int>(model_.regions.size());
-    if (batch.layout != Layout::spread) return model_.regions.push_back({number, 0, 0, batch.slots});
+    if (batch.layout != Layout::nodewise) return model_.regions.push_back({number, 0, 0, batch.slots});
     const auto cut = [&](int total, int step, auto add) {
       for (int first = 0; first < total; first += step) add(first, std::min(total, first + step));
     };
-    cut(batch.slots, SpreadShape::region_slots, [&](int first, int last) {
-      model_.regions.push_back({number, first / SpreadShape::region_slots, first, last});
+    cut(batch.slots, NodewiseShape::region_slots, [&](int first, int last) {
+      model_.regions.push_back({number, first / NodewiseShape::region_slots, first, last});
     });
     batch.regions = static_cast<int>(model_.regions.size()) - batch.first_region;
-    cut(model_.spread_shape_of(batch).points(), SpreadShape::chunk_points,
+    cut(model_.nodewise_shape_of(batch).points(), NodewiseShape::chunk_points,
         [&](int first, int last) { model_.point_chunks.push_back({number, first, last}); });
-    cut(model_.outlines[model_.shape_of(batch).outline].count, SpreadShape::chunk_nodes,
+    cut(model_.outlines[model_.shape_of(batch).outline].count, NodewiseShape::chunk_nodes,
         [&](int first, int last) { model_.outline_chunks.push_back({number, first, last}); });
   }
 
   Model& model_;
-  std::map<int, int> spread_;  ///< by compliant shape: index of its spread shape
+  std::map<int, int> nodewise_;  ///< by compliant shape: index of its nodewise shape
 };
 
 /// Number of nodes of bodies that would leave most of their lanes empty.

@@ -19,7 +19,7 @@ void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
 }
 
 /// The same for one body, whose nodes are at `offset`.
-void correct_spread(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
+void correct_nodewise(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
   double x_sum = 0, y_sum = 0;
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
     x_sum += rows.value[e] * y[offset[rows.node[e]]];
@@ -33,15 +33,15 @@ void correct_spread(const ShapeRows& rows, int node, const int* offset, const do
 
 void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
   const CompliantShape& shape = model.shape_of(batch);
-  if (batch.layout != Layout::spread)
+  if (batch.layout != Layout::nodewise)
     return with_tables(model, batch, [&](const auto& tables) {
       for (int i = 0; i < shape.nodes(); ++i) correct_lanes(tables.mass_correction, i, y, v);
     });
   const ShapeRows& rows = shape.space.mass_correction;
   v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
-  const int* offset = model.spread_shape_of(batch).offset.data();
+  const int* offset = model.nodewise_shape_of(batch).offset.data();
   parallel_for(shape.nodes(), [&](int i) {
-    correct_spread(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
+    correct_nodewise(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
   });
 }
 

@@ -32,24 +32,24 @@ struct CompliantGroup {
   std::vector<int> bodies;  ///< [bodies], global index of the body in each lane; padding lanes are absent
 };
 
-/// Eight bodies of a group, or one body spread over the lanes. Padding lanes hold a copy of a resting body with weight
-/// 0. Degrees of freedom are stored in units of each body's scale s: positions q/s, velocities, and forces f/s. Thus F,
-/// stresses and nodal distances are those of the shape itself, and only constants differ: m/s^2 and f/s give q/s, and
-/// energies are those of s = 1 times s^2.
+/// Eight bodies of a group, or one body vectorised over its nodes. Padding lanes hold a copy of a resting body with
+/// weight 0. Degrees of freedom are stored in units of each body's scale s: positions q/s, velocities, and forces f/s.
+/// Thus F, stresses and nodal distances are those of the shape itself, and only constants differ: m/s^2 and f/s give
+/// q/s, and energies are those of s = 1 times s^2.
 struct Batch {
   int group = 0;
   int first = 0;           ///< index within the group of the body in lane 0
-  int count = 0;           ///< bodies, 1 to 8; 1 when spread
+  int count = 0;           ///< bodies, 1 to 8; 1 when nodewise
   std::size_t offset = 0;  ///< index of slot 0, x, in Dofs::compliant
   int slots = 0;           ///< [slots x 2] entries there
   Layout layout = Layout::shared;
   int shape = 0;                      ///< index of the compliant shape; for related shapes that of lane 0
-  int tables = -1;                    ///< spread, related: index in Model::spread_shapes or related_shapes
+  int tables = -1;                    ///< nodewise, same_topology: index in Model::nodewise_shapes or related_shapes
   int first_region = 0, regions = 1;  ///< in Model::regions
   LawConstants constants;             ///< of the group's law, by lanes
   Lanes mu, lambda;                   ///< instantaneous Lame constants of small strain, Pa
   std::size_t memory = 0;             ///< first entry in Memory::material, [variables x points]
-  int points = 0;                     ///< integration points; for a spread body rounded up to whole lanes
+  int points = 0;                     ///< integration points; for a nodewise body rounded up to whole lanes
   Lanes density, inverse_density;     ///< density x s^2: with masses at unit density it gives the mass for f/s and q/s
   Lanes scale, inverse_scale;         ///< s; all 1 unless `scaled`
   bool scaled = false;
@@ -100,7 +100,7 @@ struct RigidBody {
 
 struct Body : PlacedBody {
   int compliant_shape = -1;   ///< compliant: index in Model::shapes
-  int batch = -1, lane = -1;  ///< compliant; a spread body has lane 0
+  int batch = -1, lane = -1;  ///< compliant; a nodewise body has lane 0
   int rigid = -1;             ///< rigid: index in Model::rigid_bodies
   int outline = 0;            ///< index of its outline shape
   double area = 0;            ///< m2
@@ -113,12 +113,12 @@ struct Model {
   std::vector<OutlineShape> outlines;
   std::vector<CompliantShape> shapes;
   std::vector<CompliantGroup> groups;
-  std::vector<Batch> batches;  ///< batches of several bodies first, then spread ones
+  std::vector<Batch> batches;  ///< batches of several bodies first, then nodewise ones
   int lane_batches = 0;        ///< batches of several bodies, [0, lane_batches); each is the region of the same number
   std::vector<Region> regions;
   std::vector<RelatedShapes> related_shapes;  ///< [batches of related bodies]
-  std::vector<SpreadShape> spread_shapes;
-  std::vector<Chunk> point_chunks, outline_chunks;  ///< of all spread bodies
+  std::vector<NodewiseShape> nodewise_shapes;
+  std::vector<Chunk> point_chunks, outline_chunks;  ///< of all nodewise bodies
   std::vector<RigidBody> rigid_bodies;
   std::vector<Body> bodies;         ///< grains in the scene's order, then walls
   std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
@@ -135,7 +135,7 @@ struct Model {
   int outline_end(int body) const { return outline_offset[body] + outline_of(body).count; }  ///< without cyclic copies
   const CompliantShape& shape_of(const Batch& batch) const { return shapes[batch.shape]; }
   const CompliantShape& shape_of(const Body& body) const { return shapes[body.compliant_shape]; }
-  const SpreadShape& spread_shape_of(const Batch& batch) const { return spread_shapes[batch.tables]; }
+  const NodewiseShape& nodewise_shape_of(const Batch& batch) const { return nodewise_shapes[batch.tables]; }
   int dof_count() const;
   int node_count() const;  ///< field nodes of compliant bodies and outline nodes of rigid ones
 };
@@ -143,10 +143,10 @@ struct Model {
 /// Options of a caller that are no part of a scene.
 struct BuildOptions {
   /// Number of nodes from which bodies that would leave lanes of their batches empty are united with those of related
-  /// shapes, or spread. The nodes of all such bodies count together; below, the cost of empty lanes is negligible. 0:
-  /// always; a large number: never.
+  /// shapes, or vectorised nodewise. The nodes of all such bodies count together; below, the cost of empty lanes is
+  /// negligible. 0: always; a large number: never.
   int least_sparse_nodes = pliant::least_sparse_nodes;
-  bool relate = true;          ///< unite related shapes instead of spreading their bodies
+  bool relate = true;          ///< unite related shapes instead of vectorising their bodies nodewise
   std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: from the scene
 };
 

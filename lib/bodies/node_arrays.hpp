@@ -8,8 +8,8 @@ namespace pliant {
 /// Calls action(arrays) with the NodeArrays of a batch: selected once, outside all loops.
 template <class Action>
 decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& action) {
-  if (batch.layout == Layout::spread) {
-    const SpreadShape& shape = model.spread_shape_of(batch);
+  if (batch.layout == Layout::nodewise) {
+    const NodewiseShape& shape = model.nodewise_shape_of(batch);
     return action(NodeArrays<Lanes>{shape.mass_at_unit_density.data(), shape.inverse_mass_at_unit_density.data(),
                                     shape.nodal_distance.data()});
   }
@@ -31,16 +31,16 @@ decltype(auto) with_tables(const Model& model, const Batch& batch, Action&& acti
                                          : action(model.shape_of(batch).space);
 }
 
-/// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: all lanes of a spread body
+/// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: all lanes of a nodewise body
 /// belong to one body.
 inline Lanes sum_over_body(const Batch& batch, Lanes lanes) {
-  return batch.layout == Layout::spread ? broadcast(sum(lanes)) : lanes;
+  return batch.layout == Layout::nodewise ? broadcast(sum(lanes)) : lanes;
 }
 inline Lanes largest_of_body(const Batch& batch, Lanes lanes) {
-  return batch.layout == Layout::spread ? broadcast(largest(lanes)) : lanes;
+  return batch.layout == Layout::nodewise ? broadcast(largest(lanes)) : lanes;
 }
 
-/// Calls work(b) for each batch. Threads share the batches, but a spread body of many regions is handled alone, as
+/// Calls work(b) for each batch. Threads share the batches, but a nodewise body of many regions is handled alone, as
 /// threads share its work.
 template <class Work>
 void for_each_batch(const Model& model, Work&& work) {

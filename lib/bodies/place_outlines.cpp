@@ -58,7 +58,7 @@ void show_batch(const Model& model, const Batch& batch, const Rows& rows, const 
   }
 }
 
-/// Computes one chunk of a spread body's outline nodes.
+/// Computes one chunk of a nodewise body's outline nodes.
 void show_chunk(const Model& model, const Chunk& chunk, const Field& field, OutlineField& outlines) {
   const Batch& batch = model.batches[chunk.batch];
   const int number = model.groups[batch.group].bodies[batch.first];
@@ -76,7 +76,7 @@ void show_chunk(const Model& model, const Chunk& chunk, const Field& field, Outl
   }
 }
 
-void show_spread(const Model& model, const Field& field, OutlineField& outlines) {
+void update_nodewise_outlines(const Model& model, const Field& field, OutlineField& outlines) {
   parallel_for(static_cast<int>(model.outline_chunks.size()),
                [&](int c) { show_chunk(model, model.outline_chunks[c], field, outlines); });
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b) {
@@ -97,7 +97,7 @@ void show(const Model& model, const Field& field, OutlineField& outlines, std::s
     });
   };
   parallel_for(model.lane_batches, of_batch, static_cast<int>(rigid), of_rigid);
-  if (!model.outline_chunks.empty()) show_spread(model, field, outlines);
+  if (!model.outline_chunks.empty()) update_nodewise_outlines(model, field, outlines);
 }
 
 void place_rigid(const Model& model, const RigidBody& rigid, const double* position, OutlineField& outlines) {
@@ -139,12 +139,12 @@ void add_to_lanes(const Model& model, const Batch& batch, const Rows& rows, cons
 
 void add_to_region(const Model& model, const Region& region, const OutlineField& on_outlines, Lanes* forces) {
   const Batch& batch = model.batches[region.batch];
-  const SpreadShape& shape = model.spread_shape_of(batch);
+  const NodewiseShape& shape = model.nodewise_shape_of(batch);
   const int offset = model.outline_offset[model.groups[batch.group].bodies[batch.first]];
   const double inverse_scale = batch.inverse_scale[0];
   double* f = reinterpret_cast<double*>(forces);
   for (int e = shape.outline_start[region.number]; e < shape.outline_start[region.number + 1]; ++e) {
-    const SpreadShape::OutlineEntry& entry = shape.outline_entries[e];
+    const NodewiseShape::OutlineEntry& entry = shape.outline_entries[e];
     f[entry.node] += entry.value * inverse_scale * on_outlines.x[offset + entry.outline];
     f[entry.node + lane_count] += entry.value * inverse_scale * on_outlines.y[offset + entry.outline];
   }
@@ -169,7 +169,7 @@ OutlineField placed_outlines(const Model& model, const Dofs& positions) {
 
 void add_outline_forces(const Model& model, const Region& region, const OutlineField& on_outlines, Lanes* forces) {
   const Batch& batch = model.batches[region.batch];
-  if (batch.layout == Layout::spread) return add_to_region(model, region, on_outlines, forces);
+  if (batch.layout == Layout::nodewise) return add_to_region(model, region, on_outlines, forces);
   with_tables(model, batch, [&](const auto& tables) {
     batch.scaled ? add_to_lanes<true>(model, batch, tables.outline_rows, on_outlines, forces)
                  : add_to_lanes<false>(model, batch, tables.outline_rows, on_outlines, forces);

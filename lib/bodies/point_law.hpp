@@ -37,7 +37,7 @@ auto with_point_law(const Model& model, const Batch& batch, const BatchMotion& m
   });
 }
 
-/// Internal variables of a point, or of eight points of a spread body. Without stored variables these are the initial
+/// Internal variables of a point, or of eight points of a nodewise body. Without stored variables these are the initial
 /// ones.
 template <class Law>
 Record<Law> load_record(const Batch& batch, const BatchMotion& motion, int point) {

@@ -31,7 +31,7 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
 
 /// Sum of m g . x over all bodies, J/m: its increase is the work of a constant gravity.
 double gravity_moment(const Model& model, const Vec2& g, const Dofs& position);
-/// The same for each body of a batch; for a spread body the lanes add up to it.
+/// The same for each body of a batch; for a nodewise body the lanes add up to it.
 Lanes gravity_moment(const Model& model, const Batch& batch, const Vec2& g, const Dofs& position);
 
 /// Work of gravity with a history from one motion to a later one, J/m: trapezoidal rule. 0 for constant gravity.

@@ -66,10 +66,10 @@ void print_bodies(const Model& model) {
 void print_layouts(const Model& model) {
   int bodies[3] = {0, 0, 0};
   for (const Batch& batch : model.batches) bodies[static_cast<int>(batch.layout)] += batch.count;
-  const auto [shared, related, spread] = bodies;
-  if (related + spread > 0)
-    print_row("lanes", fmt::format("of one shape: {} bodies; of related shapes: {}; spread, each over all lanes: {}",
-                                   shared, related, spread));
+  const auto [shared, same_topology, nodewise] = bodies;
+  if (same_topology + nodewise > 0)
+    print_row("lanes", fmt::format("of one shape: {} bodies; of one topology: {}; vectorised over nodes: {}", shared,
+                                   same_topology, nodewise));
 }
 
 /// Solid fractions of what fills a region: of the outlines as they start.

@@ -103,9 +103,9 @@ void print_table(const Kind& kind, int nodes, const NaturalModes& modes, int cou
 
 void print_modes(const Scene& scene, const ModesRequest& request) {
   Eigen::setNbThreads(1);  // its products block their sums by the number of threads
-  BuildOptions never_spread;
-  never_spread.least_sparse_nodes = std::numeric_limits<int>::max();
-  const Model model = build_model(scene, never_spread);
+  BuildOptions never_nodewise;
+  never_nodewise.least_sparse_nodes = std::numeric_limits<int>::max();
+  const Model model = build_model(scene, never_nodewise);
   nlohmann::ordered_json json{{"scene", scene.name}, {"unit", "rad/s"}, {"bodies", nlohmann::json::array()}};
   for (const Kind& kind : kinds_of(model, request.body)) {
     const SmallMotions motions = small_motions(model, *kind.body);

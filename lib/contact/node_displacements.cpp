@@ -77,7 +77,7 @@ DisplacementDisc displacement_between(const DisplacementDisc& from, const Displa
   return {to.x - from.x, to.y - from.y, from.radius + to.radius};
 }
 
-double displacement_spread(const DisplacementDisc& displacements) { return 2 * displacements.radius; }
+double displacement_diameter(const DisplacementDisc& displacements) { return 2 * displacements.radius; }
 
 double relative_displacement(const DisplacementDisc& a, const DisplacementDisc& b) {
   const double dx = a.x - b.x, dy = a.y - b.y;

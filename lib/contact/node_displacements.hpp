@@ -27,7 +27,7 @@ DisplacementDisc displacement_disc(const Model& model, int body, const OutlineFi
 /// Disc of the displacements from one configuration to another of the same body.
 DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to);
 /// Bound on the relative displacement of any two nodes of a body, m.
-double displacement_spread(const DisplacementDisc& displacements);
+double displacement_diameter(const DisplacementDisc& displacements);
 /// Bound on the relative displacement of any two nodes of two bodies, m.
 double relative_displacement(const DisplacementDisc& a, const DisplacementDisc& b);
 

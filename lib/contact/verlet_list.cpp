@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double extra_skins = 4;
-/// Spread of a body's displacements, as a share of the skin, from which the body gets a new reference.
+/// Diameter of a body's displacements, as a share of the skin, from which the body gets a new reference.
 constexpr double blurred = 0.25;
 /// Share of the skin up to which a pair is kept when others are searched; likewise for the broad phase. Few pairs move
 /// by much more than the others (docs/notes/contact_search.md).
@@ -150,7 +150,7 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
 /// Sets a new reference for bodies that have deformed or rotated since theirs. The bounds of all their pairs would
 /// become overestimates.
 void VerletList::reset_references(const OutlineField& here, const OutlineField& trial) {
-  const auto is_due = [&](int b) { return displacement_spread(motion_[b]) >= blurred * skin_; };
+  const auto is_due = [&](int b) { return displacement_diameter(motion_[b]) >= blurred * skin_; };
   parallel_for(pair_displacements_.count(), [&](int e) {
     if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, displacements(here));
   });

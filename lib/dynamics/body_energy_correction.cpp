@@ -53,7 +53,7 @@ struct RigidMotion {
 };
 
 /// K - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12 of each body of a batch after a step, J/m; for a
-/// spread body the lanes add up to it. The last terms have displacements and forces relative to the body's mean ones.
+/// nodewise body the lanes add up to it. The last terms have displacements and forces relative to the body's mean ones.
 /// The mean motion keeps the first two terms, and its share of the others would make the error depend on the frame of
 /// reference.
 Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial& before, const State& state,
@@ -142,7 +142,7 @@ BodyEnergyCorrection::BodyEnergyCorrection(const Model& model) : model_(model) {
     const Body& body = model.bodies[b];
     if (body.batch < 0 || !is_corrected(model, static_cast<int>(b))) continue;
     corrected_.resize(model.batches.size());
-    if (model.batches[body.batch].layout == Layout::spread)
+    if (model.batches[body.batch].layout == Layout::nodewise)
       corrected_[body.batch] = broadcast(1);
     else
       corrected_[body.batch][body.lane] = 1;
@@ -169,7 +169,7 @@ Lanes BodyEnergyCorrection::energy(const Trial& before, const State& state, int 
 Lanes BodyEnergyCorrection::error(const Trial& before, const State& state, int b, double dt) const {
   const Batch& batch = model_.batches[b];
   const int* bodies = &model_.groups[batch.group].bodies[batch.first];
-  Lanes work = broadcast(state.body_balance.work[bodies[0]]);  // in all lanes for a spread body
+  Lanes work = broadcast(state.body_balance.work[bodies[0]]);  // in all lanes for a nodewise body
   for (int lane = 1; lane < batch.count; ++lane) work[lane] = state.body_balance.work[bodies[lane]];
   return energy(before, state, b, dt) - state.body_balance.opening[b] - work;
 }

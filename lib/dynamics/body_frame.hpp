@@ -11,7 +11,7 @@ namespace pliant {
 inline std::vector<Lanes> from_first_node(const Batch& batch, const Lanes* position) {
   std::vector<Lanes> result(position, position + 2 * static_cast<std::size_t>(batch.slots));
   for (std::size_t c = 0; c < 2; ++c) {
-    const Lanes first = batch.layout == Layout::spread ? broadcast(position[c][0]) : position[c];
+    const Lanes first = batch.layout == Layout::nodewise ? broadcast(position[c][0]) : position[c];
     for (std::size_t i = c; i < result.size(); i += 2) result[i] -= first;
   }
   return result;
@@ -30,8 +30,8 @@ struct BodyFrame {
     });
     const auto node = static_cast<std::size_t>(farthest - reference.begin());
     Lanes x, y;
-    if (batch.layout == Layout::spread) {
-      const auto& offset = model.spread_shape_of(batch).offset;
+    if (batch.layout == Layout::nodewise) {
+      const auto& offset = model.nodewise_shape_of(batch).offset;
       const auto* entries = reinterpret_cast<const double*>(position);
       const auto along = [&](int c) {
         return broadcast(entries[offset[node] + c * lane_count] - entries[offset[0] + c * lane_count]);

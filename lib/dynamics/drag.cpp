@@ -26,7 +26,7 @@ double rest_of_exponential(double z, int n) {
 
 /// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without drag, when
 /// it is linear in time.
-double spread(double z) {
+double relative_variance(double z) {
   const double mean = rest_of_exponential(z, 2);
   return (4 * rest_of_exponential(2 * z, 3) - 2 * rest_of_exponential(z, 3)) / (mean * mean) - 1;
 }
@@ -82,7 +82,7 @@ double DragLoss::work(const Instant& at, double dt, const Dofs& velocity, const 
   for (std::size_t i = 0; i < deviation_.compliant.size(); ++i) deviation_.compliant[i] -= mean.compliant[i];
   for (std::size_t i = 0; i < deviation_.rigid.size(); ++i) deviation_.rigid[i] -= mean.rigid[i];
   return dt * (weighted_square(at, mean, [](double c) { return c; }) +
-               weighted_square(at, deviation_, [&](double c) { return c * spread(c * dt); }));
+               weighted_square(at, deviation_, [&](double c) { return c * relative_variance(c * dt); }));
 }
 
 }  // namespace pliant

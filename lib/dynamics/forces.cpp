@@ -27,7 +27,7 @@ Forces::Forces(const Model& model)
       contact_(model),
       least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
-    stresses_.emplace_back(static_cast<std::size_t>(model.spread_shape_of(model.batches[b]).points()));
+    stresses_.emplace_back(static_cast<std::size_t>(model.nodewise_shape_of(model.batches[b]).points()));
   if (model.rates || model.material_memory > 0) damping_power_.resize(least_jacobian_.size());
 }
 
@@ -69,7 +69,7 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
     if (hooks.rigid) hooks.rigid(r);
   };
   parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
-  if (!stresses_.empty()) spread_forces(motion, *on_outlines, from, to, hooks);
+  if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, hooks);
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -114,15 +114,15 @@ void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& posit
   add_rigid_loads(rigid, model_.scene.gravity_at(motion.time), motion.instant(), &force.rigid[3 * r]);
 }
 
-/// All forces on spread bodies: stresses come first, because a region's nodes gather from points of other regions.
-void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
-                           const Output& to, const PostForceHooks& hooks) {
+/// All forces on nodewise bodies: stresses come first, because a region's nodes gather from points of other regions.
+void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
+                             const Output& to, const PostForceHooks& hooks) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
     const Batch& batch = model_.batches[chunk.batch];
     const PointTotals totals =
-        spread_stresses(model_, chunk, step_of(batch, motion, from, to.memory), stresses_of(chunk.batch));
+        nodewise_stresses(model_, chunk, step_of(batch, motion, from, to.memory), stresses_of(chunk.batch));
     least_jacobian_[model_.lane_batches + c] = least_of(totals.least_jacobian);
     if (!damping_power_.empty()) damping_power_[model_.lane_batches + c] = sum(totals.power) * batch.weight[0];
   });
@@ -133,7 +133,7 @@ void Forces::spread_forces(const Motion& motion, const OutlineField& on_outlines
     std::fill(f + 2 * region.first, f + 2 * region.last, Lanes{});
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
-    add_spread_forces(model_, region, stresses_of(region.batch), f);
+    add_nodewise_forces(model_, region, stresses_of(region.batch), f);
     if (hooks.region) hooks.region(r);
   });
 }

@@ -4,8 +4,8 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
+#include "bodies/nodewise_forces.hpp"
 #include "bodies/outline.hpp"
-#include "bodies/spread_forces.hpp"
 #include "contact/contact.hpp"
 #include "core/phase_times.hpp"
 #include "dynamics/state.hpp"
@@ -79,15 +79,15 @@ class Forces {
                    const Output& to);
   void rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
                     Dofs& force);
-  void spread_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
-                     const Output& to, const PostForceHooks& hooks);
+  void nodewise_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
+                       const Output& to, const PostForceHooks& hooks);
 
   const Model& model_;
   ContactSystem contact_;
   OutlineField loaded_;                 ///< sum of contact forces and loads on outlines; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
   std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty without viscosity
-  std::vector<std::vector<StressColumns>> stresses_;  ///< [spread bodies][points]
+  std::vector<std::vector<StressColumns>> stresses_;  ///< [nodewise bodies][points]
   bool warned_deep_ = false;
   PhaseTimes phases_;
 };

@@ -48,8 +48,8 @@ LanePair displacement(const Rows& rows, const Lanes* d, int node) {
   return u;
 }
 
-/// The same at the nodes of one slot of a spread body; 0 in padding.
-LanePair displacement(const ShapeRows& rows, const SpreadShape& shape, const double* d, int slot) {
+/// The same at the nodes of one slot of a nodewise body; 0 in padding.
+LanePair displacement(const ShapeRows& rows, const NodewiseShape& shape, const double* d, int slot) {
   LanePair u;
   const int first = lane_count * slot, count = std::min(lane_count, static_cast<int>(shape.order.size()) - first);
   for (int lane = 0; lane < count; ++lane) {
@@ -212,12 +212,12 @@ double StepDoubling::region_error(const Region& region) const {
       return std::isfinite(sum(any_nan)) ? largest(worst) : std::numeric_limits<double>::infinity();
     });
   };
-  if (batch.layout != Layout::spread)
+  if (batch.layout != Layout::nodewise)
     return with_tables(model_, batch, [&](const auto& tables) {
       return largest_of([&](int node) { return displacement(tables.node_rows, d, node); });
     });
   const ShapeRows& rows = model_.shape_of(batch).space.node_rows;
-  const SpreadShape& shape = model_.spread_shape_of(batch);
+  const NodewiseShape& shape = model_.nodewise_shape_of(batch);
   return largest_of([&](int slot) { return displacement(rows, shape, reinterpret_cast<const double*>(d), slot); });
 }
 
@@ -246,7 +246,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 }
 
 double StepDoubling::error(const State& state, double dt) {
-  // A spread body's region needs the differences of its neighbours: all are computed first.
+  // A nodewise body's region needs the differences of its neighbours: all are computed first.
   parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], dt); });
   if (model_.corrected_mass) correct_difference();
   const double compliant =

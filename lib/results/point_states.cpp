@@ -24,10 +24,10 @@ Record<Law, double> record_of(const Model& model, const Body& body, const Memory
   Record<Law, double> record;
   if constexpr (has_internal_variables<Law>) {
     const Batch& batch = model.batches[body.batch];
-    const bool spread = batch.layout == Layout::spread;
-    const std::size_t number = spread ? model.spread_shape_of(batch).point_number[point] : point;
-    const std::size_t slot = spread ? number / lane_count : number;
-    const int lane = spread ? static_cast<int>(number % lane_count) : body.lane;
+    const bool nodewise = batch.layout == Layout::nodewise;
+    const std::size_t number = nodewise ? model.nodewise_shape_of(batch).point_number[point] : point;
+    const std::size_t slot = nodewise ? number / lane_count : number;
+    const int lane = nodewise ? static_cast<int>(number % lane_count) : body.lane;
     for (std::size_t k = 0; k < record.size(); ++k)
       record[k] = memory.material[batch.memory + k * static_cast<std::size_t>(batch.points) + slot][lane];
   }

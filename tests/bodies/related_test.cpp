@@ -1,5 +1,5 @@
-// Bodies of related shapes in the lanes of one batch against the same bodies spread, each by the table of its own
-// shape.
+// Bodies of related shapes in the lanes of one batch against the same bodies vectorised nodewise, each by the table of
+// its own shape.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -55,8 +55,8 @@ BuildOptions always() {
   return options;
 }
 
-/// The same bodies, meshes and tables, each body spread.
-Model spread(Model model) {
+/// The same bodies, meshes and tables, each body vectorised nodewise.
+Model nodewise(Model model) {
   model.groups.clear(), model.batches.clear(), model.regions.clear(), model.related_shapes.clear();
   model.compliant_size = 0;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
@@ -77,15 +77,15 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
 
 class Related : public ::testing::TestWithParam<std::tuple<Recipe, Integrator, Extras>> {};
 
-TEST_P(Related, bodies_move_as_those_spread) {
+TEST_P(Related, bodies_move_as_nodewise_ones) {
   const auto [recipe, integrator, extras] = GetParam();
   Steered here(build_model(heap(recipe, integrator, extras), always()));
-  Steered there(spread(here.bench.model));
+  Steered there(nodewise(here.bench.model));
   const Model &related = here.bench.model, &alone = there.bench.model;
   ASSERT_EQ(related.batches.size(), 2U) << "eight bodies and three";
   for (const Batch& batch : related.batches) ASSERT_EQ(batch.layout, Layout::related);
   ASSERT_EQ(alone.batches.size(), 11U);
-  for (const Batch& batch : alone.batches) ASSERT_EQ(batch.layout, Layout::spread);
+  for (const Batch& batch : alone.batches) ASSERT_EQ(batch.layout, Layout::nodewise);
   expect_same_bound(here, there, 0.02);
   const int contacts = step_side_by_side(here, there, 4e-3, 300, 1e-6);
   EXPECT_GT(contacts, 20);
@@ -143,9 +143,9 @@ TEST(RelatedBodies, are_few_of_many_smooth_shapes) {
   EXPECT_EQ(large.batches.size(), 2U);
   EXPECT_EQ(large.batches[0].layout, Layout::related);
   EXPECT_EQ(build_model(scene, {.least_sparse_nodes = 0, .relate = false, .scales = {}}).batches[0].layout,
-            Layout::spread);
+            Layout::nodewise);
   for (int i = 0; i < 9; ++i) scene.shapes[i].nodes = 101 + i;  // of eleven only two agree
-  for (const Batch& batch : build_model(scene).batches) EXPECT_EQ(batch.layout, Layout::spread);
+  for (const Batch& batch : build_model(scene).batches) EXPECT_EQ(batch.layout, Layout::nodewise);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ double total_error(const BodyEnergyCorrection& correction, const Bench& bench) {
   double total = 0;
   for (int b = 0; b < static_cast<int>(bench.model.batches.size()); ++b) {
     const Lanes error = correction.error(before, bench.state, b, 0);
-    total += bench.model.batches[b].layout == Layout::spread ? error[0] : sum(error);
+    total += bench.model.batches[b].layout == Layout::nodewise ? error[0] : sum(error);
   }
   return total;
 }
@@ -105,7 +105,7 @@ const Case cases[] = {{Mass::lumped, {1 << 30, true, {}}},
                       {Mass::lumped, {0, false, {}}},
                       {Mass::corrected, {1 << 30, true, {}}},
                       {Mass::corrected, {0, false, {}}}};
-INSTANTIATE_TEST_SUITE_P(LanesAndSpread, BodyEnergyError, ::testing::ValuesIn(cases));
+INSTANTIATE_TEST_SUITE_P(LanesAndNodewise, BodyEnergyError, ::testing::ValuesIn(cases));
 
 TEST(BodyEnergyCorrection, take_a_hundred_thousandth_a_step_at_most) {
   Bench bench(ringing_discs(Mass::lumped));

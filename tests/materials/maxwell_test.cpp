@@ -238,12 +238,12 @@ struct Deformed {
   }
 };
 
-// EXACT: of bodies in lanes and of spread ones the same forces, memories and stresses.
+// EXACT: of bodies in lanes and of nodewise ones the same forces, memories and stresses.
 TEST(NeoHookeanMaxwell, layouts_agree) {
-  BuildOptions spread, lanes;
-  spread.least_sparse_nodes = 0, lanes.least_sparse_nodes = 1 << 30;
-  spread.relate = lanes.relate = false;
-  const Deformed a(spread), b(lanes);
+  BuildOptions nodewise, lanes;
+  nodewise.least_sparse_nodes = 0, lanes.least_sparse_nodes = 1 << 30;
+  nodewise.relate = lanes.relate = false;
+  const Deformed a(nodewise), b(lanes);
   ASSERT_NE(a.model.batches[0].layout, b.model.batches[0].layout);
   const BodyView one(a.model, a.model.bodies[0], a.force), other(b.model, b.model.bodies[0], b.force);
   double largest_force = 0;

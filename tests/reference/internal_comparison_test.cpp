@@ -144,10 +144,10 @@ TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
     }
 }
 
-TEST(ReferenceAgainstEngine, spread_bodies_agree) {
+TEST(ReferenceAgainstEngine, nodewise_bodies_agree) {
   const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(Recipe::mls), 3), BuildOptions{0, false, {}});
   ASSERT_TRUE(std::any_of(both.model.batches.begin(), both.model.batches.end(),
-                          [](const Batch& batch) { return batch.layout == Layout::spread; }));
+                          [](const Batch& batch) { return batch.layout == Layout::nodewise; }));
   compare_forces(both);
 }
 
@@ -184,12 +184,12 @@ struct Remembering : Both {
     const Batch& batch = model.batches[body.batch];
     std::vector<reference::BranchPoint> points(static_cast<std::size_t>(own.weights().size()));
     for (std::size_t g = 0; g < points.size(); ++g) {
-      const bool spread = batch.layout == Layout::spread;
-      const auto number = spread ? static_cast<std::size_t>(model.spread_shape_of(batch).point_number[g]) : g;
+      const bool nodewise = batch.layout == Layout::nodewise;
+      const auto number = nodewise ? static_cast<std::size_t>(model.nodewise_shape_of(batch).point_number[g]) : g;
       const auto value = [&](std::size_t k) {
         const Lanes& lanes = memory.material[batch.memory + k * static_cast<std::size_t>(batch.points) +
-                                             (spread ? number / lane_count : number)];
-        return lanes[spread ? static_cast<int>(number % lane_count) : body.lane];
+                                             (nodewise ? number / lane_count : number)];
+        return lanes[nodewise ? static_cast<int>(number % lane_count) : body.lane];
       };
       points[g] = {{value(0) + value(3), value(1) + value(4), value(2) + value(5)}, {value(3), value(4), value(5)}};
     }
@@ -211,7 +211,7 @@ double difference_after(const Remembering& both, double dt) {
     worst = std::max(worst, (own.residual + engine).cwiseAbs().maxCoeff() / engine.cwiseAbs().maxCoeff());
     const Batch& batch = both.model.batches[body.batch];
     const PointTotals& totals = found.totals[static_cast<std::size_t>(body.batch)];
-    const int lane = batch.layout == Layout::spread ? 0 : body.lane;
+    const int lane = batch.layout == Layout::nodewise ? 0 : body.lane;
     const double power = totals.power[lane] * body.scale * body.scale;
     const double energy = found.energy[static_cast<std::size_t>(body.batch)][lane];
     worst = std::max({worst, std::abs(own.power / power - 1), std::abs(own.energy / energy - 1)});
@@ -222,9 +222,9 @@ double difference_after(const Remembering& both, double dt) {
 /// INDEPENDENT at a state; RATE in time: the engine's exponential and the reference's trapezoidal rule differ by the
 /// third order of a step.
 TEST(ReferenceAgainstEngine, maxwell_branches_agree) {
-  for (const bool spread : {false, true}) {
-    const Remembering both(spread ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
-    EXPECT_EQ(both.model.batches[0].layout == Layout::spread, spread);
+  for (const bool nodewise : {false, true}) {
+    const Remembering both(nodewise ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
+    EXPECT_EQ(both.model.batches[0].layout == Layout::nodewise, nodewise);
     EXPECT_LT(difference_after(both, 0), tolerance);
     const double coarse = difference_after(both, 0.04), fine = difference_after(both, 0.02);
     EXPECT_NEAR(coarse / fine, 8, 1.2) << coarse << " " << fine;

@@ -1,4 +1,4 @@
-// Bodies that are spread over the lanes against the same bodies in a lane each.
+// Bodies that are vectorised over their nodes against the same bodies in a lane each.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -19,8 +19,8 @@ using testing::Random;
 
 /// Of the pile's grains: all of a size of their own.
 const std::vector<double> sizes{1.01, 0.99, 1.02, 1, 0.97};
-const BuildOptions always_spread{.least_sparse_nodes = 0, .relate = true, .scales = sizes};
-const BuildOptions never_spread{.least_sparse_nodes = 1 << 30, .relate = true, .scales = sizes};
+const BuildOptions always_nodewise{.least_sparse_nodes = 0, .relate = true, .scales = sizes};
+const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .relate = true, .scales = sizes};
 
 /// Two discs of 603 nodes (two regions, with padding) and one of 60 of another law, on a floor under rigid grains.
 Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
@@ -44,7 +44,7 @@ Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
 /// Sums of some twenty terms in another order, times what a disc's stiffness makes of rounded positions.
 constexpr double rounding = 1e-12;
 
-class Spread : public ::testing::TestWithParam<std::tuple<Recipe, Integrator>> {};
+class Nodewise : public ::testing::TestWithParam<std::tuple<Recipe, Integrator>> {};
 
 void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
   ASSERT_EQ(a.size(), b.size());
@@ -52,31 +52,31 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
     ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
 }
 
-TEST_P(Spread, bodies_move_as_those_in_lanes) {
+TEST_P(Nodewise, bodies_move_as_those_in_lanes) {
   const auto [recipe, integrator] = GetParam();
-  Steered here(build_model(pile(recipe, integrator), always_spread));
-  Steered there(build_model(pile(recipe, integrator), never_spread));
-  const Model &spread = here.bench.model, &lanes = there.bench.model;
-  ASSERT_EQ(spread.lane_batches, 0);
-  ASSERT_EQ(spread.batches.size(), 3U);
-  ASSERT_EQ(spread.batches[0].regions, 2);
+  Steered here(build_model(pile(recipe, integrator), always_nodewise));
+  Steered there(build_model(pile(recipe, integrator), never_nodewise));
+  const Model &nodewise = here.bench.model, &lanes = there.bench.model;
+  ASSERT_EQ(nodewise.lane_batches, 0);
+  ASSERT_EQ(nodewise.batches.size(), 3U);
+  ASSERT_EQ(nodewise.batches[0].regions, 2);
   ASSERT_EQ(lanes.batches.size(), 2U);
-  EXPECT_EQ(spread.dof_count(), lanes.dof_count());
+  EXPECT_EQ(nodewise.dof_count(), lanes.dof_count());
   expect_same_bound(here, there, 0.01);
   const int contacts = step_side_by_side(here, there, 2e-3, 60, 1e-6);
   EXPECT_GT(contacts, 10);
   for (std::size_t b = 0; b < lanes.bodies.size(); ++b) {
-    const Body &body = spread.bodies[b], &other = lanes.bodies[b];
+    const Body &body = nodewise.bodies[b], &other = lanes.bodies[b];
     if (body.kind != BodyKind::compliant) continue;
     const State &x = here.bench.state, &y = there.bench.state;
-    expect_equal_points(nodal_values(spread, body, x.position), nodal_values(lanes, other, y.position), rounding,
+    expect_equal_points(nodal_values(nodewise, body, x.position), nodal_values(lanes, other, y.position), rounding,
                         "node");
-    expect_equal_points(outline_values(spread, body, x.position), outline_values(lanes, other, y.position), rounding,
+    expect_equal_points(outline_values(nodewise, body, x.position), outline_values(lanes, other, y.position), rounding,
                         "outline node");
-    expect_equal_points(nodal_values(spread, body, x.reduced_momentum), nodal_values(lanes, other, y.reduced_momentum),
-                        100 * rounding,
+    expect_equal_points(nodal_values(nodewise, body, x.reduced_momentum),
+                        nodal_values(lanes, other, y.reduced_momentum), 100 * rounding,
                         "velocity");  // a frequency of 100
-    EXPECT_LT((mean_value(spread, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding)
+    EXPECT_LT((mean_value(nodewise, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding)
         << "EXACT";
   }
   const EnergyBalance a = here.auditor.audit(here.bench.state), b = there.auditor.audit(there.bench.state);
@@ -87,7 +87,7 @@ TEST_P(Spread, bodies_move_as_those_in_lanes) {
   EXPECT_LT(a.momentum_error, 1e-12) << "EXACT";
 }
 
-INSTANTIATE_TEST_SUITE_P(Recipes, Spread,
+INSTANTIATE_TEST_SUITE_P(Recipes, Nodewise,
                          ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling)));
 
@@ -111,16 +111,17 @@ Dofs deformed(const Model& model, std::uint64_t seed) {
 
 /// EXACT: energies and least Jacobians of a state; forces are minus the gradient of the energy (central differences:
 /// 1e-10 of forces of order 1 by rounding over 1e-5, and 1e-9 by the third derivative).
-TEST(SpreadForces, belong_to_the_energy) {
+TEST(NodewiseForces, belong_to_the_energy) {
   for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
-    const Model spread = build_model(pile(recipe), always_spread), lanes = build_model(pile(recipe), never_spread);
-    Dofs q = deformed(spread, 3);
+    const Model nodewise = build_model(pile(recipe), always_nodewise),
+                lanes = build_model(pile(recipe), never_nodewise);
+    Dofs q = deformed(nodewise, 3);
     const Dofs p = deformed(lanes, 3);
-    Dofs f = zero_dofs(spread), g = zero_dofs(lanes);
+    Dofs f = zero_dofs(nodewise), g = zero_dofs(lanes);
     std::vector<double> least;
-    for (const Batch& batch : spread.batches)
+    for (const Batch& batch : nodewise.batches)
       least.push_back(
-          add_internal_forces(spread, batch, {.position = &q.compliant[batch.offset]}, &f.compliant[batch.offset])
+          add_internal_forces(nodewise, batch, {.position = &q.compliant[batch.offset]}, &f.compliant[batch.offset])
               .least_jacobian[0]);
     std::vector<Lanes> least_lanes;
     for (const Batch& batch : lanes.batches)
@@ -128,19 +129,19 @@ TEST(SpreadForces, belong_to_the_energy) {
           add_internal_forces(lanes, batch, {.position = &p.compliant[batch.offset]}, &g.compliant[batch.offset])
               .least_jacobian);
     for (int b = 0; b < 3; ++b) {
-      const Body &body = spread.bodies[b], &other = lanes.bodies[b];
-      const BodyView forces(spread, body, f), expected(lanes, other, g);
-      for (int i = 0; i < spread.shape_of(body).nodes(); ++i) {
+      const Body &body = nodewise.bodies[b], &other = lanes.bodies[b];
+      const BodyView forces(nodewise, body, f), expected(lanes, other, g);
+      for (int i = 0; i < nodewise.shape_of(body).nodes(); ++i) {
         const auto node = static_cast<std::size_t>(i);
         ASSERT_LT((forces[node] - expected[node]).norm(), 1e-13);
       }
       EXPECT_NEAR(least[body.batch], least_lanes[other.batch][other.lane], 1e-13);
-      const Batch& batch = spread.batches[body.batch];
+      const Batch& batch = nodewise.batches[body.batch];
       const Batch& lane_batch = lanes.batches[other.batch];
-      const auto energy = [&] { return strain_energy(spread, batch, {.position = &q.compliant[batch.offset]})[0]; };
+      const auto energy = [&] { return strain_energy(nodewise, batch, {.position = &q.compliant[batch.offset]})[0]; };
       EXPECT_NEAR(energy(), strain_energy(lanes, lane_batch, {.position = &p.compliant[lane_batch.offset]})[other.lane],
                   1e-13);
-      const BodyOffsets offsets(spread, body);
+      const BodyOffsets offsets(nodewise, body);
       for (std::size_t i = 0; i < 60; i += 7) {
         double& x = reinterpret_cast<double*>(q.compliant.data())[offsets[i]];
         const double here = x;
@@ -156,9 +157,9 @@ TEST(SpreadForces, belong_to_the_energy) {
 }
 
 /// EXACT: the same bits with one, two and three threads.
-TEST(SpreadForces, do_not_depend_on_the_number_of_threads) {
+TEST(NodewiseForces, do_not_depend_on_the_number_of_threads) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
-    const Model model = build_model(pile(Recipe::mls, integrator), always_spread);
+    const Model model = build_model(pile(Recipe::mls, integrator), always_nodewise);
     const int before = omp_get_max_threads();
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 3}) {
@@ -176,9 +177,9 @@ TEST(SpreadForces, do_not_depend_on_the_number_of_threads) {
 }
 
 /// EXACT: all nodes once, all points once, the two tables the same numbers.
-TEST(SpreadShape, is_the_table_in_another_order) {
-  const Model model = build_model(pile(Recipe::mls), always_spread);
-  const SpreadShape& shape = model.spread_shapes[0];
+TEST(NodewiseShape, is_the_table_in_another_order) {
+  const Model model = build_model(pile(Recipe::mls), always_nodewise);
+  const NodewiseShape& shape = model.nodewise_shapes[0];
   const Discretisation& space = model.shapes[0].space;
   std::vector<int> offsets = shape.offset;
   std::sort(offsets.begin(), offsets.end());
@@ -195,9 +196,9 @@ TEST(SpreadShape, is_the_table_in_another_order) {
 
 /// Neighbours in space are neighbours in memory: the mean distance of the places of nodes that share a point. The
 /// mesh's own order has a sixth of all nodes.
-TEST(SpreadShape, keeps_neighbours_together) {
-  const Model model = build_model(pile(Recipe::mls), always_spread);
-  const SpreadShape& shape = model.spread_shapes[0];
+TEST(NodewiseShape, keeps_neighbours_together) {
+  const Model model = build_model(pile(Recipe::mls), always_nodewise);
+  const NodewiseShape& shape = model.nodewise_shapes[0];
   double total = 0;
   int count = 0;
   for (int p = 0; p < shape.points(); ++p)
@@ -207,8 +208,8 @@ TEST(SpreadShape, keeps_neighbours_together) {
 }
 
 /// EXACT: an inverted element is found and told with its node's place in the mesh, a NaN with its node.
-TEST(SpreadBodies, fail_by_name) {
-  Bench bench(build_model(pile(Recipe::mls), always_spread));
+TEST(NodewiseBodies, fail_by_name) {
+  Bench bench(build_model(pile(Recipe::mls), always_nodewise));
   const Body& body = bench.model.bodies[1];
   const BodyOffsets offsets(bench.model, body);
   set_node(offsets, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
@@ -223,13 +224,13 @@ TEST(SpreadBodies, fail_by_name) {
 }
 
 /// The rule: many nodes in nearly empty batches.
-TEST(SpreadBodies, are_those_that_would_leave_lanes_empty) {
+TEST(NodewiseBodies, are_those_that_would_leave_lanes_empty) {
   const Model model = build_model(pile(Recipe::es_t3));  // 1266 sparse nodes
   EXPECT_EQ(model.lane_batches, 0);
-  const BuildOptions spread{.least_sparse_nodes = 0, .relate = true, .scales = {}};
+  const BuildOptions nodewise{.least_sparse_nodes = 0, .relate = true, .scales = {}};
   Scene many = pile(Recipe::es_t3);
   for (int i = 0; i < 7; ++i) many.grains[0].packing.positions.push_back({1.2, 4.0 + 3 * i});
-  const Model mixed = build_model(many, spread);  // nine large discs: eight in lanes, one spread
+  const Model mixed = build_model(many, nodewise);  // nine large discs: eight in lanes, one nodewise
   EXPECT_EQ(mixed.lane_batches, 1);
   EXPECT_EQ(mixed.batches.size(), 3U);
   EXPECT_EQ(build_model(many).lane_batches, 3) << "663 nodes are not worth it";

@@ -1,4 +1,4 @@
-#include "bodies/spread_shape.hpp"
+#include "bodies/nodewise_shape.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -42,7 +42,7 @@ Points point_positions(const Discretisation& space) {
   return result;
 }
 
-void add_nodes(const Discretisation& space, SpreadShape& shape) {
+void add_nodes(const Discretisation& space, NodewiseShape& shape) {
   const std::vector<int>& order = shape.order = spatial_order(space.mesh.nodes);
   const std::size_t nodes = order.size(), slots = (nodes + lane_count - 1) / lane_count;
   shape.offset.resize(nodes);
@@ -59,7 +59,7 @@ void add_nodes(const Discretisation& space, SpreadShape& shape) {
 }
 
 /// Fills the tables by points. Padding points have weight 0 and the last point's gradients, so that their J is valid.
-void add_points(const Discretisation& space, SpreadShape& shape) {
+void add_points(const Discretisation& space, NodewiseShape& shape) {
   const IntegrationTable& table = space.table;
   std::vector<int> order = spatial_order(point_positions(space));
   const std::size_t points = order.size();
@@ -82,7 +82,7 @@ void add_points(const Discretisation& space, SpreadShape& shape) {
 int number_of(int offset) { return offset / (2 * lane_count) * lane_count + offset % lane_count; }
 
 /// Fills the tables by nodes: each node's points in ascending order.
-void transpose_points(SpreadShape& shape) {
+void transpose_points(NodewiseShape& shape) {
   std::vector<int>& start = shape.node_start;
   start.assign(static_cast<std::size_t>(lane_count * shape.slots()) + 1, 0);
   for (int offset : shape.node) ++start[number_of(offset) + 1];
@@ -98,25 +98,25 @@ void transpose_points(SpreadShape& shape) {
     }
 }
 
-void add_outline(const ShapeRows& rows, SpreadShape& shape) {
-  const auto region_of = [](const SpreadShape::OutlineEntry& entry) {
-    return number_of(entry.node) / (lane_count * SpreadShape::region_slots);
+void add_outline(const ShapeRows& rows, NodewiseShape& shape) {
+  const auto region_of = [](const NodewiseShape::OutlineEntry& entry) {
+    return number_of(entry.node) / (lane_count * NodewiseShape::region_slots);
   };
   for (int k = 0; k + 1 < static_cast<int>(rows.start.size()); ++k)
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e)
       shape.outline_entries.push_back({shape.offset[rows.node[e]], k, rows.value[e]});
   std::stable_sort(shape.outline_entries.begin(), shape.outline_entries.end(),
                    [&](const auto& a, const auto& b) { return region_of(a) < region_of(b); });
-  const int regions = (shape.slots() + SpreadShape::region_slots - 1) / SpreadShape::region_slots;
+  const int regions = (shape.slots() + NodewiseShape::region_slots - 1) / NodewiseShape::region_slots;
   shape.outline_start.assign(static_cast<std::size_t>(regions) + 1, 0);
-  for (const SpreadShape::OutlineEntry& entry : shape.outline_entries) ++shape.outline_start[region_of(entry) + 1];
+  for (const NodewiseShape::OutlineEntry& entry : shape.outline_entries) ++shape.outline_start[region_of(entry) + 1];
   std::partial_sum(shape.outline_start.begin(), shape.outline_start.end(), shape.outline_start.begin());
 }
 
 }  // namespace
 
-SpreadShape make_spread_shape(const Discretisation& space) {
-  SpreadShape shape;
+NodewiseShape make_nodewise_shape(const Discretisation& space) {
+  NodewiseShape shape;
   add_nodes(space, shape);
   add_points(space, shape);
   transpose_points(shape);

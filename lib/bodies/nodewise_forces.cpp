@@ -1,4 +1,4 @@
-#include "bodies/spread_forces.hpp"
+#include "bodies/nodewise_forces.hpp"
 
 #include <algorithm>
 
@@ -25,7 +25,7 @@ Quad twice_each(const Vec2* b) {
 }
 
 /// Deformation gradients of eight points, one per lane.
-Tensor<Lanes> deformation_gradients(const SpreadShape& shape, int first, const double* q) {
+Tensor<Lanes> deformation_gradients(const NodewiseShape& shape, int first, const double* q) {
   const int *start = shape.start.data(), *node = shape.node.data();
   const Vec2* gradient = shape.gradient.data();
   double rows[4][lane_count];
@@ -51,7 +51,7 @@ void store_columns(const Tensor<Lanes>& P, StressColumns* to) {
 const double* flat(const Lanes* values) { return reinterpret_cast<const double*>(values); }
 
 template <class Law>
-PointTotals stresses_of(const Law law, const SpreadShape& shape, const Batch& batch, const Chunk& points,
+PointTotals stresses_of(const Law law, const NodewiseShape& shape, const Batch& batch, const Chunk& points,
                         const BatchMotion motion, StressColumns* stresses) {
   PointTotals totals;
   for (int p = points.first; p < points.last; p += lane_count) {
@@ -70,7 +70,7 @@ PointTotals stresses_of(const Law law, const SpreadShape& shape, const Batch& ba
 }
 
 template <class Law>
-double energy_of_chunk(const Law& law, const SpreadShape& shape, const Batch& batch, int first, int last,
+double energy_of_chunk(const Law& law, const NodewiseShape& shape, const Batch& batch, int first, int last,
                        const BatchMotion& motion) {
   Lanes total{};
   for (int p = first; p < last; p += lane_count)
@@ -81,16 +81,16 @@ double energy_of_chunk(const Law& law, const SpreadShape& shape, const Batch& ba
 
 }  // namespace
 
-PointTotals spread_stresses(const Model& model, const Chunk& points, const BatchMotion& motion,
-                            StressColumns* stresses) {
+PointTotals nodewise_stresses(const Model& model, const Chunk& points, const BatchMotion& motion,
+                              StressColumns* stresses) {
   const Batch& batch = model.batches[points.batch];
   return with_point_law(model, batch, motion, [&](const auto& law) {
-    return stresses_of(law, model.spread_shape_of(batch), batch, points, motion, stresses);
+    return stresses_of(law, model.nodewise_shape_of(batch), batch, points, motion, stresses);
   });
 }
 
-void add_spread_forces(const Model& model, const Region& region, const StressColumns* stresses, Lanes* forces) {
-  const SpreadShape& shape = model.spread_shape_of(model.batches[region.batch]);
+void add_nodewise_forces(const Model& model, const Region& region, const StressColumns* stresses, Lanes* forces) {
+  const NodewiseShape& shape = model.nodewise_shape_of(model.batches[region.batch]);
   const int *start = shape.node_start.data(), *point = shape.point.data();
   const Vec2* gradient = shape.node_gradient.data();
   for (int slot = region.first; slot < region.last; ++slot) {
@@ -112,21 +112,21 @@ void add_spread_forces(const Model& model, const Region& region, const StressCol
   }
 }
 
-PointTotals add_spread_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces) {
-  const int number = static_cast<int>(&batch - model.batches.data()), points = model.spread_shape_of(batch).points();
+PointTotals add_nodewise_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces) {
+  const int number = static_cast<int>(&batch - model.batches.data()), points = model.nodewise_shape_of(batch).points();
   thread_local std::vector<StressColumns> scratch;
   thread_local std::vector<PointTotals> scratch_totals;
-  constexpr int step = SpreadShape::chunk_points;
+  constexpr int step = NodewiseShape::chunk_points;
   const int chunks = (points + step - 1) / step;
   scratch.resize(static_cast<std::size_t>(points));
   scratch_totals.resize(static_cast<std::size_t>(chunks));
   StressColumns* stresses = scratch.data();  // of the calling thread, shared by all threads
   PointTotals* of_chunks = scratch_totals.data();
   parallel_for(chunks, [&](int c) {
-    of_chunks[c] = spread_stresses(model, {number, c * step, std::min(points, (c + 1) * step)}, motion, stresses);
+    of_chunks[c] = nodewise_stresses(model, {number, c * step, std::min(points, (c + 1) * step)}, motion, stresses);
   });
   parallel_for(batch.regions,
-               [&](int r) { add_spread_forces(model, model.regions[batch.first_region + r], stresses, forces); });
+               [&](int r) { add_nodewise_forces(model, model.regions[batch.first_region + r], stresses, forces); });
   PointTotals totals;
   for (int c = 0; c < chunks; ++c) {
     totals.least_jacobian = min(totals.least_jacobian, of_chunks[c].least_jacobian);
@@ -136,9 +136,9 @@ PointTotals add_spread_forces(const Model& model, const Batch& batch, const Batc
   return totals;
 }
 
-Lanes spread_strain_energy(const Model& model, const Batch& batch, const BatchMotion& motion) {
-  const SpreadShape& shape = model.spread_shape_of(batch);
-  constexpr int step = SpreadShape::chunk_points;
+Lanes nodewise_strain_energy(const Model& model, const Batch& batch, const BatchMotion& motion) {
+  const NodewiseShape& shape = model.nodewise_shape_of(batch);
+  constexpr int step = NodewiseShape::chunk_points;
   const int points = shape.points();
   Lanes result{};
   result[0] = ordered_sum<1>((points + step - 1) / step, [&](int c) {
