@@ -43,7 +43,7 @@ Vec2 interpolated(const Row& row, const Vector& values, int first) {
 
 Bodies::Bodies(const Scene& scene) : scene_(scene) {
   const std::vector<PlacedBody> placed = place_bodies(scene_);
-  meshes_ = related_meshes(scene_, placed);
+  meshes_ = same_topology_meshes(scene_, placed);
   std::map<std::string, int> known;
   for (const PlacedBody& one : placed)
     if (!one.wall) {
@@ -65,11 +65,10 @@ void Bodies::place(Body body, int dofs) {
 void Bodies::add_compliant(Body body, std::map<std::string, int>& known) {
   const ShapeSpec& shape = scene_.shapes[body.placed.shape];
   const auto [found, is_new] = known.try_emplace(shape.name, static_cast<int>(spaces_.size()));
-  const auto related = meshes_.find(shape.name);
+  const auto found = meshes_.find(shape.name);
   if (is_new)
     spaces_.push_back(located(shape.where, [&] {
-      return make_space(related == meshes_.end() ? make_field_mesh(shape) : related->second.mesh,
-                        scene_.discretisation);
+      return make_space(found == meshes_.end() ? make_field_mesh(shape) : found->second.mesh, scene_.discretisation);
     }));
   body.space = found->second;
   const FieldMesh& mesh = space_of(body).mesh;

@@ -71,7 +71,7 @@ class Bodies {
   void place(Body body, int dofs);
 
   Scene scene_;
-  std::map<std::string, RelatedMesh> meshes_;  ///< of shapes without their own
+  std::map<std::string, SharedTopologyMesh> meshes_;  ///< of shapes without their own
   std::vector<Space> spaces_;
   std::vector<Body> bodies_;
   int dofs_ = 0, outline_nodes_ = 0;

@@ -45,7 +45,7 @@ INTERNAL_FORCES(mls, "mls");
 INTERNAL_FORCES(mls_gauss, "mls-gauss");
 INTERNAL_FORCES(es_t3, "es-t3");
 INTERNAL_FORCES(t3, "t3");
-INTERNAL_FORCES(related_grains, "mls-related");
+INTERNAL_FORCES(same_topology, "mls-same-topology");
 INTERNAL_FORCES(large_body, "mls-nodewise");
 
 void plain_internal_forces(benchmark::State& state, Cloud& (*cloud)()) {
@@ -63,7 +63,7 @@ PLAIN_INTERNAL_FORCES(mls, "mls");
 PLAIN_INTERNAL_FORCES(mls_gauss, "mls-gauss");
 PLAIN_INTERNAL_FORCES(es_t3, "es-t3");
 PLAIN_INTERNAL_FORCES(t3, "t3");
-PLAIN_INTERNAL_FORCES(related_grains, "mls-related");
+PLAIN_INTERNAL_FORCES(same_topology, "mls-same-topology");
 
 /// Prediction and end of a step of velocity Verlet, with its error.
 void update(benchmark::State& state) {

@@ -51,7 +51,7 @@ ShapeSpec disc(int field_nodes) {
   return shape;
 }
 
-Model related_model() {
+Model same_topology_model() {
   constexpr int count = 200, columns = 20;
   Scene scene = bare(Recipe::mls);
   for (int i = 0; i < count; ++i) {
@@ -63,7 +63,7 @@ Model related_model() {
     shape.outline_nodes = 50;
     add_grains(scene, shape, 1, 1, pitch * Vec2(i % columns, static_cast<double>(i / columns)));
   }
-  return build_model(scene, {.least_sparse_nodes = 0, .relate = true, .scales = {}});
+  return build_model(scene, {.least_sparse_nodes = 0, .unite_topologies = true, .scales = {}});
 }
 
 /// Every body strained otherwise, some percent, with a little noise.
@@ -130,8 +130,8 @@ Cloud& grains_of(Recipe recipe) {
   return *cloud;
 }
 
-Cloud& related_grains() {
-  static Cloud cloud(related_model());
+Cloud& same_topology() {
+  static Cloud cloud(same_topology_model());
   return cloud;
 }
 

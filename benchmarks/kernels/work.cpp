@@ -16,7 +16,7 @@ double over_compliant(const Model& model, Count&& count) {
 }
 
 /// Bytes of the tables that a model's batches read in an evaluation, each once: those of a shared shape, those of each
-/// body of related ones, with connectivity once a batch, those of nodewise ones.
+/// body of one topology, with connectivity once a batch, those of nodewise ones.
 template <class Own, class Common>
 double table_bytes(const Model& model, Own&& own, Common&& common) {
   double bytes = 0;

@@ -19,14 +19,14 @@ class ShapeStore {
 
   int compliant(const std::string& name) {
     if (const auto found = compliant_.find(name); found != compliant_.end()) return found->second;
-    const auto related = related_.find(name);
-    const bool alone = related == related_.end();
+    const auto found = same_topology_.find(name);
+    const bool alone = found == same_topology_.end();
     CompliantShape shape;
     const ShapeSpec& spec = model_.scene.shape(name);
     shape.space = located(spec.where, [&] {
-      return discretise(alone ? make_field_mesh(spec) : related->second.mesh, model_.scene.discretisation);
+      return discretise(alone ? make_field_mesh(spec) : found->second.mesh, model_.scene.discretisation);
     });
-    if (!alone) shape.family = related->second.family;
+    if (!alone) shape.family = found->second.family;
     for (double m : shape.space.mass_at_unit_density) shape.inverse_mass_at_unit_density.push_back(1 / m);
     const FieldMesh& mesh = shape.space.mesh;
     shape.outline = add_outline(Points(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count), 0);
@@ -41,7 +41,7 @@ class ShapeStore {
   }
 
   /// Sets meshes that replace the shapes' own.
-  void relate(std::map<std::string, RelatedMesh> meshes) { related_ = std::move(meshes); }
+  void set_meshes(std::map<std::string, SharedTopologyMesh> meshes) { same_topology_ = std::move(meshes); }
 
   /// Outline of that index for bodies of another size; bodies of one size share it.
   int scaled(int outline, double scale) {
@@ -64,7 +64,7 @@ class ShapeStore {
   Model& model_;
   std::map<std::string, int> compliant_, rigid_;
   std::map<std::pair<int, double>, int> scaled_;
-  std::map<std::string, RelatedMesh> related_;
+  std::map<std::string, SharedTopologyMesh> same_topology_;
 };
 
 RigidBody make_rigid_body(int body, int outline, const OutlineShape& shape, double density) {
@@ -96,7 +96,8 @@ class Builder {
     const std::vector<PlacedBody> placed = place_bodies(model_.scene);
     for (const PlacedBody& body : placed)
       if (!body.wall) add_grain(body);
-    if (options_.relate) store_.relate(related_meshes(model_.scene, placed, options_.least_sparse_nodes));
+    if (options_.unite_topologies)
+      store_.set_meshes(same_topology_meshes(model_.scene, placed, options_.least_sparse_nodes));
     build_compliant();
     for (const PlacedBody& body : placed)
       if (body.wall) add_wall(body);

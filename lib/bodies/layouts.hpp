@@ -11,7 +11,7 @@ namespace pliant {
 /// Storage of the bodies of a batch in Dofs::compliant, whose entries come in slots of 8 nodes' x and their y
 /// (docs/design.md 4):
 /// shared: one body per lane, node i of each in slot i, all copies of one shape and so with one table;
-/// related: the same, for shapes with one mesh topology: one connectivity, values by lane;
+/// same_topology: the same, for shapes with one mesh topology: one connectivity, values by lane;
 /// nodewise: one body alone, its nodes over slots and lanes. It does not cost as much as eight, and threads share it.
 enum class Layout { shared, same_topology, nodewise };
 
@@ -59,8 +59,8 @@ struct LaneRows {
   std::vector<Lanes> value;  ///< [entries]
 };
 
-/// Shapes of one batch of related bodies, members as in Discretisation; padding lanes repeat the last one.
-struct RelatedShapes {
+/// Shapes of one batches of one topology, members as in Discretisation; padding lanes repeat the last one.
+struct SameTopologyShapes {
   std::vector<Lanes> mass_at_unit_density, inverse_mass_at_unit_density, nodal_distance;  ///< [nodes]
   LaneTable table;
   LaneRows outline_rows, node_rows, mass_correction;

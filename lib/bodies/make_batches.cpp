@@ -5,7 +5,7 @@
 
 #include "bodies/node_arrays.hpp"
 #include "bodies/nodewise_shape.hpp"
-#include "bodies/related_shapes.hpp"
+#include "bodies/same_topology_shapes.hpp"
 #include "materials/with_law.hpp"
 
 namespace pliant {
@@ -70,7 +70,7 @@ class BatchMaker {
     batch.mass_damped = largest(batch.mass_damping) > 0;
     batch.slots = model_.shape_of(batch).nodes();
     if (layout == Layout::nodewise) make_nodewise(batch);
-    if (!alike) relate(batch, body_in);
+    if (!alike) store_by_lane(batch, body_in);
     model_.compliant_size += 2 * static_cast<std::size_t>(batch.slots);
     lay_out_memory(batch);
     add_regions(batch);
@@ -96,12 +96,12 @@ class BatchMaker {
   }
 
   template <class BodyIn>
-  void relate(Batch& batch, BodyIn&& body_in) {
+  void store_by_lane(Batch& batch, BodyIn&& body_in) {
     const Discretisation* shapes[lane_count];
     for (int lane = 0; lane < lane_count; ++lane) shapes[lane] = &model_.shape_of(body_in(lane)).space;
-    batch.layout = Layout::related;
-    batch.tables = static_cast<int>(model_.related_shapes.size());
-    model_.related_shapes.push_back(unite(shapes));
+    batch.layout = Layout::same_topology;
+    batch.tables = static_cast<int>(model_.same_topology_shapes.size());
+    model_.same_topology_shapes.push_back(unite(shapes));
   }
 
   void add_regions(Batch& batch) {

@@ -20,12 +20,12 @@ struct CompliantShape {
   Discretisation space;
   std::vector<double> inverse_mass_at_unit_density;  ///< [nodes], 1/m2
   int outline = 0;                                   ///< index of its outline shape
-  int family = -1;  ///< number of a family of related shapes, which share a mesh topology; -1: none
+  int family = -1;  ///< number of a family of shapes that share a mesh topology; -1: none
   int nodes() const { return static_cast<int>(space.mesh.nodes.size()); }
 };
 
-/// Compliant bodies of one shape, or of one family of related shapes, with one form of law. They are stored eight per
-/// batch, one per lane (docs/design.md 4).
+/// Compliant bodies of one shape, or of one family of shapes of one topology, with one form of law. They are stored
+/// eight per batch, one per lane (docs/design.md 4).
 struct CompliantGroup {
   int shape = 0;  ///< index of the compliant shape, or of the first of its family
   MaterialLaw law = MaterialLaw::neo_hookean;
@@ -43,8 +43,9 @@ struct Batch {
   std::size_t offset = 0;  ///< index of slot 0, x, in Dofs::compliant
   int slots = 0;           ///< [slots x 2] entries there
   Layout layout = Layout::shared;
-  int shape = 0;                      ///< index of the compliant shape; for related shapes that of lane 0
-  int tables = -1;                    ///< nodewise, same_topology: index in Model::nodewise_shapes or related_shapes
+  int shape = 0;  ///< index of the compliant shape; for one topology that of lane 0
+  /// nodewise, same_topology: index in Model::nodewise_shapes or same_topology_shapes
+  int tables = -1;
   int first_region = 0, regions = 1;  ///< in Model::regions
   LawConstants constants;             ///< of the group's law, by lanes
   Lanes mu, lambda;                   ///< instantaneous Lame constants of small strain, Pa
@@ -116,7 +117,7 @@ struct Model {
   std::vector<Batch> batches;  ///< batches of several bodies first, then nodewise ones
   int lane_batches = 0;        ///< batches of several bodies, [0, lane_batches); each is the region of the same number
   std::vector<Region> regions;
-  std::vector<RelatedShapes> related_shapes;  ///< [batches of related bodies]
+  std::vector<SameTopologyShapes> same_topology_shapes;  ///< [batches of one topology]
   std::vector<NodewiseShape> nodewise_shapes;
   std::vector<Chunk> point_chunks, outline_chunks;  ///< of all nodewise bodies
   std::vector<RigidBody> rigid_bodies;
@@ -142,12 +143,12 @@ struct Model {
 
 /// Options of a caller that are no part of a scene.
 struct BuildOptions {
-  /// Number of nodes from which bodies that would leave lanes of their batches empty are united with those of related
-  /// shapes, or vectorised nodewise. The nodes of all such bodies count together; below, the cost of empty lanes is
-  /// negligible. 0: always; a large number: never.
+  /// Number of nodes from which bodies that would leave lanes of their batches empty are united with those of
+  /// shapes of one topology, or vectorised nodewise. The nodes of all such bodies count together; below, the cost of
+  /// empty lanes is negligible. 0: always; a large number: never.
   int least_sparse_nodes = pliant::least_sparse_nodes;
-  bool relate = true;          ///< unite related shapes instead of vectorising their bodies nodewise
-  std::vector<double> scales;  ///< Body::scale of the grains, in their order; empty: from the scene
+  bool unite_topologies = true;  ///< unite shapes of one topology instead of vectorising their bodies nodewise
+  std::vector<double> scales;    ///< Body::scale of the grains, in their order; empty: from the scene
 };
 
 /// Builds bodies, tables and masses. Throws InputError for errors that the scene reader cannot detect, such as shapes

@@ -18,8 +18,8 @@ struct SmallMotions {
 inline constexpr int most_modal_nodes = 1500;
 
 /// Stiffness from central differences of the internal forces, of fourth order in the step (relative error some 1e-11),
-/// and mass from the velocities of unit momenta: by the kernels of a run. Only for models without nodewise or related
-/// bodies. Throws InputError for more than most_modal_nodes.
+/// and mass from the velocities of unit momenta: by the kernels of a run. Only for models without nodewise or
+/// same-topology bodies. Throws InputError for more than most_modal_nodes.
 SmallMotions small_motions(const Model& model, const Body& body);
 
 /// Natural frequencies of a body, ascending.

@@ -13,8 +13,8 @@ decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& actio
     return action(NodeArrays<Lanes>{shape.mass_at_unit_density.data(), shape.inverse_mass_at_unit_density.data(),
                                     shape.nodal_distance.data()});
   }
-  if (batch.layout == Layout::related) {
-    const RelatedShapes& shapes = model.related_shapes[batch.tables];
+  if (batch.layout == Layout::same_topology) {
+    const SameTopologyShapes& shapes = model.same_topology_shapes[batch.tables];
     return action(NodeArrays<Lanes>{shapes.mass_at_unit_density.data(), shapes.inverse_mass_at_unit_density.data(),
                                     shapes.nodal_distance.data()});
   }
@@ -23,12 +23,12 @@ decltype(auto) with_nodes(const Model& model, const Batch& batch, Action&& actio
                                    shape.space.nodal_distance.data()});
 }
 
-/// Calls action(tables) with the tables of bodies in lanes: the Discretisation of their shape, or the RelatedShapes of
-/// their batch.
+/// Calls action(tables) with the tables of bodies in lanes: the Discretisation of their shape, or the
+/// SameTopologyShapes of their batch.
 template <class Action>
 decltype(auto) with_tables(const Model& model, const Batch& batch, Action&& action) {
-  return batch.layout == Layout::related ? action(model.related_shapes[batch.tables])
-                                         : action(model.shape_of(batch).space);
+  return batch.layout == Layout::same_topology ? action(model.same_topology_shapes[batch.tables])
+                                               : action(model.shape_of(batch).space);
 }
 
 /// Sums, or maxima, over the nodes of each body in a batch, from those over its slots: all lanes of a nodewise body

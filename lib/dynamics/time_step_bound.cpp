@@ -57,8 +57,9 @@ std::vector<Lanes> start_directions(const Model& model) {
 
 /// Finite-difference step of each body in a batch, in its units.
 Lanes probe_step(const Model& model, const Batch& batch) {
-  return probe_size * (batch.layout == Layout::related ? model.related_shapes[batch.tables].nodal_distance[0]
-                                                       : broadcast(model.shape_of(batch).space.nodal_distance[0]));
+  return probe_size * (batch.layout == Layout::same_topology
+                           ? model.same_topology_shapes[batch.tables].nodal_distance[0]
+                           : broadcast(model.shape_of(batch).space.nodal_distance[0]));
 }
 
 /// Divides each body's vector by its largest nodal value.

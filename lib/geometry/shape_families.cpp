@@ -2,7 +2,7 @@
 
 #include "core/located.hpp"
 #include "geometry/outline.hpp"
-#include "geometry/related_mesh.hpp"
+#include "geometry/same_topology_mesh.hpp"
 
 namespace pliant {
 namespace {
@@ -36,8 +36,8 @@ std::vector<Relative> sparse_shapes(const Scene& scene, const std::vector<Placed
 
 }  // namespace
 
-std::map<std::string, RelatedMesh> related_meshes(const Scene& scene, const std::vector<PlacedBody>& bodies,
-                                                  int least_nodes) {
+std::map<std::string, SharedTopologyMesh> same_topology_meshes(const Scene& scene,
+                                                               const std::vector<PlacedBody>& bodies, int least_nodes) {
   int nodes = 0;
   std::map<std::pair<int, int>, std::vector<Relative>> relatives;  // by numbers of nodes and outline nodes
   for (const Relative& one : sparse_shapes(scene, bodies)) {
@@ -45,7 +45,7 @@ std::map<std::string, RelatedMesh> related_meshes(const Scene& scene, const std:
     if (one.shape->kind != ShapeKind::polygon)
       relatives[{one.nodes, static_cast<int>(one.outline.size())}].push_back(one);
   }
-  std::map<std::string, RelatedMesh> result;
+  std::map<std::string, SharedTopologyMesh> result;
   if (nodes < least_nodes) return result;
   int family = 0;
   for (const auto& [numbers, shapes] : relatives) {

@@ -16,7 +16,7 @@ inline constexpr int sparse_bodies = 2;
 inline constexpr int least_sparse_nodes = 1000;
 
 /// Mesh of a shape with the topology of its family.
-struct RelatedMesh {
+struct SharedTopologyMesh {
   int family = 0;
   FieldMesh mesh;
 };
@@ -24,7 +24,8 @@ struct RelatedMesh {
 /// Meshes, by shape, that replace the shapes' own: for smooth shapes of few bodies that agree in their numbers of nodes
 /// and outline nodes, if there are enough of them. Shapes for which the family's mesh would be bad are left out. There
 /// are none if shapes of few bodies have fewer than `least_nodes` together.
-std::map<std::string, RelatedMesh> related_meshes(const Scene& scene, const std::vector<PlacedBody>& bodies,
-                                                  int least_nodes = least_sparse_nodes);
+std::map<std::string, SharedTopologyMesh> same_topology_meshes(const Scene& scene,
+                                                               const std::vector<PlacedBody>& bodies,
+                                                               int least_nodes = least_sparse_nodes);
 
 }  // namespace pliant

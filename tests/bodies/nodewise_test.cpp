@@ -19,8 +19,8 @@ using testing::Random;
 
 /// Of the pile's grains: all of a size of their own.
 const std::vector<double> sizes{1.01, 0.99, 1.02, 1, 0.97};
-const BuildOptions always_nodewise{.least_sparse_nodes = 0, .relate = true, .scales = sizes};
-const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .relate = true, .scales = sizes};
+const BuildOptions always_nodewise{.least_sparse_nodes = 0, .unite_topologies = true, .scales = sizes};
+const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .unite_topologies = true, .scales = sizes};
 
 /// Two discs of 603 nodes (two regions, with padding) and one of 60 of another law, on a floor under rigid grains.
 Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
@@ -227,7 +227,7 @@ TEST(NodewiseBodies, fail_by_name) {
 TEST(NodewiseBodies, are_those_that_would_leave_lanes_empty) {
   const Model model = build_model(pile(Recipe::es_t3));  // 1266 sparse nodes
   EXPECT_EQ(model.lane_batches, 0);
-  const BuildOptions nodewise{.least_sparse_nodes = 0, .relate = true, .scales = {}};
+  const BuildOptions nodewise{.least_sparse_nodes = 0, .unite_topologies = true, .scales = {}};
   Scene many = pile(Recipe::es_t3);
   for (int i = 0; i < 7; ++i) many.grains[0].packing.positions.push_back({1.2, 4.0 + 3 * i});
   const Model mixed = build_model(many, nodewise);  // nine large discs: eight in lanes, one nodewise

@@ -131,7 +131,7 @@ def test_until_shortens_the_forecast(desk) -> None:
 
 
 def test_lanes_of_different_shapes(desk) -> None:
-    case = Path(os.environ["PLIANT_SOURCE_DIR"], "cases", "related_grains.toml").read_text()
+    case = Path(os.environ["PLIANT_SOURCE_DIR"], "cases", "same_topology.toml").read_text()
     rows = checked(desk, case)
     assert rows["lanes"].startswith("of one shape: 0 bodies; of one topology: 48; vectorised over nodes: 0")
     assert "lanes" not in checked(desk, case.replace("variants = 48\n", ""))  # one shape

@@ -242,7 +242,7 @@ struct Deformed {
 TEST(NeoHookeanMaxwell, layouts_agree) {
   BuildOptions nodewise, lanes;
   nodewise.least_sparse_nodes = 0, lanes.least_sparse_nodes = 1 << 30;
-  nodewise.relate = lanes.relate = false;
+  nodewise.unite_topologies = lanes.unite_topologies = false;
   const Deformed a(nodewise), b(lanes);
   ASSERT_NE(a.model.batches[0].layout, b.model.batches[0].layout);
   const BodyView one(a.model, a.model.bodies[0], a.force), other(b.model, b.model.bodies[0], b.force);

@@ -1,4 +1,4 @@
-#include "geometry/related_mesh.hpp"
+#include "geometry/same_topology_mesh.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>

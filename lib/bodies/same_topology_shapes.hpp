@@ -6,6 +6,6 @@
 namespace pliant {
 
 /// Unites the tables of lane_count shapes on meshes of one topology.
-RelatedShapes unite(const Discretisation* const (&shapes)[lane_count]);
+SameTopologyShapes unite(const Discretisation* const (&shapes)[lane_count]);
 
 }  // namespace pliant

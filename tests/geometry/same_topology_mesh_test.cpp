@@ -1,4 +1,4 @@
-#include "geometry/related_mesh.hpp"
+#include "geometry/same_topology_mesh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Points grain_outline(const std::vector<double>& descriptors, int seed) {
 double degrees(const FieldMesh& mesh) { return least_angle(mesh) * 180 / std::numbers::pi; }
 
 // EXACT: the same triangles around any outline, all of positive area, which sum to the polygon's.
-TEST(RelatedMesh, KeepsItsTrianglesAndCoversThePolygon) {
+TEST(SharedTopologyMesh, KeepsItsTrianglesAndCoversThePolygon) {
   const MeshTemplate of_family(168, 50);
   std::vector<Triangle> triangles;
   for (int seed = 1; seed <= 6; ++seed) {
@@ -42,7 +42,7 @@ TEST(RelatedMesh, KeepsItsTrianglesAndCoversThePolygon) {
 }
 
 // EXACT: a disc of another size and place is its template, moved; 1e-3 of a degree: the last steps of the descent.
-TEST(RelatedMesh, OfADiscIsTheTemplate) {
+TEST(SharedTopologyMesh, OfADiscIsTheTemplate) {
   ShapeSpec disc;
   disc.name = "disc";
   disc.diameter = 3;
@@ -55,7 +55,7 @@ TEST(RelatedMesh, OfADiscIsTheTemplate) {
 }
 
 // FROZEN: what smoothing is for; the harmonic map alone has angles of 28.6 and 22.0 degrees there, and under 20.
-TEST(RelatedMesh, IsSmoothed) {
+TEST(SharedTopologyMesh, IsSmoothed) {
   const MeshTemplate of_family(168, 50);
   EXPECT_NEAR(degrees(of_family.mapped(grain_outline({0.1}, 3)).value()), 29.9, 0.5);
   EXPECT_NEAR(degrees(of_family.mapped(grain_outline({0.2}, 3)).value()), 25.7, 0.5);
@@ -63,7 +63,7 @@ TEST(RelatedMesh, IsSmoothed) {
 }
 
 // EXACT: no mesh is better than a bad one.
-TEST(RelatedMesh, IsRefusedWhereItWouldBeBad) {
+TEST(SharedTopologyMesh, IsRefusedWhereItWouldBeBad) {
   const MeshTemplate of_family(168, 50);
   EXPECT_FALSE(of_family.mapped(grain_outline({0.2, 0.1, 0.08, 0.05}, 1)).has_value());
   Points crossing = grain_outline({0.1}, 1);

@@ -1,5 +1,5 @@
-// Bodies of related shapes in the lanes of one batch against the same bodies vectorised nodewise, each by the table of
-// its own shape.
+// Bodies of shapes of one topology in the lanes of one batch against the same bodies vectorised nodewise, each by the
+// table of its own shape.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -50,14 +50,14 @@ Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
 }
 
 BuildOptions always() {
-  BuildOptions options{.least_sparse_nodes = 0, .relate = true, .scales = {}};
+  BuildOptions options{.least_sparse_nodes = 0, .unite_topologies = true, .scales = {}};
   for (int i = 0; i <= grains_in_all; ++i) options.scales.push_back(1 + 0.02 * (i % 4));
   return options;
 }
 
 /// The same bodies, meshes and tables, each body vectorised nodewise.
 Model nodewise(Model model) {
-  model.groups.clear(), model.batches.clear(), model.regions.clear(), model.related_shapes.clear();
+  model.groups.clear(), model.batches.clear(), model.regions.clear(), model.same_topology_shapes.clear();
   model.compliant_size = 0;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     if (const Body& body = model.bodies[b]; body.kind == BodyKind::compliant)
@@ -75,15 +75,15 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
     ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
 }
 
-class Related : public ::testing::TestWithParam<std::tuple<Recipe, Integrator, Extras>> {};
+class SameTopology : public ::testing::TestWithParam<std::tuple<Recipe, Integrator, Extras>> {};
 
-TEST_P(Related, bodies_move_as_nodewise_ones) {
+TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
   const auto [recipe, integrator, extras] = GetParam();
   Steered here(build_model(heap(recipe, integrator, extras), always()));
   Steered there(nodewise(here.bench.model));
-  const Model &related = here.bench.model, &alone = there.bench.model;
-  ASSERT_EQ(related.batches.size(), 2U) << "eight bodies and three";
-  for (const Batch& batch : related.batches) ASSERT_EQ(batch.layout, Layout::related);
+  const Model &united = here.bench.model, &alone = there.bench.model;
+  ASSERT_EQ(united.batches.size(), 2U) << "eight bodies and three";
+  for (const Batch& batch : united.batches) ASSERT_EQ(batch.layout, Layout::same_topology);
   ASSERT_EQ(alone.batches.size(), 11U);
   for (const Batch& batch : alone.batches) ASSERT_EQ(batch.layout, Layout::nodewise);
   expect_same_bound(here, there, 0.02);
@@ -91,11 +91,11 @@ TEST_P(Related, bodies_move_as_nodewise_ones) {
   EXPECT_GT(contacts, 20);
   const State &x = here.bench.state, &y = there.bench.state;
   for (std::size_t b = 0; b < alone.bodies.size(); ++b) {
-    const Body &body = related.bodies[b], &other = alone.bodies[b];
+    const Body &body = united.bodies[b], &other = alone.bodies[b];
     if (body.kind != BodyKind::compliant) continue;
-    expect_equal_points(nodal_values(related, body, x.position), nodal_values(alone, other, y.position), rounding,
+    expect_equal_points(nodal_values(united, body, x.position), nodal_values(alone, other, y.position), rounding,
                         "node");
-    expect_equal_points(nodal_values(related, body, x.reduced_momentum), nodal_values(alone, other, y.reduced_momentum),
+    expect_equal_points(nodal_values(united, body, x.reduced_momentum), nodal_values(alone, other, y.reduced_momentum),
                         100 * rounding,
                         "velocity");  // a frequency of 100
   }
@@ -108,14 +108,14 @@ TEST_P(Related, bodies_move_as_nodewise_ones) {
   if (here.verlet) EXPECT_LT(here.auditor.balance_error(a.energy), 2e-3) << "FROZEN: with either";
 }
 
-INSTANTIATE_TEST_SUITE_P(Recipes, Related,
+INSTANTIATE_TEST_SUITE_P(Recipes, SameTopology,
                          ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling),
                                             ::testing::Values(Extras::none, Extras::damping_and_corrected_mass,
                                                               Extras::rim_mass)));
 
 /// EXACT: the same bits with one, two and three threads.
-TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {
+TEST(SameTopologyBodies, do_not_depend_on_the_number_of_threads) {
   const Model model = build_model(heap(Recipe::mls, Integrator::verlet), always());
   const int before = omp_get_max_threads();
   std::vector<std::uint64_t> hashes;
@@ -132,7 +132,7 @@ TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {
 
 /// EXACT: the rule. Small scenes are left alone, as are shapes with many bodies, polygons and fewer than three
 /// relatives.
-TEST(RelatedBodies, are_few_of_many_smooth_shapes) {
+TEST(SameTopologyBodies, are_few_of_many_smooth_shapes) {
   Scene scene = heap(Recipe::es_t3, Integrator::verlet);
   const Model small = build_model(scene);  // 880 nodes
   EXPECT_EQ(small.batches.size(), 11U);
@@ -141,8 +141,8 @@ TEST(RelatedBodies, are_few_of_many_smooth_shapes) {
   for (ShapeSpec& shape : scene.shapes) shape.nodes = 100;
   const Model large = build_model(scene);
   EXPECT_EQ(large.batches.size(), 2U);
-  EXPECT_EQ(large.batches[0].layout, Layout::related);
-  EXPECT_EQ(build_model(scene, {.least_sparse_nodes = 0, .relate = false, .scales = {}}).batches[0].layout,
+  EXPECT_EQ(large.batches[0].layout, Layout::same_topology);
+  EXPECT_EQ(build_model(scene, {.least_sparse_nodes = 0, .unite_topologies = false, .scales = {}}).batches[0].layout,
             Layout::nodewise);
   for (int i = 0; i < 9; ++i) scene.shapes[i].nodes = 101 + i;  // of eleven only two agree
   for (const Batch& batch : build_model(scene).batches) EXPECT_EQ(batch.layout, Layout::nodewise);

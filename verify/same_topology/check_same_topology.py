@@ -1,4 +1,4 @@
-"""Grains of related shapes, in the lanes of one batch, beside the reference solver and beside grains that have meshes of their own."""
+"""Grains of one mesh topology, in the lanes of one batch, beside the reference solver and beside grains that have meshes of their own."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ APART = {"left": 340, "middle": 341, "right": 342}  # unequal numbers of nodes h
 FINER = {"left": 680, "middle": 681, "right": 682}
 
 
-def engine_of(nodes: dict[str, int], dt: float, related: int) -> Run:
-    """A run, of which the engine says that so many of its bodies are related."""
+def engine_of(nodes: dict[str, int], dt: float, of_one_topology: int) -> Run:
+    """A run, of which the engine says that so many of its bodies share one topology."""
     run = CASE.engine(f"engine_{nodes['middle']}_{dt:g}", CASE.scene(dt=dt, **nodes))
     said = subprocess.run([str(ENGINE), "check", f"{run.folder}.toml"], capture_output=True, text=True, check=True)
-    assert f"related shapes: {related};" in said.stdout
+    assert f"of one topology: {of_one_topology};" in said.stdout
     return run
 
 
@@ -65,7 +65,7 @@ def test_both_solvers(engine: Pair, reference: Pair, quantity: Quantity) -> None
 @pytest.mark.parametrize("quantity", [*POSITIONS, STRAIN], ids=lambda q: q.name)
 def test_meshes_of_their_own(engine: Pair, quantity: Quantity) -> None:
     finer, apart = engine_of(FINER, FINE, 0), engine_of(APART, FINE, 0)
-    CASE.check(Label.INDEPENDENT, f"{quantity.name}: related from finer meshes of their own",
+    CASE.check(Label.INDEPENDENT, f"{quantity.name}: one topology from finer meshes of their own",
                largest_difference(engine.fine, finer, quantity.columns, TIMES), 0,
                2 * largest_difference(apart, finer, quantity.columns, TIMES),
                "meshes of their own with as many nodes differ by half of this: the bent mesh may be twice as bad")

@@ -1,4 +1,4 @@
-#include "bodies/related_shapes.hpp"
+#include "bodies/same_topology_shapes.hpp"
 
 #include <map>
 
@@ -54,8 +54,8 @@ LaneRows unite_rows(Shapes shapes, ShapeRows Discretisation::* member) {
 
 }  // namespace
 
-RelatedShapes unite(Shapes shapes) {
-  RelatedShapes result;
+SameTopologyShapes unite(Shapes shapes) {
+  SameTopologyShapes result;
   const std::size_t nodes = shapes[0]->mass_at_unit_density.size();
   result.mass_at_unit_density.resize(nodes), result.inverse_mass_at_unit_density.resize(nodes),
       result.nodal_distance.resize(nodes);
