@@ -123,8 +123,8 @@ Forces TimeStepping::evaluate(const Motion& motion, bool tangent) {
   Forces forces = system_.evaluate(motion, tangent);
   const Vector& rate = system_.loads().mass_damping();
   if (!motion.moves || rate.isZero(0)) return forces;
-  const Vector drag = mass_ * rate.cwiseProduct(motion.v);
-  forces.damping += drag, forces.residual += drag, forces.magnitude += drag.cwiseAbs();
+  const Vector damping = mass_ * rate.cwiseProduct(motion.v);
+  forces.damping += damping, forces.residual += damping, forces.magnitude += damping.cwiseAbs();
   if (tangent) forces.viscosity += mass_ * rate.asDiagonal();
   return forces;
 }

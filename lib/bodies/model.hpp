@@ -126,7 +126,8 @@ struct Model {
   std::size_t compliant_size = 0;   ///< length of Dofs::compliant
   std::size_t material_memory = 0;  ///< length of Memory::material: 0 without internal variables
   bool corrected_mass = false;      ///< states hold momentum over lumped mass: see mass_correction.hpp
-  bool rates = false;  ///< some force except drag (damping_forces.hpp) depends on velocities: else no rates are formed
+  /// some force except mass damping (damping_forces.hpp) depends on velocities: else no rates are formed
+  bool rates = false;
   bool outline_rates = false;  ///< likewise, on velocities of outline nodes
   std::vector<OutlinePressure> pressures;
   std::vector<OutlineSupport> supports;

@@ -22,7 +22,7 @@ void add_rigid_load_change(const RigidBody& rigid, const Gravity& before, const 
   for (int c = 0; c < 3; ++c) {
     const RigidDof& dof = rigid.dof[c];
     force[c] += applied_load(dof, to, after[c]) - applied_load(dof, from, before[c]) -
-                (drag_coefficient(dof, to) - drag_coefficient(dof, from)) * velocity[c];
+                (damping_coefficient(dof, to) - damping_coefficient(dof, from)) * velocity[c];
   }
 }
 

@@ -18,8 +18,9 @@ bool is_corrected(const Model& model, int body) {
   const auto on_body = [&](const auto& condition) { return condition.body == body; };
   const bool law_dissipates = with_law_type<double>(model.groups[batch.group].law,
                                                     []<class Law>(std::type_identity<Law>) { return dissipates<Law>; });
-  return !law_dissipates && batch.viscosity[model.bodies[body].lane] == 0 && !has_drag(model, model.bodies[body]) &&
-         std::ranges::none_of(model.pressures, on_body) && std::ranges::none_of(model.supports, on_body);
+  return !law_dissipates && batch.viscosity[model.bodies[body].lane] == 0 &&
+         !has_mass_damping(model, model.bodies[body]) && std::ranges::none_of(model.pressures, on_body) &&
+         std::ranges::none_of(model.supports, on_body);
 }
 
 /// Rigid motion of each body of a batch with its momentum and angular momentum, in the units of the batch.

@@ -45,7 +45,7 @@ class Forces {
 
   /// Output of an evaluation.
   struct Output {
-    Dofs& force;                  ///< all except drag (bodies/damping_forces.hpp), which the integrator adds
+    Dofs& force;                  ///< all except mass damping (bodies/damping_forces.hpp), which the integrator adds
     OutlineField& contact_force;  ///< N/m
     Memory& memory;               ///< history variables at these positions
   };

@@ -56,7 +56,7 @@ Evaluation find_forces(Forces& forces, State& state) {
   std::swap(state.force, trial.force);
   std::swap(state.contact_force, trial.contact_force);
   std::swap(state.memory, trial.memory);
-  add_drag(forces.model(), {state.time}, state.reduced_momentum, state.force);
+  add_mass_damping(forces.model(), {state.time}, state.reduced_momentum, state.force);
   take_over_sums(found, state);
   return found;
 }

@@ -24,7 +24,7 @@ struct Verdict {
 /// The trial's history variables are those of the state after an evaluation without a time increment.
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial);
 
-/// The same, and the state takes over the forces, drag included, and the history variables of its motion.
+/// The same, and the state takes over the forces, mass damping included, and the history variables of its motion.
 Evaluation find_forces(Forces& forces, State& state);
 
 /// Swaps the motion of a state and a trial.

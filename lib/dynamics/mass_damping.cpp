@@ -1,4 +1,4 @@
-#include "dynamics/drag.hpp"
+#include "dynamics/mass_damping.hpp"
 
 #include <cmath>
 
@@ -24,8 +24,8 @@ double rest_of_exponential(double z, int n) {
   return sum;
 }
 
-/// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without drag, when
-/// it is linear in time.
+/// Mean square of the velocity's deviation from its mean over that of the velocity at the start: 1/3 without mass
+/// damping, when it is linear in time.
 double relative_variance(double z) {
   const double mean = rest_of_exponential(z, 2);
   return (4 * rest_of_exponential(2 * z, 3) - 2 * rest_of_exponential(z, 3)) / (mean * mean) - 1;
@@ -33,24 +33,24 @@ double relative_variance(double z) {
 
 }  // namespace
 
-Drag<double> drag_over(double z) { return {z, rest_of_exponential(z, 2), rest_of_exponential(z, 1)}; }
+DampedStep<double> damped_step(double z) { return {z, rest_of_exponential(z, 2), rest_of_exponential(z, 1)}; }
 
-Drag<Lanes> drag_over(Lanes z) {
-  Drag<Lanes> result{z};
+DampedStep<Lanes> damped_step(Lanes z) {
+  DampedStep<Lanes> result{z};
   for (int lane = 0; lane < lane_count; ++lane) {
-    const Drag<double> one = drag_over(z[lane]);
+    const DampedStep<double> one = damped_step(z[lane]);
     result.mean[lane] = one.mean;
     result.end[lane] = one.end;
   }
   return result;
 }
 
-double drag_rate(const RigidDof& dof, const Instant& at) {
-  return dof.mass > 0 ? drag_coefficient(dof, at) / dof.mass : 0.0;
+double damping_rate(const RigidDof& dof, const Instant& at) {
+  return dof.mass > 0 ? damping_coefficient(dof, at) / dof.mass : 0.0;
 }
 
 template <class Weight>
-double DragLoss::weighted_square(const Instant& at, const Dofs& y, Weight&& weight) {
+double DampingLoss::weighted_square(const Instant& at, const Dofs& y, Weight&& weight) {
   const Dofs& v = material_velocity(model_, y, moving_);
   double total = ordered_sum(static_cast<int>(model_.regions.size()), [&](int r) {
     const Region& region = model_.regions[r];
@@ -68,16 +68,16 @@ double DragLoss::weighted_square(const Instant& at, const Dofs& y, Weight&& weig
   for (std::size_t r = 0; r < model_.rigid_bodies.size(); ++r)
     for (std::size_t c = 0; c < 3; ++c) {
       const RigidDof& dof = model_.rigid_bodies[r].dof[c];
-      total += weight(drag_rate(dof, at)) * dof.mass * y.rigid[3 * r + c] * y.rigid[3 * r + c];
+      total += weight(damping_rate(dof, at)) * dof.mass * y.rigid[3 * r + c] * y.rigid[3 * r + c];
     }
   return total;
 }
 
-double DragLoss::power(const Instant& at, const Dofs& velocity) {
+double DampingLoss::power(const Instant& at, const Dofs& velocity) {
   return weighted_square(at, velocity, [](double c) { return c; });
 }
 
-double DragLoss::work(const Instant& at, double dt, const Dofs& velocity, const Dofs& mean) {
+double DampingLoss::work(const Instant& at, double dt, const Dofs& velocity, const Dofs& mean) {
   deviation_ = velocity;
   for (std::size_t i = 0; i < deviation_.compliant.size(); ++i) deviation_.compliant[i] -= mean.compliant[i];
   for (std::size_t i = 0; i < deviation_.rigid.size(); ++i) deviation_.rigid[i] -= mean.rigid[i];

@@ -10,7 +10,7 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
-#include "dynamics/drag.hpp"
+#include "dynamics/mass_damping.hpp"
 
 namespace pliant {
 namespace {
@@ -68,8 +68,8 @@ LanePair displacement(const ShapeRows& rows, const NodewiseShape& shape, const d
 StepDoubling::StepDoubling(Forces& forces, const State&)
     : forces_(forces),
       model_(forces.model()),
-      drag_(has_drag(forces.model())),
-      drag_loss_(forces.model()),
+      has_mass_damping_(has_mass_damping(forces.model())),
+      damping_loss_(forces.model()),
       wave_time_(wave_time(model_)),
       start_force_(zero_dofs(model_)),
       trial_(model_),
@@ -151,9 +151,9 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
 /// Evaluates forces; returns whether they are valid.
 bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
-  if (!drag_) return report.evaluation.sound;
-  add_drag(model_, at, trial_.reduced_momentum, trial_.force);
-  report.evaluation.damping_power += drag_loss_.power(at, trial_.reduced_momentum);
+  if (!has_mass_damping_) return report.evaluation.sound;
+  add_mass_damping(model_, at, trial_.reduced_momentum, trial_.force);
+  report.evaluation.damping_power += damping_loss_.power(at, trial_.reduced_momentum);
   return report.evaluation.sound;
 }
 

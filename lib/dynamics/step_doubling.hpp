@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
+#include "dynamics/mass_damping.hpp"
 
 namespace pliant {
 
@@ -52,8 +52,8 @@ class StepDoubling {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;  ///< some degree of freedom has drag
-  DragLoss drag_loss_;
+  const bool has_mass_damping_;  ///< some degree of freedom has mass damping
+  DampingLoss damping_loss_;
   double wave_time_;                ///< time of a wave between nodes, s
   Dofs moving_velocity_;            ///< scratch with corrected mass: C y
   Dofs start_force_;                ///< for the first half step

@@ -26,9 +26,9 @@ constexpr double internal_margin = 1.05;
 constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.
 constexpr double probe_size = 1e-6;
-/// Bound of w^2 dt^2 with drag of any rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, whose least value
-/// is 3.716, at z = 0.87.
-constexpr double limit_with_drag = 3.7;
+/// Bound of w^2 dt^2 with mass damping of any rate c: the limit is z^2 (1 + e^-z) / (z - 1 + e^-z), z = c dt, whose
+/// least value is 3.716, at z = 0.87.
+constexpr double limit_with_damping = 3.7;
 /// Steps per stable step of bodies whose contacts have dashpots. These pairs have no energy correction, and at the
 /// limit the rebound would depend on the two steps that it lasts (docs/defaults.md).
 constexpr double steps_with_dashpots = 2;
@@ -111,7 +111,7 @@ void TimeStepBound::bound_conditions() {
   damping_.assign(model_.bodies.size(), 0.0);
   limit_square_.assign(model_.bodies.size(), 4.0);
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-    if (has_drag(model_, model_.bodies[b])) limit_square_[b] = limit_with_drag;
+    if (has_mass_damping(model_, model_.bodies[b])) limit_square_[b] = limit_with_damping;
   }
   for (const OutlineSupport& support : model_.supports) {
     const Body& body = model_.bodies[support.body];

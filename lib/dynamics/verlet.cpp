@@ -12,7 +12,7 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
-#include "dynamics/drag.hpp"
+#include "dynamics/mass_damping.hpp"
 
 namespace pliant {
 namespace {
@@ -38,9 +38,9 @@ double controller_factor(double error, double tolerance) {
 Verlet::Verlet(Forces& forces, const State& state)
     : forces_(forces),
       model_(forces.model()),
-      drag_(has_drag(forces.model())),
-      drag_loss_(forces.model()),
-      needs_velocities_(drag_ || model_.rates || model_.corrected_mass),
+      has_mass_damping_(has_mass_damping(forces.model())),
+      damping_loss_(forces.model()),
+      needs_velocities_(has_mass_damping_ || model_.rates || model_.corrected_mass),
       bound_(forces.model(), forces.contact().laws()),
       body_correction_(model_),
       trial_(model_),
@@ -143,29 +143,30 @@ void Verlet::predict(const State& state, double dt) {
       });
 }
 
-/// Predicts the mean velocity of the step and the velocity at its end for constant accelerations, apart from drag.
+/// Predicts the mean velocity of the step and the velocity at its end for constant accelerations, apart from mass
+/// damping.
 void Verlet::predict_velocities(const State& state, double dt) {
   parallel_for(static_cast<int>(model_.regions.size()), [&](int r) {
     const Region& region = model_.regions[r];
     const Batch& batch = model_.batches[region.batch];
-    const Drag<Lanes> drag = drag_over(dt * batch.mass_damping);
+    const DampedStep<Lanes> damped = damped_step(dt * batch.mass_damping);
     with_nodes(model_, batch, [&](const auto& nodes) {
       for (int i = 2 * region.first; i < 2 * region.last; ++i) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
         const Lanes change =
             dt * (nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density) * state.force.compliant[at];
-        mean_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.mean * change;
-        end_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + drag.end * change;
+        mean_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + damped.mean * change;
+        end_velocity_.compliant[at] = state.reduced_momentum.compliant[at] + damped.end * change;
       }
     });
   });
   for_each_rigid_dof(model_, [&](std::size_t i, const RigidDof& dof) {
     const double x = state.position.rigid[i], v = state.reduced_momentum.rigid[i];
-    const Drag<double> drag = drag_over(dt * drag_rate(dof, {state.time}));
+    const DampedStep<double> damped = damped_step(dt * damping_rate(dof, {state.time}));
     const double change = dt * dof.inverse_mass * state.force.rigid[i];
     mean_velocity_.rigid[i] =
-        dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + drag.mean * change;
-    end_velocity_.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + drag.end * change);
+        dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + damped.mean * change;
+    end_velocity_.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + damped.end * change);
   });
   if (!model_.corrected_mass) return;
   material_velocity(model_, end_velocity_, moving_velocity_);
@@ -184,7 +185,7 @@ void Verlet::move_by_mean_velocity(const State& state, double dt) {
 }
 
 /// Computes velocities at the end of the step, and the largest |a_new - a_old| / d. It does so before the step is
-/// accepted, while forces are in the cache. Drag is added at the end: the errors of the step are those of all other
+/// accepted, while forces are in the cache. Damping is added at the end: the errors of the step are those of all other
 /// forces, which the step takes as constant.
 void Verlet::finish_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
@@ -193,7 +194,7 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   const Lanes* old_velocity = &state.reduced_momentum.compliant[batch.offset];
   const Lanes* mean = batch.mass_damped ? &mean_velocity_.compliant[batch.offset] : nullptr;
   Lanes *velocity = &trial_.reduced_momentum.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
-  const Lanes z = dt * batch.mass_damping, drag = batch.mass_damping * batch.density;
+  const Lanes z = dt * batch.mass_damping, rate = batch.mass_damping * batch.density;
   const Lanes upper_inverse_density =
       with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
@@ -206,7 +207,7 @@ void Verlet::finish_region(const State& state, double dt, int r) {
                       0.5 * dt * (inverse_mass_at_unit_density * batch.inverse_density) * (old_force[i] + force[i]);
         Lanes change = force[i] - old_force[i];
         if (batch.mass_damped) {
-          const Lanes coefficient = drag * nodes.mass_at_unit_density[slot];
+          const Lanes coefficient = rate * nodes.mass_at_unit_density[slot];
           velocity[i] += z * (0.5 * old_velocity[i] - mean[i]);
           change -= coefficient * old_velocity[i];
           force[i] -= coefficient * velocity[i];
@@ -229,7 +230,7 @@ void Verlet::finish_rigid(const State& state, double dt, int r) {
   const auto finish_dof = [&](std::size_t c) {  // returns |a_new - a_old|
     const RigidDof& dof = body.dof[c];
     const std::size_t i = 3 * static_cast<std::size_t>(r) + c;
-    const double coefficient = drag_coefficient(dof, {state.time}), before = state.reduced_momentum.rigid[i];
+    const double coefficient = damping_coefficient(dof, {state.time}), before = state.reduced_momentum.rigid[i];
     double& force = trial_.force.rigid[i];
     const double change = std::abs(force - (state.force.rigid[i] + coefficient * before));
     double free = before + 0.5 * dt * dof.inverse_mass * (state.force.rigid[i] + force);
@@ -254,7 +255,8 @@ double Verlet::error(double dt) const {
 
 void Verlet::finish(const State& state, StepReport& report) {
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
-  if (drag_) report.damping_work += drag_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
+  if (has_mass_damping_)
+    report.damping_work += damping_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);
 }
 
 /// After acceptance the trial holds the state before the step.

@@ -1,16 +1,16 @@
 #pragma once
 
 #include "dynamics/body_energy_correction.hpp"
-#include "dynamics/drag.hpp"
 #include "dynamics/integrator.hpp"
+#include "dynamics/mass_damping.hpp"
 #include "dynamics/time_step_bound.hpp"
 
 namespace pliant {
 
 /// Velocity Verlet with a stability bound and an error control without extra cost (docs/method.md 6): one force
-/// evaluation per step. It is of second order also with forces that depend on velocities: drag (dynamics/drag.hpp)
-/// slows the motion by its exact exponential, all others use the velocity that the accelerations so far predict for the
-/// end of the step.
+/// evaluation per step. It is of second order also with forces that depend on velocities: mass damping
+/// (dynamics/mass_damping.hpp) slows the motion by its exact exponential, all others use the velocity that the
+/// accelerations so far predict for the end of the step.
 class Verlet {
  public:
   Verlet(Forces& forces, const State& state);
@@ -48,9 +48,9 @@ class Verlet {
 
   Forces& forces_;
   const Model& model_;
-  const bool drag_;  ///< some degree of freedom has drag
-  DragLoss drag_loss_;
-  const bool needs_velocities_;  ///< with drag, rates or corrected mass
+  const bool has_mass_damping_;  ///< some degree of freedom has mass damping
+  DampingLoss damping_loss_;
+  const bool needs_velocities_;  ///< with mass damping, rates or corrected mass
   TimeStepBound bound_;
   BodyEnergyCorrection body_correction_;
   Trial trial_;

@@ -172,7 +172,7 @@ State runge_kutta(int steps) {
     Trial trial(bench.model);
     evaluate_at(bench.forces, at, trial);
     at.force = trial.force;
-    add_drag(bench.model, {0}, at.reduced_momentum, at.force);  // the integrators take it by its exponential
+    add_mass_damping(bench.model, {0}, at.reduced_momentum, at.force);  // the integrators take it by its exponential
     Slope result{v.compliant, at.force.compliant};
     for_each_dof(
         bench.model, [&](std::size_t i, Lanes inverse_mass) { result.y[i] *= inverse_mass; },

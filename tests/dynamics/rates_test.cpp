@@ -1,12 +1,12 @@
-// Forces that depend on velocities are of second order in the step, and so are their energy balance; drag by itself is
-// exact.
+// Forces that depend on velocities are of second order in the step, and so are their energy balance; mass damping by
+// itself is exact.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <complex>
 
 #include "contact/contact_laws.hpp"
-#include "dynamics/drag.hpp"
+#include "dynamics/mass_damping.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
 
@@ -14,14 +14,14 @@ namespace pliant::dynamics_tests {
 namespace {
 
 /// EXACT: the integrals of exp(-c t), beside their series and where exp(-z) is nothing.
-TEST(Drag, over_a_step) {
-  const Drag<double> none = drag_over(0.0);
+TEST(MassDamping, over_a_step) {
+  const DampedStep<double> none = damped_step(0.0);
   EXPECT_EQ(none.mean, 0.5);
   EXPECT_EQ(none.end, 1);
   for (const double z : {1e-9, 1e-3, 0.3, 0.999, 1.001, 7.0, 400.0}) {
-    const Drag<double> drag = drag_over(z);
-    EXPECT_NEAR(drag.end * z / -std::expm1(-z), 1, 1e-14);
-    EXPECT_NEAR(drag.mean * z + drag.end, 1, 1e-14) << "the way and the speed of a body that nothing pushes";
+    const DampedStep<double> damped = damped_step(z);
+    EXPECT_NEAR(damped.end * z / -std::expm1(-z), 1, 1e-14);
+    EXPECT_NEAR(damped.mean * z + damped.end, 1, 1e-14) << "the way and the speed of a body that nothing pushes";
   }
 }
 
@@ -38,7 +38,7 @@ Scene falling(double rate, Mass mass) {
 
 /// EXACT: v = g/c + (v0 - g/c) exp(-c t) at default settings, in steps of whatever size, and what is lost is accounted
 /// for.
-TEST(Drag, of_falling_bodies_is_exact) {
+TEST(MassDamping, of_falling_bodies_is_exact) {
   for (const double rate : {0.4, 30.0})
     for (const Mass mass : {Mass::lumped, Mass::corrected}) {
       const Model model = build_model(falling(rate, mass));
@@ -57,8 +57,8 @@ TEST(Drag, of_falling_bodies_is_exact) {
     }
 }
 
-/// Drag alone sets no limit: a rigid body that nothing else moves takes the run in few steps.
-TEST(Drag, limits_no_step) {
+/// Mass damping alone sets no limit: a rigid body that nothing else moves takes the run in few steps.
+TEST(MassDamping, limits_no_step) {
   Scene scene = falling(1000, Mass::lumped);
   scene.grains.erase(scene.grains.begin());
   const Model model = build_model(scene);

@@ -42,7 +42,7 @@ def flight_errors(runs: dict[float, Run], body: str) -> list[float]:
 @pytest.mark.parametrize("body", FLIGHTS)
 def test_flights_slow_down(flights: dict[str, dict[float, Run]], body: str) -> None:
     CASE.check(Label.EXACT, f"mass damping, {body}: way, engine", max(flight_errors(flights["engine"], body)), 0, 1e-10,
-               "the engine takes drag by its exponential; rounding of some hundred steps and of the digits written")
+               "the engine takes mass damping by its exponential; rounding of some hundred steps and of the digits written")
     CASE.check_rate(f"mass damping, {body}: way, reference", STEPS, flight_errors(flights["reference"], body), 2, 0.15,
                     "Newmark: second order, the next order takes a tenth")
 

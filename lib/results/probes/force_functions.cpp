@@ -49,7 +49,7 @@ Vec2 damping_force(const Snapshot& snapshot, int b) {
   if (body.kind == BodyKind::compliant)
     return -model.scene.materials[body.material].mass_damping * body.mass * mean_value(model, body, motion.velocity);
   double force[3] = {0, 0, 0};
-  add_rigid_drag(model.rigid_bodies[body.rigid], motion.instant(), rigid_values(body, motion.velocity), force);
+  add_rigid_damping(model.rigid_bodies[body.rigid], motion.instant(), rigid_values(body, motion.velocity), force);
   return {force[0], force[1]};
 }
 
