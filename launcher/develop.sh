@@ -167,11 +167,11 @@ bench() {
       prepare counting pliant_counted_kernels pliant_counted_kernels
       exec "$python" -B "$root/benchmarks/gate.py" "${@:2}"
       ;;
-    planted)
+    faults)
       ready test
       prepare counting pliant_counted_kernels pliant_counted_kernels
       prepare release pliant_tests pliant_tests
-      exec "$python" -B "$root/benchmarks/planted.py" "${@:2}"
+      exec "$python" -B "$root/benchmarks/injected_faults.py" "${@:2}"
       ;;
     ab)
       ready
@@ -192,7 +192,7 @@ bench() {
       exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
       ;;
     *)
-      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, error, gate, planted, ab, page; see" \
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, error, gate, faults, ab, page; see" \
         "./pliant bench --help" >&2
       exit 2
       ;;

@@ -9,7 +9,7 @@ import subprocess
 from conftest import ROOT, Launcher, write_script
 
 STAGES = {"system": "make_system", "newcomer": "tests/fresh/newcomer", "test": "pliant test -LE ^case$", "lint": "pliant lint",
-          "gate": "pliant bench gate", "planted": "pliant bench planted", "gcc": "pliant test --preset gcc --scenes",
+          "gate": "pliant bench gate", "faults": "pliant bench faults", "gcc": "pliant test --preset gcc --scenes",
           "gcc_cases": "pliant verify --preset gcc --fast",
           "fuzz": "pliant fuzz --seconds 20", "memory": "pliant test --preset fuzz --scenes", "units": "core|files: pliant test --preset fuzz --units",
           "races": "pliant test --preset tsan --scenes",

@@ -1,6 +1,6 @@
-"""Whether what guards speed finds what is planted: 3 % more instructions in a kernel, an allocation in a step.
+"""Whether what guards speed finds injected faults: 3 % more instructions in a kernel, an allocation in a step.
 
-    ./pliant bench planted
+    ./pliant bench faults
 
 Each goes into a copy of one file, which is compiled as its build was and linked before the library that has the sound
 one.
@@ -31,12 +31,12 @@ SHARE = 0.03  # of a kernel's instructions
 
 @dataclass
 class Place:
-    """Where a statement is planted: behind a text that stands once in a file."""
+    """Where a statement is inserted: behind a text that stands once in a file."""
 
     file: str
     behind: str
 
-    def planted(self, statement: str) -> str:
+    def with_fault(self, statement: str) -> str:
         text = (ROOT / self.file).read_text()
         if text.count(self.behind) != 1:
             raise RuntimeError(f"'{self.behind}' stands {text.count(self.behind)} times in {self.file}, not once")
@@ -57,32 +57,32 @@ def run(command: list[str], folder: Path) -> str:
 
 def compiled(build: Path, place: Place, statement: str, scratch: Path) -> Path:
     """The file with the statement, as an object."""
-    source, planted = scratch / Path(place.file).name, scratch / "planted.o"
-    source.write_text(place.planted(statement))
+    source, faulty = scratch / Path(place.file).name, scratch / "faulty.o"
+    source.write_text(place.with_fault(statement))
     entries = json.loads((build / "compile_commands.json").read_text())
     sound = next((entry for entry in entries if Path(entry["file"]) == ROOT / place.file), None)
     if sound is None:
         raise RuntimeError(f"{build} does not compile {place.file} by itself: g++ takes several files at once; clang++-19 is needed")
     words = [str(source) if word == sound["file"] else word for word in shlex.split(sound["command"])]
-    words[words.index("-o") + 1] = str(planted)
+    words[words.index("-o") + 1] = str(faulty)
     run(words, Path(sound["directory"]))
-    return planted
+    return faulty
 
 
-def link_command(line: str, program: str, planted: Path, to: Path) -> list[str]:
+def link_command(line: str, program: str, faulty: Path, to: Path) -> list[str]:
     """Of ninja's line that links a program, the same with one more object, before the libraries: what these have of it
     is not looked at."""
     for part in line.split(" && "):
         words = shlex.split(part)
         if "-o" in words and words[words.index("-o") + 1:][:1] == [program]:
             at = words.index("-o")
-            return [*words[:at], str(planted), "-o", str(to), *words[at + 2:]]
+            return [*words[:at], str(faulty), "-o", str(to), *words[at + 2:]]
     raise RuntimeError(f"no command that links {program}: {line[:200]}")
 
 
-def linked(build: Path, program: str, planted: Path, scratch: Path) -> Path:
+def linked(build: Path, program: str, faulty: Path, scratch: Path) -> Path:
     line = run(["ninja", "-t", "commands", program], build).splitlines()[-1]
-    run(link_command(line, program, planted, scratch / program), build)
+    run(link_command(line, program, faulty, scratch / program), build)
     return scratch / program
 
 
@@ -97,7 +97,7 @@ def slower_kernel_is_found(scratch: Path) -> bool:
     asked = ["--only", kernel, "--values", str(values), "--programs"]
     if gate.main([*asked, str(build)]) != QUIET:
         raise RuntimeError(f"{kernel} is slower than itself")
-    print("planted: this must fail:", flush=True)
+    print("faults: this must fail:", flush=True)
     code = gate.main([*asked, str(scratch)])
     if code not in (QUIET, SLOWER):
         raise RuntimeError("the gate does not judge")
@@ -106,7 +106,7 @@ def slower_kernel_is_found(scratch: Path) -> bool:
 
 def allocation_is_found(scratch: Path) -> bool:
     build = ROOT / "build/release"
-    planted = linked(build, "pliant_tests", compiled(build, STEP, "::operator delete(::operator new(64));", scratch),
+    faulty = linked(build, "pliant_tests", compiled(build, STEP, "::operator delete(::operator new(64));", scratch),
                      scratch)
 
     def is_red(program: Path) -> bool:
@@ -119,25 +119,25 @@ def allocation_is_found(scratch: Path) -> bool:
 
     if is_red(build / "pliant_tests"):
         raise RuntimeError("the test fails without it")
-    print("planted: this must fail:", flush=True)
-    return is_red(planted)
+    print("faults: this must fail:", flush=True)
+    return is_red(faulty)
 
 
-PLANTS = {"3 % more instructions in the contact forces": slower_kernel_is_found,
+FAULTS = {"3 % more instructions in the contact forces": slower_kernel_is_found,
           "an allocation in each step": allocation_is_found}
 
 
 def main(arguments: list[str]) -> int:
-    argparse.ArgumentParser(prog="./pliant bench planted", description=__doc__.splitlines()[0]).parse_args(arguments)
+    argparse.ArgumentParser(prog="./pliant bench faults", description=__doc__.splitlines()[0]).parse_args(arguments)
     found = []
-    for what, is_found in PLANTS.items():
+    for what, is_found in FAULTS.items():
         try:
             with tempfile.TemporaryDirectory() as scratch:
                 found.append(is_found(Path(scratch)))
         except (OSError, RuntimeError, LookupError, ValueError, subprocess.CalledProcessError) as error:
-            print(f"planted: {what}: could not be asked: {error}", file=sys.stderr)
+            print(f"faults: {what}: could not be asked: {error}", file=sys.stderr)
             return NOT_ASKED
-        print(f"planted: {what}: {'found' if found[-1] else 'NOT FOUND'}", flush=True)
+        print(f"faults: {what}: {'found' if found[-1] else 'NOT FOUND'}", flush=True)
     return FOUND if all(found) else NOT_FOUND
 
 
