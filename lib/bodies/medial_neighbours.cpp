@@ -78,9 +78,9 @@ class Neighbourhood {
     return ((offset - first) % n + n) % n <= last - first;
   }
 
-  /// Deepest points beside a segment that are nearer to it than to its neighbours. The depth of such a point less its
-  /// distance to another segment increases inward, because that distance changes by no more than the path: so the
-  /// deepest points suffice.
+  /// Deepest points that project on a segment that are nearer to it than to its neighbours. The depth of such a point
+  /// less its distance to another segment increases inward, because that distance changes by no more than the path: so
+  /// the deepest points suffice.
   std::vector<Inside> points_below(int i) const {
     std::vector<Inside> points;
     const OutlineSegment before = segment(i - 1), s = segment(i), after = segment(i + 1);

@@ -146,8 +146,8 @@ void bring_together(const OutlineShape& shape, const Arc& nodes, Arc& segments) 
 void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, ContactPair& contact_pair) {
   Arc &nodes = contact_pair.nodes[side], &segments = contact_pair.segments[side];
   if (nodes.count > 0) {
-    const Arc beside{nodes.begin - 1, nodes.count + 1};
-    segments = segments.count == 0 ? beside : hull(beside, segments);
+    const Arc adjacent{nodes.begin - 1, nodes.count + 1};
+    segments = segments.count == 0 ? adjacent : hull(adjacent, segments);
   }
   if (shape.turn_shift == 0 && segments.count > shape.count) segments.count = shape.count;
   const int slaves = two_walls ? std::min(segments.count, shape.count) : segments.count;

@@ -44,7 +44,7 @@ std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const Conta
   };
   std::visit(
       [&](const auto& law) {
-        for_each_beside(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
+        for_each_projection(view, law.reach + view.skin, [&](const auto&... found) { add_points(law, found...); });
       },
       view.contact_pair.law);
   return points;

@@ -153,7 +153,7 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
 void look_at_itself(const PairView& view, DeepestNode& deepest) {
   const int body = view.contact_pair.first;
   const OutlineShape& shape = view.model.outline_of(body);
-  for_each_beside(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
+  for_each_projection(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
     for (int lane = 0; lane < std::min(lane_count, pass.nodes.count - i); ++lane) {
       if (!p.hit[lane] || !(p.gap[lane] < 0)) continue;
       const int index = pass.nodes.begin + i + lane, node = index - turn_of(index, shape.count) * shape.count;

@@ -17,11 +17,11 @@ namespace pliant {
 /// and half in the next.
 
 /// Upper bound of the dashpot c F F^T relative to the stiffness K of the contacts; c F K^-1 F is c times
-/// PairTotals::squares. The correction is small beside the error that a step makes at contacts anyway. It vanishes at
-/// rest and in short steps. The dashpot uses the displacement of the step that led to it. With w^2 dt^2 = a and a share
-/// b of the stiffness, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a is 4 safety^2 at
-/// most. A share that changes its sign from step to step can excite such a motion well below that limit. With nine
-/// tenths of the limit no contact at rest was seen to chatter, with all of it one was
+/// PairTotals::squares. The correction is small compared with the error that a step makes at contacts anyway. It
+/// vanishes at rest and in short steps. The dashpot uses the displacement of the step that led to it. With w^2 dt^2 = a
+/// and a share b of the stiffness, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a is 4
+/// safety^2 at most. A share that changes its sign from step to step can excite such a motion well below that limit.
+/// With nine tenths of the limit no contact at rest was seen to chatter, with all of it one was
 /// (docs/notes/energy_correction.md).
 inline double largest_correction(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
 

@@ -39,7 +39,7 @@ std::vector<DeepNode> deep_nodes(const PairView& view) {
                          (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
   };
   const auto look = [&](const auto& law) {
-    for_each_beside(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
+    for_each_projection(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
   };
   std::visit(look, view.contact_pair.law);
   return nodes;

@@ -8,7 +8,7 @@ namespace pliant {
 /// Calls visit(pass, slave side, i, projection) for each eight slave nodes, from position i of the pass on, of which
 /// some project onto the master, at most `outward` away, m.
 template <class Visit>
-void for_each_beside(const PairView& view, double outward, Visit&& visit) {
+void for_each_projection(const PairView& view, double outward, Visit&& visit) {
   const ForceRuns runs = runs_in_table(view.contact_pair);
   for (int slave_side = 0; slave_side < 2; ++slave_side) {
     if (view.contact_pair.nodes[slave_side].count == 0) continue;

@@ -13,7 +13,7 @@ namespace pliant {
 double touching_length(const PairView& view) {
   if (view.contact_pair.integrated) return integrated_length(view);
   Lanes length{};
-  for_each_beside(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
+  for_each_projection(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0);
     length += select(touching, 0.5 * load_slaves(pass, i).tributary_length, Lanes{});
   });
@@ -23,19 +23,19 @@ double touching_length(const PairView& view) {
 void locate_new_contacts(const PairView& view, ContactHistory& history) {
   const bool shears = std::visit([](const auto& l) { return l.has_shear; }, view.contact_pair.law);
   if (!shears || view.contact_pair.integrated) return;
-  for_each_beside(view, reach_of(view.contact_pair.law) + view.skin,
-                  [&](const HalfPass& pass, int, int i, const Projection& p) {
-                    Lanes& place = history.at(pass.record + i)[ContactHistory::place];
-                    place = select(p.hit & (place != place), place_of(p), place);
-                  });
+  for_each_projection(view, reach_of(view.contact_pair.law) + view.skin,
+                      [&](const HalfPass& pass, int, int i, const Projection& p) {
+                        Lanes& place = history.at(pass.record + i)[ContactHistory::place];
+                        place = select(p.hit & (place != place), place_of(p), place);
+                      });
 }
 
 void start_records(const PairView& view, ContactHistory& history) {
   const auto start = [&]<class Law>(const Law& law) {
     if constexpr (has_internal_variables<Law>)
-      for_each_beside(view, law.start_reach(), [&](const HalfPass& pass, int, int i, const Projection& p) {
-        const LaneBits beside = first_lanes(pass.nodes.count - i) & p.hit;
-        store_record(history, pass.record + i, law.at_start(p.gap, beside));
+      for_each_projection(view, law.start_reach(), [&](const HalfPass& pass, int, int i, const Projection& p) {
+        const LaneBits projects = first_lanes(pass.nodes.count - i) & p.hit;
+        store_record(history, pass.record + i, law.at_start(p.gap, projects));
       });
   };
   std::visit(start, view.contact_pair.law);
@@ -44,7 +44,7 @@ void start_records(const PairView& view, ContactHistory& history) {
 bool overlaps(const PairView& view) {
   if (view.contact_pair.integrated) return touching_length(view) > 0;
   bool found = false;
-  for_each_beside(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
+  for_each_projection(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
     found |= any(first_lanes(pass.nodes.count - i) & p.hit & (p.gap < 0.0));
   });
   return found;
@@ -77,8 +77,8 @@ class Carried {
   std::vector<double> all_, single_;
 };
 
-/// Adds a slave beside a row to its nodes, and to the next ones, which it may reach.
-void add_beside(const Projection& p, int lane, double skin, double stiffness, Carried& carried) {
+/// Adds a slave that projects on a row to its nodes, and to the next ones, which it may reach.
+void add_projected(const Projection& p, int lane, double skin, double stiffness, Carried& carried) {
   const int row = static_cast<int>(p.row[lane]);
   const double slid = skin / p.length[lane];
   carried.add(row - 1, -p.xi[lane], slid, stiffness);
@@ -101,7 +101,7 @@ void add_pass_stiffness(const PairView& view, int slave_side, const double (&fac
       if (!p.hit[lane] || p.gap[lane] > outward) continue;  // far beyond an end; the arc has only some of these
       const double k = 0.5 * nodes.tributary_length[lane] * stiffness;
       entries[pass.slave_force + i + lane] += factor[slave_side] * k;
-      add_beside(p, lane, view.skin, factor[1 - slave_side] * k, carried);
+      add_projected(p, lane, view.skin, factor[1 - slave_side] * k, carried);
     }
   }
   carried.add_to(view.model.bodies[view.body(1 - slave_side)].kind, &entries[pass.master_force]);

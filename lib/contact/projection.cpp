@@ -56,7 +56,7 @@ Lanes find_nearest_wedges(const MasterWindow& window, Lanes px, Lanes py, double
 void project_to_nearest(const MasterWindow& window, Lanes px, Lanes py, LaneBits misled, double reach, double outward,
                         Projection& projection) {
   const Lanes row = select(misled, find_nearest_segments(window, px, py, reach), projection.row);
-  projection = beside(window, px, py, row, outward);
+  projection = project_on_row(window, px, py, row, outward);
 }
 
 }  // namespace pliant

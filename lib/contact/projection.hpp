@@ -20,7 +20,7 @@ struct Projection {
   Lanes gap;     ///< m, negative inside
   Lanes normal_x, normal_y;
   Lanes xi;   ///< [0, 1] along the segment
-  Lanes fan;  ///< beyond an end: sine of the angle from the segment's normal to the node's; 0 beside the segment
+  Lanes fan;  ///< beyond an end: sine of the angle from the segment's normal to the node's; 0 on the segment
 };
 
 /// Row of the segment whose line is nearest, among those whose Voronoi regions contain the nodes, at most `reach` away;
@@ -38,7 +38,7 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
                *bisector_y = window.column(MasterWindow::bisector_y),
                *bisector_at = window.column(MasterWindow::bisector_at);
   const Lanes rx = px - window.origin_x(), ry = py - window.origin_y();
-  // Neighbours share the bisector's value, so each node beside the arc belongs to exactly one of them.
+  // Neighbours share the bisector's value, so each node that projects on the arc belongs to exactly one of them.
   const auto is_beyond = [&](int k) { return rx * bisector_x[k] + (ry * bisector_y[k] - bisector_at[k]) >= 0.0; };
   Lanes count{};
   LaneBits in_order = ~LaneBits{};
@@ -56,7 +56,7 @@ inline Wedges find_wedges(const MasterWindow& window, Lanes px, Lanes py) {
 }
 
 /// Projections of nodes onto the segments of the given rows, at most `outward` away.
-inline Projection beside(const MasterWindow& window, Lanes px, Lanes py, Lanes row_of_node, double outward) {
+inline Projection project_on_row(const MasterWindow& window, Lanes px, Lanes py, Lanes row_of_node, double outward) {
   Projection p;
   p.row = row_of_node;
   p.hit = p.row >= 0.0;
@@ -102,7 +102,7 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
   const double reach = std::max(outward, window.depth());
   const Wedges wedges = find_wedges(window, px, py);
   const Lanes rows = any(~wedges.in_order) ? find_nearest_wedges(window, px, py, reach) : wedges.row;
-  Projection p = beside(window, px, py, rows, outward);
+  Projection p = project_on_row(window, px, py, rows, outward);
   p.hit = p.hit & (abs(p.height) < reach);
   // Up to this sine a node is at most 1 % nearer to the line than to the segment.
   constexpr double steep = 0.14;

@@ -31,7 +31,7 @@ double fan_radius(const MasterSegment& after, const GapRanges& ranges) {
 
 void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows,
                              const GapRanges& ranges) {
-  beside.clear(), fans.clear();
+  segments.clear(), fans.clear();
   if (rows.count == 0) return;
   const double *x = slaves.x.data(), *y = slaves.y.data();
   const MasterSegment start = window[rows.begin], end = window[rows.end()];
@@ -59,11 +59,11 @@ void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window,
       }
       if (row == rows.end()) continue;
       const LaneBits within = (along.high > -margin) & (along.low < m.length + margin);
-      if (const unsigned found = bits(within & near)) beside.add(found, i, row);
+      if (const unsigned found = bits(within & near)) segments.add(found, i, row);
       past_end = near & (along.high > m.length - margin);
     }
   }
-  beside.close(), fans.close();
+  segments.close(), fans.close();
 }
 
 }  // namespace pliant

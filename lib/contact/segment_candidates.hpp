@@ -34,10 +34,11 @@ class PairList {
   std::vector<std::int64_t> slave_, row_;
 };
 
-/// Candidates of a half pass: slave segments beside segments of the master, and in the vertex regions of its nodes.
+/// Candidates of a half pass: slave segments that project on segments of the master, and in the vertex regions of its
+/// nodes.
 class SegmentCandidates {
  public:
-  PairList beside, fans;
+  PairList segments, fans;
 
   /// `rows`: rows that can be touched. Finds every pair that has a part, and some that have none, row by row and slave
   /// by slave: sums do not depend on where arcs begin.

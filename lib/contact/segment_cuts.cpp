@@ -103,7 +103,7 @@ SegmentPairs SegmentCuts::pairs(const SlaveArc& slaves, LaneBits slave, LaneBits
                      window_.entries(Column::tangent_y, row),
                      window_.entries(Column::length, row),
                      window_.entries(Column::inverse_length, row)};
-  const auto [along, height, length] = beside_row(pairs.segments, row);
+  const auto [along, height, length] = relative_to_row(pairs.segments, row);
   pairs.along = along, pairs.height = height;
   return pairs;
 }
@@ -118,7 +118,7 @@ NodeLanes SegmentCuts::nodes(LaneBits rows) const {
   return n;
 }
 
-SegmentCuts::Beside SegmentCuts::beside_row(const SlaveSegments& slaves, LaneBits rows) const {
+SegmentCuts::RelativeToRow SegmentCuts::relative_to_row(const SlaveSegments& slaves, LaneBits rows) const {
   const auto entries = [&](Column c) { return window_.entries(c, rows); };
   const Lanes mx = entries(Column::x), my = entries(Column::y), tx = entries(Column::tangent_x),
               ty = entries(Column::tangent_y);
@@ -133,7 +133,7 @@ Linear SegmentCuts::past_bisector(const SlaveSegments& slaves, LaneBits rows) co
   return {(slaves.x0 - mx) * bx + (slaves.y0 - my) * by, (slaves.x1 - mx) * bx + (slaves.y1 - my) * by};
 }
 
-void SegmentCuts::beside(const SegmentPairs& pairs, PackedParts& parts) const {
+void SegmentCuts::add_segment_parts(const SegmentPairs& pairs, PackedParts& parts) const {
   const auto& [along, height] = std::pair(pairs.along, pairs.height);
   const LaneBits rows = pairs.row, next = rows + 1;
   const auto turn = [&](LaneBits of) {
@@ -199,7 +199,7 @@ void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans
       pairs.row, hit, [&](int row) { return window_.rivals(row); },
       [&](int row, std::size_t k) { return window_.rival(row, k); },
       [&](LaneBits others, LaneBits have) {
-        const Beside there = beside_row(pairs.segments, others);
+        const RelativeToRow there = relative_to_row(pairs.segments, others);
         Span8 nearer = strip_of(there.along, there.length);
         const Lanes tie = select(others < pairs.row, Lanes{}, broadcast(-1e-300));  // one of the two gets it
         nearer.keep({there.height.at0 - height.at0 + tie, there.height.at1 - height.at1 + tie});
@@ -218,7 +218,7 @@ Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& 
       rows, hit, [&](int row) { return window_.rivals_of_node(row); },
       [&](int row, std::size_t k) { return window_.rival_of_node(row, k); },
       [&](LaneBits others, LaneBits have) {
-        const Beside there = beside_row(slaves, others);
+        const RelativeToRow there = relative_to_row(slaves, others);
         const Span8 strip = only(have, strip_of(there.along, there.length)),
                     mine = nearer_to_node(slaves, nodes, there.height);
         const LaneBits some = mine.some();
@@ -235,11 +235,11 @@ Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& 
 }
 
 /// Vertex region that begins where the strips of both segments end, also by rounding.
-Span8 SegmentCuts::fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const {
+Span8 SegmentCuts::fan_region(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const {
   LaneBits last = rows - 1;
   if (window_.count() == window_.outline_count()) last += (rows == 0) & window_.count();
   const LaneBits known = last >= 0;
-  const Beside there = beside_row(slaves, known ? last : rows), here = beside_row(slaves, rows);
+  const RelativeToRow there = relative_to_row(slaves, known ? last : rows), here = relative_to_row(slaves, rows);
   const Linear past_last{there.along.at0 - there.length, there.along.at1 - there.length},
       before = FromNode(slaves, nodes).along(nodes.before_x, nodes.before_y);
   return fan_between(select(known, past_last, before), here.along);
@@ -247,7 +247,7 @@ Span8 SegmentCuts::fan_beside(const SlaveSegments& slaves, const NodeLanes& node
 
 void SegmentCuts::in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, PackedParts& parts) const {
   const SlaveSegments& slaves = pairs.segments;
-  const Span8 fan = fan_beside(slaves, nodes, rows);
+  const Span8 fan = fan_region(slaves, nodes, rows);
   const Lanes dx = slaves.x1 - slaves.x0, dy = slaves.y1 - slaves.y0, x0 = slaves.x0 - nodes.x,
               y0 = slaves.y0 - nodes.y;
   const Lanes square = dx * dx + dy * dy, inverse = 1.0 / square, foot = -(x0 * dx + y0 * dy) * inverse;

@@ -44,21 +44,21 @@ class SegmentCuts {
 
   /// Pairs from candidates; `row`: rows of the master's segments.
   SegmentPairs pairs(const SlaveArc& slaves, LaneBits slave, LaneBits row, LaneBits valid, bool of_nodes) const;
-  /// Adds the parts beside the master's segments.
-  void beside(const SegmentPairs& pairs, PackedParts& parts) const;
+  /// Adds the parts that project on the master's segments.
+  void add_segment_parts(const SegmentPairs& pairs, PackedParts& parts) const;
   /// Adds the parts in the vertex regions of nodes.
   void in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, PackedParts& parts) const;
   /// Nodes at the start of rows.
   NodeLanes nodes(LaneBits rows) const;
 
  private:
-  struct Beside {
+  struct RelativeToRow {
     Linear along, height;
     Lanes length;
   };
-  Beside beside_row(const SlaveSegments& slaves, LaneBits rows) const;
+  RelativeToRow relative_to_row(const SlaveSegments& slaves, LaneBits rows) const;
   Linear past_bisector(const SlaveSegments& slaves, LaneBits rows) const;
-  Span8 fan_beside(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const;
+  Span8 fan_region(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const;
   /// The segments next to others, in the direction `way`, -1 or 1, where these are shorter.
   struct NextLanes {
     LaneBits shorter;

@@ -35,7 +35,7 @@ struct NodeMotions {
         second_y(gather(of.master_y.data() + 1, at.row)) {}
 };
 
-/// Displacements of points along the master's outline in the step, m: beside a segment l d(xi), around a node g times
+/// Displacements of points along the master's outline in the step, m: on a segment l d(xi), around a node g times
 /// the rotation of the normal relative to the segment.
 class TangentialMotion {
  public:
@@ -63,7 +63,7 @@ class TangentialMotion {
     height_ = at.height - height;
   }
 
-  Lanes beside(const QuadraturePoint& p) const { return along_.at(p.s); }
+  Lanes on_segment(const QuadraturePoint& p) const { return along_.at(p.s); }
   /// Integrals over a part of a vertex region.
   Moments in_fan(const FanShape& f) const {
     // Tangent in the direction of growing surface coordinates, in the segment's frame, times powers of s.

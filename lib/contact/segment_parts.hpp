@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Quadrature point on each of eight slave segments, beside segments of the master.
+/// Quadrature point on each of eight slave segments that project on segments of the master.
 struct QuadraturePoint {
   LaneBits hit;  ///< lanes that have a point; others have the weight 0
   Lanes s;       ///< coordinate on the slave segment

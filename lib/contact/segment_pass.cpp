@@ -91,23 +91,23 @@ class TractionVisitor {
     pressure_ = {}, in_fans_ = {}, stored_ = squares_ = damping_power_ = Lanes{};
     if constexpr (Law::has_shear) {
       weight_ = limit_ = way_ = gap_ = {};
-      for (int power = 0; power < 3; ++power) beside_[power] = shear_x_[power] = shear_y_[power] = Lanes{};
+      for (int power = 0; power < 3; ++power) on_segments_[power] = shear_x_[power] = shear_y_[power] = Lanes{};
       if (at_.moved) motion_ = TangentialMotion(pairs, xi, *at_.moved);
     }
     if constexpr (has_dashpot<Law>) rates_ = SpeedPast(pairs, *at_.speeds);
   }
 
-  void beside(const QuadraturePoint& p) {
+  void on_segment(const QuadraturePoint& p) {
     const Traction traction = traction_at(p, pairs_->tangent_y, -pairs_->tangent_x);
     const Lanes force = p.weight * traction.pressure;
     pressure_.add(force, p.s);
     stored_ += p.weight * traction.energy, squares_ += force * traction.pressure;
     if constexpr (Law::has_shear) {
       const Lanes first = p.weight * p.s;
-      beside_[0] += p.weight, beside_[1] += first, beside_[2] += first * p.s;
+      on_segments_[0] += p.weight, on_segments_[1] += first, on_segments_[2] += first * p.s;
       limit_.add(p.weight * traction.shear_limit, p.s);
       gap_.add(p.weight * p.gap, p.s);
-      if (at_.moved) way_.add(p.weight * motion_.beside(p), p.s);
+      if (at_.moved) way_.add(p.weight * motion_.on_segment(p), p.s);
     }
   }
 
@@ -141,11 +141,12 @@ class TractionVisitor {
     });
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
-    const HatSums beside = HatSums(pressure_);
-    const PairForces forces{{in_fans_.x[0] + tangent_y * beside.first, in_fans_.x[1] + tangent_y * beside.second},
-                            {in_fans_.y[0] - tangent_x * beside.first, in_fans_.y[1] - tangent_x * beside.second}};
+    const HatSums on_segments = HatSums(pressure_);
+    const PairForces forces{
+        {in_fans_.x[0] + tangent_y * on_segments.first, in_fans_.x[1] + tangent_y * on_segments.second},
+        {in_fans_.y[0] - tangent_x * on_segments.first, in_fans_.y[1] - tangent_x * on_segments.second}};
     if constexpr (Law::has_shear) {
-      const Moments weight{weight_.plain + beside_[0], weight_.times_s + beside_[1]};
+      const Moments weight{weight_.plain + on_segments_[0], weight_.times_s + on_segments_[1]};
       HatSums(weight).add_to(scratch_.sums.weight, *pairs_, hit_);
       HatSums(limit_).add_to(scratch_.sums.shear_limit, *pairs_, hit_);
       if (at_.moved) HatSums(way_).add_to(scratch_.sums.motion, *pairs_, hit_);
@@ -154,8 +155,8 @@ class TractionVisitor {
       s.hit = hit_, s.slave = pairs_->slave, s.row = pairs_->row, s.xi = xi_, s.forces = forces, s.gap = gap_;
       s.tangent_x = tangent_x, s.tangent_y = tangent_y, s.inverse_length = pairs_->inverse_length;
       for (int power = 0; power < 3; ++power) {
-        s.shear_x[power] = shear_x_[power] + tangent_x * beside_[power];
-        s.shear_y[power] = shear_y_[power] + tangent_y * beside_[power];
+        s.shear_x[power] = shear_x_[power] + tangent_x * on_segments_[power];
+        s.shear_y[power] = shear_y_[power] + tangent_y * on_segments_[power];
       }
     } else {
       add_forces(at_, pairs_->slave, pairs_->row, hit_, forces, xi_, Lanes{}, Lanes{});
@@ -189,11 +190,11 @@ class TractionVisitor {
   LaneBits hit_{};
   Linear xi_;
   Lanes stored_, squares_, damping_power_;
-  Moments pressure_;    ///< beside segments
+  Moments pressure_;    ///< on segments
   PairForces in_fans_;  ///< of pressures in vertex regions
   Moments weight_, limit_, way_, gap_;
-  Lanes beside_[3], shear_x_[3],
-      shear_y_[3];  ///< weights beside segments, tangents in vertex regions, times powers of s
+  Lanes on_segments_[3], shear_x_[3],
+      shear_y_[3];  ///< weights on segments, tangents in vertex regions, times powers of s
   TangentialMotion motion_;
   SpeedPast rates_;
 };
@@ -254,7 +255,7 @@ double integrated_length(const PairView& view) {
   struct Length {
     Lanes sum{};
     void begin(const SegmentPairs&, const Linear&) {}
-    void beside(const QuadraturePoint& p) { sum += p.weight; }
+    void on_segment(const QuadraturePoint& p) { sum += p.weight; }
     void in_fan(const FanPoint&) {}
     void in_fan_of(const FanShape& f) { sum += f.weight[0]; }
     void end() {}

@@ -9,14 +9,15 @@ namespace pliant {
 /// Quadrature of one half pass: slave segments are split where the nearest part of the master's outline changes, and
 /// where the law is not smooth; each part has quadrature points.
 ///
-/// Beside a segment of the master the signed distance is linear along the slave's segment. Two Gauss points then
+/// On a segment of the master the signed distance is linear along the slave's segment. Two Gauss points then
 /// integrate the tractions of piecewise linear laws times hat functions without error. In a vertex region inside, the
 /// traction is that of a linear spring to the node, also without error. Outside, for laws with a reach, integrals are
 /// in closed form unless three points suffice.
 ///
-/// Pairs are handled eight at a time. For each eight: visit.begin(SegmentPairs, xi), then visit.beside(QuadraturePoint)
-/// for some points, or visit.in_fan(FanPoint) for some distances and, where present, visit.in_fan_of(FanShape) for
-/// parts of a vertex region, then visit.end(); xi: coordinate on the master's segment, linear in s; 0 or 1 for nodes.
+/// Pairs are handled eight at a time. For each eight: visit.begin(SegmentPairs, xi), then
+/// visit.on_segment(QuadraturePoint) for some points, or visit.in_fan(FanPoint) for some distances and, where present,
+/// visit.in_fan_of(FanShape) for parts of a vertex region, then visit.end(); xi: coordinate on the master's segment,
+/// linear in s; 0 or 1 for nodes.
 class SegmentQuadrature {
  public:
   template <class Visit>
@@ -25,13 +26,13 @@ class SegmentQuadrature {
     slaves_.fill(pass);
     candidates_.find(slaves_, window, pass.rows, ranges);
     const SegmentCuts cuts(window, ranges);
-    const PairList& beside = candidates_.beside;
-    for (int i = 0; i < beside.count(); i += lane_count) {
+    const PairList& segments = candidates_.segments;
+    for (int i = 0; i < segments.count(); i += lane_count) {
       const SegmentPairs pairs =
-          cuts.pairs(slaves_, beside.slaves(i), beside.rows(i), first_lanes(beside.count() - i), false);
+          cuts.pairs(slaves_, segments.slaves(i), segments.rows(i), first_lanes(segments.count() - i), false);
       parts_.clear();
-      cuts.beside(pairs, parts_);
-      visit_beside(pairs, visit);
+      cuts.add_segment_parts(pairs, parts_);
+      visit_segments(pairs, visit);
     }
     const PairList& fans = candidates_.fans;
     for (int i = 0; i < fans.count(); i += lane_count) {
@@ -48,7 +49,7 @@ class SegmentQuadrature {
 
  private:
   template <class Visit>
-  void visit_beside(const SegmentPairs& pairs, Visit& visit) {
+  void visit_segments(const SegmentPairs& pairs, Visit& visit) {
     if (parts_.begin() == parts_.end()) return;
     visit.begin(pairs, {pairs.along.at0 * pairs.inverse_length, pairs.along.at1 * pairs.inverse_length});
     for (const PackedParts::Eight& part : parts_) {
@@ -59,7 +60,7 @@ class SegmentQuadrature {
       constexpr double gauss = 0.21132486540518713;  // 1/2 - 1/sqrt(12)
       for (const double share : {gauss, 1 - gauss}) {
         const Lanes s = part.span.low + share * way;
-        visit.beside(QuadraturePoint{part.hit, s, pairs.height.at(s), weight});
+        visit.on_segment(QuadraturePoint{part.hit, s, pairs.height.at(s), weight});
       }
     }
     visit.end();

@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-/// The part of each of eight segments that may come to be beside any segment of a master.
+/// The part of each of eight segments that may come to project on any segment of a master.
 struct Hull8 {
   Lanes low = broadcast(1), high{};
   void add(LaneBits hit, const Span8& part) {
@@ -40,7 +40,7 @@ void add_pass(const PairView& view, const HalfPass& pass, int slave_side, const 
     const double *x = arc.x.data() + i, *y = arc.y.data() + i;
     const SlaveSegments slaves{load(x), load(y), load(x + 1), load(y + 1), load(&arc.lengths[i])};
     Hull8 hull;
-    Lanes parts{};  // these may overlap, as a point may come to be beside either of two segments
+    Lanes parts{};  // these may overlap, as a point may come to project on either of two segments
     const auto for_each_part = [&](auto&& visit) {
       for (int row = pass.rows.begin; row < pass.rows.end(); ++row) {
         const MasterSegment m = window[row];

@@ -5,7 +5,7 @@
 namespace pliant {
 
 /// Surface coordinate of a node on the master's outline as one number, for the history: twice the segment's number,
-/// plus xi beside the segment. Beyond an end it is outside [0, 1]: by |fan|/4 outside the outline, by 0.3 + 0.15 |fan|
+/// plus xi on the segment. Beyond an end it is outside [0, 1]: by |fan|/4 outside the outline, by 0.3 + 0.15 |fan|
 /// inside a re-entrant corner, where the normal turns against the direction of motion. The offset is always less than
 /// 1/2, so that every coordinate belongs to one segment.
 inline Lanes place_of(const Projection& p) {
@@ -27,7 +27,7 @@ inline Lanes fan_of(Lanes off) {
 double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
 
 /// Slip increment of eight nodes along the master since the last accepted step, m. It is a rate in the present shape
-/// (beside a segment l d(xi), beyond an end g d(angle)), so that the shear force is its exact conjugate. `place`:
+/// (on a segment l d(xi), beyond an end g d(angle)), so that the shear force is its exact conjugate. `place`:
 /// place_of(p), rounded like the old one, so that a node at rest gives exactly 0. `counted`: lanes in contact whose old
 /// place is known; others give 0.
 inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBits counted, Lanes old_place,

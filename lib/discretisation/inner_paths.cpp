@@ -50,17 +50,18 @@ InnerPaths::InnerPaths(const Points& outline) : search_(outline) {
 }
 
 void InnerPaths::hang_up() {
-  std::map<std::pair<int, int>, std::pair<int, int>> beside;  // edge, in its triangle's direction, to triangle and edge
+  // edge, in its triangle's direction, to triangle and edge
+  std::map<std::pair<int, int>, std::pair<int, int>> adjacent;
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    for (int k = 0; k < 3; ++k) beside[{triangles_[t][k], triangles_[t][(k + 1) % 3]}] = {static_cast<int>(t), k};
+    for (int k = 0; k < 3; ++k) adjacent[{triangles_[t][k], triangles_[t][(k + 1) % 3]}] = {static_cast<int>(t), k};
   parent_.assign(triangles_.size(), -1), edge_.assign(triangles_.size(), 0), depth_.assign(triangles_.size(), 0);
   parent_[0] = 0;
   std::vector<int> reached{0};
   for (std::size_t n = 0; n < reached.size(); ++n) {
     const int t = reached[n];
     for (int k = 0; k < 3; ++k) {
-      const auto other = beside.find({triangles_[t][(k + 1) % 3], triangles_[t][k]});
-      if (other == beside.end() || parent_[other->second.first] >= 0) continue;
+      const auto other = adjacent.find({triangles_[t][(k + 1) % 3], triangles_[t][k]});
+      if (other == adjacent.end() || parent_[other->second.first] >= 0) continue;
       const auto [child, edge] = other->second;
       parent_[child] = t, edge_[child] = edge, depth_[child] = depth_[t] + 1;
       reached.push_back(child);

@@ -5,7 +5,7 @@
 namespace pliant {
 namespace {
 
-/// Triangles beside each edge, in the order of the mesh.
+/// Triangles at each edge, in the order of the mesh.
 std::map<std::pair<int, int>, std::vector<int>> triangles_by_edge(const FieldMesh& mesh) {
   std::map<std::pair<int, int>, std::vector<int>> edges;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)

@@ -20,7 +20,7 @@ RecipeResult build_at_gauss_points(const FieldMesh& mesh, const Basis& basis, in
 RecipeResult build_mls(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows);
 
 /// Linear triangles smoothed over edges (ES-FEM; Liu, Nguyen-Thoi, Lam 2009, doi 10.1016/j.jsv.2008.08.027): one point
-/// per edge, with the mean gradient over the thirds of the triangles beside it; passes the patch test.
+/// per edge, with the mean gradient over the thirds of the triangles at it; passes the patch test.
 RecipeResult build_es_t3(const FieldMesh& mesh);
 
 }  // namespace pliant

@@ -17,7 +17,7 @@ struct IntegrationTable {
   std::vector<int> node;       ///< [entries]
   Points gradient;             ///< [entries], 1/m
   /// [points], background triangles that a point represents in pictures: twice the one that contains it, or those
-  /// beside its edge.
+  /// at its edge.
   std::vector<std::array<int, 2>> cells;
 };
 

@@ -132,9 +132,9 @@ struct Answer {
 };
 
 template <class Law>
-Answer<Law> answer(const Law& law, Lanes gap, LaneBits beside, Lanes moved, Lanes slip, const Record<Law>& old) {
+Answer<Law> answer(const Law& law, Lanes gap, LaneBits projects, Lanes moved, Lanes slip, const Record<Law>& old) {
   Answer<Law> now;
-  const GapAndSlip at{gap, beside, beside & (gap < law.reach), moved};
+  const GapAndSlip at{gap, projects, projects & (gap < law.reach), moved};
   now.contact = respond(law, at, law(gap), slip, old, now.record);
   return now;
 }
@@ -158,11 +158,11 @@ TEST(AllContactLaws, answer_the_same_again_at_rest) {
             for (int step = 0; step < 20; ++step) {
               const Lanes gap = uniform_lanes(random, -0.4, 0.7);
               const Lanes moved = Law::has_shear ? uniform_lanes(random, -0.3, 0.3) : Lanes{};
-              const LaneBits beside = uniform_lanes(random, 0, 1) < 0.9;
-              const Answer<Law> first = answer(law, gap, beside, moved, slip, record);
-              const Answer<Law> again = answer(law, gap, beside, Lanes{}, first.contact.slip, first.record);
+              const LaneBits projects = uniform_lanes(random, 0, 1) < 0.9;
+              const Answer<Law> first = answer(law, gap, projects, moved, slip, record);
+              const Answer<Law> again = answer(law, gap, projects, Lanes{}, first.contact.slip, first.record);
               for (int lane = 0; lane < lane_count; ++lane) {
-                if (!beside[lane]) continue;
+                if (!projects[lane]) continue;
                 EXPECT_NEAR(again.contact.pressure[lane], first.contact.pressure[lane], 1e-13) << Law::name;
                 EXPECT_NEAR(again.contact.shear[lane], first.contact.shear[lane], 1e-13) << Law::name;
                 EXPECT_NEAR(again.contact.energy[lane], first.contact.energy[lane], 1e-13) << Law::name;

@@ -47,7 +47,7 @@ struct CohesiveFatigue {
   Contact respond(const GapAndSlip& at, const Traction& broken, Lanes old_slip, const Record& old, Record& now) const {
     const LaneBits bonded = old[0] < 1.0;
     const Lanes elastic = select(bonded, old[2], old_slip);
-    now = {broadcast(1), select(at.beside, max(at.gap, Lanes{}), Lanes{}), Lanes{}};
+    now = {broadcast(1), select(at.projects, max(at.gap, Lanes{}), Lanes{}), Lanes{}};
     Contact c{broken.pressure, {}, broken.energy, {}, {}};
     slide(*this, broken, at.touching, elastic, elastic + at.moved, c);
     if (any(bonded)) hold(at, {old[0], old[1], old_slip}, bonded, elastic, c, now);
@@ -62,8 +62,8 @@ struct CohesiveFatigue {
   }
 
   double start_reach() const { return bond_gap; }
-  Record at_start(Lanes gap, LaneBits beside) const {
-    const LaneBits near = beside & (gap <= bond_gap);
+  Record at_start(Lanes gap, LaneBits projects) const {
+    const LaneBits near = projects & (gap <= bond_gap);
     return {select(near, Lanes{}, broadcast(1)), select(near, max(gap, Lanes{}), Lanes{}), Lanes{}};
   }
 
@@ -76,8 +76,8 @@ struct CohesiveFatigue {
   /// Adds the intact share of bonds to `c`, the response of the broken share, whose elastic slip was `elastic`. Bonds
   /// of nodes that no longer project onto the master break.
   void hold(const GapAndSlip& at, const Bond& bond, LaneBits bonded, Lanes elastic, Contact& c, Record& now) const {
-    const Lanes opening = select(at.beside, max(at.gap, Lanes{}), bond.opening), slip = bond.slip + at.moved;
-    const Lanes damage = select(bonded & at.beside, this->damage(bond, opening, slip, c.slip), broadcast(1));
+    const Lanes opening = select(at.projects, max(at.gap, Lanes{}), bond.opening), slip = bond.slip + at.moved;
+    const Lanes damage = select(bonded & at.projects, this->damage(bond, opening, slip, c.slip), broadcast(1));
     const Lanes whole = 1.0 - damage, grown = damage - bond.damage, depth = min(at.gap, Lanes{});
     // Work of the mean of old and new tractions in the step, less the stored energy: of the intact share, of friction,
     // of residual cohesion.
@@ -87,7 +87,7 @@ struct CohesiveFatigue {
         (0.5 * shear_stiffness) * ((bond.damage * elastic + damage * c.slip) * slid - grown * elastic * c.slip);
     if (residual_strength > 0) {
       const Lanes energies = (*this)(bond.opening).energy + (*this)(opening).energy;
-      c.slip_work -= select(at.beside, 0.5 * grown * energies, Lanes{});
+      c.slip_work -= select(at.projects, 0.5 * grown * energies, Lanes{});
     }
     c.pressure = damage * c.pressure - whole * (normal_stiffness * (depth + opening));
     c.shear = damage * c.shear - whole * (shear_stiffness * slip);

@@ -11,7 +11,7 @@ namespace pliant {
 /// Gap and slip increment of eight nodes near a master, in the current step.
 struct GapAndSlip {
   Lanes gap;          ///< m, negative: penetration
-  LaneBits beside;    ///< lanes that project onto the master
+  LaneBits projects;  ///< lanes that project onto the master
   LaneBits touching;  ///< of these, lanes within the law's reach
   Lanes moved;        ///< slip increment since the last accepted step, m; 0 for laws without shear
 };
@@ -27,8 +27,8 @@ struct Contact {
 /// also has
 ///
 ///     Contact respond(const GapAndSlip&, const Traction&, Lanes old_slip, const Record& old, Record& now) const;
-///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight is beside the master
-///     Record at_start(Lanes gap, LaneBits beside) const;            with gaps up to
+///     Lanes set_free(Lanes old_slip, const Record& old) const;      J/m2, where none of eight projects on the master
+///     Record at_start(Lanes gap, LaneBits projects) const;            with gaps up to
 ///     double start_reach() const;                                   m
 ///
 /// respond is also called for lanes without a projection, out of contact, or padding. It sets the internal variables of

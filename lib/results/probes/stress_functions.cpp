@@ -9,14 +9,14 @@ namespace pliant {
 namespace {
 
 /// Whether an integration point stands for a triangle that has the node.
-bool is_beside(const Discretisation& space, std::size_t point, int node) {
+bool belongs_to_node(const Discretisation& space, std::size_t point, int node) {
   return std::any_of(space.table.cells[point].begin(), space.table.cells[point].end(), [&](int cell) {
     const Triangle& t = space.mesh.triangles[cell];
     return std::find(t.begin(), t.end(), node) != t.end();
   });
 }
 
-/// Calls add(state) for the integration points of the selected bodies, or for those beside the selected node.
+/// Calls add(state) for the integration points of the selected bodies, or for those of the selected node.
 template <class Add>
 void for_each_point(const Snapshot& snapshot, const Selection& selection, Add&& add) {
   const Model& model = snapshot.model();
@@ -24,7 +24,7 @@ void for_each_point(const Snapshot& snapshot, const Selection& selection, Add&& 
     const std::vector<PointState> states =
         point_states(model, model.bodies[b], snapshot.state().position, snapshot.state().memory);
     for (std::size_t g = 0; g < states.size(); ++g)
-      if (!selection.node || is_beside(model.shape_of(model.bodies[b]).space, g, *selection.node)) add(states[g]);
+      if (!selection.node || belongs_to_node(model.shape_of(model.bodies[b]).space, g, *selection.node)) add(states[g]);
   }
 }
 
