@@ -66,7 +66,7 @@ DryRun dry_run(Simulation& simulation) {
                          }};
   while (!finished && seconds < longest_seconds) {
     simulation.step(scene.time.stop_at_outputs ? next : std::numeric_limits<double>::infinity(), &outputs);
-    if (!finished && outputs.looks_at(state.time)) outputs.look();
+    if (!finished && outputs.is_due_at(state.time)) outputs.write();
     if (grown == 0 && state.evaluations >= growth) grown = state.evaluations, grown_time = state.time;
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }

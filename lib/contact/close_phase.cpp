@@ -160,7 +160,7 @@ void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Cont
 }  // namespace
 
 double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
-                 double skin, MasterWindow& scratch, double look) {
+                 double skin, MasterWindow& scratch, double distance) {
   const double shift = contact_pair.images * model.scene.period.value_or(0);
   ContactSide sides[2] = {make_side(model, outlines, contact_pair.first, 0),
                           make_side(model, outlines, contact_pair.second, shift)};
@@ -170,7 +170,7 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
   double gap =
-      std::max({look, margin + 2 * skin, longest + 4 * skin});  // lower bound for all that is not in rough arcs
+      std::max({distance, margin + 2 * skin, longest + 4 * skin});  // lower bound for all that is not in rough arcs
   find_rough_arcs(model, sides[0], sides[1], box_a, box_b, contact_pair, gap, rough);
   if (rough[0].count == 0 || rough[1].count == 0) return gap;
   const bool two_walls = model.bodies[contact_pair.first].wall && model.bodies[contact_pair.second].wall;

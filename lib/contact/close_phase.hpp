@@ -9,8 +9,8 @@ namespace pliant {
 /// are valid while the relative displacement of the bodies stays below the skin (docs/method.md 4, stage 2). The result
 /// is conservative: it contains each node within `margin` (reach + skin) of a segment of the other outline, or within
 /// the detection depth below it (compute_pair), and that segment. All counts are 0 if the bodies stay apart. Returns
-/// the least distance of the two outlines, m; if that exceeds `look`, any value between the two.
+/// the least distance of the two outlines, m; if that exceeds `distance`, any value between the two.
 double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
-                 double skin, MasterWindow& scratch, double look = 0);
+                 double skin, MasterWindow& scratch, double distance = 0);
 
 }  // namespace pliant

@@ -192,9 +192,9 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
 }
 
 void ContactSystem::make_room(Evaluated& evaluated) const {
-  const std::size_t looked_at = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
-  evaluated.forces.x.assign(looked_at, 0.0);
-  evaluated.forces.y.assign(looked_at, 0.0);
+  const std::size_t size = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
+  evaluated.forces.x.assign(size, 0.0);
+  evaluated.forces.y.assign(size, 0.0);
   evaluated.totals.assign(contact_pairs().size(), {});
   evaluated.number = 0;
 }

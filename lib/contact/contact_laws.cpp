@@ -72,7 +72,7 @@ ContactLaws::ContactLaws(const Model& model) : file_(model.scene.file.string()),
   for (int a = 0; a < static_cast<int>(groups_.size()); ++a)
     for (int b = 0; b < static_cast<int>(groups_.size()); ++b)
       largest_auto_ = std::max(largest_auto_, auto_stiffness(extreme(a, true), extreme(b, true)));
-  look_at_extremes();
+  find_extremes();
   if (damps_) find_eras(model);
 }
 
@@ -129,7 +129,7 @@ void ContactLaws::check_restitution(const Scene& scene, const ContactRule& rule,
 
 /// Finds bounds over all pairs from the extreme spacings: lengths grow with the finer of the two spacings, stiffness
 /// with its inverse.
-void ContactLaws::look_at_extremes() {
+void ContactLaws::find_extremes() {
   for (int a = 0; a < static_cast<int>(groups_.size()); ++a)
     for (int b = 0; b < static_cast<int>(groups_.size()); ++b)
       for (const bool finest : {true, false}) {

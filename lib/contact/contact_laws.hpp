@@ -60,7 +60,7 @@ class ContactLaws {
   void find_rules(const Scene& scene);
   bool meets_itself(const Scene& scene, const Group& group) const;
   void check_restitution(const Scene& scene, const ContactRule& rule, const Group& softer) const;
-  void look_at_extremes();
+  void find_extremes();
   void find_eras(const Model& model);
   const ContactRule* rule(const Side& a, const Side& b) const {
     const int index = pair_rule_[static_cast<std::size_t>(a.group) * groups_.size() + b.group];

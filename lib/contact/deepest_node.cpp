@@ -52,7 +52,7 @@ class OutlineView {
   /// `period`: of the nearest image; 0: of the outline as it is.
   Nearest nearest_segment(const Vec2& point, double period = 0) const {
     Nearest nearest;
-    const auto look = [&](int s) {
+    const auto measure = [&](int s) {
       const Vec2 along_segment = node(s + 1) - node(s);
       const double length = along_segment.norm();
       const Vec2 r = lever(point, node(s), period), tangent = along_segment / length;
@@ -64,9 +64,9 @@ class OutlineView {
         nearest = {distance, depth, length, s};
     };
     if (strips_ && fits(period))
-      strips_->from(point.x(), look, [&] { return nearest.distance; });
+      strips_->from(point.x(), measure, [&] { return nearest.distance; });
     else
-      for (int s = 0; s < count(); ++s) look(s);
+      for (int s = 0; s < count(); ++s) measure(s);
     return nearest;
   }
 
@@ -135,7 +135,7 @@ bool is_deeper(const DeepestNode& a, const DeepestNode& b) {
   return a.depth * b.segment_length > b.depth * a.segment_length;
 }
 
-void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest) {
+void find_deepest(const OutlineViews& views, const Sight& sight, DeepestNode& deepest) {
   const OutlineView slave = views[sight.slave], master = views[sight.master];
   const Box& box = master.box();
   slave.for_each_between(box.x_min + sight.shift, box.x_max + sight.shift, sight.period, [&](int node) {
@@ -150,7 +150,7 @@ void look_at(const OutlineViews& views, const Sight& sight, DeepestNode& deepest
 }
 
 /// Deepest node of a contact pair of a body with itself, by the projection of contact.
-void look_at_itself(const PairView& view, DeepestNode& deepest) {
+void find_self_penetration(const PairView& view, DeepestNode& deepest) {
   const int body = view.contact_pair.first;
   const OutlineShape& shape = view.model.outline_of(body);
   for_each_projection(view, 0, [&](const HalfPass& pass, int, int i, const Projection& p) {
@@ -206,8 +206,8 @@ DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const
     const std::size_t begin = block * static_cast<std::size_t>(b);
     for (std::size_t p = begin; p < std::min(begin + block, pairs.size()); ++p) {
       const Sight sight = sight_of(model, pairs[p]);
-      look_at(views, sight, of_block[b]);
-      look_at(views, sight.back(), of_block[b]);
+      find_deepest(views, sight, of_block[b]);
+      find_deepest(views, sight.back(), of_block[b]);
     }
   });
   DeepestNode deepest;
@@ -221,7 +221,7 @@ DeepestNode deepest_contact(const Model& model, const Outlines& outlines, const 
   DeepestNode of_itself;
   for (const ContactPair& contact_pair : contact.contact_pairs())
     if (contact_pair.of_itself())
-      look_at_itself({model, outlines, contact_pair, contact.skin(), thread_scratch()}, of_itself);
+      find_self_penetration({model, outlines, contact_pair, contact.skin(), thread_scratch()}, of_itself);
     else
       pairs.push_back(contact_pair.pair());
   const DeepestNode of_two = deepest_node(model, outlines.position, pairs);

@@ -38,10 +38,10 @@ std::vector<DeepNode> deep_nodes(const PairView& view) {
         nodes.push_back({-p.gap[lane], -p.gap[lane] / view.window.longest(), stored[lane],
                          (side == 0 ? -1 : 1) * Vec2(p.normal_x[lane], p.normal_y[lane])});
   };
-  const auto look = [&](const auto& law) {
+  const auto visit_law = [&](const auto& law) {
     for_each_projection(view, 0, [&](const auto&... found) { add_nodes(law, found...); });
   };
-  std::visit(look, view.contact_pair.law);
+  std::visit(visit_law, view.contact_pair.law);
   return nodes;
 }
 

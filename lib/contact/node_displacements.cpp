@@ -135,7 +135,7 @@ void NodeDisplacements::copy_entry(int entry, const NodeDisplacements& from, int
   std::copy_n(&from.y_[from.at_[old_entry]], nodes, &y_[at_[entry]]);
 }
 
-void NodeDisplacements::look(int entry, const DisplacementsSoFar& displacements) {
+void NodeDisplacements::set_reference(int entry, const DisplacementsSoFar& displacements) {
   const int b = body_[entry], first = model_->outline_offset[b], count = model_->outline_of(b).count;
   const Common common = common_[entry] = displacement_of_first(b, displacements);
   const bool keeps = keeps_nodes(entry);

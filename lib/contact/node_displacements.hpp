@@ -47,8 +47,8 @@ class NodeDisplacements {
   int count() const { return static_cast<int>(body_.size()); }
   int body(int entry) const { return body_[entry]; }
   /// Counts the entry's displacements from the body's present position on. The body's disc is not used.
-  void look(int entry, const DisplacementsSoFar& displacements);
-  /// Disc of the displacements since look(), from the discs alone: cheap, but an overestimate.
+  void set_reference(int entry, const DisplacementsSoFar& displacements);
+  /// Disc of the displacements since set_reference(), from the discs alone: cheap, but an overestimate.
   DisplacementDisc displacement_bound(int entry, const DisplacementsSoFar& displacements) const;
   /// The same node by node, up to 1e-4 of the skin; unbounded if unknown. Large outlines have displacement_bound()
   /// only.
@@ -71,7 +71,7 @@ class NodeDisplacements {
 
   const Model* model_;
   std::vector<int> body_;
-  std::vector<DisplacementDisc> start_;  ///< [entries] displacements from the reference at look()
+  std::vector<DisplacementDisc> start_;  ///< [entries] displacements from the reference at set_reference()
   // The same node by node, for small bodies: that of the first node, and those of the others relative to it. These
   // remain small however far all nodes drift, so that floats suffice.
   std::vector<Common> common_;  ///< [entries], m

@@ -128,7 +128,7 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
   reactions.add_to(&forces.x[pass.master_force], &forces.y[pass.master_force]);
 }
 
-void look_up_velocities(const PairView& view, int slave_side, HalfPass& pass) {
+void load_velocities(const PairView& view, int slave_side, HalfPass& pass) {
   const OutlineField& velocity = view.outlines.velocity;
   const int slave = view.model.outline_offset[view.body(slave_side)],
             master = view.model.outline_offset[view.body(1 - slave_side)];
@@ -146,7 +146,7 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
     if (view.contact_pair.nodes[slave_side].count == 0) continue;
     HalfPass pass = make_half_pass(view, slave_side, runs);
     if constexpr (has_dashpot<Law>) {
-      look_up_velocities(view, slave_side, pass);
+      load_velocities(view, slave_side, pass);
       pass.damping = damping, pass.elapsed = view.elapsed;
     }
     fill_window(view, 1 - slave_side);

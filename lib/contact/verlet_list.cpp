@@ -244,7 +244,7 @@ bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {
   excess_[pair] = 0, gap_[pair] = gap;
   watched_[pair] = !(just_swept_ && gap > margin_);
-  for (int side = 0; side < 2; ++side) pair_displacements_.look(2 * pair + side, displacements(now));
+  for (int side = 0; side < 2; ++side) pair_displacements_.set_reference(2 * pair + side, displacements(now));
 }
 
 void VerletList::add(const BodyPair& pair, const OutlineField& now) {

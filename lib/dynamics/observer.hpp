@@ -10,12 +10,12 @@ namespace pliant {
 struct Observer {
   std::function<double()> next_time;  ///< time of the next sample, s
   /// Called with the state at that time. Returns false if the step need not be taken, because the observer is done.
-  std::function<bool()> look;
+  std::function<bool()> write;
   /// Whether a sample is due at the end of a step; the caller of the step takes it.
-  bool looks_at(double time) const { return next_time() == time; }
+  bool is_due_at(double time) const { return next_time() == time; }
   /// Whether a sample is due within a step that ends at `time`. The end has a tolerance for rounding, which would
   /// otherwise be left for the next step.
-  bool looks_before(double time) const { return next_time() <= time * (1 + 1e-12) && !looks_at(time); }
+  bool is_due_before(double time) const { return next_time() <= time * (1 + 1e-12) && !is_due_at(time); }
 };
 
 /// Holds the state after a shorter step, which does not count, during its lifetime, and then restores the state.
@@ -46,7 +46,7 @@ enum class Shown { all, enough, failed };
 template <class Scheme>
 Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Proposal& proposal,
                       const Observer* observer) {
-  if (!observer || !observer->looks_before(proposal.end_time)) return Shown::all;
+  if (!observer || !observer->is_due_before(proposal.end_time)) return Shown::all;
   do {
     Proposal shorter = proposal;
     shorter.end_time = observer->next_time(), shorter.dt = shorter.end_time - state.time,
@@ -57,8 +57,8 @@ Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Propos
     if (!scheme.within_tolerance(report)) return Shown::failed;
     scheme.finish(state, report);
     const ShorterStep step(forces.model(), state, scheme.trial(), report);
-    if (!observer->look()) return Shown::enough;
-  } while (observer->looks_before(proposal.end_time));
+    if (!observer->write()) return Shown::enough;
+  } while (observer->is_due_before(proposal.end_time));
   StepReport again;
   scheme.attempt(state, proposal, again);
   return Shown::all;

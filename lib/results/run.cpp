@@ -125,12 +125,12 @@ void advance(Run& run) {
                            });
                            return !run.has_ended();
                          }};
-  if (outputs.look()) run.recorder.write_summary(simulation, "running");
+  if (outputs.write()) run.recorder.write_summary(simulation, "running");
   const bool stops = simulation.model().scene.time.stop_at_outputs;
   while (!run.has_ended()) {
     const double until = stops ? outputs.next_time() : std::numeric_limits<double>::infinity();
     const StepReport report = simulation.step(until, &outputs);
-    if (report.dt > 0 && outputs.looks_at(simulation.state().time)) outputs.look();
+    if (report.dt > 0 && outputs.is_due_at(simulation.state().time)) outputs.write();
     if (report.dt > 0) run.recorder.record_step(simulation, report);
     if (run.has_ended()) break;
     stop_if_asked(run);

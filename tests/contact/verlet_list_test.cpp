@@ -161,7 +161,7 @@ TEST(NodeDisplacements, are_known_however_far_bodies_drift) {
   };
   NodeDisplacements displacements(rig.model);
   displacements.set_bodies({0, 1});
-  for (int entry = 0; entry < 2; ++entry) displacements.look(entry, look());
+  for (int entry = 0; entry < 2; ++entry) displacements.set_reference(entry, look());
   for (int step = 1; step <= 100; ++step) {
     for (int body = 0; body < 2; ++body) rig.move(body, {1e4, -1e4});
     rig.move(1, {0, 0.005 * skin});
