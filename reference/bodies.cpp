@@ -65,10 +65,10 @@ void Bodies::place(Body body, int dofs) {
 void Bodies::add_compliant(Body body, std::map<std::string, int>& known) {
   const ShapeSpec& shape = scene_.shapes[body.placed.shape];
   const auto [found, is_new] = known.try_emplace(shape.name, static_cast<int>(spaces_.size()));
-  const auto found = meshes_.find(shape.name);
+  const auto shared = meshes_.find(shape.name);
   if (is_new)
     spaces_.push_back(located(shape.where, [&] {
-      return make_space(found == meshes_.end() ? make_field_mesh(shape) : found->second.mesh, scene_.discretisation);
+      return make_space(shared == meshes_.end() ? make_field_mesh(shape) : shared->second.mesh, scene_.discretisation);
     }));
   body.space = found->second;
   const FieldMesh& mesh = space_of(body).mesh;

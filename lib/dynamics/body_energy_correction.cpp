@@ -109,7 +109,7 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State
       twice += nodes.mass_at_unit_density[i] * (shaking.x() * shaking.x() + shaking.y() * shaking.y());
     }
     twice = sum_over_body(batch, twice * batch.density * batch.weight);
-    error = select(abs(error) < 0.5 * largest_error * twice, error, Lanes{});
+    error = select(abs(error) < 0.5 * largest_error_of_bodies * twice, error, Lanes{});
     const Lanes wanted = corrected_share * error / max(twice, broadcast(1e-300));
     const Lanes taken =
         max(min(wanted, broadcast(largest_correction_of_bodies)), broadcast(-largest_correction_of_bodies));

@@ -16,7 +16,7 @@ constexpr double corrected_share = 0.1;
 constexpr double largest_correction_of_bodies = 1e-5 * correction_period;
 /// Largest energy error over the kinetic energy of vibrations. A larger error waits, as its correction would shake a
 /// body that is nearly at rest.
-constexpr double largest_error = 1;
+constexpr double largest_error_of_bodies = 1;
 
 /// Energy correction of undamped compliant bodies (docs/method.md 6). Equal steps of velocity Verlet keep
 /// K + U - dt^2 sum F^2/(8 m) + (dt^2 sum F F_before/m - sum dx dF)/12, with dx and dF of a step, up to third powers of
