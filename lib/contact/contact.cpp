@@ -127,8 +127,8 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
 /// Searches pairs that exceed the skin and transfers the history. Returns whether candidates are valid for the trial.
 bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
                                     const RunClock& clock) {
-  accept(history);
-  if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) last_.number = 0;  // the laws have changed
+  if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time))
+    history.last.elapsed = 0;  // the laws have changed
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
@@ -137,7 +137,7 @@ bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField
   const std::vector<ContactPair> found = search(exceeded);
   found_ = exceeded;  // contact pairs are ordered as the pairs, unless there is self-contact
   const auto carry = [&](const ContactPair& old, const ContactPair& now) {
-    if (corrects_energy()) carry_forces(model_, old, last_.forces, now, last_.forces);
+    if (corrects_energy()) carry_forces(model_, old, history.last.forces, now, history.last.forces);
   };
   if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
   parallel_for(static_cast<int>(found_.size()),
@@ -173,34 +173,28 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
   }
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   const std::vector<ContactPair> old = contact_pairs();
+  const StepForces before = std::move(history.last);
   table_.lay_out(std::move(all), laws_.internal_variables(), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
-  const Evaluated before = std::exchange(last_, {});
-  make_room(last_);
-  if (!corrects_energy()) return;
-  make_room(trial_);
-  last_.number = before.number, last_.refreshes = before.refreshes, last_.elapsed = before.elapsed;
+  if (!corrects_energy()) return make_room(unkept_);
+  make_room(history.last);
+  history.last.refreshes = before.refreshes, history.last.elapsed = before.elapsed;
   auto from = old.begin();
   for (int p = 0; p < table_.count(); ++p) {
     while (from != old.end() && comes_before(*from, contact_pairs()[p])) ++from;
     if (from == old.end() || comes_before(contact_pairs()[p], *from)) continue;  // not in the old table
-    last_.totals[p] = before.totals[from - old.begin()];
-    carry_forces(model_, *from, before.forces, contact_pairs()[p], last_.forces);
+    history.last.totals[p] = before.totals[from - old.begin()];
+    carry_forces(model_, *from, before.forces, contact_pairs()[p], history.last.forces);
   }
 }
 
-void ContactSystem::make_room(Evaluated& evaluated) const {
+void ContactSystem::make_room(StepForces& evaluated) const {
   const std::size_t size = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
   evaluated.forces.x.assign(size, 0.0);
   evaluated.forces.y.assign(size, 0.0);
   evaluated.totals.assign(contact_pairs().size(), {});
-  evaluated.number = 0;
-}
-
-void ContactSystem::accept(const ContactHistory& history) {
-  if (trial_.number > 0 && trial_.number == history.evaluation) std::swap(last_, trial_);
 }
 
 /// Prefetches what a contact pair reads and writes: a write that waits for its cache line delays all later ones.
@@ -218,7 +212,7 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
     prefetch_run<Access::write>(forces, contact_pair.entry[side], arc.count);
     if (!corrects_energy() || !step) continue;
     prefetch_run(step->position, node, arc.count);
-    prefetch_run(last_.forces, contact_pair.entry[side], arc.count);
+    prefetch_run(from.last.forces, contact_pair.entry[side], arc.count);
   }
 }
 
@@ -234,14 +228,9 @@ const OutlineField* ContactSystem::find_displacements(const OutlineField& now, c
 PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                  OutlineField& force, const StepStart* step) {
   table_.follow(from, to);  // also where no contact pair writes: states are compared bitwise
-  to.evaluation = from.evaluation;
-  if (corrects_energy()) {
-    accept(from);
-    trial_.number = step ? ++to.evaluation : 0;
-    trial_.refreshes = refreshes_;
-    trial_.elapsed = step ? step->elapsed : 0;
-  }
-  Evaluated& now = corrects_energy() ? trial_ : last_;
+  StepForces& now = corrects_energy() ? to.last : unkept_;
+  now.refreshes = refreshes_;
+  now.elapsed = step ? step->elapsed : 0;
   const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
@@ -253,7 +242,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
     if (view.contact_pair.is_empty())
       totals = {};
     else if (corrects_energy())
-      totals = corrected_forces(view, p, step, from, to, now.forces);
+      totals = corrected_forces(view, p, step, from, to);
     else
       totals = compute_pair(view, nullptr, from, to, now.forces);
   });

@@ -31,21 +31,6 @@ struct StepStart {
   const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null without energy correction
 };
 
-/// Forces and sums that an evaluation stores for the next step.
-struct Evaluated {
-  PairForceBuffer forces;
-  std::vector<PairTotals> totals;  ///< [contact pairs]
-  std::int64_t number = 0;         ///< ContactHistory::evaluation; 0: it belongs to no step
-  long refreshes = 0;              ///< number of rebuilds before it
-  double elapsed = 0;              ///< size of the step that led to it, s
-
-  template <class Visitor>
-  void visit(Visitor&& visitor) {
-    visitor("forces", forces), visitor("totals", totals);
-    visitor("number", number), visitor("refreshes", refreshes), visitor("elapsed", elapsed);
-  }
-};
-
 /// Contact between the outlines of all bodies: stores the contact pairs, rebuilds those that may have exceeded their
 /// skin, and computes the forces on outline nodes. The history belongs to the caller's state.
 ///
@@ -80,9 +65,6 @@ class ContactSystem {
   PairTotals forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to, OutlineField& force,
                     const StepStart* step = nullptr);
 
-  /// Accepts the trial evaluation if `history`, that of the present state, came from it.
-  void accept(const ContactHistory& history);
-
   /// [bodies] upper bound of the damping ratio over all contacts until the next rebuild, relative to the bound of
   /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
@@ -116,12 +98,10 @@ class ContactSystem {
     visitor("refreshed", refreshed_);
     visitor("refreshes", refreshes_);
     visitor("pairs_searched", pairs_searched_);
-    if (!corrects_energy()) return;
-    visitor("last", last_);
   }
   void loaded() {
     table_.set_laws([&](const ContactPair& p) { return laws_.between(p.first, p.second, refreshed_.time); });
-    make_room(corrects_energy() ? trial_ : last_);
+    make_room(unkept_);
   }
 
  private:
@@ -132,12 +112,12 @@ class ContactSystem {
   void warn_of_missed_contacts(const OutlineField& position);
   std::vector<ContactPair> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
-  void make_room(Evaluated& evaluated) const;
+  void make_room(StepForces& evaluated) const;
   bool integrates(int first, int second, const ContactLaw& law) const;
   const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
   bool corrects_energy() const { return largest_correction_ > 0 && model_.scene.corrects_energy(); }
   PairTotals corrected_forces(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
-                              ContactHistory& to, PairForceBuffer& forces);
+                              ContactHistory& to) const;
   void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
   bool starts_from_a_state() const { return laws_before_.count > 0; }
@@ -153,7 +133,7 @@ class ContactSystem {
   VerletList verlet_list_;
   PairTable table_;                       ///< ordered as the Verlet list, unless there is self-contact
   double largest_correction_;             ///< limit of the energy correction, see energy_correction.hpp
-  Evaluated last_, trial_;                ///< of the last accepted step and, with energy correction, of the trial
+  StepForces unkept_;                     ///< scratch, without energy correction
   std::vector<PairTotals> block_totals_;  ///< scratch
   OutlineField moved_;                    ///< scratch, displacements in a step, m
   Outlines found_at_;                     ///< [bodies] outlines at the last search of a pair with the body

@@ -47,12 +47,11 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
   std::ranges::copy_if(from.contact_pairs, std::back_inserter(kept),
                        [&](const ContactPair& contact_pair) { return keeps_law(contact_pair); });
   table_.take(std::move(kept), from.history.records());
-  make_room(last_);
   history = {};
   history.set_columns(static_cast<int>(laws_.internal_variables()));
   history.resize(from.history.records());
   history.clear(0, history.records());
-  if (corrects_energy()) history.start_energy_errors(contact_pairs().size());
+  if (corrects_energy()) history.start_energy_errors(contact_pairs().size()), make_room(history.last);
   const int fields = std::min(history.fields(), from.history.fields());
   for (int record = 0; record < history.records(); record += lane_count) {
     Lanes* to = history.at(record);

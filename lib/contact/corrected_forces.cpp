@@ -6,20 +6,22 @@ namespace pliant {
 /// Computes the forces of a contact pair after a step with the correction of its energy error, and updates that error.
 /// Without a step it applies the stored correction again.
 PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pair, const StepStart* step,
-                                           const ContactHistory& from, ContactHistory& to, PairForceBuffer& forces) {
+                                           const ContactHistory& from, ContactHistory& to) const {
   double &energy_error = to.energy_error[contact_pair] = from.energy_error[contact_pair],
          &correction = to.correction[contact_pair] = from.correction[contact_pair];
-  const PairTotals& before = last_.totals[contact_pair];
+  const PairTotals& before = from.last.totals[contact_pair];
   // Parts of a body with self-contact change with a search.
-  const bool known = step && last_.number > 0 && last_.number == from.evaluation &&
-                     (!view.contact_pair.of_itself() || view.contact_pair.found <= last_.refreshes);
+  const bool known = step && from.last.elapsed > 0 &&
+                     (!view.contact_pair.of_itself() || view.contact_pair.found <= from.last.refreshes);
   const auto rigid = [&](int side) {
     const int number = model_.bodies[view.body(side)].rigid;
     return known && step->rigid && number >= 0 ? &step->rigid[number] : nullptr;
   };
   const PairStep way{
-      known ? &step->position : nullptr, last_.forces, {rigid(0), rigid(1)}, view.elapsed, last_.elapsed};
-  const auto compute = [&](const PairView& as) { return compute_pair(as, known ? &way : nullptr, from, to, forces); };
+      known ? &step->position : nullptr, from.last.forces, {rigid(0), rigid(1)}, view.elapsed, from.last.elapsed};
+  const auto compute = [&](const PairView& as) {
+    return compute_pair(as, known ? &way : nullptr, from, to, to.last.forces);
+  };
   // The error that is left when a pair separates is corrected by the forces of a law that still reaches it.
   const auto compute_apart = [&] {
     ContactPair near = view.contact_pair;
@@ -42,13 +44,13 @@ PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pai
   if (now.contacts > 0) {
     if (step)
       correction = relative_correction(energy_error, largest_correction_, now, before.contacts > 0 ? before.work : 0);
-    scale_forces(view.contact_pair, 1 + correction, forces);
+    scale_forces(view.contact_pair, 1 + correction, to.last.forces);
   } else if (energy_error != 0 || still_apart) {
     if (!still_apart) correcting = compute_apart();
     now.work = correcting.work;
     if (step && correcting.contacts > 0 && is_rounding(energy_error, correcting)) energy_error = 0;
     if (step) correction = relative_correction(energy_error, largest_correction_, correcting);
-    scale_forces(view.contact_pair, correction, forces);
+    scale_forces(view.contact_pair, correction, to.last.forces);
   }
   if (known) energy_error += 0.5 * correction * now.work;
   return now;

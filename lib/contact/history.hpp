@@ -7,10 +7,24 @@
 #include <limits>
 #include <vector>
 
+#include "contact/contact_pair.hpp"
 #include "core/archive.hpp"
 #include "core/lanes.hpp"
 
 namespace pliant {
+
+/// Contact forces of the step that led to a state. The energy correction needs their work in the next step.
+struct StepForces {
+  PairForceBuffer forces;
+  std::vector<PairTotals> totals;  ///< [contact pairs]
+  long refreshes = 0;              ///< number of rebuilds before it
+  double elapsed = 0;              ///< size of the step, s; 0: no step led to the state
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("forces", forces), visitor("totals", totals), visitor("refreshes", refreshes), visitor("elapsed", elapsed);
+  }
+};
 
 /// Contact history, one record per slave node and partner (docs/method.md 4); committed on accepted steps only. All
 /// columns of the eight nodes that a pass handles at once are adjacent in memory.
@@ -28,8 +42,7 @@ struct ContactHistory {
   std::vector<double> energy_error;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
   /// [contact pairs] likewise: factor of the correcting forces, which add to the others, see energy_correction.hpp.
   std::vector<double> correction;
-  /// Number of the force evaluation that wrote it, if energy errors are corrected; 0: none.
-  std::int64_t evaluation = 0;
+  StepForces last;  ///< empty without correction; no part of the motion
   /// Version of the storage layout (pair_table.hpp): histories with the same number store each node's record at the
   /// same position.
   std::int64_t layout = 0;
@@ -66,8 +79,7 @@ struct ContactHistory {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("numbers", numbers), visitor("columns", columns);
-    visitor("energy_error", energy_error), visitor("correction", correction), visitor("evaluation", evaluation),
-        visitor("layout", layout);
+    visitor("energy_error", energy_error), visitor("correction", correction), visitor("layout", layout);
   }
   void loaded() const {
     const bool fits = columns >= first_of_law && numbers.size() % static_cast<std::size_t>(columns) == 0;

@@ -85,7 +85,6 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fiel
   next.set_columns(static_cast<int>(fields));
   next.resize(record_room_);
   next.clear(0, record_room_);
-  next.evaluation = history.evaluation;
   if (model_.scene.corrects_energy()) next.start_energy_errors(contact_pairs.size());
   parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
@@ -157,7 +156,6 @@ void PairTable::follow(const ContactHistory& from, ContactHistory& to) const {
   parallel_for(static_cast<int>(moved_.size()),
                [&](int i) { copy_eights(from, moved_[i][0], moved_[i][1], to, moved_[i][0]); });
   to.energy_error = from.energy_error, to.correction = from.correction;
-  to.evaluation = from.evaluation;
   to.layout = from.layout;
 }
 

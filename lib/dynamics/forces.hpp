@@ -54,9 +54,6 @@ class Forces {
   Evaluation evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from, const Output& to,
                       const PostForceHooks& hooks = {});
 
-  /// Accepts the data of the last trial if they belong to this state.
-  void accept(const State& state) { contact_.accept(state.memory.contact); }
-
   /// Warns once per run of deep contacts, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 

@@ -43,7 +43,6 @@ class Simulation {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("state", state_);
-    forces_.accept(state_);
     visitor("forces", forces_);
     visitor("auditor", *auditor_);
     visitor("statistics", statistics_);

@@ -96,6 +96,7 @@ struct State : StateNumbers {
     visitor("contact_force", contact_force);
     visitor("contact_energy", contact_energy);
     visitor("contacts", contacts);
+    visitor("last", memory.contact.last);
   }
   template <class Visitor>
   void visit_motion(Visitor&& visitor) {
