@@ -78,7 +78,7 @@ DryRun dry_run(Simulation& simulation) {
   result.seconds_per_evaluation = seconds / static_cast<double>(std::max<std::int64_t>(state.evaluations - before, 1));
   if (grown > 0 && state.evaluations >= grown + growth)
     result.pace = (state.time - grown_time) / static_cast<double>(state.evaluations - grown);
-  result.next_dt = state.next_dt;
+  result.next_dt = simulation.control().next_dt;
   return result;
 }
 

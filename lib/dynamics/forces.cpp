@@ -41,8 +41,8 @@ Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField
   return {true, hold};
 }
 
-Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from,
-                            const Output& to, const PostForceHooks& hooks) {
+Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& outlines, const PreviousHistory& from,
+                                       const Output& to, const BodyUpdates& update) {
   Evaluation result;
   phases_.enter(Phase::contact);
   if (from.outlines) {
@@ -62,14 +62,14 @@ Evaluation Forces::evaluate(const Motion& motion, const Outlines& outlines, cons
   to.memory.material.resize(model_.material_memory);
   const auto of_batch = [&](int b) {
     lane_forces(b, motion, *on_outlines, from, to);
-    if (hooks.region) hooks.region(b);
+    if (update.region) update.region(b);
   };
   const auto of_rigid = [&](int r) {
     rigid_forces(r, motion, outlines.position, *on_outlines, to.force);
-    if (hooks.rigid) hooks.rigid(r);
+    if (update.rigid) update.rigid(r);
   };
   parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
-  if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, hooks);
+  if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, update);
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
@@ -116,7 +116,7 @@ void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& posit
 
 /// All forces on nodewise bodies: stresses come first, because a region's nodes gather from points of other regions.
 void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
-                             const Output& to, const PostForceHooks& hooks) {
+                             const Output& to, const BodyUpdates& update) {
   const auto stresses_of = [&](int batch) { return stresses_[batch - model_.lane_batches].data(); };
   parallel_for(static_cast<int>(model_.point_chunks.size()), [&](int c) {
     const Chunk& chunk = model_.point_chunks[c];
@@ -134,7 +134,7 @@ void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlin
     add_outline_forces(model_, region, on_outlines, f);
     add_gravity(model_, region, model_.scene.gravity_at(motion.time), f);
     add_nodewise_forces(model_, region, stresses_of(region.batch), f);
-    if (hooks.region) hooks.region(r);
+    if (update.region) update.region(r);
   });
 }
 

@@ -20,10 +20,10 @@ struct Evaluation {
   bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
 };
 
-/// Functions of an integrator that process new forces while these are in the cache: those of a region, by its index in
-/// Model::regions, and of a rigid body. Several threads call them at once. Pass closures by std::cref: copies would be
-/// allocated in every step.
-struct PostForceHooks {
+/// Functions of an integrator for Forces::evaluate_and_update: the update of a region, by its index in Model::regions,
+/// and of a rigid body. Several threads call them at once. Pass closures by std::cref: copies would be allocated in
+/// every step.
+struct BodyUpdates {
   std::function<void(int region)> region;
   std::function<void(int rigid)> rigid;
 };
@@ -49,10 +49,14 @@ class Forces {
     OutlineField& contact_force;  ///< N/m
     Memory& memory;               ///< history variables at these positions
   };
-  /// All forces of a motion with these outlines, from the history variables `from`. `hooks`, if any, are called after
-  /// the forces of each region and rigid body.
-  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from, const Output& to,
-                      const PostForceHooks& hooks = {});
+  /// All forces of a motion with these outlines, from the history variables `from`.
+  Evaluation evaluate(const Motion& motion, const Outlines& outlines, const PreviousHistory& from, const Output& to) {
+    return evaluate_and_update(motion, outlines, from, to, {});
+  }
+  /// Fused kernel: updates each region and rigid body while its forces are in the cache. It means `evaluate`, then
+  /// update.region(r) for all regions and update.rigid(r) for all rigid bodies.
+  Evaluation evaluate_and_update(const Motion& motion, const Outlines& outlines, const PreviousHistory& from,
+                                 const Output& to, const BodyUpdates& update);
 
   /// Warns once per run of deep contacts, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
@@ -77,7 +81,7 @@ class Forces {
   void rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
                     Dofs& force);
   void nodewise_forces(const Motion& motion, const OutlineField& on_outlines, const PreviousHistory& from,
-                       const Output& to, const PostForceHooks& hooks);
+                       const Output& to, const BodyUpdates& update);
 
   const Model& model_;
   ContactSystem contact_;

@@ -70,7 +70,7 @@ void swap_motion(State& state, Trial& trial) {
   std::swap(state.contact_force, trial.contact_force);
 }
 
-void take_over(const Model& model, State& state, Trial& trial, const Verdict& verdict, const StepReport& report) {
+void take_over(const Model& model, State& state, Trial& trial, const StepReport& report) {
   const double end_time = trial.time;
   // Only velocities of rigid bodies count here, and their reduced momenta equal them.
   const Motion before{state.position, state.reduced_momentum, state.time},
@@ -82,7 +82,6 @@ void take_over(const Model& model, State& state, Trial& trial, const Verdict& ve
   state.damped += report.damping_work;
   swap_motion(state, trial);
   state.time = end_time;
-  state.next_dt = verdict.next_dt, state.errors = verdict.errors;
   ++state.steps;
   state.rejections += report.rejections;
   state.evaluations += report.evaluations;

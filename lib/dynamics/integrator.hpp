@@ -1,5 +1,6 @@
 #pragma once
 
+#include "dynamics/step_control.hpp"
 #include "dynamics/trial.hpp"
 
 namespace pliant {
@@ -16,8 +17,7 @@ struct Proposal {
 /// The controller's answer to a trial.
 struct Verdict {
   bool accepted;
-  double next_dt;            ///< of the next trial, or of the next step, s
-  ErrorHistory errors = {};  ///< becomes the state's if the trial is accepted
+  StepControl control;  ///< for the next trial, or for the next step
 };
 
 /// Evaluates forces at a state's own positions and velocities into a trial; finds contact candidates if there are none.
@@ -33,6 +33,6 @@ void swap_motion(State& state, Trial& trial);
 /// Makes an accepted trial the state: adds its work and dissipation, swaps and counts. Where loads switch, the state's
 /// forces become those of the next step. Only acceptance changes a state, so that a step that throws leaves it as it
 /// was; new contact candidates may have put the records of its memory in another order.
-void take_over(const Model& model, State& state, Trial& trial, const Verdict& verdict, const StepReport& report);
+void take_over(const Model& model, State& state, Trial& trial, const StepReport& report);
 
 }  // namespace pliant

@@ -23,7 +23,7 @@ class ShorterStep {
  public:
   ShorterStep(const Model& model, State& state, Trial& trial, const StepReport& report)
       : state_(state), trial_(trial), numbers_(state) {
-    take_over(model, state, trial, {true, state.next_dt, state.errors}, report);
+    take_over(model, state, trial, report);
     state.steps = numbers_.steps, state.rejections = numbers_.rejections, state.evaluations = numbers_.evaluations;
   }
   ~ShorterStep() {

@@ -43,7 +43,7 @@ Simulation::Simulation(const Model& model, const StartPoint* from) : model_(mode
 
 void Simulation::begin(const StartPoint& start) {
   start.require_fit(model_);
-  state_.next_dt = start.next_dt, state_.errors = start.errors;
+  control_ = start.control;
   state_.position = start.position, state_.reduced_momentum = start.reduced_momentum;
   state_.memory.material = start.material;
   set_imposed_velocities(model_, state_.reduced_momentum);
@@ -51,8 +51,8 @@ void Simulation::begin(const StartPoint& start) {
 }
 
 StartPoint Simulation::start_point() const {
-  return {state_.next_dt,          state_.errors,          state_.position,
-          state_.reduced_momentum, state_.memory.material, forces_.contact().leave(state_.memory.contact)};
+  return {control_, state_.position, state_.reduced_momentum, state_.memory.material,
+          forces_.contact().leave(state_.memory.contact)};
 }
 
 StepReport Simulation::step(double until, const Observer* observer) {
@@ -60,8 +60,9 @@ StepReport Simulation::step(double until, const Observer* observer) {
   const auto& times = model_.switch_times;
   const auto next = std::upper_bound(times.begin(), times.end(), state_.time);
   if (next != times.end()) until = std::min(until, *next);
-  const StepReport report = std::visit(
-      [&](auto& integrator) { return take_step(*integrator, forces_, state_, until, observer); }, integrator_);
+  const StepReport report =
+      std::visit([&](auto& integrator) { return take_step(*integrator, forces_, state_, control_, until, observer); },
+                 integrator_);
   if (report.dt > 0) statistics_.add(report, state_.time);
   phases().end_step();
   return report;

@@ -31,6 +31,7 @@ class Simulation {
 
   const Model& model() const { return model_; }
   const State& state() const { return state_; }
+  const StepControl& control() const { return control_; }
   const Forces& forces() const { return forces_; }
   const InitialOverlap& overlap() const { return overlap_; }
   const StepStatistics& statistics() const { return statistics_; }
@@ -43,6 +44,7 @@ class Simulation {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("state", state_);
+    visitor("control", control_);
     visitor("forces", forces_);
     visitor("auditor", *auditor_);
     visitor("statistics", statistics_);
@@ -54,6 +56,7 @@ class Simulation {
 
   const Model& model_;
   State state_;
+  StepControl control_;
   Forces forces_;
   InitialOverlap overlap_;
   StepStatistics statistics_;

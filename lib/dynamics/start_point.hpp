@@ -6,21 +6,21 @@
 #include "bodies/model.hpp"
 #include "contact/inherited.hpp"
 #include "core/lanes.hpp"
+#include "dynamics/step_control.hpp"
 
 namespace pliant {
 
 /// Start for another run of the same bodies: motion and history variables at the end of a run. Forces, energies and the
 /// energy balance follow from the other run's scene. It enumerates itself (core/archive.hpp).
 struct StartPoint {
-  double next_dt = 0;  ///< s; 0: as at any start
-  ErrorHistory errors;
+  StepControl control;
   Dofs position, reduced_momentum;  ///< as in State
   std::vector<Lanes> material;      ///< Memory::material
   InheritedContact contact;
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("next_dt", next_dt), errors.visit(visitor);
+    control.visit(visitor);
     visitor("position", position), visitor("reduced_momentum", reduced_momentum);
     visitor("material", material), visitor("contact", contact);
   }

@@ -52,21 +52,9 @@ struct BodyBalance {
   }
 };
 
-/// The controller of `verlet` reads the largest error over dt^3, of this span of steps and of the last one, 1/s3.
-struct ErrorHistory {
-  double now = 0, before = 0;
-
-  template <class Visitor>
-  void visit(Visitor&& visitor) {
-    visitor("jerk", now), visitor("jerk_before", before);
-  }
-};
-
 /// The numbers of a state that are no arrays.
 struct StateNumbers {
-  double time = 0;     ///< s
-  double next_dt = 0;  ///< what the controller proposes, s
-  ErrorHistory errors;
+  double time = 0;            ///< s
   double external_work = 0;   ///< of loads and imposed motions, J/m
   double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;      ///< by contact laws and by damping, J/m
@@ -101,8 +89,6 @@ struct State : StateNumbers {
   template <class Visitor>
   void visit_motion(Visitor&& visitor) {
     visitor("time", time);
-    visitor("next_dt", next_dt);
-    errors.visit(visitor);
     visitor("external_work", external_work);
     visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);

@@ -83,12 +83,13 @@ Proposal StepDoubling::propose(const State& state, double next_dt, double until)
   return {next_dt, state.time + next_dt, next_dt, wave_time_, StepLimit::error};
 }
 
-Verdict StepDoubling::judge(const State&, const Proposal& proposal, const StepReport& report) const {
+Verdict StepDoubling::judge(const State&, const StepControl&, const Proposal& proposal,
+                            const StepReport& report) const {
   const TimeSettings& settings = model_.scene.time;
   const double factor = report.error > 0 ? std::pow(report.error / settings.target, -settings.beta) : largest_change;
   const double next_dt = proposal.dt * std::clamp(factor, least_change, largest_change);
-  if (!within_tolerance(report)) return {false, next_dt};
-  return {true, proposal.controller_dt > proposal.dt ? std::max(next_dt, proposal.controller_dt) : next_dt};
+  if (!within_tolerance(report)) return {false, {next_dt}};
+  return {true, {proposal.controller_dt > proposal.dt ? std::max(next_dt, proposal.controller_dt) : next_dt}};
 }
 
 void StepDoubling::attempt(State& state, const Proposal& proposal, StepReport& report) {

@@ -23,7 +23,8 @@ class StepDoubling {
   bool within_tolerance(const StepReport& report) const {
     return report.error <= model_.scene.time.alpha * model_.scene.time.target;
   }
-  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
+  Verdict judge(const State& state, const StepControl& control, const Proposal& proposal,
+                const StepReport& report) const;
   void finish(const State&, const StepReport&) {}
   void accepted(const State&, const StepReport&) {}
   Trial& trial() { return trial_; }

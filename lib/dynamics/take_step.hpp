@@ -9,11 +9,12 @@ namespace pliant {
 /// observer, if any, sees its samples within the step. The step does not depend on it, unless the observer is done;
 /// then no step is taken and the report has dt = 0.
 template <class Scheme>
-StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until, const Observer* observer = nullptr) {
-  Verdict verdict{false, state.next_dt > 0 ? state.next_dt : scheme.first_dt()};
+StepReport take_step(Scheme& scheme, Forces& forces, State& state, StepControl& control, double until,
+                     const Observer* observer = nullptr) {
+  double next_dt = control.next_dt > 0 ? control.next_dt : scheme.first_dt();
   StepReport report;
   for (;;) {
-    const Proposal proposal = scheme.propose(state, verdict.next_dt, until);
+    const Proposal proposal = scheme.propose(state, next_dt, until);
     report.dt = proposal.dt;
     report.limited_by = proposal.limited_by;
     scheme.attempt(state, proposal, report);
@@ -25,14 +26,18 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, double until,
         continue;
       }
     }
-    verdict = scheme.judge(state, proposal, report);
-    if (verdict.accepted) break;
+    const Verdict verdict = scheme.judge(state, control, proposal, report);
+    if (verdict.accepted) {
+      control = verdict.control;
+      break;
+    }
+    next_dt = verdict.control.next_dt;
     ++report.rejections;
-    check_time_step({report, scheme.trial(), verdict.next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
+    check_time_step({report, scheme.trial(), next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
   }
   forces.warn_of_depth(report.evaluation, scheme.trial().time);
   scheme.finish(state, report);
-  take_over(forces.model(), state, scheme.trial(), verdict, report);
+  take_over(forces.model(), state, scheme.trial(), report);
   scheme.accepted(state, report);
   return report;
 }

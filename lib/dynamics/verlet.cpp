@@ -75,28 +75,36 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   if (!proposal.is_output_sample)
     candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
   if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
-  const auto of_region = [&](int r) { finish_region(state, proposal.dt, r); };
-  const auto of_rigid = [&](int r) { finish_rigid(state, proposal.dt, r); };
-  report.evaluation = forces_.evaluate(
-      motion, trial_.outlines, {state.memory, proposal.dt, &state.outlines.position, rigid_steps(state)},
-      {trial_.force, trial_.contact_force, trial_.memory}, {std::cref(of_region), std::cref(of_rigid)});
+  report.evaluation = forces_and_velocities(state, motion, proposal.dt);
   report.evaluation.sound &= candidates.hold;
   ++report.evaluations;
   report.error = report.evaluation.sound ? error(proposal.dt) : std::numeric_limits<double>::infinity();
 }
 
-Verdict Verlet::judge(const State& state, const Proposal& proposal, const StepReport& report) const {
+/// Fused kernel (Forces::evaluate_and_update): all forces at the end of the step, then finish_region and finish_rigid
+/// for the velocities there.
+Evaluation Verlet::forces_and_velocities(const State& state, const Motion& motion, double dt) {
+  const PreviousHistory from{state.memory, dt, &state.outlines.position, rigid_steps(state)};
+  const auto of_region = [&](int r) { finish_region(state, dt, r); };
+  const auto of_rigid = [&](int r) { finish_rigid(state, dt, r); };
+  return forces_.evaluate_and_update(motion, trial_.outlines, from, {trial_.force, trial_.contact_force, trial_.memory},
+                                     {std::cref(of_region), std::cref(of_rigid)});
+}
+
+Verdict Verlet::judge(const State& state, const StepControl& control, const Proposal& proposal,
+                      const StepReport& report) const {
   const double tolerance = model_.scene.time.tolerance, dt = proposal.dt, controller_dt = proposal.controller_dt;
-  if (!within_tolerance(report)) return {false, dt * controller_factor(report.error, tolerance)};
-  ErrorHistory errors = state.errors;
-  if (state.steps % span == 0) errors.before = std::exchange(errors.now, 0);
+  if (!within_tolerance(report)) return {false, {dt * controller_factor(report.error, tolerance)}};
+  StepControl next = control;
+  if (state.steps % span == 0) next.jerk_before = std::exchange(next.jerk, 0);
   // Of the whole step: one cut short to meet a stop does not slow the run down, nor does what it saw of a load that
   // changes as shortly.
-  if (dt >= least_step_share * controller_dt) errors.now = std::max(report.error / (dt * dt * dt), errors.now);
-  const double jerk = std::max(errors.now, errors.before);
+  if (dt >= least_step_share * controller_dt) next.jerk = std::max(report.error / (dt * dt * dt), next.jerk);
+  const double jerk = std::max(next.jerk, next.jerk_before);
   const double next_dt =
       controller_dt * controller_factor(jerk * controller_dt * controller_dt * controller_dt, tolerance);
-  return {true, std::min(next_dt, proposal.largest_dt), errors};
+  next.next_dt = std::min(next_dt, proposal.largest_dt);
+  return {true, next};
 }
 
 /// Motion of rigid bodies in the step, for the energy correction of contacts. Accelerations differ between the end of

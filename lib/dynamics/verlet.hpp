@@ -21,7 +21,8 @@ class Verlet {
   void attempt(State& state, const Proposal& proposal, StepReport& report);
   /// Whether the error of an attempt is acceptable.
   bool within_tolerance(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
-  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const;
+  Verdict judge(const State& state, const StepControl& control, const Proposal& proposal,
+                const StepReport& report) const;
   void finish(const State& state, StepReport& report);
   void accepted(State& state, const StepReport& report);
   Trial& trial() { return trial_; }
@@ -41,6 +42,7 @@ class Verlet {
   void loaded() { trial_.memory.contact.layout = -1; }  // it belongs to another state
 
  private:
+  Evaluation forces_and_velocities(const State& state, const Motion& motion, double dt);
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
   void finish_rigid(const State& state, double dt, int r);

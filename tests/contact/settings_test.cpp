@@ -41,8 +41,8 @@ TEST(FixedRefresh, often_enough_changes_nothing) {
     scene.contact.energy_consistent = false;
     Bench bench(scene);
     Verlet integrator(bench.forces, bench.state);
-    bench.state.next_dt = 1e9;
-    for (int i = 1; i <= 1500; ++i) take_step(integrator, bench.forces, bench.state, 0.004 * i);
+    bench.control.next_dt = 1e9;
+    for (int i = 1; i <= 1500; ++i) take_step(integrator, bench.forces, bench.state, bench.control, 0.004 * i);
     EXPECT_EQ(bench.state.steps, 1500);
     return mass_mean(bench.model, bench.model.bodies[0], bench.state.position);
   };
@@ -137,8 +137,8 @@ Vec2 after_bounce(double smoothing, int steps) {
   scene.contact.energy_consistent = false;  // Verlet alone
   Bench bench(scene);
   Verlet integrator(bench.forces, bench.state);
-  bench.state.next_dt = 1e9;
-  for (int i = 1; i <= steps; ++i) take_step(integrator, bench.forces, bench.state, 4.0 * i / steps);
+  bench.control.next_dt = 1e9;
+  for (int i = 1; i <= steps; ++i) take_step(integrator, bench.forces, bench.state, bench.control, 4.0 * i / steps);
   EXPECT_EQ(bench.state.steps, steps);
   const Vec2 velocity = mass_mean(bench.model, bench.model.bodies[0], bench.state.reduced_momentum);
   EXPECT_GT(velocity.y(), 0.1) << "it must have bounced";

@@ -24,7 +24,7 @@ int expect_what_forces_store(const Scene& scene) {
   Trial trial(bench.model);
   int touching = 0, rejections = 0;
   for (int step = 0; step < 600; ++step) {
-    rejections += take_step(scheme, bench.forces, bench.state, 1e9).rejections;
+    rejections += take_step(scheme, bench.forces, bench.state, bench.control, 1e9).rejections;
     const Evaluation here = bench.evaluate(trial);
     const double stored = here.contact.stored;
     EXPECT_NEAR(bench.state.contact_energy, stored, 1e-12 * std::max(std::abs(stored), 1e-3)) << "step " << step;

@@ -202,8 +202,8 @@ Errors errors_over(const Scene& scene, double dt, double end) {
   const double start = kinetic_energy(bench.model, bench.state.reduced_momentum);
   Errors result;
   for (int step = 0; step < std::lround(end / dt); ++step) {
-    bench.state.next_dt = dt;
-    take_step(verlet, bench.forces, bench.state, 1e9);
+    bench.control.next_dt = dt;
+    take_step(verlet, bench.forces, bench.state, bench.control, 1e9);
     result.lost = std::max(result.lost, start - kinetic_energy(bench.model, bench.state.reduced_momentum));
     for (int b = 0; b < static_cast<int>(bench.model.batches.size()); ++b) {
       const Batch& batch = bench.model.batches[b];

@@ -87,7 +87,7 @@ TEST_P(BoundOverRuns, lies_below_the_true_limit) {
   for (int k = 1; k <= samples; ++k) {
     const double until = k * scene.time.end / samples;
     double dt = 0;
-    while (bench.state.time < until) dt = take_step(verlet, bench.forces, bench.state, until).dt;
+    while (bench.state.time < until) dt = take_step(verlet, bench.forces, bench.state, bench.control, until).dt;
     const double bound = verlet.bound().largest_dt() / scene.time.safety,
                  limit = 2 / std::sqrt(true_square_frequency(scene, bench.state));
     EXPECT_LE(bound, limit) << "INDEPENDENT, at " << until;

@@ -55,9 +55,9 @@ TEST(Controller, short_steps_before_outputs_are_made_good) {
   const Model model = build_model(free_disc(40, 10, stretching(0.1)));
   Simulation simulation(model);
   advance(simulation, 5);
-  const double proposed = simulation.state().next_dt;
+  const double proposed = simulation.control().next_dt;
   simulation.step(simulation.state().time + 1e-4 * proposed);
-  EXPECT_GE(simulation.state().next_dt, 0.5 * proposed) << "EXACT";
+  EXPECT_GE(simulation.control().next_dt, 0.5 * proposed) << "EXACT";
   const StepReport report = simulation.step(1e9);
   EXPECT_GE(report.dt, 0.5 * proposed) << "EXACT";
 }
@@ -86,14 +86,15 @@ TEST(Controller, step_keeps_to_the_largest_error_of_late) {
   while (simulation.state().time < 8) {
     const State& state = simulation.state();
     if (state.steps % 64 == 0) before = now, now = 0;
-    const double next_dt = state.next_dt, largest = simulation.largest_dt();
+    const double next_dt = simulation.control().next_dt, largest = simulation.largest_dt();
     const StepReport report = simulation.step(1e9);
     if (report.dt >= 0.5 * std::min(next_dt, largest) * std::pow(0.5, report.rejections))
       now = std::max(now, report.error / std::pow(report.dt, 3));
     const double balanced = std::cbrt(1e-4 / std::max(now, before));
     if (report.rejections > 0 || balanced > largest || next_dt < 0.9 * balanced) continue;
     ++kept;
-    EXPECT_NEAR(state.next_dt, balanced, 1e-9 * balanced) << "EXACT but for the division of 1e9 by whole steps";
+    EXPECT_NEAR(simulation.control().next_dt, balanced, 1e-9 * balanced)
+        << "EXACT but for the division of 1e9 by whole steps";
   }
   EXPECT_GT(kept, 100);
 }

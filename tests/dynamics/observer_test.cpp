@@ -55,8 +55,9 @@ struct FailsOnceAt {
     if (proposal.end_time == time && attempts++ == 0) report.error = std::numeric_limits<double>::infinity();
   }
   bool within_tolerance(const StepReport& report) const { return verlet.within_tolerance(report); }
-  Verdict judge(const State& state, const Proposal& proposal, const StepReport& report) const {
-    return verlet.judge(state, proposal, report);
+  Verdict judge(const State& state, const StepControl& control, const Proposal& proposal,
+                const StepReport& report) const {
+    return verlet.judge(state, control, proposal, report);
   }
   void finish(const State& state, StepReport& report) { verlet.finish(state, report); }
   void accepted(State& state, const StepReport& report) { verlet.accepted(state, report); }
@@ -65,15 +66,15 @@ struct FailsOnceAt {
 TEST(Observers, get_a_step_of_their_own_where_a_look_fails) {
   Bench bench(free_disc(30, 100, stretching(0.1)));
   Verlet verlet(bench.forces, bench.state);
-  while (bench.state.time < 10) take_step(verlet, bench.forces, bench.state, 100);
-  FailsOnceAt scheme{verlet, bench.state.time + 0.4 * bench.state.next_dt};
+  while (bench.state.time < 10) take_step(verlet, bench.forces, bench.state, bench.control, 100);
+  FailsOnceAt scheme{verlet, bench.state.time + 0.4 * bench.control.next_dt};
   const Observer observer{[&] { return scheme.time; },
                           [] {
                             ADD_FAILURE() << "there is no state to look at";
                             return true;
                           }};
   const std::int64_t rejections = bench.state.rejections;
-  take_step(scheme, bench.forces, bench.state, 100, &observer);
+  take_step(scheme, bench.forces, bench.state, bench.control, 100, &observer);
   EXPECT_EQ(bench.state.time, scheme.time) << "EXACT";
   EXPECT_EQ(scheme.attempts, 2);
   EXPECT_EQ(bench.state.rejections, rejections) << "EXACT: no error asked for it";
@@ -96,10 +97,10 @@ void look_where_candidates_do_not_hold(Integrator integrator) {
   const double duration = 2, time = 0.6;
   const auto refreshes_of_step = [&](double until, const Observer* observer) {
     Bench bench(scene);
-    bench.state.next_dt = duration;
+    bench.control.next_dt = duration;
     Scheme scheme(bench.forces, bench.state);
     const long before = bench.forces.contact().refreshes();
-    take_step(scheme, bench.forces, bench.state, until, observer);
+    take_step(scheme, bench.forces, bench.state, bench.control, until, observer);
     return bench.forces.contact().refreshes() - before;
   };
   int looks = 0;
@@ -120,7 +121,7 @@ TEST(Observers, that_cannot_go_on_leave_the_state_as_it_was) {
   Simulation simulation(model), other(model);
   advance(simulation, 0.5), advance(other, 0.5);
   const std::uint64_t hash = state_hash(simulation.state());
-  const double time = simulation.state().time + 0.3 * simulation.state().next_dt;
+  const double time = simulation.state().time + 0.3 * simulation.control().next_dt;
   const Observer observer{[&] { return time; }, []() -> bool { throw std::runtime_error("the disk is full"); }};
   EXPECT_THROW(simulation.step(2, &observer), std::runtime_error);
   EXPECT_EQ(state_hash(simulation.state()), hash) << "EXACT";

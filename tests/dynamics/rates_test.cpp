@@ -79,8 +79,9 @@ Run run(const Scene& scene, int steps) {
   Steered here(build_model(scene));
   Run result;
   for (int i = 1; i <= steps; ++i) {
-    here.bench.state.next_dt = 1e300;
-    const StepReport report = take_step(*here.verlet, here.bench.forces, here.bench.state, scene.time.end * i / steps);
+    here.bench.control.next_dt = 1e300;
+    const StepReport report =
+        take_step(*here.verlet, here.bench.forces, here.bench.state, here.bench.control, scene.time.end * i / steps);
     EXPECT_NEAR(report.dt * steps / scene.time.end, 1, 1e-9) << "the step is stable";
     result.imbalance =
         std::max(result.imbalance, std::abs(here.auditor.energy_gained(here.auditor.audit(here.bench.state).energy)));

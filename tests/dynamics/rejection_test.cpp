@@ -51,17 +51,17 @@ int compare_rejected_steps(const Scene& scene, const std::function<void(const Tw
   int seen = 0;
   while (bench.state.time < scene.time.end) {
     // Now and then a step that is too long: else Verlet's controller sees to it that hardly any is rejected.
-    if (bench.state.steps % 5 == 4 && std::is_same_v<Integrator, Verlet>) bench.state.next_dt = 1e9;
+    if (bench.state.steps % 5 == 4 && std::is_same_v<Integrator, Verlet>) bench.control.next_dt = 1e9;
     State state = bench.state;
     Forces forces = bench.forces;
     const long refreshes = forces.contact().refreshes();
-    const StepReport report = take_step(integrator, bench.forces, bench.state, scene.time.end);
+    const StepReport report = take_step(integrator, bench.forces, bench.state, bench.control, scene.time.end);
     if (report.rejections == 0) continue;
     ++seen;
     // Verlet divides what is left until the end by whole steps: for as many.
-    state.next_dt = std::is_same_v<Integrator, Verlet> ? report.dt * (1 + 1e-12) : report.dt;
+    StepControl control{std::is_same_v<Integrator, Verlet> ? report.dt * (1 + 1e-12) : report.dt};
     Integrator fresh(forces, state);
-    take_step(fresh, forces, state, scene.time.end);
+    take_step(fresh, forces, state, control, scene.time.end);
     look({bench.state, state, bench.forces.contact().refreshes() != refreshes});
   }
   return seen;
@@ -116,7 +116,7 @@ void expect_equal(const Twins& twins) {
 TEST(Rejection, a_trial_far_away_loses_no_record) {
   Bench bench(fast_slide(Integrator::verlet));
   Verlet integrator(bench.forces, bench.state);
-  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, 1);
+  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, bench.control, 1);
   State& state = bench.state;
   const auto before = records(state.memory.contact);
   ASSERT_FALSE(before.empty());
@@ -138,7 +138,7 @@ TEST(Rejection, a_refresh_lays_out_the_accepted_history) {
   scene.grains.push_back(grains("second", "block", BodyKind::rigid, {{8, 0.245}}, moving({2, 0})));
   Bench bench(scene);
   StepDoubling integrator(bench.forces, bench.state);
-  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, 1);
+  while (bench.state.time < 1) take_step(integrator, bench.forces, bench.state, bench.control, 1);
   State& state = bench.state;
   state.position.rigid[1] += 5;
   state.outlines.position = placed_outlines(bench.model, state.position);

@@ -194,13 +194,13 @@ TEST_P(Restart, looks_on_the_way_leave_the_motion_as_it_is_and_see_a_step_that_e
                                                                std::as_bytes(std::span((there.*part).compliant))));
                               }
                             }
-                            next += random.uniform(0.1, 1.5) * watched.state().next_dt;
+                            next += random.uniform(0.1, 1.5) * watched.control().next_dt;
                             return true;
                           }};
   for (long step = 0; step <= last_step; ++step) {
     before = saved(watched);
     if (step > 0 && !(next > watched.state().time && next < 1e300))
-      next = watched.state().time + 0.3 * watched.state().next_dt;
+      next = watched.state().time + 0.3 * watched.control().next_dt;
     whole.step(1000), watched.step(1000, &observer);
     ASSERT_EQ(state_hash(watched.state()), state_hash(whole.state())) << "looking changed the run at step " << step;
   }

@@ -24,8 +24,8 @@ State swing(double dt) {
   Bench bench(swinging_disc());
   StepDoubling integrator(bench.forces, bench.state);
   for (int step = 0; step < std::lround(3 / dt); ++step) {
-    bench.state.next_dt = dt;
-    take_step(integrator, bench.forces, bench.state, 1e9);
+    bench.control.next_dt = dt;
+    take_step(integrator, bench.forces, bench.state, bench.control, 1e9);
   }
   return bench.state;
 }
@@ -125,7 +125,7 @@ int compare_estimates(const Scene& scene) {
   while (bench.state.time < 2) {
     const State before = bench.state;
     Forces forces = bench.forces;
-    const StepReport report = take_step(integrator, bench.forces, bench.state, 2);
+    const StepReport report = take_step(integrator, bench.forces, bench.state, bench.control, 2);
     Euler one{before.position, before.reduced_momentum}, two = one;
     euler_step(bench.model, one, before.force, report.dt);
     euler_step(bench.model, two, before.force, report.dt / 2);
@@ -148,10 +148,10 @@ TEST(StepDoubling, estimator_compares_one_step_with_two_halves) {
 TEST(StepDoubling, keeps_the_two_half_steps) {
   Bench bench(collision());
   StepDoubling integrator(bench.forces, bench.state);
-  while (bench.state.time < 0.5) take_step(integrator, bench.forces, bench.state, 2);
+  while (bench.state.time < 0.5) take_step(integrator, bench.forces, bench.state, bench.control, 2);
   const State before = bench.state;
   Forces forces = bench.forces;
-  const StepReport report = take_step(integrator, bench.forces, bench.state, 2);
+  const StepReport report = take_step(integrator, bench.forces, bench.state, bench.control, 2);
   Euler two{before.position, before.reduced_momentum};
   euler_step(bench.model, two, before.force, report.dt / 2);
   euler_step(bench.model, two, force_at(forces, before, two, report.dt / 2), report.dt / 2);

@@ -230,9 +230,9 @@ TEST(TimeStepBound, holds_for_the_retry_after_a_refresh) {
     Verlet verlet(bench.forces, bench.state);
     bench.state.position.rigid[1] = 0;
     bench.state.outlines.position = placed_outlines(bench.model, bench.state.position);
-    bench.state.next_dt = 1;
+    bench.control.next_dt = 1;
     const double before = verlet.bound().largest_dt();
-    const StepReport report = take_step(verlet, bench.forces, bench.state, 1e9);
+    const StepReport report = take_step(verlet, bench.forces, bench.state, bench.control, 1e9);
     look(report, before, verlet.bound().largest_dt());
   };
   double error = 0;

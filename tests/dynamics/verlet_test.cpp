@@ -17,8 +17,8 @@ State swing(double dt) {
   Bench bench(scene);
   Verlet verlet(bench.forces, bench.state);
   for (int step = 0; step < std::lround(3 / dt); ++step) {
-    bench.state.next_dt = dt;
-    take_step(verlet, bench.forces, bench.state, 1e9);
+    bench.control.next_dt = dt;
+    take_step(verlet, bench.forces, bench.state, bench.control, 1e9);
   }
   return bench.state;
 }
@@ -144,8 +144,8 @@ TEST(Verlet, error_of_rigid_bodies_counts_translation_and_spin) {
     Bench bench(scene);
     for (std::size_t c = 0; c < 3; ++c) bench.state.force.rigid[c] = load[static_cast<Eigen::Index>(c)];
     Verlet verlet(bench.forces, bench.state);
-    bench.state.next_dt = dt;
-    const StepReport report = take_step(verlet, bench.forces, bench.state, dt);
+    bench.control.next_dt = dt;
+    const StepReport report = take_step(verlet, bench.forces, bench.state, bench.control, dt);
     const double change = load.head<2>().norm() / 2 + reach * std::abs(load[2]) / inertia;
     EXPECT_NEAR(report.error, dt * dt / 6 * change / 0.25, 1e-13) << load.transpose();
   }

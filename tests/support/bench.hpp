@@ -15,6 +15,7 @@ struct Bench {
   Model model;
   Forces forces;
   State state;
+  StepControl control;
 
   explicit Bench(const Scene& scene) : Bench(build_model(scene)) {}
   explicit Bench(Model built) : model(std::move(built)), forces(model) {

@@ -28,10 +28,10 @@ struct Steered {
 
   /// One step of dt, which stability and error must allow.
   StepReport step(double dt) {
-    bench.state.next_dt = 1e300;
+    bench.control.next_dt = 1e300;
     const double until = bench.state.time + dt;
-    return verlet ? take_step(*verlet, bench.forces, bench.state, until)
-                  : take_step(*step_doubling, bench.forces, bench.state, until);
+    return verlet ? take_step(*verlet, bench.forces, bench.state, bench.control, until)
+                  : take_step(*step_doubling, bench.forces, bench.state, bench.control, until);
   }
 };
 
