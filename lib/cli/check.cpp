@@ -205,13 +205,13 @@ double prescribed_speed(const Scene& scene) {
 
 void print_time_step(const Model& model, const Stability& stable, double skin) {
   const Scene& scene = model.scene;
-  const bool verlet = scene.time.integrator == Integrator::verlet;
+  const bool bounded = traits_of(scene.time.integrator).is_bounded;
   if (!std::isfinite(stable.dt)) return print_row("time step", "set by the error control alone: nothing is stiff");
   print_row("time step", fmt::format("{} {}, governed by {}", si(stable.dt, "s"),
-                                     verlet ? "at most" : "would be the bound of verlet", stable.governing));
+                                     bounded ? "at most" : "would be the bound of verlet", stable.governing));
   print_row("", fmt::format("{} with all contacts {:.0f} times as stiff: {:.2g} times as many steps",
                             si(stable.stiffer_dt, "s"), stiffer, stable.dt / stable.stiffer_dt));
-  if (!verlet) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
+  if (!bounded) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
   if (const auto advice = advice_on_rim_mass(model, stable)) print_row("", *advice);
   const double speed = prescribed_speed(scene);
   if (speed * stable.dt > skin)
@@ -230,9 +230,11 @@ struct Forecast {
 Forecast forecast(const Scene& scene, const DryRun& first, double bound) {
   const double done = static_cast<double>(first.evaluations), left = scene.time.end - first.time;
   if (first.finished) return {done, "", ", counted: the first second went to the end"};
-  const bool verlet = scene.time.integrator == Integrator::verlet;
-  const double least = verlet ? least_steps(scene, left, std::min(bound, left)) : 0;
-  const double paced = first.pace > 0 ? left / first.pace : verlet ? 0 : 2 * left / first.next_dt;
+  const IntegratorTraits integrator = traits_of(scene.time.integrator);
+  const double least = integrator.is_bounded ? least_steps(scene, left, std::min(bound, left)) : 0;
+  const double paced = first.pace > 0          ? left / first.pace
+                       : integrator.is_bounded ? 0
+                                               : integrator.evaluations * left / first.next_dt;
   if (paced > least) return {done + paced, "about ", ", at the pace of the first second"};
   return {done + least, "at least ", ", at the largest stable step"};
 }

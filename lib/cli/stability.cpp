@@ -44,7 +44,7 @@ std::optional<std::string> advice_on_rim_mass(const Model& model, const Stabilit
   const DiscretisationSettings& settings = model.scene.discretisation;
   if (settings.mass != Mass::lumped || settings.rim_mass > 1 || model.groups.empty() ||
       model.bodies.size() > most_bodies || !std::isfinite(as_it_is.dt) ||
-      model.scene.time.integrator != Integrator::verlet)
+      !traits_of(model.scene.time.integrator).is_bounded)
     return {};
   Scene scene = model.scene;
   scene.discretisation.rim_mass = tried;

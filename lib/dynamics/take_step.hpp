@@ -1,14 +1,31 @@
 #pragma once
 
+#include <concepts>
+
 #include "dynamics/failure.hpp"
 #include "dynamics/observer.hpp"
 
 namespace pliant {
 
+/// Interface of an integrator. `finish` also follows output samples; only `accepted` is for accepted steps alone.
+template <class S>
+concept StepScheme = requires(S& scheme, const S& fixed, State& state, const StepControl& control,
+                              const Proposal& proposal, StepReport& report) {
+  { fixed.first_dt() } -> std::same_as<double>;                  // s
+  { fixed.propose(state, 0.0, 0.0) } -> std::same_as<Proposal>;  // from next_dt and `until`
+  { scheme.attempt(state, proposal, report) };                   // fills the trial, not the state
+  { fixed.within_tolerance(report) } -> std::same_as<bool>;
+  { fixed.judge(state, control, proposal, report) } -> std::same_as<Verdict>;
+  { scheme.finish(state, report) };    // dissipation of the step
+  { scheme.accepted(state, report) };  // after the trial became the state
+  { scheme.trial() } -> std::same_as<Trial&>;
+  { fixed.governing() } -> std::convertible_to<std::string>;  // body that limits the step
+};
+
 /// One accepted step that ends at `until` at the latest, for any scheme: it proposes, attempts, judges and finishes. An
 /// observer, if any, sees its samples within the step. The step does not depend on it, unless the observer is done;
 /// then no step is taken and the report has dt = 0.
-template <class Scheme>
+template <StepScheme Scheme>
 StepReport take_step(Scheme& scheme, Forces& forces, State& state, StepControl& control, double until,
                      const Observer* observer = nullptr) {
   double next_dt = control.next_dt > 0 ? control.next_dt : scheme.first_dt();

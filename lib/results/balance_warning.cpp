@@ -64,7 +64,7 @@ std::string against_free_motion(const Simulation& simulation, double error) {
                      safety_for(time, error), time.safety);
 }
 
-std::string against_step_doubling(const TimeSettings& time, bool feeds) {
+std::string against_error_control(const TimeSettings& time, bool feeds) {
   return fmt::format(
       "step-doubling has no bound of stability and {} vibrations at any target, at a smaller one than {:g} often "
       "more: take [time] integrator = \"verlet\" with safety = {:g}",
@@ -91,7 +91,7 @@ std::string diagnosis(const Simulation& simulation, double error, bool feeds) {
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
-  if (model.scene.time.integrator == Integrator::step_doubling) return against_step_doubling(model.scene.time, feeds);
+  if (!traits_of(model.scene.time.integrator).is_bounded) return against_error_control(model.scene.time, feeds);
   return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation, feeds);
 }
 

@@ -99,7 +99,7 @@ void read_settings(TableReader settings, Scene& scene) {
       Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});
   read_refresh(settings, scene.contact);
   settings.optional("self_contact", scene.contact.self_contact, Flag{});
-  if (scene.time.integrator == Integrator::verlet)
+  if (traits_of(scene.time.integrator).corrects_energy)
     settings.optional("energy_consistent", scene.contact.energy_consistent, Flag{});
   if (settings.has("energy_consistent") && scene.contact.energy_consistent &&
       scene.contact.length == ContactLength::current)

@@ -28,6 +28,21 @@ enum class ContactLength { reference, current };
 /// `automatic`: over segments where an outline of the pair has corners, else at nodes.
 enum class ContactQuadrature { automatic, nodes, segments };
 enum class Integrator { verlet, step_doubling };
+/// Properties of an integrator on which other parts depend.
+struct IntegratorTraits {
+  bool is_bounded;       ///< a stability bound limits its steps, not the error alone
+  bool corrects_energy;  ///< it knows the work of forces in a step, from which contacts correct their energy
+  int evaluations;       ///< force evaluations a step
+};
+constexpr IntegratorTraits traits_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::verlet:
+      return {true, true, 1};
+    case Integrator::step_doubling:
+      return {false, false, 2};
+  }
+  return {};
+}
 enum class Reduction { mean, sum, min, max };
 
 /// Piecewise linear function of time, constant beyond its ends. One entry: a constant.
@@ -309,7 +324,7 @@ struct Scene {
   /// steps whose work is known.
   bool corrects_energy() const {
     return contact.energy_consistent && contact.length == ContactLength::reference &&
-           time.integrator == Integrator::verlet;
+           traits_of(time.integrator).corrects_energy;
   }
   const Material& material(const std::string& name) const;  ///< throws InputError for an unknown name
   const ShapeSpec& shape(const std::string& name) const;
