@@ -12,7 +12,6 @@
 #include "contact/contact_pair.hpp"
 #include "contact/energy_correction.hpp"
 #include "contact/history.hpp"
-#include "contact/inherited.hpp"
 #include "contact/pair_table.hpp"
 #include "contact/verlet_list.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "contact/gap_and_slip.hpp"
-#include "contact/node_pass.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/segment_pass.hpp"
+#include "contact/slip.hpp"
 
 namespace pliant {
 namespace {

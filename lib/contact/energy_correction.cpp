@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/contact.hpp"
+#include "contact/pair_forces.hpp"
 #include "contact/pair_table.hpp"
 
 namespace pliant {
@@ -45,6 +47,59 @@ ContactLaw parting_law(const ContactLaw& law, double skin) {
   const double stiffness = normal_stiffness_of(law), reach = reach_of(law) + skin;
   constexpr double rises = 0.1;  // share of the reach over which the tension rises
   return Cohesive{stiffness, stiffness, reach, rises * reach * stiffness, 0};
+}
+
+/// Computes the forces of a contact pair after a step with the correction of its energy error, and updates that error.
+/// Without a step it applies the stored correction again.
+PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pair, const StepStart* step,
+                                           const ContactHistory& from, ContactHistory& to) const {
+  double &energy_error = to.energy_error[contact_pair] = from.energy_error[contact_pair],
+         &correction = to.correction[contact_pair] = from.correction[contact_pair];
+  const PairTotals& before = from.last.totals[contact_pair];
+  // Parts of a body with self-contact change with a search.
+  const bool known = step && from.last.elapsed > 0 &&
+                     (!view.contact_pair.of_itself() || view.contact_pair.found <= from.last.refreshes);
+  const auto rigid = [&](int side) {
+    const int number = model_.bodies[view.body(side)].rigid;
+    return known && step->rigid && number >= 0 ? &step->rigid[number] : nullptr;
+  };
+  const PairStep way{
+      known ? &step->position : nullptr, from.last.forces, {rigid(0), rigid(1)}, view.elapsed, from.last.elapsed};
+  const auto compute = [&](const PairView& as) {
+    return compute_pair(as, known ? &way : nullptr, from, to, to.last.forces);
+  };
+  // The error that is left when a pair separates is corrected by the forces of a law that still reaches it.
+  const auto compute_apart = [&] {
+    ContactPair near = view.contact_pair;
+    near.law = parting_law(near.law, skin_);
+    return compute(PairView{model_, view.outlines, near, skin_, view.window, view.elapsed});
+  };
+
+  PairTotals now, correcting;
+  // For a pair that was apart these forces also show whether it still is.
+  const bool was_apart = known && energy_error != 0 && before.contacts == 0 && reach_of(view.contact_pair.law) == 0;
+  if (was_apart) correcting = compute_apart();
+  const bool still_apart = was_apart && correcting.deepest == 0;
+  if (still_apart)
+    now.work_before = correcting.work_before, now.kept = correcting.kept;
+  else
+    now = compute(view);
+  // The work of a dashpot depends on the step size: the difference is not an energy error.
+  if (is_damped(view.contact_pair.law)) return now;
+  if (known) energy_error += gain(now) - (before.stored - now.stored - now.dissipated);
+  if (now.contacts > 0) {
+    if (step)
+      correction = relative_correction(energy_error, largest_correction_, now, before.contacts > 0 ? before.work : 0);
+    scale_forces(view.contact_pair, 1 + correction, to.last.forces);
+  } else if (energy_error != 0 || still_apart) {
+    if (!still_apart) correcting = compute_apart();
+    now.work = correcting.work;
+    if (step && correcting.contacts > 0 && is_rounding(energy_error, correcting)) energy_error = 0;
+    if (step) correction = relative_correction(energy_error, largest_correction_, correcting);
+    scale_forces(view.contact_pair, correction, to.last.forces);
+  }
+  if (known) energy_error += 0.5 * correction * now.work;
+  return now;
 }
 
 }  // namespace pliant

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "contact/node_pass.hpp"
+#include "contact/half_pass.hpp"
 
 namespace pliant {
 namespace {

@@ -6,11 +6,11 @@
 #include <optional>
 
 #include "contact/energy_correction.hpp"
-#include "contact/gap_and_slip.hpp"
-#include "contact/node_pass.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/pair_queries.hpp"
 #include "contact/reactions.hpp"
 #include "contact/segment_pass.hpp"
+#include "contact/slip.hpp"
 
 namespace pliant {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "contact/node_pass.hpp"
+#include "contact/half_pass.hpp"
 #include "contact/segment_pass.hpp"
 #include "contact/segment_stiffness.hpp"
 #include "contact/slip.hpp"

@@ -5,11 +5,71 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/half_pass.hpp"
 #include "contact/master_window.hpp"
 #include "contact/segment_parts.hpp"
-#include "contact/slave_arc.hpp"
 
 namespace pliant {
+
+/// Index of position i of the pass in the arrays of the slave's outline.
+inline int slave_index(const HalfPass& pass, int i) {
+  const int index = pass.nodes.begin + i;
+  return index - turn_of(index, pass.slave->count) * pass.slave->count;
+}
+
+/// Field on the nodes of an arc, contiguous, with room to load a whole vector at each node.
+class ArcField {
+ public:
+  /// `on_outline`: values with their cyclic copies. Each turn adds `turn_shift`, and `shift` is added to all.
+  void fill(const double* on_outline, const Arc& arc, const OutlineShape& outline, double shift, double turn_shift) {
+    const int nodes = arc.count + 1;
+    if (const auto room = static_cast<std::size_t>(padded(nodes) + lane_count); values_.size() < room)
+      values_.resize(room);
+    for (int i = 0; i < nodes; i += lane_count) {
+      const int turn = turn_of(arc.begin + i, outline.count);
+      store(&values_[static_cast<std::size_t>(i)],
+            load(on_outline + arc.begin + i - turn * outline.count) + (shift + turn * turn_shift));
+    }
+  }
+  const double* data() const { return values_.data(); }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Segments of a slave that a half pass integrates over, from its first node on.
+struct SlaveArc {
+  int segments = 0;
+  ArcField x, y;                ///< positions of nodes, m
+  std::vector<double> lengths;  ///< of the reference or the current outline, m
+
+  void fill(const HalfPass& pass) {
+    segments = pass.segments;
+    const Arc arc{pass.nodes.begin, segments};
+    x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift, pass.slave->turn_shift);
+    y.fill(pass.slave_y, arc, *pass.slave, 0, 0);
+    if (const auto room = static_cast<std::size_t>(padded(segments)); lengths.size() < room) lengths.resize(room);
+    for (int i = 0; i < segments; i += lane_count) {
+      Lanes length = load(&pass.slave->segment_length[static_cast<std::size_t>(slave_index(pass, i))]);
+      if (pass.present_lengths) {
+        const Lanes dx = load(x.data() + i + 1) - load(x.data() + i), dy = load(y.data() + i + 1) - load(y.data() + i);
+        length = sqrt(dx * dx + dy * dy);
+      }
+      store(&lengths[static_cast<std::size_t>(i)], length);
+    }
+  }
+};
+
+/// Calls visit(pass, slave side) for both half passes, with the master's window filled.
+template <class Visit>
+void for_each_half_pass(const PairView& view, const ForceRuns& runs, Visit&& visit) {
+  for (int slave_side = 0; slave_side < 2; ++slave_side) {
+    if (view.contact_pair.slave_segments[slave_side] == 0) continue;
+    HalfPass pass = make_half_pass(view, slave_side, runs);
+    fill_window(view, 1 - slave_side);
+    visit(pass, slave_side);
+  }
+}
 
 /// Pairs of a slave segment, by its position in the pass, and a row of the master's window, one after the other.
 class PairList {

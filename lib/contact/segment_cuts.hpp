@@ -1,8 +1,8 @@
 #pragma once
 
 #include "contact/master_window.hpp"
+#include "contact/segment_candidates.hpp"
 #include "contact/segment_parts.hpp"
-#include "contact/slave_arc.hpp"
 
 namespace pliant {
 

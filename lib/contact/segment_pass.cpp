@@ -8,7 +8,6 @@
 #include "contact/laws/response.hpp"
 #include "contact/segment_motion.hpp"
 #include "contact/segment_quadrature.hpp"
-#include "contact/segment_sums.hpp"
 
 namespace pliant {
 namespace {

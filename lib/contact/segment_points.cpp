@@ -1,9 +1,9 @@
 #include <limits>
 #include <vector>
 
+#include "contact/segment_motion.hpp"
 #include "contact/segment_pass.hpp"
 #include "contact/segment_quadrature.hpp"
-#include "contact/segment_sums.hpp"
 
 namespace pliant {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "contact/fan_forces.hpp"
 #include "contact/segment_candidates.hpp"
 #include "contact/segment_cuts.hpp"
+#include "contact/segment_parts.hpp"
 
 namespace pliant {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contact/laws/response.hpp"
 #include "contact/projection.hpp"
 
 namespace pliant {
@@ -45,6 +46,19 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
     for (int lane = 0; lane < lane_count; ++lane)
       if (crossed[lane]) moved[lane] = way_between_segments(window, p, lane, old_place[lane]);
   return select(counted, moved, Lanes{});
+}
+
+/// Gap and slip increment of eight nodes, from their surface coordinates place_of(p) on the master at the last accepted
+/// step and now.
+template <class Law>
+GapAndSlip gap_and_slip(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
+                        Lanes place) {
+  GapAndSlip at{p.gap, p.hit, touching, {}};
+  if constexpr (Law::has_shear) {
+    const LaneBits known = old_place == old_place;
+    at.moved = moved_along(window, p, touching & known, select(known, old_place, place), place);
+  }
+  return at;
 }
 
 }  // namespace pliant

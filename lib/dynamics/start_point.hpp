@@ -4,7 +4,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
-#include "contact/inherited.hpp"
+#include "contact/history.hpp"
 #include "core/lanes.hpp"
 #include "dynamics/step_control.hpp"
 
