@@ -11,7 +11,7 @@
 #include "bodies/body_view.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
-#include "results/checkpoint.hpp"
+#include "run/checkpoint.hpp"
 #include "scene/curves.hpp"
 
 namespace pliant::kernels {

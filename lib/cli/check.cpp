@@ -17,7 +17,7 @@
 #include "cli/stability.hpp"
 #include "cli/thin_parts.hpp"
 #include "core/memory.hpp"
-#include "results/start_file.hpp"
+#include "run/start_file.hpp"
 
 namespace pliant {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
 #include "files/output_folder.hpp"
-#include "results/run.hpp"
+#include "run/run.hpp"
 #include "scene/late_conditions.hpp"
 #include "scene/schema.hpp"
 #include "scene/units.hpp"

@@ -4,7 +4,7 @@
 #include "core/errors.hpp"
 #include "dynamics/simulation.hpp"
 #include "fuzz/fuzz_input.hpp"
-#include "results/checkpoint.hpp"
+#include "run/checkpoint.hpp"
 #include "results/recorder.hpp"
 #include "scene/scene.hpp"
 

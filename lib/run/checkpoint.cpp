@@ -1,4 +1,4 @@
-#include "results/checkpoint.hpp"
+#include "run/checkpoint.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "results/balance_warning.hpp"
+#include "run/balance_warning.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "results/start_file.hpp"
+#include "run/start_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "core/archive.hpp"
 #include "core/errors.hpp"
-#include "results/checkpoint.hpp"
+#include "run/checkpoint.hpp"
 #include "results/scene_files.hpp"
 #include "scene/portable_scene.hpp"
 #include "scene/text_file.hpp"

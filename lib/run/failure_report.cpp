@@ -1,4 +1,4 @@
-#include "results/failure_report.hpp"
+#include "run/failure_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // A whole run into a folder: every file that is promised, with what is promised in it; runs that fail, and folders
 // that are in use.
-#include "results/run.hpp"
+#include "run/run.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include "results/run.hpp"
+#include "run/run.hpp"
 
 #include <omp.h>
 
@@ -21,12 +21,12 @@
 #include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
-#include "results/balance_warning.hpp"
-#include "results/checkpoint.hpp"
-#include "results/failure_report.hpp"
+#include "run/balance_warning.hpp"
+#include "run/checkpoint.hpp"
+#include "run/failure_report.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
-#include "results/start_file.hpp"
+#include "run/start_file.hpp"
 #include "scene/text_file.hpp"
 
 namespace pliant {
