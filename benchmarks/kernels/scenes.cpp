@@ -13,6 +13,7 @@
 #include "bodies/place_outlines.hpp"
 #include "run/checkpoint.hpp"
 #include "scene/curves.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant::kernels {
 namespace {

@@ -18,6 +18,7 @@
 #include "cli/thin_parts.hpp"
 #include "core/memory.hpp"
 #include "run/start_file.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant {
 namespace {

@@ -11,6 +11,7 @@
 #include "core/errors.hpp"
 #include "files/atomic_file.hpp"
 #include "scene/names.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant {
 namespace {

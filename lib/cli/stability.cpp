@@ -7,6 +7,7 @@
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
 #include "dynamics/time_step_bound.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant {
 namespace {

@@ -8,6 +8,7 @@
 #include "bodies/body_view.hpp"
 #include "bodies/internal_forces.hpp"
 #include "dynamics/simulation.hpp"
+#include "setup/build_model.hpp"
 #include "support/contact_rig.hpp"
 
 namespace pliant {

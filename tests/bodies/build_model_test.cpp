@@ -7,6 +7,7 @@
 #include "bodies/initial_state.hpp"
 #include "bodies/model.hpp"
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

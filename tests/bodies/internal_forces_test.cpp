@@ -4,6 +4,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "materials/neo_hookean.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -7,6 +7,7 @@
 #include "bodies/body_view.hpp"
 #include "bodies/internal_forces.hpp"
 #include "bodies/nodal.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"

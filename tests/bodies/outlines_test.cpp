@@ -4,6 +4,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

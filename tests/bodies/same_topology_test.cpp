@@ -6,6 +6,7 @@
 #include "bodies/make_batches.hpp"
 #include "bodies/nodal.hpp"
 #include "scene/curves.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
 

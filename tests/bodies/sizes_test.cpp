@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bodies/nodal.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
 

@@ -1,6 +1,7 @@
 // Drives of rigid grains, drives that set in and end, and walls pressed through a dashpot (docs/method.md 5).
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "boundary/outline_loads.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

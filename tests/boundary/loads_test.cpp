@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -8,6 +8,7 @@
 #include "bodies/nodal.hpp"
 #include "bodies/place_outlines.hpp"
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -9,6 +9,7 @@
 #include "discretisation/consistent_gradients.hpp"
 #include "discretisation/table.hpp"
 #include "geometry/shapes.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant::testing {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "cli/dry_run.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cli/measured_errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant::testing {

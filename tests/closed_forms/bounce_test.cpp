@@ -1,6 +1,7 @@
 // The energy error of Verlet in contact: contacts begin and end within a step (docs/notes/impacts.md).
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

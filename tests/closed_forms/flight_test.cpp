@@ -1,6 +1,7 @@
 // Free flight, bounces and collisions: what momentum and energy alone decide.
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "contact/contact_laws.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

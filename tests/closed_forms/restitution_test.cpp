@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "contact/contact_laws.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

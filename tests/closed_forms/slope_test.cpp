@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

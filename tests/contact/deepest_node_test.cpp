@@ -5,6 +5,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "contact/deepest_node.hpp"
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/contact_oracle.hpp"
 #include "support/simulations.hpp"
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <vector>
 
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

@@ -5,6 +5,7 @@
 
 #include "bodies/model.hpp"
 #include "contact/contact_laws.hpp"
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/contact_rig.hpp"
 #include "support/probing.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "contact/deepest_node.hpp"
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/contact_rig.hpp"
 #include "support/simulations.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/contact_rig.hpp"
 #include "support/simulations.hpp"

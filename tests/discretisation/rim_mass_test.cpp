@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -8,6 +8,7 @@
 #include <new>
 #include <vector>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace {

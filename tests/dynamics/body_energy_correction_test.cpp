@@ -11,6 +11,7 @@
 #include "bodies/node_arrays.hpp"
 #include "dynamics/energy.hpp"
 #include "dynamics/verlet.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

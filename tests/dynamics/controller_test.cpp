@@ -1,6 +1,7 @@
 // What sets Verlet's steps when the error does, and how they meet outputs (docs/method.md 6).
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -1,6 +1,7 @@
 // What a run costs, in numbers that no other load of the machine touches.
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

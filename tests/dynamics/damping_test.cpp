@@ -11,6 +11,7 @@
 #include "core/errors.hpp"
 #include "dynamics/time_step_bound.hpp"
 #include "dynamics/true_spectrum.hpp"
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

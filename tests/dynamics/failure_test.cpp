@@ -10,6 +10,7 @@
 
 #include "bodies/internal_forces.hpp"
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

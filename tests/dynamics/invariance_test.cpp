@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "dynamics/step_doubling.hpp"
 #include "dynamics/verlet.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "contact/contact_laws.hpp"
 #include "dynamics/mass_damping.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
 

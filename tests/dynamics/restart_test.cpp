@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/archive.hpp"
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/archive.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -11,6 +11,7 @@
 #include "bodies/place_outlines.hpp"
 #include "dynamics/true_spectrum.hpp"
 #include "dynamics/verlet.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/errors.hpp"
+#include "setup/build_model.hpp"
 #include "support/bench.hpp"
 #include "support/simulations.hpp"
 

@@ -4,9 +4,10 @@
 #include "core/errors.hpp"
 #include "dynamics/simulation.hpp"
 #include "fuzz/fuzz_input.hpp"
-#include "run/checkpoint.hpp"
 #include "results/recorder.hpp"
+#include "run/checkpoint.hpp"
 #include "scene/scene.hpp"
+#include "setup/build_model.hpp"
 
 namespace {
 

@@ -148,7 +148,8 @@ def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, comma
 @pytest.mark.parametrize("word, built", [("error", 2), ("gate", 2), ("faults", 2), ("ab", 0), ("page", 0)])
 def test_benchmarks_get_their_arguments(launcher: Launcher, word: str, built: int) -> None:
     (launcher.root / "benchmarks").mkdir()
-    (launcher.root / f"benchmarks/{word}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
+    file = {"faults": "injected_faults"}.get(word, word)
+    (launcher.root / f"benchmarks/{file}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
     result = launcher("bench", word, "one two", "--three")
     assert result.returncode == 1 and result.stdout == "one two --three\n"
     assert len(launcher.calls("ninja start")) == built

@@ -9,6 +9,7 @@
 #include "bodies/nodal.hpp"
 #include "bodies/small_strain.hpp"
 #include "dynamics/true_spectrum.hpp"
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

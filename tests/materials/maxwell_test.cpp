@@ -11,6 +11,7 @@
 #include "bodies/internal_forces.hpp"
 #include "materials/neo_hookean_maxwell.hpp"
 #include "results/point_states.hpp"
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

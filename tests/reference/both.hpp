@@ -3,6 +3,7 @@
 #include "bodies/nodal.hpp"
 #include "dynamics/simulation.hpp"
 #include "reference/time_stepping.hpp"
+#include "setup/build_model.hpp"
 
 /// The engine and the reference solver on one scene.
 namespace pliant::reference_tests {

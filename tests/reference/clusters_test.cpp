@@ -1,5 +1,7 @@
 #include "reference/clusters.hpp"
 
+#include "setup/build_model.hpp"
+
 #include <gtest/gtest.h>
 
 namespace pliant::reference_tests {

@@ -9,6 +9,7 @@
 #include "reference/materials/internal.hpp"
 #include "reference/shapes.hpp"
 #include "results/point_states.hpp"
+#include "setup/build_model.hpp"
 #include "support/figures.hpp"
 #include "support/scenes.hpp"
 

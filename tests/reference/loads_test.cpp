@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "reference/both.hpp"
+#include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::reference_tests {

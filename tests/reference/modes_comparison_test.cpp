@@ -7,6 +7,7 @@
 #include "bodies/natural_modes.hpp"
 #include "reference/natural_modes.hpp"
 #include "reference/shapes.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

@@ -3,6 +3,7 @@
 
 #include "reference/both.hpp"
 #include "reference/contact_crowd.hpp"
+#include "setup/build_model.hpp"
 #include "support/figures.hpp"
 #include "support/simulations.hpp"
 

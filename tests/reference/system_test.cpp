@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "results/contact_network.hpp"
+#include "setup/build_model.hpp"
 #include "support/probing.hpp"
 
 namespace pliant::dynamics_tests {

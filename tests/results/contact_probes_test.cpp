@@ -5,6 +5,7 @@
 
 #include "contact/contact_points.hpp"
 #include "results/frame_fields.hpp"
+#include "setup/build_model.hpp"
 #include "support/contact_oracle.hpp"
 #include "support/probing.hpp"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/temporary_folder.hpp"
+#include "setup/build_model.hpp"
 #include "support/scenes.hpp"
 
 namespace pliant {

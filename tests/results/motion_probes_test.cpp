@@ -5,6 +5,7 @@
 
 #include "core/errors.hpp"
 #include "geometry/mesh.hpp"
+#include "setup/build_model.hpp"
 #include "support/probing.hpp"
 
 namespace pliant::dynamics_tests {

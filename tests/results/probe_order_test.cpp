@@ -1,6 +1,7 @@
 // What probes show does not depend on which others there are, nor on audits between.
 #include <gtest/gtest.h>
 
+#include "setup/build_model.hpp"
 #include "support/probing.hpp"
 
 namespace pliant::dynamics_tests {

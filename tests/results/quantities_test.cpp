@@ -8,6 +8,7 @@
 #include <set>
 
 #include "results/frame_fields.hpp"
+#include "setup/build_model.hpp"
 #include "support/probing.hpp"
 
 namespace pliant::dynamics_tests {

@@ -7,6 +7,7 @@
 #include "bodies/initial_state.hpp"
 #include "results/body_motion.hpp"
 #include "results/point_states.hpp"
+#include "setup/build_model.hpp"
 #include "support/probing.hpp"
 
 namespace pliant::dynamics_tests {

@@ -8,6 +8,7 @@
 #include "core/errors.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene_files.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant {
 namespace {

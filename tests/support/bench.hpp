@@ -6,6 +6,7 @@
 #include "bodies/initial_state.hpp"
 #include "bodies/mass_correction.hpp"
 #include "dynamics/take_step.hpp"
+#include "setup/build_model.hpp"
 
 namespace pliant::dynamics_tests {
 

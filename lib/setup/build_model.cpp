@@ -1,9 +1,10 @@
+#include "setup/build_model.hpp"
+
 #include <algorithm>
 #include <map>
 
-#include "bodies/apply_conditions.hpp"
+#include "boundary/apply_conditions.hpp"
 #include "bodies/make_batches.hpp"
-#include "bodies/model.hpp"
 #include "core/located.hpp"
 #include "geometry/assembly.hpp"
 #include "geometry/mesh.hpp"

@@ -1,4 +1,4 @@
-#include "bodies/apply_conditions.hpp"
+#include "boundary/apply_conditions.hpp"
 
 #include <algorithm>
 #include <cmath>
