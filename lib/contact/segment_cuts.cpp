@@ -161,7 +161,7 @@ void SegmentCuts::add_segment_parts(const SegmentPairs& pairs, PackedParts& part
     part.keep(select(by_start, start, along));
     part.keep(select(by_end, {-end.at0, -end.at1}, before_end), by_end);
     if (!any(near & part.some())) continue;
-    Spans8 spans(part);
+    Spans8 spans(part, scratch_);
     if (has_rivals) {
       // Removes the part past the bisector, as far as its points project onto the next segment.
       const auto remove_past = [&](const NextLanes& next, const Linear& bisector, const Linear& from_node) {
@@ -212,7 +212,7 @@ void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans
 
 Spans8 SegmentCuts::nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
                                     const Span8& fan) const {
-  Spans8 spans(fan);
+  Spans8 spans(fan, scratch_);
   const SlaveSegments& slaves = pairs.segments;
   for_each_neighbour(
       rows, hit, [&](int row) { return window_.rivals_of_node(row); },
@@ -258,8 +258,8 @@ void SegmentCuts::in_fans(const SegmentPairs& pairs, const NodeLanes& nodes, Lan
     const LaneBits near =
         pairs.valid & fan.some() & (inside ? ~nodes.convex : nodes.convex) & (nearest < radius * radius);
     if (!any(near)) continue;
-    const Spans8 spans =
-        inside && window_.has_medial_neighbours() ? nearest_to_node(pairs, nodes, rows, near, fan) : Spans8(fan);
+    const Spans8 spans = inside && window_.has_medial_neighbours() ? nearest_to_node(pairs, nodes, rows, near, fan)
+                                                                   : Spans8(fan, scratch_);
     for (const GapRange& range : ranges_) {
       if (range.is_inside() != inside) continue;
       const Lanes outer = half_chord(inside ? -range.low : range.high),

@@ -40,7 +40,8 @@ struct NodeLanes {
 /// hold only along their length.
 class SegmentCuts {
  public:
-  SegmentCuts(const MasterWindow& window, const GapRanges& ranges) : window_(window), ranges_(ranges) {}
+  SegmentCuts(const MasterWindow& window, const GapRanges& ranges, std::vector<Span8>& scratch)
+      : window_(window), ranges_(ranges), scratch_(scratch) {}
 
   /// Pairs from candidates; `row`: rows of the master's segments.
   SegmentPairs pairs(const SlaveArc& slaves, LaneBits slave, LaneBits row, LaneBits valid, bool of_nodes) const;
@@ -71,6 +72,7 @@ class SegmentCuts {
 
   const MasterWindow& window_;
   const GapRanges& ranges_;
+  std::vector<Span8>& scratch_;
 };
 
 }  // namespace pliant

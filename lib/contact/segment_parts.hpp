@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "core/lanes.hpp"
 
@@ -124,16 +125,19 @@ struct Span8 {
   static constexpr double rounding = 1e-12;
 };
 
-/// Several such parts of each segment, in any order.
+/// Several such parts of each segment, in any order. `memory` may grow; it holds one such object at a time.
 class Spans8 {
  public:
-  explicit Spans8(const Span8& all) : spans_{all} {}
+  Spans8(const Span8& all, std::vector<Span8>& memory) : spans_(memory) {
+    if (spans_.empty()) spans_.resize(16);
+    spans_[0] = all;
+  }
 
   /// Removes a part from each segment, which may leave two.
   void remove(const Span8& part) {
     const LaneBits some = part.some();
     if (!any(some)) return;
-    for (int i = count_ - 1; i >= 0; --i) {
+    for (std::size_t i = count_; i-- > 0;) {
       const Span8 all = spans_[i];
       const LaneBits cut = some & all.some() & (part.low < all.high) & (part.high > all.low);
       if (!any(cut)) continue;
@@ -148,7 +152,8 @@ class Spans8 {
   /// Adds a part at the first free position of each lane.
   void add(LaneBits which, const Span8& part) {
     LaneBits left = which & part.some();
-    for (int i = 0; any(left) && i < static_cast<int>(spans_.size()); ++i) {
+    for (std::size_t i = 0; any(left); ++i) {
+      if (i == spans_.size()) spans_.emplace_back();
       if (i == count_) spans_[count_++].high = broadcast(-1);
       const LaneBits here = left & ~spans_[i].some();
       spans_[i] = {select(here, part.low, spans_[i].low), select(here, part.high, spans_[i].high)};
@@ -156,8 +161,8 @@ class Spans8 {
     }
   }
 
-  std::array<Span8, 16> spans_;
-  int count_ = 1;
+  std::vector<Span8>& spans_;
+  std::size_t count_ = 1;
 };
 
 /// Parts of eight slave segments, each within a range of gaps, packed so that most lanes have one.
@@ -172,7 +177,8 @@ class PackedParts {
   void clear() { count_ = 0; }
   void put(LaneBits hit, const Span8& part, const GapRange& range) {
     LaneBits left = hit & part.some();
-    for (std::size_t i = 0; any(left) && i < eights_.size(); ++i) {
+    for (std::size_t i = 0; any(left); ++i) {
+      if (i == eights_.size()) eights_.emplace_back();
       if (i == count_) eights_[count_++] = Eight{};
       Eight& eight = eights_[i];
       const LaneBits here = left & ~eight.hit;
@@ -187,7 +193,7 @@ class PackedParts {
   const Eight* end() const { return eights_.data() + count_; }
 
  private:
-  std::array<Eight, 32> eights_;
+  std::vector<Eight> eights_;
   std::size_t count_ = 0;
 };
 

@@ -25,7 +25,7 @@ class SegmentQuadrature {
     deepest_ = Lanes{};
     slaves_.fill(pass);
     candidates_.find(slaves_, window, pass.rows, ranges);
-    const SegmentCuts cuts(window, ranges);
+    const SegmentCuts cuts(window, ranges, spans_);
     const PairList& segments = candidates_.segments;
     for (int i = 0; i < segments.count(); i += lane_count) {
       const SegmentPairs pairs =
@@ -123,6 +123,7 @@ class SegmentQuadrature {
   SlaveArc slaves_;
   SegmentCandidates candidates_;
   PackedParts parts_;
+  std::vector<Span8> spans_;  ///< scratch
   Lanes deepest_{};
 };
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "contact/segment_parts.hpp"
 #include "support/contact_rig.hpp"
 
 namespace pliant {
@@ -220,6 +221,27 @@ TEST(SegmentQuadrature, ForcesDoNotJumpAtCorners) {
         largest_jump(ContactQuadrature::nodes, seed, 4000) > 0.5 * largest_jump(ContactQuadrature::nodes, seed, 400);
   }
   EXPECT_GT(jumps, 6);
+}
+
+/// EXACT: many parts cut from one segment leave as much as they do not take, in as many parts as there are gaps.
+TEST(SegmentParts, none_is_dropped_however_many_there_are) {
+  constexpr int removed = 100;
+  std::vector<Span8> memory;
+  Spans8 spans(Span8{}, memory);
+  for (int i = 0; i < removed; ++i) {
+    const double begin = (i + 0.25) / removed;
+    spans.remove({broadcast(begin), broadcast(begin + 0.5 / removed)});
+  }
+  PackedParts parts;
+  for (const Span8& span : spans) parts.put(span.some(), span, {-1, 0});
+  Lanes left{};
+  int count = 0;
+  for (const PackedParts::Eight& part : parts) {
+    left += select(part.hit, part.span.high - part.span.low, Lanes{});
+    count += any(part.hit);
+  }
+  for (int lane = 0; lane < lane_count; ++lane) EXPECT_NEAR(left[lane], 0.5, 1e-14);
+  EXPECT_EQ(count, removed + 1);
 }
 
 }  // namespace
