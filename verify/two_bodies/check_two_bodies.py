@@ -127,7 +127,8 @@ def test_surface(at: float) -> None:
     found, place = push.by_engine(CASE, finest), push.STUCK.index(at) if at in push.STUCK else -1
     across, along = (np.abs(known.errors()[-1, place]) + known.scatter[-1, place]
                      for known in (study(Across), study(Along)))
-    tops, overlap = read("push_surfaces").outlines(), found.samples[:, push.COLUMN["across"]].max() / 1.5 / finest.stiffness
+    tops = read("push_surfaces").outlines()
+    overlap = found.samples[:, push.COLUMN["across"]].max() / 1.5 / finest.stiffness
     off = distances(found.surface(finest.time_of(at)), tops[push.DRAWN.index(at)])
     CASE.check(Label.INDEPENDENT, f"pushed: block's top at push {at:g}, nodes from GetFEM's, rms",
                np.sqrt((off**2).mean()), 0, across * push.DEPTH + along * min(at, push.SLIDING[0]) + overlap,

@@ -10,39 +10,28 @@ from matplotlib.axes import Axes
 import two_bodies_discs as discs
 import two_bodies_polygon as polygon
 import two_bodies_push as push
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from two_bodies_discs import Discs
 from two_bodies_push import Push, Sliding
 from two_bodies_study import RestStudy, Study, read
-from verification import Case, observed_order
-
-
-def label_axes(axes: Axes, x: str, y: str) -> None:
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
-    legend(axes)
-
-
-def set_ticks(axes: Axes, places: list[float], form: str) -> None:
-    axes.set_xticks(places, [format(place, form) for place in places])
-    axes.set_xticks([], minor=True)
+from verification import Case
 
 
 def draw_forces(axes: Axes, studies: Sequence[Study], at: list[float], x: str) -> None:
     for known, colour in zip(studies, COLOURS):
         axes.plot(at, known.getfem.force, "s-", color=colour, fillstyle="none", label=f"GetFEM, {known.name}")
         axes.plot(at, known.limit(), "x", color=colour, label="engine, h = 0")
-    label_axes(axes, x, "force over mu R")
+    describe(axes, x=x, y="force over mu R")
+    legend(axes)
 
 
 def draw_errors(axes: Axes, studies: Sequence[Study], of: str, what: str) -> None:
     """Rms of places by mesh size, with its order."""
     for known, colour, marker in zip(studies, COLOURS, MARKERS):
-        order = observed_order(list(known.spacings), list(known.rms()))
-        axes.loglog(known.spacings, known.rms(), marker=marker, color=colour, linewidth=1.8,
-                    label=f"{known.name}, rms: {order:.2f}")
-    set_ticks(axes, list(studies[0].spacings), ".3f")
-    label_axes(axes, f"spacing of {of} over R", what)
+        draw_rate(axes, known.spacings, known.rms(), f"{known.name}, rms", colour, marker)
+    set_ticks(axes, studies[0].spacings, [f"{h:.3f}" for h in studies[0].spacings])
+    describe(axes, x=f"spacing of {of} over R", y=what)
+    legend(axes)
 
 
 def draw_outlines(axes: Axes, known: RestStudy, drawn: dict[str, list[tuple[str, int]]]) -> None:
@@ -87,9 +76,10 @@ def draw_other_meshes(axes: Axes, percent: list[str]) -> None:
         if i < calculix.shape[1]:
             axes.loglog(discs.CALCULIX_RINGS, np.abs(calculix[:, i] / finest[i] - 1), "s:", color=colour, markersize=4,
                         linewidth=1.0, label=f"CalculiX, {what}")
-    set_ticks(axes, sorted({*discs.CALCULIX_RINGS, *rings}), "g")
+    ticks = sorted({*discs.CALCULIX_RINGS, *rings})
+    set_ticks(axes, ticks, [f"{tick:g}" for tick in ticks])
     axes.set_ylim(1e-6, 1e-1)
-    label_axes(axes, "rings of triangles", "|force over GetFEM's of 64 rings (CalculiX: 16) - 1|")
+    describe(axes, x="rings of triangles", y="|force over GetFEM's of 64 rings (CalculiX: 16) - 1|")
     axes.legend(fontsize=8, frameon=False, ncols=2, loc="upper center")
 
 
@@ -113,7 +103,8 @@ def draw_push(case: Case, *studies: Sliding) -> None:
             samples = push.by_engine(case, setup).samples
             panel.plot(samples[:, 0], samples[:, column], "-", color=colour, linewidth=1.0,
                        label=f"engine, h = {setup.spacing:.3f} R")
-        label_axes(panel, "push over R", f"{known.name}: force over mu R")
+        describe(panel, x="push over R", y=f"{known.name}: force over mu R")
+        legend(panel)
     for known, colour in zip(studies, COLOURS):
         off = np.abs(known.limit() / known.getfem.force - 1)[push.SLIPS]
         axes[2].axhline(np.sqrt((off**2).mean()), linestyle=":", color=colour, linewidth=1.0, label="at h = 0")
