@@ -9,7 +9,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from pliant.results import Run, read_json, read_run
+from pliant.results import Run, read_run
 
 BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"  # in a checkout
 INSTALLED = Path(__file__).resolve().parents[4] / "bin/pliant_engine"  # as cmake/install.cmake lays it out
@@ -90,7 +90,3 @@ def run(file: Path, folder: Path, threads: int = 1, quiet: bool = True) -> Run:
     if result.returncode != 0:
         raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
     return read_run(folder)
-
-
-def is_finished(folder: Path) -> bool:
-    return read_json(folder / "summary.json").get("status") == "finished"
