@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from dolfinx.fem import Constant, assemble_scalar
 from matplotlib.axes import Axes
 
-from fem.compiled import compile_form
-from fem.dynamics import Explicit
-from fem.meshes import disc
-from fem.solid import Material, Solid
+from fem.impact import velocities
 from fields import frames_of
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from verification import FULL, Case, Label, Run
@@ -67,27 +63,11 @@ def time_error(velocities: np.ndarray, error: float) -> float:
     return float(sum(error / slopes[int(np.argmax(share > limit))] for limit in (0.01, 0.99)))
 
 
-def finite_elements(rings: int, speed: float) -> np.ndarray:
-    """Velocity of the centre of mass at TIMES; quadratic triangles, half of the stable step with all nodes in touch."""
-    solid = Solid(disc(rings), Material())
-    height, stiffness = Constant(solid.domain, 10.0), Constant(solid.domain, STIFFNESS)
-    motion = Explicit(solid, solid.strain_energy() + solid.plate_energy(height, stiffness, -1))
-    steps = int(np.ceil(PERIOD * motion.largest_frequency()))
-    height.value = -START
-    motion.v.interpolate(lambda x: np.stack([0 * x[0], 0 * x[0] - speed]))
-    motion.start()
-    momentum = compile_form(motion.v[1] * solid.dx)
-    values = [assemble_scalar(momentum)]
-    for _ in TIMES[1:]:
-        for _ in range(steps):
-            motion.step(PERIOD / steps)
-        values.append(assemble_scalar(momentum))
-    return -speed * np.array(values) / values[0]
-
-
 @pytest.fixture(scope="module")
 def elements() -> dict[float, list[np.ndarray]]:
-    return {speed: [finite_elements(rings, speed) for rings in RINGS] for speed in SPEEDS}
+    """Velocity of the centre of mass at TIMES, by two meshes."""
+    return {speed: [velocities(rings, STIFFNESS, speed, START, PERIOD, len(TIMES) - 1) for rings in RINGS]
+            for speed in SPEEDS}
 
 
 @pytest.fixture(scope="module")
