@@ -5,11 +5,11 @@ Units mu = R = rho = 1. The approach is that of the plates over the diameter, co
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from histories import speeds
 from verification import Case, Run
 
 SCENE = "../plates/scene.toml"
@@ -47,23 +47,13 @@ class Squeeze:
         return f"{self.recipe}_{self.nodes}_{turned}_{self.stiffness:g}_{self.poisson:g}_{len(self.approaches)}_{self.pause:g}"
 
     def scene(self, case: Case) -> str:
-        up = speeds(self.approaches, GAP, self.pause, RAMP)
+        up = speeds([-GAP, *self.approaches], self.pause, RAMP)
         outline = OUTLINE[self.nodes]
         quadrature = "segments" if self.recipe == "t3" else "nodes"  # at nodes the light ones of t3 rattle
         return case.scene(SCENE, recipe=self.recipe, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
                           damping=self.damping, angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
                           young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
                           up=up, down=[[t, -v] for t, v in up])
-
-
-def speeds(ways: Sequence[float], gap: float, pause: float, ramp: float) -> list[list[float]]:
-    """[[time, velocity], ...] of a plate that begins with a gap: triangles in time, one for each way from the start."""
-    corners, closed = [], -gap
-    for i, way in enumerate(ways):
-        start, velocity = i * pause, 2 * (way - closed) / ramp
-        corners += [[start, 0.0], [start + ramp / 2, velocity], [start + ramp, 0.0]]
-        closed = way
-    return corners
 
 
 class Rests:

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
 from contact_network import Outlines
+from histories import speeds
 from jamming_packing import BOTTOM, DISCS, FORCES, LEFT, RIGHT, TOP, Packing, Stage, read_packing
 from pictures import COLOURS, MARKERS, describe, legend, panels, save
 from pliant.frames import Frames
@@ -50,17 +51,9 @@ def half_width(fraction: float) -> float:
     return 0.5 * math.sqrt(AREA / fraction)
 
 
-def speeds() -> list[list[float]]:
-    """At which each wall closes in: triangles in time, one a stage."""
-    corners = []
-    for i, way in enumerate(-np.diff([half_width(fraction) for fraction in (START, *CLOSING, *OPENING)])):
-        start = i * PAUSE
-        corners += [[start, 0.0], [start + RAMP / 2, 2 * float(way) / RAMP], [start + RAMP, 0.0]]
-    return corners
-
-
 def scene(seed: int, outline_nodes: int) -> str:
-    half, closing = half_width(START), speeds()
+    half = half_width(START)
+    closing = speeds([-half_width(fraction) for fraction in (START, *CLOSING, *OPENING)], PAUSE, RAMP)
     length = 2 * half + 2
     middle = half - CLEARANCE - length / 2  # of a wall that ends just before the next one's face
     return CASE.scene(

@@ -10,7 +10,8 @@ import numpy as np
 from foreign.calculix_deck import Deck
 from foreign.meshes import Mesh, half_disc
 from foreign.stored import Opinion, largest
-from squeeze import speeds, to_rigid_contact
+from histories import speeds
+from squeeze import to_rigid_contact
 from two_bodies_study import LAWS, RAMP, Again, RestStudy, Setup, read
 from verification import FULL, Case, Run
 
@@ -92,7 +93,7 @@ class Squeeze(Setup):
         return 2 * np.pi * np.mean(1 / np.array(self.outlines))
 
     def scene(self, case: Case) -> str:
-        up = speeds([2 * approach for approach in APPROACHES], GAP, self.pause, RAMP)
+        up = speeds([-GAP, *(2 * approach for approach in APPROACHES)], self.pause, RAMP)
         soft, stiff_nodes, stiff = SIZES[self.size]
         turns = [np.pi / count if self.way == 0 else 0.0 for count in self.outlines]
         return case.scene("discs.toml", levels=APPROACHES, end=float(self.rests[-1]), rest=self.pause, law=self.law,

@@ -11,8 +11,9 @@ import numpy as np
 from foreign.calculix_deck import Deck
 from foreign.meshes import Mesh, above, below, fan, half_disc
 from foreign.stored import Opinion, largest_from_here
+from histories import smooth_rises
 from squeeze import to_rigid_contact
-from two_bodies_study import LAWS, RAMP, Again, RestStudy, Setup, read, smooth_rises
+from two_bodies_study import LAWS, RAMP, Again, RestStudy, Setup, read
 from verification import FULL, Case, Run
 
 DEPTHS = [0.1, 0.2, 0.4, 0.6]  # R

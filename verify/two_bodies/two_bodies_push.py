@@ -12,8 +12,9 @@ from scipy.stats import t as students_t
 from foreign.calculix_deck import Deck
 from foreign.meshes import Mesh, above, below, block, full_disc
 from foreign.stored import Opinion
+from histories import smooth_rises
 from squeeze import to_rigid_contact
-from two_bodies_study import HARDER, LAWS, Again, Setup, Study, lost_by_penalty, outline, read, smooth_rises
+from two_bodies_study import HARDER, LAWS, Again, Setup, Study, lost_by_penalty, outline, read
 from verification import Case, Run
 
 COLUMN = {"along": 1, "across": 2}  # of samples by push

@@ -62,18 +62,6 @@ class Setup:
         return case.reference(self.run_name() + "_reference", self.scene(case), "--static", "--dt", repr(self.STEP))
 
 
-def smooth_rises(heights: list[float], pause: float, ramp: float, points: int) -> list[list[float]]:
-    """[[time, height], ...] from 0 to each height in turn, at the start of each pause."""
-    share = np.linspace(0, 1, points + 1)
-    table, before = [[0.0, 0.0]], 0.0
-    for i, height in enumerate(heights):
-        table += [[float(pause * i + ramp * s), float(before + (height - before) * s**2 * (3 - 2 * s))]
-                  for s in share[1:]] if height != before else []
-        table.append([float(pause * (i + 1)), height])
-        before = height
-    return table
-
-
 def outline(run: Run, body: int, time: float) -> np.ndarray:
     """[nodes x 2] of a body."""
     frames = frames_of(run)
