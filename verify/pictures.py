@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -37,6 +39,26 @@ def legend(axes: Axes) -> None:
     axes.legend(fontsize=9, frameon=False, borderpad=0.1, handlelength=1.6)
 
 
+def describe(axes: Axes, title: str = "", x: str = "", y: str = "") -> None:
+    """What is given."""
+    if title:
+        axes.set_title(title, fontsize=10, loc="left")
+    axes.set(**{name: text for name, text in (("xlabel", x), ("ylabel", y)) if text})
+
+
+def set_ticks(axes: Axes, places: Sequence[float], labels: list[str]) -> None:
+    """Of x, and no others."""
+    axes.set_xticks(places, labels)
+    axes.set_xticks([], minor=True)
+
+
+def draw_rate(axes: Axes, steps: Sequence[float], errors: Sequence[float], name: str, colour: str, marker: str,
+              style: str = "-") -> None:
+    """Errors over steps, with their order in the legend."""
+    axes.loglog(steps, errors, style, marker=marker, markersize=4, linewidth=1.1, color=colour,
+                label=f"{name}: {observed_order(list(steps), list(errors)):.2f}")
+
+
 def draw_both(axes: Axes, runs: dict[str, Run], probe: str, factor: float = 1, what: str = "", first: int = 0) -> None:
     """The engine's curve and the reference's, dashed upon it."""
     for (name, run), colour, style in zip(runs.items(), COLOURS[first:], ("-", "--")):
@@ -51,19 +73,15 @@ def draw_differences(axes: Axes, study: Study, quantities: list[Quantity]) -> No
 def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]) -> None:
     """Errors over steps with their slopes, and lines of the orders that theory gives."""
     for (name, steps, errors), colour, marker in zip(curves, COLOURS, MARKERS):
-        label = f"{name}: {observed_order(steps, errors):.2f}"
-        axes.loglog(steps, errors, marker=marker, markersize=4, linewidth=1.1, color=colour, label=label)
+        draw_rate(axes, steps, errors, name, colour, marker)
     ends = np.array([min(min(steps) for _, steps, _ in curves), max(max(steps) for _, steps, _ in curves)])
     lowest = min(min(errors) for _, _, errors in curves)
     for order, style in zip(orders, ("--", ":")):
         axes.loglog(ends, 0.5 * lowest * (ends / ends[0]) ** order, style, color=COLOURS[6], linewidth=1.0,
                     label=f"slope {order:g}")
     ticks = sorted({step for _, steps, _ in curves for step in steps})
-    axes.set_xticks(ticks, [f"{1e3 * step:g}" for step in ticks])
-    axes.set_xticks([], minor=True)
-    axes.set_title(title, fontsize=10, loc="left")
-    axes.set_xlabel("time step [ms]")
-    axes.set_ylabel("relative error")
+    set_ticks(axes, ticks, [f"{1e3 * step:g}" for step in ticks])
+    describe(axes, title, "time step [ms]", "relative error")
     legend(axes)
 
 

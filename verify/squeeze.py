@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from histories import speeds
 from verification import Case, Run
 
 SCENE = "../plates/scene.toml"
@@ -46,22 +47,13 @@ class Squeeze:
         return f"{self.recipe}_{self.nodes}_{turned}_{self.stiffness:g}_{self.poisson:g}_{len(self.approaches)}_{self.pause:g}"
 
     def scene(self, case: Case) -> str:
-        up = self.speeds()
+        up = speeds([-GAP, *self.approaches], self.pause, RAMP)
         outline = OUTLINE[self.nodes]
         quadrature = "segments" if self.recipe == "t3" else "nodes"  # at nodes the light ones of t3 rattle
         return case.scene(SCENE, recipe=self.recipe, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
                           damping=self.damping, angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
                           young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
                           up=up, down=[[t, -v] for t, v in up])
-
-    def speeds(self) -> list[list[float]]:
-        """Of the lower plate: triangles in time, one an approach; both plates go as far."""
-        corners, closed = [], -GAP
-        for i, approach in enumerate(self.approaches):
-            start, way = i * self.pause, approach - closed
-            corners += [[start, 0.0], [start + RAMP / 2, 2 * way / RAMP], [start + RAMP, 0.0]]
-            closed = approach
-        return corners
 
 
 class Rests:

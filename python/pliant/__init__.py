@@ -23,7 +23,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pliant.engine import BadScene, RunFailed, run
+from pliant import engine
+from pliant.engine import BadScene, RunFailed
 from pliant.frames import BadFolder, Contacts, Frames, Grid
 from pliant.results import Column, Run, Table, read_run
 
@@ -36,6 +37,13 @@ __all__ = ["BadFolder", "BadScene", "Column", "Contacts", "Frames", "Grid", "Run
 def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.open
     """What a run wrote into a folder. BadFolder: it is none."""
     return read_run(Path(folder))
+
+
+def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
+    """Runs a scene, or the one in a file, into a folder, over what is there, and opens it. BadScene, RunFailed."""
+    if isinstance(scene, (str, Path)):
+        return engine.run(Path(scene), Path(folder), threads, quiet)
+    return scene.run(folder, threads, quiet)
 
 
 def __dir__() -> list[str]:

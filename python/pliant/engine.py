@@ -1,4 +1,4 @@
-"""Runs the engine and asks it about scenes."""
+"""Runs the engine on files of scenes and asks it about them."""
 
 from __future__ import annotations
 
@@ -6,15 +6,10 @@ import os
 import re
 import shutil
 import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from pliant.results import Run, read_json, read_run
-
-if TYPE_CHECKING:
-    from pliant.scene import Scene
+from pliant.results import Run, read_run
 
 BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"  # in a checkout
 INSTALLED = Path(__file__).resolve().parents[4] / "bin/pliant_engine"  # as cmake/install.cmake lays it out
@@ -87,21 +82,11 @@ def check(file: Path, threads: int = 1) -> Estimate:
                     _quantity(text, "memory", _BYTES), _quantity(text, "output", _BYTES))
 
 
-def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
-    """Runs a scene into a folder, over what is there, and opens it. BadScene, RunFailed."""
-    folder = Path(folder)
-    with tempfile.TemporaryDirectory() as scratch:
-        if isinstance(scene, (str, Path)):
-            file = Path(scene)
-        else:
-            file = scene.write_whole(Path(scratch))
-        result = call("run", file, "--out", folder, "--force", "--threads", str(threads), *["--quiet"] * quiet)
+def run(file: Path, folder: Path, threads: int = 1, quiet: bool = True) -> Run:
+    """Runs a scene in a file into a folder, over what is there, and opens it. BadScene, RunFailed."""
+    result = call("run", file, "--out", folder, "--force", "--threads", str(threads), *["--quiet"] * quiet)
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
     if result.returncode != 0:
         raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
     return read_run(folder)
-
-
-def is_finished(folder: Path) -> bool:
-    return read_json(folder / "summary.json").get("status") == "finished"

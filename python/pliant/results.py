@@ -65,6 +65,11 @@ def read_json(file: Path) -> dict:
         raise BadFolder(f"{file}: cannot be read: {error}") from error
 
 
+def is_finished(folder: Path) -> bool:
+    """The run ended well."""
+    return read_json(folder / "summary.json").get("status") == "finished"
+
+
 def checkpoint_header(folder: Path) -> dict:
     """The line of JSON of checkpoint.bin; {} without one."""
     try:

@@ -11,8 +11,10 @@ from typing import Any
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
-from pliant.engine import BadScene, Estimate, check
+from pliant import engine
+from pliant.engine import BadScene, Estimate
 from pliant.names import nearest
+from pliant.results import Run
 
 
 class Scene:
@@ -136,7 +138,12 @@ class Scene:
     def check(self, threads: int = 1) -> Estimate:
         """What it costs. BadScene with the engine's words."""
         with tempfile.TemporaryDirectory() as folder:
-            return check(self.write_whole(Path(folder)), threads)
+            return engine.check(self.write_whole(Path(folder)), threads)
+
+    def run(self, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
+        """Into a folder, over what is there; opens it. BadScene, RunFailed."""
+        with tempfile.TemporaryDirectory() as scratch:
+            return engine.run(self.write_whole(Path(scratch)), Path(folder), threads, quiet)
 
 
 def _may_name_a_file(text: str, surely: bool) -> bool:

@@ -5,15 +5,11 @@ from __future__ import annotations
 import json
 import math
 import os
-import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts"), str(ROOT / "python")]
 
 import error
 from error_study import choices, judge, keep, report
@@ -22,6 +18,7 @@ from error_study.measure import Measured, Programs, Runner, seconds_of
 from error_study.pareto import cost_at, front
 from error_study.scenes import SCENES, filled, stiffness
 
+ROOT = Path(__file__).resolve().parents[2]
 SMALL = Choice(nodes=40)
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "benchmarks"))
-
 import injected_faults
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.mark.parametrize("place", [injected_faults.CONTACT, injected_faults.STEP], ids=lambda place: Path(place.file).stem)

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests/support")]
-
 import history
 import page
 from browser import BROWSER, dumped
 from page import Measured
+
+ROOT = Path(__file__).resolve().parents[2]
 
 needs_charts = pytest.mark.skipif(not page.CHARTS.exists(), reason="libjs-chart.js is not installed")
 needs_browser = pytest.mark.skipif(not (BROWSER and page.CHARTS.exists()), reason="chromium is not installed")

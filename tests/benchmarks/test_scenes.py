@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "benchmarks"))
-
 import scenes
 from scenes import Figures, Size
 
+ROOT = Path(__file__).resolve().parents[2]
 SUMMARY = {"threads": 2, "steps": 500, "evaluations": 520, "preparation_seconds": 1.5, "peak_memory_bytes": 4_000_000,
            "phase_seconds": {"contact": 3.0, "internal": 0.9, "output": 0.1}}
 

@@ -12,11 +12,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "benchmarks"))
-
 import third_body
 
+ROOT = Path(__file__).resolve().parents[2]
 SAMPLING = 5e-9  # s
 
 

@@ -2,14 +2,11 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python")]
 
 from shape_functions import evaluate, largest_jump
 
+ROOT = Path(__file__).resolve().parents[2]
 ENGINE = Path(os.environ["PLIANT_ENGINE"])
 
 

@@ -6,18 +6,15 @@ from __future__ import annotations
 
 import re
 import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-
 from pages.blocks import BadPage, blocks
 from pages.practice import Practice, Wrong, compare
 
+ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 LARGEST_PICTURE, LARGEST_FILM = 125_000, 3_000_000  # bytes
 COMMAND = re.compile(r"`(\./pliant [^`]*)`")

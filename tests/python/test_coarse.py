@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 
-ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
-sys.path.insert(0, str(ROOT / "python"))
-
 import pliant
 from pliant.coarse import coarse_fields
 from pliant.frames import COMPLIANT, RIGID, WALL, BadFolder, Frames
 from pliant.network import of_frame
 
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 SINGLE = 1e-6  # numbers are stored in single precision, some are sums of a few
 
 

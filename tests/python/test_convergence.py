@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 from pliant.study.convergence import analyse, observed_order
 from pliant.study.table import means_of_replicas

@@ -2,15 +2,8 @@
 
 from __future__ import annotations
 
-import os
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
-sys.path.insert(0, str(ROOT / "python"))
 
 from pliant.order import bond_order, clusters, kept_fraction, like_fraction, like_fraction_at_random, neighbours
 

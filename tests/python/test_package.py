@@ -10,12 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
-sys.path.insert(0, str(ROOT / "python"))
-
 import pliant
 from pliant.scene import Scene
 
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 TWO_DISCS = ROOT / "cases/two_discs.toml"
 
 

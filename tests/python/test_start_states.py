@@ -10,13 +10,11 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
-sys.path.insert(0, str(ROOT / "python"))
-
 import pliant
 from pliant.results import read_json
 from pliant.scene import Scene
 
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 SCENE = """
 [time]
 end = 0.2

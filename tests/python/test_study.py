@@ -13,9 +13,6 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
-sys.path.insert(0, str(ROOT / "python"))
-
 from pliant.engine import engine
 from pliant.results import read_json
 from pliant.study.__main__ import check_all
@@ -23,6 +20,7 @@ from pliant.study.points import points_of
 from pliant.study.reading import BadStudy
 from pliant.study.study_file import read_study
 
+ROOT = Path(os.environ.get("PLIANT_SOURCE_DIR", Path(__file__).parents[2]))
 SCENE = """
 [time]
 end = "{end}"

@@ -1,12 +1,8 @@
 """Figures of studies: what their axes say. All EXACT."""
 
-import sys
-from pathlib import Path
-
 import matplotlib
 
 matplotlib.use("Agg")
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "python"))
 
 import matplotlib.pyplot as plt
 import pytest

@@ -1,7 +1,6 @@
 """Several runs in one picture. All are EXACT."""
 
 import subprocess
-import sys
 from pathlib import Path
 
 import matplotlib
@@ -10,11 +9,10 @@ import pytest
 
 matplotlib.use("Agg")
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python")]
-
 from pliant.results import Run, read_run
 from plots.comparison import comparison, labels
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def run(folder: Path, **columns: list[float]) -> Run:

@@ -1,6 +1,5 @@
 """Pictures of contact forces and of means over cells. All are EXACT."""
 
-import sys
 from pathlib import Path
 
 import h5py
@@ -9,9 +8,6 @@ import numpy as np
 import pytest
 
 matplotlib.use("Agg")
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(Path(__file__).parent)]
 
 from matplotlib.collections import LineCollection
 from matplotlib.image import AxesImage

@@ -15,15 +15,13 @@ import matplotlib
 import numpy as np
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(Path(__file__).parent)]
-
 import movie
 import synthetic_run
 from moving_discs import (COMPLIANT, END, FRAMES, NEUTRAL, PERIOD, RADIUS, RIGID, WHITE, centres, decoded, described,
                           has, near, panels, times, write_run)
 from plots import encoder, fields
 
+ROOT = Path(__file__).resolve().parents[2]
 WINDOW = (2e-6, 14e-6, -2e-6, 4e-6)
 
 

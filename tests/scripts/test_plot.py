@@ -1,15 +1,11 @@
 """Checks of scripts/plot.py. All are EXACT; captions state the numbers that synthetic_run.py makes up."""
 
 import subprocess
-import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(Path(__file__).parent)]
 
 from pliant import units
 from plots import curves, scenery, wrapping
@@ -17,6 +13,7 @@ from pliant.frames import WALL, BadFolder, Grid
 from pliant.results import read_run, read_table
 from synthetic_run import PITCH, write_run
 
+ROOT = Path(__file__).resolve().parents[2]
 PICTURES = {"grains.png", "velocity.png", "von_mises.png", "steps.png", "forces.png", "energy.png",
             "probes.png"}
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import re
-import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,6 @@ import matplotlib
 import numpy as np
 import pytest
 from matplotlib.image import imread
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 from viewed_run import GRAINS, PERIOD, ROWS, TITLE, about, field_of, in_browser, write_viewed_run
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 import base64
 import re
 import resource
-import sys
 import zlib
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 
 from viewed_run import GRAINS, ROOT, about, write_viewed_run
 

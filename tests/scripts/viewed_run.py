@@ -5,19 +5,17 @@ from __future__ import annotations
 import html
 import json
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "python"), str(ROOT / "tests/support"), str(Path(__file__).parent)]
-
 import view
 from browser import dumped
 from synthetic_run import DIAMETER, PITCH, write_run
+
+ROOT = Path(__file__).resolve().parents[2]
 
 COLUMNS, ROWS, RINGS, FRAMES = 6, 4, 3, 4
 GRAINS, PERIOD = COLUMNS * ROWS, COLUMNS * PITCH

@@ -5,9 +5,11 @@ Run: /usr/bin/python3 tests/structure/check_structure.py .
 
 from __future__ import annotations
 
+import ast
 import os
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from order_of_draws import disordered_lines
@@ -23,6 +25,7 @@ MAX_COLUMNS = 120  # of what no formatter wraps: comments of C++, the launcher
 SKIPPED_AT_THE_ROOT = re.compile(r"\.git|results|build.*")
 
 CITED = ["docs/method.md", "docs/design.md"]
+PYTHON_FOLDERS = ["python", "scripts", "verify", "benchmarks", "tests/support"]  # of modules that other folders import
 JUDGED = ["lib", "reference"]  # by what they include
 
 # All of lib/ that the reference solver may share: no mechanics (docs/design.md 6). Of core only these.
@@ -108,21 +111,44 @@ def check_arrows(root: Path) -> list[str]:
     return problems
 
 
+def imported_files(root: Path, file: Path) -> list[Path]:
+    """Files of the repository that a Python file imports: for types alone and in functions, too. They are in its own
+    folder or in those that programs look in. What is taken from a package counts as the module that it may be."""
+    found, folders = [], [file.parent, *(root / folder for folder in PYTHON_FOLDERS)]
+    for node in ast.walk(ast.parse(read(file))):
+        if isinstance(node, ast.Import):
+            found += [module_file(folders, [alias.name]) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            starts = [file.parents[node.level - 1]] if node.level else folders
+            package = f"{node.module}." if node.module else ""
+            found += [module_file(starts, [package + alias.name, package.rstrip(".")]) for alias in node.names]
+    return [module for module in found if module is not None]
+
+
+def module_file(folders: list[Path], names: list[str]) -> Path | None:
+    """Of the first of these names that is there."""
+    paths = (folder / name.replace(".", "/") for name in names for folder in folders)
+    files = (file for path in paths for file in (path.parent / f"{path.name}.py", path / "__init__.py"))
+    return next((file for file in files if file.is_file()), None)
+
+
 def check_cycles(root: Path) -> list[str]:
-    """Depth-first search; a file met again while it is still on the path closes a cycle."""
     problems, done = [], set()
 
-    def visit(file: Path, path: list[Path]) -> None:
+    def visit(file: Path, path: list[Path], next_files: Callable[[Path, Path], list[Path]], kind: str) -> None:
+        """Depth-first search; a file met again while it is still on the path closes a cycle."""
         if file in path:
             names = [str(step.relative_to(root)) for step in path[path.index(file):] + [file]]
-            problems.append("include cycle: " + " -> ".join(names))
+            problems.append(f"{kind} cycle: " + " -> ".join(names))
         elif file not in done:
-            for included in included_files(root, file):
-                visit(included, path + [file])
+            for other in next_files(root, file):
+                visit(other, path + [file], next_files, kind)
             done.add(file)
 
     for file in files_of(root, {".hpp", ".cpp"}, ["lib"]):
-        visit(file, [])
+        visit(file, [], included_files, "include")
+    for file in files_of(root, {".py"}, SOURCE_FOLDERS):
+        visit(file, [], imported_files, "import")
     return problems
 
 

@@ -123,6 +123,32 @@ def test_a_cycle_over_three_files(tmp_path: Path) -> None:
     assert "lib/core/a.hpp -> lib/core/b.hpp -> lib/core/c.hpp -> lib/core/a.hpp" in output
 
 
+@pytest.mark.parametrize("importing", [
+    "import one\n", "from one import f\n", "from pack import one\n", "from . import one\n", "from .one import f\n",
+    "import pack.one\n", "from pack.one import f\n", "def g():\n    from pack import one\n",
+    "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from pack.one import f\n"])
+def test_an_import_cycle(tmp_path: Path, importing: str) -> None:
+    ring = {"python/pack/__init__.py": "", "python/pack/one.py": "from pack import two\n",
+            "python/pack/two.py": importing}
+    code, output = check(tmp_path, GOOD | ring)
+    assert code == 1
+    assert "import cycle: python/pack/one.py -> python/pack/two.py -> python/pack/one.py" in output
+
+
+def test_an_import_cycle_through_a_package(tmp_path: Path) -> None:
+    ring = {"python/pack/__init__.py": "from pack.one import f\n", "python/pack/one.py": "import pack\n"}
+    code, output = check(tmp_path, GOOD | ring)
+    assert code == 1
+    assert "import cycle: python/pack/__init__.py -> python/pack/one.py -> python/pack/__init__.py" in output
+
+
+def test_a_package_may_take_from_its_modules(tmp_path: Path) -> None:
+    files = {"python/pack/__init__.py": "from pack.one import f\n", "python/pack/one.py": "from pack import two\n",
+             "python/pack/two.py": "import json\n"}
+    code, output = check(tmp_path, GOOD | files)
+    assert code == 0, output
+
+
 def test_a_maximum_over_threads_is_free(tmp_path: Path) -> None:
     code, output = check(tmp_path, GOOD | {"lib/core/max.cpp": "#pragma omp parallel for reduction(max : m)\n"})
     assert code == 0, output

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections import Counter
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "verify/mutations"))
-
 import mutate
 from mutate import Mutation, Sound, judge, read_mutations, red_lines
 from unit_tests import in_short, red_tests, unfinished
 
+ROOT = Path(__file__).resolve().parents[2]
 MUTATIONS = read_mutations()
 
 

@@ -11,11 +11,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "verify"), str(ROOT / "scripts"), str(ROOT / "python")]
-
 from report import report
 from verification import Row
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def row(case: str, name: str, value: float, label: str = "EXACT", commit: str = "") -> Row:

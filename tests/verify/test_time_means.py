@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scipy.signal import lfilter
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verify"))
 
 from time_means import Mean, block_means, correlation_time
 

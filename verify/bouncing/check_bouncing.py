@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from pictures import COLOURS, legend, panels, save
+from pictures import COLOURS, describe, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__)
@@ -204,9 +204,7 @@ def test_picture() -> None:
                      label=f"e = {e:g}")
         for k in range(1, 4):
             axes[0].hlines(e**(2 * k), 0, 6.5, color=colour, linestyle=":", linewidth=0.8)
-    axes[0].set_title("no pull; dotted: e^2k h", fontsize=10, loc="left")
-    axes[0].set_xlabel("time over sqrt(L / g)")
-    axes[0].set_ylabel("height over L")
+    describe(axes[0], "no pull; dotted: e^2k h", "time over sqrt(L / g)", "height over L")
     axes[0].set_xlim(-0.3, 8.4)  # room for the legend
     legend(axes[0])
     z = np.linspace(0, 0.7, 200)
@@ -216,8 +214,6 @@ def test_picture() -> None:
         found = [np.sqrt(measured(name, pull, SAFETIES[-1])[0]) for name in DAMPED]
         axes[1].plot([damping_ratio(RESTITUTION[name], pull) for name in DAMPED], found, "s" if pull else "o",
                      color=COLOURS[1 if pull else 0], markersize=5, label=f"engine, {'pull' if pull else 'no pull'}")
-    axes[1].set_title("closed forms and first impacts", fontsize=10, loc="left")
-    axes[1].set_xlabel("damping ratio z")
-    axes[1].set_ylabel("restitution e")
+    describe(axes[1], "closed forms and first impacts", "damping ratio z", "restitution e")
     legend(axes[1])
     save(CASE, figure, "bouncing")

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from fields import Stresses, stresses_of
-from pictures import COLOURS, MARKERS, draw_cells, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_cells, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -153,9 +153,7 @@ def draw_diameter(axes: Axes, stresses: Stresses) -> None:
     for i, (name, colour) in enumerate((("across the load (xx)", COLOURS[0]), ("along the load (yy)", COLOURS[1]))):
         axes.plot(r, hondros(np.abs(r))[:, i] / PRESSURE, color=colour, linewidth=1.1, label=f"{name}, Hondros")
         axes.plot(stresses.centres[near, 1], stresses.values[near, i] / PRESSURE, ".", color=colour, markersize=3.5)
-    axes.set_title("loaded diameter; dots: engine, mls", fontsize=10, loc="left")
-    axes.set_xlabel("place y / R")
-    axes.set_ylabel("stress / pressure")
+    describe(axes, "loaded diameter; dots: engine, mls", "place y / R", "stress / pressure")
     legend(axes)
 
 
@@ -173,17 +171,14 @@ def test_picture(engine: dict[str, dict[int, Stresses]]) -> None:
     inside = spacings_inside(engine)
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
         errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
-        axes[2].loglog(inside, errors, marker=marker, markersize=4, color=colour, linewidth=1.1,
-                       label=f"{recipe}: {observed_order(inside, errors):.2f}")
+        draw_rate(axes[2], inside, errors, recipe, colour, marker)
     for order, style in ((1, "--"), (2, ":")):
         axes[2].loglog(inside, 1e-3 * (np.array(inside) / inside[-1]) ** order, style, color=COLOURS[6],
                        linewidth=1.0,
                        label=f"slope {order}")
-    axes[2].set_xticks(inside, [f"{h:.3f}" for h in inside])
-    axes[2].set_xticks([], minor=True)
+    set_ticks(axes[2], inside, [f"{h:.3f}" for h in inside])
     axes[2].set_ylim(top=1)
-    axes[2].set_title("within half the radius", fontsize=10, loc="left")
-    axes[2].set_xlabel("root of the mean triangle there / R")
-    axes[2].set_ylabel("rms stress error / stress at the centre")
+    describe(axes[2], "within half the radius", "root of the mean triangle there / R",
+             "rms stress error / stress at the centre")
     legend(axes[2])
     save(CASE, figure, "brazilian")

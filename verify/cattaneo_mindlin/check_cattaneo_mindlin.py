@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 
 from curved_block import ACROSS, NODES, RADIUS, STIFF, YOUNG, block, levels, spread, top_above_centroid
 from fields import along_outline
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -240,9 +240,7 @@ def draw_tractions(axes: Axes, run: Run, level: int) -> None:
     axes.set_xlim(-1.15, 1.15)
     axes.set_ylim(-0.03, 1.35)
     share = expected.sheared / (FRICTION * expected.pressed)
-    axes.set_title(f"Q = {share:.2f} friction P; sticks between the dotted lines", fontsize=9, loc="left")
-    axes.set_xlabel("x / a")
-    axes.set_ylabel("over the largest pressure")
+    describe(axes, f"Q = {share:.2f} friction P; sticks between the dotted lines", "x / a", "over the largest pressure")
     axes.legend(fontsize=8, frameon=False, ncols=2, loc="upper center")
 
 
@@ -250,12 +248,9 @@ def draw_errors(axes: Axes, runs: dict[int, Run]) -> None:
     for index, (what, colours) in enumerate((("pressure", COLOURS[0]), ("shear", COLOURS[1]))):
         for level, marker in zip(LEVELS, MARKERS):
             values = [errors(runs[segments], level)[index] for segments in SEGMENTS]
-            axes.loglog(spacings(), values, marker=marker, markersize=4, color=colours, linewidth=1.0, label=
-                       f"{what} {level - 1}: {observed_order(spacings(), values):.2f}")
-    axes.set_xticks(spacings(), [f"{h:.3f}" for h in spacings()])
-    axes.set_xticks([], minor=True)
-    axes.set_title("rms errors, levels 1 to 3 of shear", fontsize=9, loc="left")
-    axes.set_xlabel("spacing of the faces")
+            draw_rate(axes, spacings(), values, f"{what} {level - 1}", colours, marker)
+    set_ticks(axes, spacings(), [f"{h:.3f}" for h in spacings()])
+    describe(axes, "rms errors, levels 1 to 3 of shear", "spacing of the faces")
     legend(axes)
 
 

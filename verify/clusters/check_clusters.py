@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hexagons import SIDES, Grain, cluster, facing, glued, grain_tables, probes, shapes
-from pictures import COLOURS, draw_orders, legend, panels, save
+from pictures import COLOURS, describe, draw_orders, legend, panels, save
 from pliant.frames import Frames
 from verification import FULL, Case, Label, Run
 
@@ -188,19 +188,16 @@ def test_picture(results: dict[str, Result]) -> None:
         touching = size > 0
         axes[1].loglog(size[touching], error[touching], ".", color=colour, markersize=4, label=name)
     axes[1].axhline(FORCES, linestyle=":", color=COLOURS[6], linewidth=1.2)
-    axes[1].set_xlabel("force on a node over the largest")
-    axes[1].set_ylabel("engine - reference, over the largest")
+    describe(axes[1], x="force on a node over the largest", y="engine - reference, over the largest")
     axes[1].set_ylim(top=3e-3)
     legend(axes[1])
     small = list(CLUSTERS)[:2]
     draw_orders(axes[2], "reference: changes of forces by half the load step",
                 [(name, *refinements(results[name])) for name in small], [1])
-    axes[2].set_xlabel("load step, thousandths of the push")
-    axes[2].set_ylabel("change over the largest force")
+    describe(axes[2], x="load step, thousandths of the push", y="change over the largest force")
     draw_orders(axes[3], "engine: positions, from the reference's limit",
                 [(name, *lags(results[name])) for name in small], [1])
-    axes[3].set_xlabel("1000 s over the time of the push")
-    axes[3].set_ylabel("difference over the diameter")
+    describe(axes[3], x="1000 s over the time of the push", y="difference over the diameter")
     save(CASE, figure, "clusters")
 
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from histories import speeds
+
 # Outline nodes of the three sorts, multiples of six: every sort has a facet towards each neighbour. A facet's half is
 # tan(pi / sides) long; halves differ by 0.027 and 0.045, and by 0.017 and 0.030: twice the slip, some 0.008.
 SIDES = {60: (18, 24, 30), 168: (30, 42, 54)}
@@ -90,7 +92,7 @@ packing = {{ kind = "positions", positions = [[{grain.centre[0]!r}, {grain.centr
 def push(grain: Grain, ramp: float) -> str:
     """Of the outer half of a compliant grain, or of a rigid one as a whole, which may turn."""
     outward = float(np.arctan2(grain.centre[1], grain.centre[0]))
-    x, y = (f"{{ velocity = {speeds(float(part), ramp)} }}" for part in PUSH @ grain.centre)
+    x, y = (f"{{ velocity = {speeds([0.0, float(part)], ramp, ramp)} }}" for part in PUSH @ grain.centre)
     part = "" if grain.rigid else f"part = {{ angles = [{outward - 1.6!r}, {outward + 1.6!r}] }}\nstiffness = 1\n"
     return f"""
 [[boundary]]
@@ -98,11 +100,6 @@ of = "{grain.name}"
 {part}x = {x}
 y = {y}
 """
-
-
-def speeds(way: float, ramp: float) -> list[list[float]]:
-    """A triangle in time."""
-    return [[0.0, 0.0], [ramp / 2, 2 * way / ramp], [ramp, 0.0]]
 
 
 def probe(name: str, quantity: str, of: str, period: float, more: str = "") -> str:

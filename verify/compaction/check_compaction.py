@@ -13,6 +13,7 @@ from scipy.optimize import curve_fit
 
 from contact_network import Outlines
 from fields import frames_of
+from histories import speeds
 from packing import FORCES, Stage, read_stages
 from pictures import COLOURS, MARKERS, legend, panels, save
 from verification import FULL, Case, Label, Run
@@ -42,18 +43,10 @@ def half_width(share: float) -> float:
     return 0.5 * math.sqrt(AREA / share)
 
 
-def speeds() -> list[list[float]]:
-    """At which each wall closes in: triangles in time, one a stage."""
-    corners = []
-    for i, way in enumerate(-np.diff([half_width(share) for share in (START, *CLOSING)])):
-        start = i * PAUSE
-        corners += [[start, 0.0], [start + RAMP / 2, 2 * float(way) / RAMP], [start + RAMP, 0.0]]
-    return corners
-
-
 def scene(law: str) -> str:
     """That of jamming: a pinwheel of walls."""
-    half, closing = half_width(START), speeds()
+    half = half_width(START)
+    closing = speeds([-half_width(share) for share in (START, *CLOSING)], PAUSE, RAMP)
     length = 2 * half + 2
     middle = half - CLEARANCE - length / 2
     return CASE.scene("../jamming/scene.toml", end=PAUSE * len(CLOSING), pause=PAUSE, seed=1, nodes=NODES, damping=0.3,

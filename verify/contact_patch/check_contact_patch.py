@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from fields import Stresses, along_outline, stresses_of
 from half_planes import pressures
-from pictures import COLOURS, MARKERS, draw_cells, panels, save
+from pictures import COLOURS, MARKERS, describe, draw_cells, panels, save, set_ticks
 from verification import FULL, Case, Label, Run, observed_order
 
 CASE = Case(__file__)
@@ -255,9 +255,7 @@ def draw_pressures(axes: Axes, segments: Statics, nodes: Statics) -> None:
             axes.plot(x, pressure, style, marker=marker, markersize=3, color=colour, linewidth=0.9,
                       label=f"{name}, {'finer' if body == 0 else 'coarser'}")
     axes.set_ylim(0.9, 1.12)
-    axes.set_title("nodal pressure along the face, 2:1 (32 on 16)", fontsize=10, loc="left")
-    axes.set_xlabel("x")
-    axes.set_ylabel("contact pressure / load")
+    describe(axes, "nodal pressure along the face, 2:1 (32 on 16)", "x", "contact pressure / load")
     axes.legend(fontsize=8, frameon=False, ncols=2, loc="upper center")
 
 
@@ -280,11 +278,8 @@ def draw_rates(axes: Axes, segments: Statics, nodes: Statics) -> None:
     axes.axhline(PRESSURE / YOUNG, color="0.5", linewidth=0.8)
     axes.text(h[0], 1.15 * PRESSURE / YOUNG, "strain p/E", fontsize=8, color="0.4")
     axes.set_ylim(1e-7, 0.1)
-    axes.set_xticks([1 / 4, 1 / 8, 1 / 16, 1 / 32], ["1/4", "1/8", "1/16", "1/32"])
-    axes.set_xticks([], minor=True)
-    axes.set_title("rms stress error in the middle, all depths", fontsize=10, loc="left")
-    axes.set_xlabel("spacing of the coarser face")
-    axes.set_ylabel("over the load")
+    set_ticks(axes, [1 / 4, 1 / 8, 1 / 16, 1 / 32], ["1/4", "1/8", "1/16", "1/32"])
+    describe(axes, "rms stress error in the middle, all depths", "spacing of the coarser face", "over the load")
     axes.legend(fontsize=8, frameon=False, ncols=2, loc="center", bbox_to_anchor=(0.5, 0.48))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from order_study import Quantity, Study, check_differences, run_study
-from pictures import COLOURS, draw_both, draw_differences, legend, panels, save
+from pictures import COLOURS, describe, draw_both, draw_differences, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__)
@@ -107,17 +107,13 @@ def test_picture(driven: dict[str, Run], pulled: Callable[[str], Study]) -> None
         x = run.probe("drive.position_x")[after]
         force = run.probe("clock.force_x")[after]
         axes[0].plot((x - x[0]) * 1e3, force, style, color=colour, linewidth=1.1, label=name)
-    axes[0].set_title("driven rigid block, weight 1 N/m", fontsize=10, loc="left")
-    axes[0].set_xlabel("position [mm]")
-    axes[0].set_ylabel("force on the floor [N/m]")
+    describe(axes[0], "driven rigid block, weight 1 N/m", "position [mm]", "force on the floor [N/m]")
     draw_both(axes[1], nodes.finest_runs(), "force.force_x", 1e3)
     limit = FRICTION * np.abs(nodes.engine[FINEST].probe("force.force_y")) * 1e3
     times = nodes.engine[FINEST].times("force.force_y")
     axes[1].plot(times, limit, ":", color=COLOURS[6], linewidth=1.0, label="friction x normal force")
     axes[1].plot(times, -limit, ":", color=COLOURS[6], linewidth=1.0)
-    axes[1].set_title("pulled compliant block", fontsize=10, loc="left")
-    axes[1].set_xlabel("time [s]")
-    axes[1].set_ylabel("force on the floor [mN/m]")
+    describe(axes[1], "pulled compliant block", "time [s]", "force on the floor [mN/m]")
     for panel in axes[:2]:
         legend(panel)
     draw_differences(axes[2], nodes, [POSITIONS, DISSIPATION, FORCE])

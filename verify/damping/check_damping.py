@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pictures import COLOURS, draw_orders, legend, panels, save
+from pictures import COLOURS, describe, draw_orders, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
@@ -130,14 +130,12 @@ def test_picture(flights: dict[str, dict[float, Run]], creep: dict[str, Run], to
         t, x = run.times("square.position_x"), run.probe("square.position_x")
         axes[1].plot(t, (x - x[0]) / PULL, style, color=colour, linewidth=1.1, label=name)
     axes[1].plot(t, way_of_centre(t) / PULL, ":", color=COLOURS[6], linewidth=1.5, label="closed form")
-    axes[1].set_title("viscosity: creep of a square over the pull", fontsize=10, loc="left")
-    axes[1].set_xlabel("time [s]")
+    describe(axes[1], "viscosity: creep of a square over the pull", "time [s]")
     for (name, run), colour, style in zip(towed.items(), COLOURS, ("-", "--")):
         t = run.times("square.position_x")
         axes[2].plot(t, run.probe("square.position_x") - SPEED * t, style, color=colour, linewidth=1.1, label=name)
     axes[2].plot(t, lag(t), ":", color=COLOURS[6], linewidth=1.5, label="closed form")
-    axes[2].set_title("support that moves: lag", fontsize=10, loc="left")
-    axes[2].set_xlabel("time [s]")
+    describe(axes[2], "support that moves: lag", "time [s]")
     for panel in axes[1:]:
         legend(panel)
     save(CASE, figure, "damping")

@@ -11,7 +11,7 @@ import pytest
 from hht_recurrence import energies, modes_of
 from motion import SINGLE, read_motion
 from order_study import check_steps
-from pictures import COLOURS, legend, panels, save
+from pictures import COLOURS, describe, legend, panels, save
 from verification import ENGINE, Case, Label, Run
 
 CASE = Case(__file__)
@@ -150,8 +150,7 @@ def test_picture(free: dict[str, Run], damped: dict[float, Damped], bounce: dict
         axes[2].plot(run.times("clock.kinetic"), error(run), color=colour, linewidth=1.1, label=name)
     titles = "large free swings", f"small ones, step {LARGE_STEP:g}", f"bounce, step {STEPS[1]:g}"
     for panel, title in zip(axes, titles):
-        panel.set_title(title, fontsize=10, loc="left")
-        panel.set_xlabel("periods of the oval mode")
+        describe(panel, title, "periods of the oval mode")
         legend(panel)
     axes[2].set_xlabel("time [s]")
     save(CASE, figure, "energy_drift")

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.axes import Axes
 
 from order_study import Quantity, Study, check_differences, run_study
-from pictures import COLOURS, MARKERS, draw_both, draw_differences, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, draw_both, draw_differences, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__)
@@ -218,18 +218,15 @@ def draw_driven(axes: Axes) -> None:
                   np.hypot(run.probe("force.force_y"), drive.ratio * run.probe("force.force_x")), marker, color=colour,
                   markersize=3)
     axes.set_xlim(-0.05, 3)
-    axes.set_title("driven rigid block: law (lines), engine (marks)", fontsize=10, loc="left")
-    axes.set_xlabel("opening over the critical one")
-    axes.set_ylabel("root of pull^2 + (ratio x shear)^2 [N/m]")
+    describe(axes, "driven rigid block: law (lines), engine (marks)", "opening over the critical one",
+             "root of pull^2 + (ratio x shear)^2 [N/m]")
 
 
 def test_picture(pulled: Study) -> None:
     figure, axes = panels(3, "Bond that wears and tears", across=True)
     draw_driven(axes[0])
     draw_both(axes[1], pulled.finest_runs(), "force.force_y", 1e3)
-    axes[1].set_title("pulled compliant block", fontsize=10, loc="left")
-    axes[1].set_xlabel("time [s]")
-    axes[1].set_ylabel("pull on the bench [mN/m]")
+    describe(axes[1], "pulled compliant block", "time [s]", "pull on the bench [mN/m]")
     for panel in axes[:2]:
         legend(panel)
     draw_differences(axes[2], pulled, [POSITIONS, FORCE, DISSIPATION])

@@ -10,12 +10,11 @@ from __future__ import annotations
 import os
 import re
 import subprocess
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
-from foreign.meshes import PLAIN, Mesh
+from foreign.meshes import PLAIN, Mesh, Where
 
 PLATE_CELLS, PLATE_FROM, PLATE_TO = 6, -0.5, 3.0  # along x
 STEEL = 1e3  # mu: of plates, all of whose nodes are placed
@@ -30,8 +29,9 @@ class Failed(RuntimeError):
 class Deck:
     """An input file that grows: bodies, plates and springs first, then contacts, then steps."""
 
-    def __init__(self, stiffness: float, friction: float = 0.0) -> None:
-        """The penalty is as stiff along as across."""
+    def __init__(self, stiffness: float, meshes: dict[str, Mesh], moduli: dict[str, float],
+                 friction: float = 0.0) -> None:
+        """The penalty is as stiff along as across; lambda = 4 mu."""
         self._nodes, self._cells = 0, 0
         self._axis: list[int] = []
         self._bodies: dict[str, tuple[int, Mesh]] = {}  # with its first node
@@ -43,20 +43,22 @@ class Deck:
             self._model += ["*FRICTION", f"{friction:.15g},{stiffness:.15g}"]
         self._steps: list[str] = []
         self._places: list[dict[str, np.ndarray]] = []  # by step
+        for name, mesh in meshes.items():
+            self._add(name.upper(), mesh, moduli[name])
 
-    def add(self, name: str, mesh: Mesh, mu: float, lame: float, half: bool = True) -> None:
+    def _add(self, name: str, mesh: Mesh, mu: float) -> None:
         """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle. Of a
         half one u_x = 0 on x = 0."""
         first = self._place(mesh.points)
         self._bodies[name] = first, mesh
-        if half:
+        if mesh.half:
             self._axis += list(first + np.flatnonzero(np.abs(mesh.points[:, 0]) < PLAIN))
         before = self._connect(name, "CPE6", first + mesh.cells)
         middle = (mesh.points[:, 1].max() + mesh.points[:, 1].min()) / 2
         heights = mesh.side_middles()[:, 1] - middle
         for surface, there in (("UP", heights > 0.2), ("DOWN", heights < -0.2)):
             self._surface(name + surface, [(before + cell, side) for cell, side in mesh.outline[there]])
-        bulk = lame + 2 * mu / 3
+        bulk = 4 * mu + 2 * mu / 3
         self._material(name, ["*HYPERELASTIC,NEO HOOKE", f"{mu / 2:.15g},{2 / bulk:.15g}"])
 
     def add_plate(self, name: str, low: float, high: float, faces: str) -> None:
@@ -71,7 +73,7 @@ class Deck:
         self._model += [f"*NSET,NSET=ALL{name}", *(str(first + k) for k in range(2 * row))]
         self._plates.append(name)
 
-    def hold(self, body: str, where: Callable[[np.ndarray], np.ndarray], stiffness: float, name: str) -> None:
+    def hold(self, body: str, where: Where, stiffness: float, name: str) -> None:
         """By springs of so much a length along x and y on what is there of its outline, Simpson's rule on each side.
         Their other ends move as a plate does, by loads: ccx 2.20 fails with springs between two nodes (SPRING2)."""
         first, mesh = self._bodies[body]

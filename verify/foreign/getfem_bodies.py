@@ -11,7 +11,7 @@ from collections.abc import Callable
 import getfem
 import numpy as np
 
-from foreign.meshes import PLAIN, Mesh
+from foreign.meshes import PLAIN, Mesh, Where
 
 getfem.util_warning_level(0)
 getfem.util_trace_level(0)
@@ -34,11 +34,10 @@ class NotConverged(RuntimeError):
 
 
 class Bodies:
-    """Variables u_<name>, pressures p_<name>, multipliers t_<slave>; `load` places what is imposed."""
+    """Variables u_<name>, pressures p_<name>, multipliers t_<slave>; `load` places what is imposed. lambda = 4 mu."""
 
-    def __init__(self, law: str, imposed: dict[str, float]) -> None:
-        self.model, self.law = getfem.Model("real"), law
-        self.meshes: dict[str, Mesh] = {}
+    def __init__(self, law: str, meshes: dict[str, Mesh], moduli: dict[str, float], imposed: dict[str, float]) -> None:
+        self.model, self.law, self.meshes = getfem.Model("real"), law, meshes
         self._own: dict[str, getfem.Mesh] = {}
         self._rules: dict[str, getfem.MeshIm] = {}
         self._at = dict(imposed)
@@ -46,23 +45,24 @@ class Bodies:
         self._slip_since: list[str] = []  # bodies
         for name, value in imposed.items():
             self.model.add_initialized_data(name, value)
+        for name, mesh in meshes.items():
+            self._add(name, mesh, moduli[name])
 
-    def add(self, name: str, mesh: Mesh, mu: float, lame: float) -> None:
+    def _add(self, name: str, mesh: Mesh, mu: float) -> None:
+        """Of a half one u_x = 0 on x = 0."""
         own = as_getfem(mesh)
         field = fields(own, 2, 2)
-        self.meshes[name], self._own[name] = mesh, own
+        self._own[name] = own
         self._rules[name] = getfem.MeshIm(own, getfem.Integ("IM_TRIANGLE(6)"))
         self.model.add_fem_variable(f"u_{name}", field)
         self.model.add_initialized_data(f"mu_{name}", mu)
-        self.model.add_initialized_data(f"lame_{name}", lame)
+        self.model.add_initialized_data(f"lame_{name}", 4 * mu)
         stress = LAWS[self.law].format(n=name, F=f"(Id(2)+Grad_u_{name})")
         self.model.add_nonlinear_term(self._rules[name], f"{stress}:Grad_Test_u_{name}")
+        if mesh.half:
+            self.model.add_normal_Dirichlet_condition_with_multipliers(self._rules[name], f"u_{name}", 2, AXIS)
 
-    def hold_axis(self, name: str) -> None:
-        """u_x = 0 on x = 0."""
-        self.model.add_normal_Dirichlet_condition_with_multipliers(self._rules[name], f"u_{name}", 2, AXIS)
-
-    def hold(self, name: str, where: Callable[[np.ndarray], np.ndarray], stiffness: float, x: str, y: str) -> None:
+    def hold(self, name: str, where: Where, stiffness: float, x: str, y: str) -> None:
         """By springs of so much a length on what is there of its outline, whose other ends move by imposed values."""
         own = self._own[name]
         sides = own.region(OUTLINE)
@@ -104,6 +104,17 @@ class Bodies:
             brick, self._rules[slave], OUTLINE, f"u_{slave}", f"t_{slave}", *before[slave])
         self.model.add_master_contact_boundary_to_large_sliding_contact_brick(
             brick, self._rules[master], OUTLINE, f"u_{master}", *before[master])
+
+    def go(self, loads: list[dict[str, float]], steps: list[int],
+           force: Callable[[], object]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """Through all loads; [loads x ...] forces, and by body [loads x nodes x 2] outlines."""
+        forces, outlines = [], {name: [] for name in self.meshes}
+        for imposed, count in zip(loads, steps):
+            self.load(imposed, count)
+            forces.append(force())
+            for name, places in outlines.items():
+                places.append(self.outline(name))
+        return np.array(forces), {name: np.array(places) for name, places in outlines.items()}
 
     def load(self, imposed: dict[str, float], steps: int) -> None:
         """From the last load in so many steps, in halves where Newton's method fails."""

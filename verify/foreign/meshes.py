@@ -9,6 +9,7 @@ import numpy as np
 
 PLAIN = 1e-9  # a point is on a line if it is that near to it
 Curve = Callable[[np.ndarray], np.ndarray]  # [n] from 0 to 1 -> [n x 2]
+Where = Callable[[np.ndarray], np.ndarray]  # [sides x 2] middles of sides -> [sides] whether they are there
 
 
 @dataclass
@@ -20,6 +21,11 @@ class Mesh:
     outline: np.ndarray  # [sides x 2] cell and number of its side, of those on the curve
     order: np.ndarray  # points along the curve
 
+    @property
+    def half(self) -> bool:
+        """x = 0 is an axis of symmetry."""
+        return bool(self.points[:, 0].min() > -PLAIN)
+
     def side_nodes(self, cell: int, side: int) -> np.ndarray:
         """[3] both ends and the middle."""
         return self.cells[cell, [side, (side + 1) % 3, 3 + side]]
@@ -27,6 +33,14 @@ class Mesh:
     def side_middles(self) -> np.ndarray:
         """[sides x 2] of the outline."""
         return self.points[self.cells[self.outline[:, 0], 3 + self.outline[:, 1]]]
+
+
+def above(height: float) -> Where:
+    return lambda middles: middles[:, 1] > height
+
+
+def below(height: float) -> Where:
+    return lambda middles: middles[:, 1] < height
 
 
 def half_disc(rings: int, centre: float) -> Mesh:
@@ -86,8 +100,8 @@ def welded(mesh: Mesh) -> Mesh:
 
 
 def block(columns: int, rows: int, left: float, right: float, height: float) -> Mesh:
-    """A rectangle whose top is y = 0, of squares in two triangles each; its outline is the top, from the right to the left,
-    and the bottom, from the left to the right."""
+    """A rectangle whose top is y = 0, of squares in two triangles each; its outline is the top, from the right to the
+    left, and the bottom, from the left to the right."""
     x, y = np.linspace(left, right, 2 * columns + 1), np.linspace(-height, 0, 2 * rows + 1)
     points = np.stack(np.meshgrid(x, y), axis=2).reshape(-1, 2)
 

@@ -2,15 +2,54 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+KEYS = ("first", "body", "slave", "rings", "rows", "steps", "stiffness", "down", "increment")  # columns that name a run
 
-def read_table(file: Path) -> np.ndarray:
+
+@dataclass
+class Opinion:
+    """Of one solver."""
+
+    force: np.ndarray  # [places]
+    error: np.ndarray  # [places] relative
+
+
+class Table:
     """Rows below the header; lines that begin with # say where they come from."""
-    lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
-    return np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+
+    def __init__(self, file: Path) -> None:
+        lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
+        self.names = lines[0].split(",")
+        self.rows = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
+
+    def of(self, **key: float) -> np.ndarray:
+        """[rows x columns that are no KEYS] of one run, or of all that the key leaves."""
+        there = np.full(len(self.rows), True)
+        for name, value in key.items():
+            there &= np.isclose(self.column(name), value)
+        return self.rows[there][:, [name not in KEYS for name in self.names]]
+
+    def column(self, name: str) -> np.ndarray:
+        return self.rows[:, self.names.index(name)]
+
+    def outlines(self, **key: float) -> np.ndarray:
+        """[places x nodes x 2]"""
+        found = self.of(**key)
+        return found.reshape(len(found), -1, 2).transpose(1, 0, 2)
+
+
+def largest_from_here(values: np.ndarray) -> np.ndarray:
+    """[..., places] the largest of this place and later ones."""
+    return np.maximum.accumulate(values[..., ::-1], axis=-1)[..., ::-1]
+
+
+def largest(values: np.ndarray) -> np.ndarray:
+    """[..., places] the largest of all."""
+    return np.broadcast_to(values.max(axis=-1, keepdims=True), values.shape)
 
 
 def distances(places: np.ndarray, line: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import pytest
 from matplotlib.colors import LogNorm
 
 from fields import frames_of
-from pictures import panels, save
+from pictures import describe, panels, save
 from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__, cost=3)
@@ -185,8 +185,7 @@ def test_picture() -> None:
                        fontsize=8, color="white" if value < 1e-3 else "black")
         panel.set_xticks(np.arange(len(RATIOS)) + 0.5, [f"{ratio:g}" for ratio in RATIOS])
         panel.set_yticks(np.arange(len(SPEEDS)) + 0.5, [f"{speed:g}" for speed in SPEEDS])
-        panel.set_title(f"safety {safety:g}", fontsize=10, loc="left")
-        panel.set_xlabel("ratio of stiffness")
+        describe(panel, f"safety {safety:g}", "ratio of stiffness")
     axes[0].set_ylabel("speed over that of S waves")
     figure.colorbar(shown, ax=axes[-1])
     save(CASE, figure, "impacts")

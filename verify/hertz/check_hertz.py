@@ -11,8 +11,8 @@ from matplotlib.axes import Axes
 from curved_block import NODES, RADIUS, YOUNG, block, levels, spread, top_above_centroid
 from fields import along_outline
 from foundation import half_width, pressure_on_springs
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -202,8 +202,7 @@ def draw_profile(axes: Axes) -> None:
               color=COLOURS[0], linewidth=1, label=f"on springs, stiffness of {FIRST}")
     axes.set_xlim(-1.2, 1.2)
     axes.set_ylim(-0.03, 1.45)
-    axes.set_xlabel("x / a")
-    axes.set_title("pressure over the peak", fontsize=10, loc="left")
+    describe(axes, "pressure over the peak", "x / a")
 
 
 def draw_errors(axes: Axes) -> None:
@@ -211,12 +210,9 @@ def draw_errors(axes: Axes) -> None:
         for expected, style in (("hertz", "-"), ("on_springs", "--")):
             found = [over_rests(errors_of(what, expected, n)) for n in SEGMENTS]
             name = "Hertz" if expected == "hertz" else "on springs"
-            axes.loglog(spacings(), found, style, marker="o", markersize=4, color=colour, linewidth=1.1,
-                        label=f"{what}, {name}: {observed_order(spacings(), found):.2f}")
-    axes.set_xticks(spacings(), [f"{h:.3f}" for h in spacings()])
-    axes.set_xticks([], minor=True)
-    axes.set_xlabel("spacing of the face")
-    axes.set_title("errors, rms over five loads", fontsize=10, loc="left")
+            draw_rate(axes, spacings(), found, f"{what}, {name}", colour, "o", style)
+    set_ticks(axes, spacings(), [f"{h:.3f}" for h in spacings()])
+    describe(axes, "errors, rms over five loads", "spacing of the face")
 
 
 def draw_shares(axes: Axes) -> None:
@@ -228,8 +224,7 @@ def draw_shares(axes: Axes) -> None:
                   linewidth=1, label=f"{segments} segments")
         axes.plot(a, [100 * peak_on_springs(rest) for rest in rests_there], "k:", linewidth=1.2,
                   label="" if segments != FINEST else "penalty alone, on springs")
-    axes.set_xlabel("a / h")
-    axes.set_title("peak over Hertz's, less 1 [%]", fontsize=10, loc="left")
+    describe(axes, "peak over Hertz's, less 1 [%]", "a / h")
 
 
 def peak_on_springs(rest: Pressed) -> float:

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from dolfinx.fem import Constant, assemble_scalar
 from matplotlib.axes import Axes
 
-from fem.compiled import compile_form
-from fem.dynamics import Explicit
-from fem.meshes import disc
-from fem.solid import Material, Solid
+from fem.impact import velocities
 from fields import frames_of
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -67,27 +63,11 @@ def time_error(velocities: np.ndarray, error: float) -> float:
     return float(sum(error / slopes[int(np.argmax(share > limit))] for limit in (0.01, 0.99)))
 
 
-def finite_elements(rings: int, speed: float) -> np.ndarray:
-    """Velocity of the centre of mass at TIMES; quadratic triangles, half of the stable step with all nodes in touch."""
-    solid = Solid(disc(rings), Material())
-    height, stiffness = Constant(solid.domain, 10.0), Constant(solid.domain, STIFFNESS)
-    motion = Explicit(solid, solid.strain_energy() + solid.plate_energy(height, stiffness, -1))
-    steps = int(np.ceil(PERIOD * motion.largest_frequency()))
-    height.value = -START
-    motion.v.interpolate(lambda x: np.stack([0 * x[0], 0 * x[0] - speed]))
-    motion.start()
-    momentum = compile_form(motion.v[1] * solid.dx)
-    values = [assemble_scalar(momentum)]
-    for _ in TIMES[1:]:
-        for _ in range(steps):
-            motion.step(PERIOD / steps)
-        values.append(assemble_scalar(momentum))
-    return -speed * np.array(values) / values[0]
-
-
 @pytest.fixture(scope="module")
 def elements() -> dict[float, list[np.ndarray]]:
-    return {speed: [finite_elements(rings, speed) for rings in RINGS] for speed in SPEEDS}
+    """Velocity of the centre of mass at TIMES, by two meshes."""
+    return {speed: [velocities(rings, STIFFNESS, speed, START, PERIOD, len(TIMES) - 1) for rings in RINGS]
+            for speed in SPEEDS}
 
 
 @pytest.fixture(scope="module")
@@ -221,8 +201,7 @@ def draw_forces(axes: Axes, runs: dict, elements: dict, references: list[np.ndar
     coarse, fine = (force(values) for values in elements[SPEED])
     axes.errorbar(middle[::8], fine[::8], np.abs(fine - coarse)[::8], fmt=".", color=COLOURS[7], markersize=4,
                   capsize=2, label="finite elements")
-    axes.set_title(f"force on the wall, speed {SPEED:g}, means over {SMOOTH * PERIOD:g}", fontsize=10, loc="left")
-    axes.set_ylabel("force over mu R")
+    describe(axes, f"force on the wall, speed {SPEED:g}, means over {SMOOTH * PERIOD:g}", y="force over mu R")
     axes.set_ylim(top=1.35 * fine.max())
 
 
@@ -230,12 +209,9 @@ def draw_convergence(axes: Axes, runs: dict, elements: dict) -> None:
     steps = [spacing(n) for n in NODES]
     for variant, colour, marker in zip(VARIANTS, COLOURS, MARKERS):
         errors = differences(runs[variant, SPEED], elements)
-        axes.loglog(steps, errors, marker=marker, markersize=4, linewidth=1.0, color=colour,
-                    label=f"{' '.join(variant)}: {observed_order(steps, errors):.2f}")
+        draw_rate(axes, steps, errors, " ".join(variant), colour, marker)
     own = np.sqrt(np.mean((elements[SPEED][1] - elements[SPEED][0])**2)) / SPEED
     axes.axhline(own, color=COLOURS[7], linewidth=0.8, linestyle="--", label="finite elements, two meshes")
-    axes.set_xticks(steps, [str(n) for n in NODES])
-    axes.set_xticks([], minor=True)
-    axes.set_xlabel("nodes")
-    axes.set_title("momentum - finite elements, rms; slopes", fontsize=10, loc="left")
+    set_ticks(axes, steps, [str(n) for n in NODES])
+    describe(axes, "momentum - finite elements, rms; slopes", "nodes")
     axes.legend(fontsize=8, frameon=False, loc="upper left")

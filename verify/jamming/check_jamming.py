@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
 from contact_network import Outlines
+from histories import speeds
 from jamming_packing import BOTTOM, DISCS, FORCES, LEFT, RIGHT, TOP, Packing, Stage, read_packing
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, legend, panels, save
 from pliant.frames import Frames
 from verification import FULL, Case, Label
 
@@ -50,17 +51,9 @@ def half_width(fraction: float) -> float:
     return 0.5 * math.sqrt(AREA / fraction)
 
 
-def speeds() -> list[list[float]]:
-    """At which each wall closes in: triangles in time, one a stage."""
-    corners = []
-    for i, way in enumerate(-np.diff([half_width(fraction) for fraction in (START, *CLOSING, *OPENING)])):
-        start = i * PAUSE
-        corners += [[start, 0.0], [start + RAMP / 2, 2 * float(way) / RAMP], [start + RAMP, 0.0]]
-    return corners
-
-
 def scene(seed: int, outline_nodes: int) -> str:
-    half, closing = half_width(START), speeds()
+    half = half_width(START)
+    closing = speeds([-half_width(fraction) for fraction in (START, *CLOSING, *OPENING)], PAUSE, RAMP)
     length = 2 * half + 2
     middle = half - CLEARANCE - length / 2  # of a wall that ends just before the next one's face
     return CASE.scene(
@@ -271,8 +264,7 @@ def draw_packing(axes: Axes, packing: Packing, stage: Stage) -> None:
     axes.set_title(f"{values}; dotted: what counts", fontsize=10, loc="left")
     axes.set_xlim(-1.03 * stage.half, 1.03 * stage.half)
     axes.set_ylim(-1.03 * stage.half, 1.03 * stage.half)
-    axes.set_xlabel("x over the small diameter")
-    axes.set_ylabel("y over the small diameter")
+    describe(axes, x="x over the small diameter", y="y over the small diameter")
     axes.set_aspect("equal")
     axes.grid(False)
 
@@ -287,8 +279,7 @@ def draw_histories(axes: list[Axes], packings: list[Packing]) -> None:
                 panel.plot(*np.transpose(part), style, color=colour, markersize=4, linewidth=1.1,
                            label=f"{what}, packing {seed}")
         panel.axvspan(0.825, 0.855, color=COLOURS[6], alpha=0.2, label="jamming: 0.84 +- 0.015")
-        panel.set_xlabel("solid fraction of the region")
-        panel.set_ylabel(label)
+        describe(panel, x="solid fraction of the region", y=label)
     axes[1].axhline(ISOSTATIC, color=COLOURS[6], linewidth=1.0, linestyle="--", label="isostatic")
     axes[1].set_ylim(3.4, 5.1)
     axes[1].set_title("below jamming the opened packing has no contacts", fontsize=9, loc="left")
@@ -305,6 +296,5 @@ def draw_excess(axes: Axes, packings: list[Packing]) -> None:
     axes.loglog(line, 3.6 * np.sqrt(line), "--", color=COLOURS[6], linewidth=1, label="3.6 x root: O'Hern et al. 2003")
     axes.set_yticks([0.2, 0.4, 0.6, 0.8, 1.0], ["0.2", "0.4", "0.6", "0.8", "1"])
     axes.set_yticks([], minor=True)
-    axes.set_xlabel("solid fraction above jamming")
-    axes.set_ylabel("Z - isostatic")
+    describe(axes, x="solid fraction above jamming", y="Z - isostatic")
     legend(axes)

@@ -15,9 +15,9 @@ from fem.plates import Plates, hertz_force, hertz_half_width
 from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from motion import SINGLE, Motion, read_motion
-from pictures import COLOURS, MARKERS, draw_ratios, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, draw_rate, draw_ratios, legend, panels, save, set_ticks
 from squeeze import LONG_PAUSE, OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_reference, worst_over_reference
-from verification import FULL, Case, Label, observed_order
+from verification import FULL, Case, Label
 
 CASE = Case(__file__)
 NODES = [168, 340, 700, 1400] if FULL else [168, 340, 700]
@@ -156,12 +156,9 @@ def draw_convergence(axes: Axes, runs: dict[str, dict[int, list[Rests]]], elemen
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
         found = 100 * rms_errors(runs[recipe], elements)
         locks = ", locks" if (recipe, poisson) == ("t3", 0.49) else ""
-        axes.loglog(spacings(NODES), found, marker=marker, markersize=4, linewidth=1.1, color=colour,
-                    label=f"{recipe}: {observed_order(spacings(NODES), found):.2f}{locks}")
+        draw_rate(axes, spacings(NODES), found, recipe + locks, colour, marker)
     ends = np.array([min(spacings(NODES)), max(spacings(NODES))])
     axes.loglog(ends, 0.15 * (ends / ends[0]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
-    axes.set_xticks(spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
-    axes.set_xticks([], minor=True)
+    set_ticks(axes, spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
     axes.set_ylim(0.1, 30)
-    axes.set_title(f"nu = {poisson}: rms error over finite elements [%]", fontsize=10, loc="left")
-    axes.set_xlabel("node distance of the outline over R")
+    describe(axes, f"nu = {poisson}: rms error over finite elements [%]", "node distance of the outline over R")

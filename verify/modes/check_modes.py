@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 
 from disc_spectrum import count_in_the_plane, disc_modes, frequencies, frequency_functions, roots
 from motion import SINGLE, read_motion
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, legend, panels, save, set_ticks
 from verification import ENGINE, FULL, LONGEST_RUN, REFERENCE, ROOT, Case, Label, observed_order
 
 CASE = Case(__file__)
@@ -304,10 +304,7 @@ def draw_errors(axes: Axes, mass: str, poisson: float, orders: list[int]) -> Non
         axes.loglog(NODES, 0.05 * (np.array(H) / H[0])**order, style, color=COLOURS[6], linewidth=1.0,
                     label=f"order {order}")
     ticks = sorted({*NODES, nodes[-1]})
-    axes.set_xticks(ticks, [str(n) for n in ticks])
-    axes.set_xticks([], minor=True)
+    set_ticks(axes, ticks, [str(n) for n in ticks])
     axes.set_ylim(1e-4, 1e4)  # room for the legend
-    axes.set_title(f"{mass} mass, nu = {poisson}", fontsize=10, loc="left")
-    axes.set_xlabel("nodes")
-    axes.set_ylabel("rms error [%]")
+    describe(axes, f"{mass} mass, nu = {poisson}", "nodes", "rms error [%]")
     legend(axes)

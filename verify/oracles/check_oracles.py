@@ -13,7 +13,7 @@ from fem.free_disc import Oscillation
 from fem.plates import Plates, Squeezed, hertz_force, hertz_half_width, modulus, without_penalty
 from fem.solid import Material
 from oracle_tables import read_oracle
-from pictures import COLOURS, legend, panels, save
+from pictures import COLOURS, describe, legend, panels, save, set_ticks
 from verification import FULL, Case, Label
 
 CASE = Case(__file__, fast=True)
@@ -131,17 +131,14 @@ def test_picture(plates: dict[float, Both], oscillations: list[Oscillation]) -> 
         axes[0].plot(percent, 1e4 * np.array(forces), marker, color=colour, label=f"{mesh[0]} rings, {mesh[1]} edges")
     bars = 1e4 * np.array([stored[1][D] for D in APPROACHES])
     axes[0].errorbar(percent, 0 * bars, bars, fmt="none", color="0.3", capsize=3, label="stored error")
-    axes[0].set_title("disc between plates: force over the stored, less 1 [1e-4]", fontsize=10, loc="left")
-    axes[0].set_xlabel("approach over the diameter [%]")
+    describe(axes[0], "disc between plates: force over the stored, less 1 [1e-4]", "approach over the diameter [%]")
     axes[0].set_xscale("log")
-    axes[0].set_xticks(percent, [f"{value:g}" for value in percent])
-    axes[0].set_xticks([], minor=True)
+    set_ticks(axes[0], percent, [f"{value:g}" for value in percent])
     axes[1].plot(oscillations[1].times, oscillations[1].s, color=COLOURS[0], linewidth=1.1, label="computed")
     rows = (OSCILLATION["quantity"] != "horizontal_diameter_over_R") & (OSCILLATION["t_cs_over_R"] < UNTIL - 0.1)
     axes[1].plot(OSCILLATION["t_cs_over_R"][rows], OSCILLATION["value"][rows], "s", color=COLOURS[1], fillstyle="none",
                  label="stored")
-    axes[1].set_title("free disc: s = sqrt(Ixx / Ixx0)", fontsize=10, loc="left")
-    axes[1].set_xlabel("time [R / cs]")
+    describe(axes[1], "free disc: s = sqrt(Ixx / Ixx0)", "time [R / cs]")
     for panel in axes:
         legend(panel)
     save(CASE, figure, "oracles")

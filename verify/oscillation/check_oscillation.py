@@ -14,8 +14,8 @@ from fem.free_disc import Oscillation
 from fem.solid import Material
 from motion import SINGLE, Motion, read_motion
 from oracle_tables import read_oracle
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -352,13 +352,10 @@ def test_picture_of_convergence(swings: dict) -> None:
                                 (axes[1], "kinetic energy at the start", Swing.energy_error)):
         for i, variant in enumerate(VARIANTS):
             errors = [error(swings[variant][n]) for n in NODES]
-            panel.loglog(steps, errors, "-" if variant[1] == "lumped" else "--", marker=MARKERS[i // 2], markersize=4,
-                         linewidth=1.0, color=COLOURS[i // 2],
-                         label=f"{' '.join(variant)}: {observed_order(list(steps), errors):.2f}")
-        panel.set_title(f"{title}; slopes", fontsize=10, loc="left")
-        panel.set_xlabel("nodes")
-        panel.set_xticks(steps, [str(n) for n in NODES])
-        panel.set_xticks([], minor=True)
+            draw_rate(panel, steps, errors, " ".join(variant), COLOURS[i // 2], MARKERS[i // 2],
+                      "-" if variant[1] == "lumped" else "--")
+        describe(panel, f"{title}; slopes", "nodes")
+        set_ticks(panel, steps, [str(n) for n in NODES])
         panel.set_ylabel("relative error")
         panel.set_ylim(bottom=panel.get_ylim()[0] / 30)
         panel.legend(fontsize=7, frameon=False, ncols=2, loc="lower right")

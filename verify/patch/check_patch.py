@@ -11,7 +11,7 @@ from fem.compiled import compile_form
 from fem.meshes import disc
 from fem.solid import Material, Solid
 from fem.statics import Minimiser
-from pictures import COLOURS, legend, panels, save
+from pictures import COLOURS, describe, legend, panels, save, set_ticks
 from pliant.frames import COMPLIANT, Frames
 from squeeze import RECIPES
 from verification import Case, Label, Run
@@ -173,9 +173,7 @@ def test_picture(flawed: dict) -> None:
         axes[2].loglog(NODES, found, marker=marker, color=colour, label=f"{shape}, {part}")
         slope = found[-1] * (np.array(NODES) / NODES[-1]) ** (-order / 2)
         axes[2].loglog(NODES, slope, ":", color=colour, label=f"slope {order} in h")
-    axes[2].set_xticks(NODES, [str(nodes) for nodes in NODES])
-    axes[2].set_xticks([], minor=True)
-    axes[2].set_xlabel("nodes")
-    axes[2].set_title("rms error", fontsize=10, loc="left")
+    set_ticks(axes[2], NODES, [str(nodes) for nodes in NODES])
+    describe(axes[2], "rms error", "nodes")
     legend(axes[2])
     save(CASE, figure, "patch")

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from fem.plates import Plates, Squeezed, hertz_force, hertz_half_width
 from fem.solid import Material
 from oracle_tables import read_oracle
-from pictures import COLOURS, MARKERS, draw_ratios, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, draw_rate, draw_ratios, legend, panels, save, set_ticks
 from squeeze import (OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_engine, by_reference, to_rigid_contact,
                      to_zero_spacing, worst_over_reference)
-from verification import FULL, Case, Label, observed_order
+from verification import FULL, Case, Label
 
 CASE = Case(__file__)
 # The cheapest recipe is the furthest off: it gets one size more.
@@ -208,19 +208,15 @@ def draw_forces(axes: Axes, runs: dict, percent: np.ndarray) -> None:
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
         axes.plot(percent, mean(runs[recipe][168]), marker, markersize=4, fillstyle="none", color=colour,
                   label=f"{recipe}, 168 nodes")
-    axes.set_title("force on a plate over mu R", fontsize=10, loc="left")
-    axes.set_xlabel("approach over the diameter [%]")
+    describe(axes, "force on a plate over mu R", "approach over the diameter [%]")
 
 
 def draw_convergence(axes: Axes, runs: dict, elements: np.ndarray) -> None:
     for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
         steps, found = spacings(runs[recipe]), 100 * np.array(rms_errors(runs[recipe], elements))
-        axes.loglog(steps, found, marker=marker, markersize=4, linewidth=1.1, color=colour,
-                    label=f"{recipe}: {observed_order(steps, found):.2f}")
+        draw_rate(axes, steps, found, recipe, colour, marker)
     ticks = spacings(runs["t3"])
     axes.loglog(ticks, 0.1 * (np.array(ticks) / ticks[-1]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
-    axes.set_xticks(ticks, [f"{h:.3f}" for h in ticks])
-    axes.set_xticks([], minor=True)
-    axes.set_title("5 to 30 %, corners and facets at the poles", fontsize=10, loc="left")
-    axes.set_xlabel("node distance of the outline over R")
-    axes.set_ylabel("rms error of the force [%]")
+    set_ticks(axes, ticks, [f"{h:.3f}" for h in ticks])
+    describe(axes, "5 to 30 %, corners and facets at the poles", "node distance of the outline over R",
+             "rms error of the force [%]")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from histories import speeds
 from pictures import COLOURS, legend, panels, save
 from squeeze import NEWTON, force_of_motion
 from verification import FULL, Case, Label, Run
@@ -35,17 +36,6 @@ REST_TIMES = PAUSE * np.arange(1, len(APPROACHES) + 1)
 REST = 0.005  # 0.15 % of the penalty and the second-order error of the mesh
 
 
-def speeds() -> list[list[float]]:
-    """Of the lower plate: triangles in time, one an approach."""
-    corners: list[list[float]] = []
-    closed = -GAP
-    for i, approach in enumerate(APPROACHES):
-        start, way = i * PAUSE, approach - closed
-        corners += [[start, 0.0], [start + RAMP / 2, 2 * way / RAMP], [start + RAMP, 0.0]]
-        closed = approach
-    return corners
-
-
 def bearings() -> str:
     return "\n".join(f"""[[boundary]]
 of = "disc"
@@ -56,7 +46,7 @@ stiffness = 1
 
 
 def scene(held: bool) -> str:
-    up = speeds()
+    up = speeds([-GAP, *APPROACHES], PAUSE, RAMP)
     down = [[t, -v] for t, v in up]
     return CASE.scene(nodes=NODES, end=PAUSE * len(APPROACHES), rest=PAUSE, up=up, down=down,
                       bearings=bearings() if held else "")

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pictures import COLOURS, MARKERS, legend, panels, save
+from pictures import COLOURS, MARKERS, describe, legend, panels, save
 from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
@@ -323,9 +323,7 @@ def test_picture() -> None:
              COLOURS[1])):
         axes[0].plot(t, sign * found.run.probe(f"disc.{name}"), color=colour, linewidth=2.0, label=label)
         axes[0].plot(t, exact, "--", color=COLOURS[6], linewidth=1.0, label="closed form" if sign < 0 else None)
-    axes[0].set_title("starts to slide, turns to rolling", fontsize=10, loc="left")
-    axes[0].set_xlabel("time over sqrt(R / g)")
-    axes[0].set_ylabel("over u0")
+    describe(axes[0], "starts to slide, turns to rolling", "time over sqrt(R / g)", "over u0")
     draw_inclines(axes[1], axes[2])
     for panel in axes:
         legend(panel)
@@ -340,15 +338,13 @@ def draw_inclines(left, right) -> None:
         left.plot(angles, exact, color=colour, linewidth=1.0, label=f"{label}, closed form")
         left.plot(ANGLES, [slopes(descent("engine", a))[index] for a in ANGLES], marker, color=colour, markersize=5,
                   label="engine")
-    left.set_title("inclines: rolls up to atan(3 x 0.2) = 31 degrees", fontsize=10, loc="left")
-    left.set_ylabel("over g")
+    describe(left, "inclines: rolls up to atan(3 x 0.2) = 31 degrees", y="over g")
     rolls = [a for a in ANGLES if Incline(a).used <= 1]
     inner = angles[[Incline(a).used <= 1 for a in angles]]
     right.plot(inner, [100 * (Incline(a).creep - RIM * Incline(a).d) for a in inner], color=COLOURS[0], linewidth=1.0,
                label="closed form")
     right.plot(rolls, [100 * (slopes(descent("engine", a))[0] / slopes(descent("engine", a))[1] - 1) for a in rolls],
                "o", color=COLOURS[0], label="engine")
-    right.set_title("creep of rolling", fontsize=10, loc="left")
-    right.set_ylabel("u / (w R) - 1 [%]")
+    describe(right, "creep of rolling", y="u / (w R) - 1 [%]")
     for panel in (left, right):
         panel.set_xlabel("incline [degrees]")

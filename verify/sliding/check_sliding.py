@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from pictures import COLOURS, legend, panels, save
+from pictures import COLOURS, describe, legend, panels, save
 from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
@@ -181,8 +181,7 @@ def test_picture() -> None:
         axes[1].plot(times, FRICTION * MASS * start.cosine * way, "--", color=COLOURS[6], linewidth=1.0,
                      label="friction x way" if start is STARTS[-1] else None)
     for panel, label in zip(axes, ("speed downhill over sqrt(g L)", "dissipated; density, g, L: 1")):
-        panel.set_xlabel("time over sqrt(L / g)")
-        panel.set_ylabel(label)
+        describe(panel, x="time over sqrt(L / g)", y=label)
         legend(panel)
     save(CASE, figure, "sliding")
 

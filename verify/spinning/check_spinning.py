@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from cylinder import Cylinder, linear_strains, spinning_at, spun_up_to
 from fields import frames_of
 from motion import SINGLE, read_motion
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import Case, Label, Run
 
 CASE = Case(__file__, cost=2)
 
@@ -221,12 +221,9 @@ def test_picture() -> None:
     for (recipe, mass), colour in zip(VARIANTS, COLOURS):
         for spin, style, marker in ((SLOW, "-", MARKERS[0]), (FAST, "--", MARKERS[1])):
             errors = np.abs(rim_errors(recipe, mass, spin))
-            axes[1].loglog(spacings(NODES), errors, style, marker=marker, markersize=4, color=colour, linewidth=1.1,
-                           label=f"{recipe} {mass}, {spin:g}: {observed_order(spacings(NODES), errors):.2f}")
-    axes[1].set_xticks(spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
-    axes[1].set_xticks([], minor=True)
-    axes[1].set_title("error of the rim's stretch", fontsize=10, loc="left")
-    axes[1].set_xlabel("spacing of nodes over R")
+            draw_rate(axes[1], spacings(NODES), errors, f"{recipe} {mass}, {spin:g}", colour, marker, style)
+    set_ticks(axes[1], spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
+    describe(axes[1], "error of the rim's stretch", "spacing of nodes over R")
     draw_energies(axes[2])
     for panel in axes:
         legend(panel)
@@ -242,8 +239,7 @@ def draw_strains(axes: Axes) -> None:
             name = f"spin {run.spin:.3g}{', x 1000' if factor > 1 else ''}: {('across', 'around')[column]}"
             axes.plot(run.places, factor * run.strains[:, column], marker, markersize=3, color=colour, label=name)
             axes.plot(R, factor * exact, color="k", linewidth=1)
-    axes.set_title("strains, mls corrected, 700 nodes; lines: exact", fontsize=10, loc="left")
-    axes.set_xlabel("distance from the middle over R, at the start")
+    describe(axes, "strains, mls corrected, 700 nodes; lines: exact", "distance from the middle over R, at the start")
 
 
 def draw_energies(axes: Axes) -> None:
@@ -251,5 +247,4 @@ def draw_energies(axes: Axes) -> None:
         run = long_run("es-t3", mass, 0.0)
         energy = run.probe("energy.kinetic") + run.probe("energy.strain")
         axes.plot(run.times("energy.kinetic"), 1e4 * (energy / energy[0] - 1), color=colour, linewidth=0.7, label=mass)
-    axes.set_title("nothing damped, es-t3: energy over its start - 1 [1e-4]", fontsize=10, loc="left")
-    axes.set_xlabel(f"time [s], {TURNS} turns")
+    describe(axes, "nothing damped, es-t3: energy over its start - 1 [1e-4]", f"time [s], {TURNS} turns")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from pictures import COLOURS, MARKERS, legend, panels, save
-from verification import FULL, Case, Label, Run, observed_order
+from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
@@ -136,15 +136,12 @@ def draw_errors(axes: Axes, runs: dict[str, dict[float, Run]]) -> None:
     curves = [(f"{what}, {mass}", [error(runs[mass][h]) for h in SPACINGS])
               for what, error in (("mean stress", stress_error), ("velocity lost", lost_velocity)) for mass in MASSES]
     for (name, values), colour, marker in zip(curves, COLOURS, MARKERS):
-        axes.loglog(SPACINGS, values, marker=marker, markersize=4, color=colour, linewidth=1.1,
-                    label=f"{name}: {observed_order(SPACINGS, values):.2f}")
+        draw_rate(axes, SPACINGS, values, name, colour, marker)
     h = np.array([SPACINGS[0], SPACINGS[-1]])
     for order, style, name in ((2 / 3, "--", "2/3"), (1, ":", "1")):
         axes.loglog(h, 0.004 * (h / h[-1]) ** order, style, color=COLOURS[6], linewidth=1.0, label=f"slope {name}")
-    axes.set_xticks(SPACINGS, [f"1/{1 / h:.0f}" for h in SPACINGS])
-    axes.set_xticks([], minor=True)
-    axes.set_title("errors", fontsize=9, loc="left")
-    axes.set_xlabel("spacing")
+    set_ticks(axes, SPACINGS, [f"1/{1 / h:.0f}" for h in SPACINGS])
+    describe(axes, "errors", "spacing")
     legend(axes)
 
 

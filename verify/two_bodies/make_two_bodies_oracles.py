@@ -1,117 +1,109 @@
-"""Writes oracles/: /usr/bin/python3 verify/two_bodies/make_two_bodies_oracles.py [LAW...]. Half an hour for both laws.
+"""Writes oracles/: /usr/bin/python3 verify/two_bodies/make_two_bodies_oracles.py [TABLE...], by default all of them.
 
-Two discs between plates by GetFEM: forces on meshes of several sizes, and outlines.
+Half an hour each on a busy machine, push_getfem_neo-hookean an hour and a half.
 """
 
 from __future__ import annotations
 
-import csv
 import sys
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from datetime import date
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / folder) for folder in ("verify", "scripts", "python")]
 
-from foreign.calculix_deck import Deck
-from foreign.meshes import half_disc
+import two_bodies_discs as discs
+import two_bodies_polygon as polygon
+import two_bodies_push as push
+from two_bodies_study import FOLDER
 
-FOLDER = Path(__file__).parent / "oracles"
-APPROACHES = [0.1, 0.2, 0.3, 0.4]  # over the sum of both diameters
-MODULI = {"soft": 1.0, "stiff": 2.0}  # mu; lambda = 4 mu
-STEPS = 2  # of the load, an approach
-# Of the soft disc; the stiff one has a quarter more, so that nodes do not match.
-RINGS = {"neo-hookean": [8, 16, 32, 64], "melody": [8, 16]}
-OUTLINE_RINGS = 24
-CALCULIX_REACHES = 3  # approaches: beyond 33 % its Newton's method fails with all steps and penalties that were tried
-CALCULIX = [(rings, penalty) for rings in (4, 6, 8) for penalty in (300.0, 3000.0)]
-OVERLAP = 0.005  # R
-
-
-@dataclass
-class Squeezed:
-    """By one solver on one mesh, at all approaches."""
-
-    force: np.ndarray  # [approaches] of a plate on whole discs
-    outlines: dict[str, np.ndarray]  # [approaches x nodes x 2] of the halves x >= 0, from the lowest point up
+GETFEM = "GetFEM 5.4.2, quadratic triangles, augmented Lagrangian, large sliding by ray tracing."
+CALCULIX = "CalculiX 2.20, CPE6, contact of surfaces by a linear penalty of `stiffness` mu / R, along as across."
+PERCENT = [100 * approach for approach in discs.APPROACHES]
+PLATE = "Force of a plate by approach in percent, by rings of the soft disc."
+FORCE = "Force by depth. first 0: a corner, 1: a face. slave 0: the disc, 1: the hexagon."
+PUSH = ["push", "along", "across"]
+ON_BLOCK = "Forces on the block by push. rings: of the disc; rows: of squares in the block;"
+HALF = "Half outlines from the lowest point up, law neo-hookean, by body."
+# Columns of the key, other columns, what they are. Then by key what makes its rows, in a folder for files of CalculiX.
+Made = dict[tuple[float, ...], Callable[[Path], np.ndarray]]
+Table = tuple[str, list[str], str, Made]
 
 
-def by_getfem(law: str, rings: int) -> Squeezed:
-    from foreign.getfem_bodies import Bodies  # GetFEM is there with --full alone
-
-    bodies = Bodies(law, {"low": -2.0, "high": 2.0})
-    bodies.add("soft", half_disc(rings, -1), MODULI["soft"], 4 * MODULI["soft"])
-    bodies.add("stiff", half_disc(rings + rings // 4, 1), MODULI["stiff"], 4 * MODULI["stiff"])
-    for name in MODULI:
-        bodies.hold_axis(name)
-    bodies.press("soft", "low", -1)
-    bodies.press("stiff", "high", 1)
-    bodies.touch("stiff", "soft")
-    force, outlines = [], {name: [] for name in MODULI}
-    for approach in APPROACHES:
-        bodies.load({"low": -2 * (1 - approach), "high": 2 * (1 - approach)}, STEPS)
-        force.append(bodies.plate_force("soft", "low", -1) + bodies.plate_force("stiff", "high", 1))  # of two halves
-        for name, places in outlines.items():
-            places.append(bodies.outline(name))
-    return Squeezed(np.array(force), {name: np.array(places) for name, places in outlines.items()})
+def names(levels: Sequence[float], of: str = "force") -> list[str]:
+    return [f"{name}_{level:g}" for level in levels for name in of.split()]
 
 
-def by_calculix(rings: int, stiffness: float, folder: Path) -> np.ndarray:
-    """[approaches it gets to] forces on a plate, by the law `melody` and a penalty of so many mu / R.
-
-    Discs and plates overlap at the start, by what the first step takes back: nothing is loose.
-    """
-    deck = Deck(stiffness)
-    for name, side, more in (("SOFT", -1, 0), ("STIFF", 1, rings // 4)):
-        mu = MODULI[name.lower()]
-        deck.add(name, half_disc(rings + more, side * (1 - OVERLAP)), mu, 4 * mu)
-    deck.add_plate("LOW", -3, -2 + 2 * OVERLAP, "up")
-    deck.add_plate("HIGH", 2 - 2 * OVERLAP, 3, "down")
-    for slave, master in (("SOFTDOWN", "LOWFACE"), ("STIFFUP", "HIGHFACE"), ("STIFFDOWN", "SOFTUP")):
-        deck.touch(slave, master)
-    for approach in APPROACHES[:CALCULIX_REACHES]:
-        deck.step({"LOW": 0.0, "HIGH": 4 * (OVERLAP - approach)}, 0.1)
-    forces = deck.forces(folder / f"discs_{rings}_{stiffness:g}")
-    return forces["LOW"] - forces["HIGH"]  # of two halves
+def forces(by_getfem: Callable[..., tuple[np.ndarray, object]], *run: object) -> Callable[[Path], np.ndarray]:
+    return lambda _: by_getfem(*run)[0]
 
 
-def write(name: str, header: list[str], rows: list[list[float]]) -> None:
-    with (FOLDER / f"{name}.csv").open("w", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows([[f"{value:.9g}" for value in row] for row in rows])
+def outlines(every: int, by_getfem: Callable[..., tuple[object, dict[str, np.ndarray]]],
+             *run: object) -> Callable[[Path], np.ndarray]:
+    """Rows of body and places, of every so many nodes."""
+    return lambda _: np.array([[i, *places.ravel()] for i, each in enumerate(by_getfem(*run)[1].values())
+                               for places in each[:, ::every].transpose(1, 0, 2)])
 
 
-def write_forces(law: str) -> None:
-    write(f"discs_getfem_{law}", ["rings", *(f"force_{100 * approach:g}" for approach in APPROACHES)],
-          [[rings, *by_getfem(law, rings).force] for rings in RINGS[law]])
+def surfaces(_: Path) -> np.ndarray:
+    tops = push.by_getfem("neo-hookean", push.RINGS["neo-hookean"][-1], push.STEPS[-1])[1]
+    return np.column_stack([tops[np.abs(np.array(push.PUSHES) - at).argmin()] for at in push.DRAWN])
 
 
-def write_outlines(law: str) -> None:
-    """Every second node."""
-    found = by_getfem(law, OUTLINE_RINGS).outlines
-    rows = [[i, *places.ravel()] for i, name in enumerate(MODULI) for places in found[name].transpose(1, 0, 2)[::2]]
-    write(f"discs_outlines_{law}",
-          ["body", *(f"{axis}_{100 * approach:g}" for approach in APPROACHES for axis in "xy")], rows)
+def by_getfem(law: str) -> dict[str, Table]:
+    """What slips does not depend on the way, so coarser load steps of the push end where it begins."""
+    bodies, coarsest, shortest = list(polygon.MODULI), push.RINGS[law][0], push.STEPS[-1]
+    swapped = {first: polygon.SWAPPED[first, law] for first in polygon.FIRST}
+    pressed = [(i, slave, rings) for i, first in enumerate(polygon.FIRST) for slave in (0, 1)
+               for rings in (swapped[first] if slave else sorted({*polygon.RINGS, *swapped[first]}))]
+    pushed = [*((coarsest, steps) for steps in push.STEPS[:-1]), *((rings, shortest) for rings in push.RINGS[law])]
+    return {f"discs_getfem_{law}": ("rings", names(PERCENT), PLATE, {
+                (rings,): forces(discs.by_getfem, law, rings) for rings in discs.RINGS[law]}),
+            f"polygon_getfem_{law}": ("first,slave,rings", names(polygon.DEPTHS), FORCE, {
+                (i, slave, rings): forces(polygon.by_getfem, polygon.FIRST[i], law, rings, bodies[slave])
+                for i, slave, rings in pressed}),
+            f"push_getfem_{law}": ("rings,rows,steps", PUSH, f"{ON_BLOCK} steps: of load for 0.1 R.", {
+                (rings, push.rows_of(rings), steps): forces(push.by_getfem, law, rings, steps, steps == shortest)
+                for rings, steps in pushed})}
 
 
-def calculix_rows(folder: Path) -> list[list[float]]:
-    """Rings, penalty and forces."""
-    return [[rings, stiffness, *by_calculix(rings, stiffness, folder)] for rings, stiffness in CALCULIX]
+TABLES: dict[str, Table] = {
+    **by_getfem("neo-hookean"), **by_getfem("melody"),
+    "discs_outlines": ("", ["body", *names(PERCENT, "x y")], HALF, {
+        (): outlines(2, discs.by_getfem, "neo-hookean", discs.OUTLINE_RINGS)}),
+    **{f"{first}_outlines": ("", ["body", *names(polygon.DEPTHS, "x y")], HALF, {
+        (): outlines(1, polygon.by_getfem, first, "neo-hookean", polygon.RINGS[1])}) for first in polygon.FIRST},
+    "push_surfaces": ("", names(push.DRAWN, "x y"), "The block's top by push, law neo-hookean.", {(): surfaces}),
+    "discs_calculix_melody": ("rings,stiffness", names(PERCENT[:discs.CALCULIX_REACHES]), PLATE, {
+        run: partial(discs.by_calculix, *run) for run in discs.CALCULIX}),
+    "polygon_calculix_melody": ("first,slave,rings,stiffness", names(polygon.DEPTHS), FORCE, {
+        (i, list(polygon.MODULI).index(slave), *mesh): partial(polygon.by_calculix, first, slave, *mesh)
+        for i, first in enumerate(polygon.FIRST) for slave, *mesh in polygon.CALCULIX}),
+    "push_calculix_melody": ("slave,rings,rows,stiffness,down,increment", PUSH, f"{ON_BLOCK} increments down, along.", {
+        (list(push.MODULI).index(slave), rings, push.rows_of(rings), *more[:3]):
+        partial(push.by_calculix, slave, rings, *more) for slave, rings, *more in push.CALCULIX})}
 
 
-def write_calculix() -> None:
-    with TemporaryDirectory() as folder:
-        rows = calculix_rows(Path(folder))
-    names = [f"force_{100 * approach:g}" for approach in APPROACHES[:CALCULIX_REACHES]]
-    write("discs_calculix_melody", ["rings", "stiffness", *names], rows)
+def make(name: str) -> None:
+    """Written after each run."""
+    keys, columns, what, runs = TABLES[name]
+    header = [f"# {what}", f"# {CALCULIX if 'calculix' in name else GETFEM}",
+              f"# {date.today()}, make_two_bodies_oracles.py, one thread. Units mu = R = 1 of the softer body.",
+              ",".join([*keys.split(","), *columns] if keys else columns)]
+    rows: list[list[float]] = []
+    for key, run in runs.items():
+        with TemporaryDirectory() as folder:
+            found = np.atleast_2d(run(Path(folder)))
+        rows += [[*key, *row] for row in found]
+        print(name, *key, *found[0, :4].round(5), flush=True)
+        np.savetxt(FOLDER / f"{name}.csv", np.array(rows), "%.9g", ",", header="\n".join(header), comments="")
 
 
 if __name__ == "__main__":
-    FOLDER.mkdir(exist_ok=True)
-    for law in sys.argv[1:] or RINGS:
-        write_forces(law)
-    write_outlines("neo-hookean")
-    write_calculix()
+    for table in sys.argv[1:] or TABLES:
+        make(table)

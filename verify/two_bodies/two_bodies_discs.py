@@ -1,63 +1,104 @@
-"""Two discs between plates: runs of engine and reference, their forces and outlines."""
+"""Two discs between plates, the upper one twice as stiff: runs, other solvers, stored forces, and the study."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 
-from fields import frames_of
-from squeeze import force_of_motion
-from verification import Case, Run
+from foreign.calculix_deck import Deck
+from foreign.meshes import Mesh, half_disc
+from foreign.stored import Opinion, largest
+from histories import speeds
+from squeeze import to_rigid_contact
+from two_bodies_study import LAWS, RAMP, Again, RestStudy, Setup, read
+from verification import FULL, Case, Run
 
 APPROACHES = [0.1, 0.2, 0.3, 0.4]  # over the sum of both diameters, 4
-PAUSE, RAMP = 24.0, 8.0  # s from one to the next; of them in motion
-LONG_PAUSE = 40.0  # for what is compared on the same nodes
+MODULI = {"soft": 1.0, "stiff": 2.0}  # mu; lambda = 4 mu
 GAP = 0.001  # of either plate at the start, as in discs.toml
 HOLD = 20.0  # mu: of the springs at each pole, whatever their length
-STORED = 8.0  # over the kinetic energy left: damping over the rate of the slowest motion
-SIZES = {96: (36, 126, 42), 168: (48, 220, 56), 340: (68, 450, 80), 700: (100, 900, 116)}
-NAMES = ("soft", "stiff")
+SIZES = {96: (36, 126, 42), 168: (48, 220, 56), 340: (68, 450, 80), 700: (100, 900, 116)}  # by nodes of the soft disc
+CHOSEN = {"neo-hookean": [168, 340, 700], "melody": [168, 340, *([700] if FULL else [])]}
+SAME_NODES = 168 if FULL else 96  # of engine and reference
+STEPS = 2  # of GetFEM's load, an approach
+# Of the soft disc; the stiff one has a quarter more, so that nodes do not match.
+RINGS = {"neo-hookean": [8, 16, 32, 64], "melody": [8, 16]}
+OUTLINE_RINGS = 24
+CALCULIX_REACHES = 3  # approaches: beyond 33 % its Newton's method fails with all steps and penalties that were tried
+SOFT, STIFF = 300.0, 3000.0  # mu / R: penalties of CalculiX
+CALCULIX_RINGS = [4, 6, 8]
+CALCULIX = [(rings, stiffness) for rings in CALCULIX_RINGS for stiffness in (SOFT, STIFF)]
+OVERLAP = 0.005  # R
 
 
-@dataclass(frozen=True)
-class Squeeze:
-    """Of a soft disc of so many nodes, with corners or facets at all poles."""
+def meshes(rings: int, overlap: float = 0.0) -> dict[str, Mesh]:
+    return {"soft": half_disc(rings, overlap - 1), "stiff": half_disc(rings + rings // 4, 1 - overlap)}
 
-    nodes: int
-    facets: bool = True
-    stiffness: float = 3e3  # of contact, mu / R
-    law: str = "neo-hookean"
-    pause: float = PAUSE
 
-    @property
-    def rests(self) -> np.ndarray:
-        """[approaches] the ends of all pauses, s."""
-        return self.pause * np.arange(1, len(APPROACHES) + 1)
+def by_getfem(law: str, rings: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """[approaches] forces of a plate on whole discs, and half outlines."""
+    from foreign.getfem_bodies import Bodies  # GetFEM is there with --full alone
+
+    bodies = Bodies(law, meshes(rings), MODULI, {"low": -2.0, "high": 2.0})
+    bodies.press("soft", "low", -1)
+    bodies.press("stiff", "high", 1)
+    bodies.touch("stiff", "soft")
+    loads = [{"low": -2 * (1 - approach), "high": 2 * (1 - approach)} for approach in APPROACHES]
+    return bodies.go(loads, [STEPS] * len(loads), lambda: bodies.plate_force("soft", "low", -1) +
+                     bodies.plate_force("stiff", "high", 1))
+
+
+def by_calculix(rings: int, stiffness: float, folder: Path) -> np.ndarray:
+    """[approaches it gets to] forces on a plate, by the law `melody` and a penalty of so many mu / R.
+
+    Discs and plates overlap at the start, by what the first step takes back: nothing is loose.
+    """
+    deck = Deck(stiffness, meshes(rings, OVERLAP), MODULI)
+    deck.add_plate("LOW", -3, -2 + 2 * OVERLAP, "up")
+    deck.add_plate("HIGH", 2 - 2 * OVERLAP, 3, "down")
+    for slave, master in (("SOFTDOWN", "LOWFACE"), ("STIFFUP", "HIGHFACE"), ("STIFFDOWN", "SOFTUP")):
+        deck.touch(slave, master)
+    for approach in APPROACHES[:CALCULIX_REACHES]:
+        deck.step({"LOW": 0.0, "HIGH": 4 * (OVERLAP - approach)}, 0.1)
+    forces = deck.forces(folder / f"discs_{rings}_{stiffness:g}")
+    return forces["LOW"] - forces["HIGH"]  # of two halves
+
+
+def opinion_of(by_rings: np.ndarray) -> Opinion:
+    """Of [meshes x approaches]: error is the largest change from a mesh half as fine, as at one approach it may be
+    small by accident."""
+    return Opinion(by_rings[-1], largest(np.abs(by_rings[-2] / by_rings[-1] - 1)))
+
+
+def calculix_by_rings() -> np.ndarray:
+    """[meshes x approaches] forces of rigid contact: the penalty's error is of order 1 / K."""
+    soft, stiff = (read("discs_calculix_melody").of(stiffness=stiffness) for stiffness in (SOFT, STIFF))
+    return to_rigid_contact(soft, stiff, STIFF / SOFT)
+
+
+class Squeeze(Setup):
+    """Of a soft disc of so many nodes, with facets (way 0) or corners at all poles."""
+
+    WAYS, LEVELS, AXIS, STORED = 2, APPROACHES, 3.0, 8.0
 
     @property
     def outlines(self) -> tuple[int, int]:
-        soft, _, stiff = SIZES[self.nodes]
-        return soft, stiff
+        return SIZES[self.size][::2]
 
     @property
     def spacing(self) -> float:
         """Of both outlines, R."""
         return 2 * np.pi * np.mean(1 / np.array(self.outlines))
 
-    def name(self) -> str:
-        return f"{self.law}_{self.nodes}_{'facets' if self.facets else 'corners'}_{self.stiffness:g}_{self.pause:g}"
-
-    def both_ways(self) -> list[Squeeze]:
-        return [replace(self, facets=facets) for facets in (True, False)]
-
     def scene(self, case: Case) -> str:
-        up = self.speeds()
-        soft, stiff = self.outlines
-        turns = [np.pi / count if self.facets else 0.0 for count in self.outlines]
+        up = speeds([-GAP, *(2 * approach for approach in APPROACHES)], self.pause, RAMP)
+        soft, stiff_nodes, stiff = SIZES[self.size]
+        turns = [np.pi / count if self.way == 0 else 0.0 for count in self.outlines]
         return case.scene("discs.toml", levels=APPROACHES, end=float(self.rests[-1]), rest=self.pause, law=self.law,
-                          soft_nodes=self.nodes, stiff_nodes=SIZES[self.nodes][1], soft_outline=soft,
-                          stiff_outline=stiff, soft_angle=turns[0], stiff_angle=turns[1], stiffness=self.stiffness,
+                          soft_nodes=self.size, stiff_nodes=stiff_nodes, soft_outline=soft, stiff_outline=stiff,
+                          soft_angle=turns[0], stiff_angle=turns[1], stiffness=self.stiffness,
                           bearings=self.bearings(), up=up, down=[[t, -v] for t, v in up])
 
     def bearings(self) -> str:
@@ -66,46 +107,72 @@ class Squeeze:
 of = "{name}"
 part = {{ angles = [{pole - 1.2 * np.pi / count!r}, {pole + 1.2 * np.pi / count!r}] }}
 x = "fixed"
-stiffness = {HOLD * count / (2 * np.pi * (1 if self.facets else 2))!r}
-""" for name, count in zip(NAMES, self.outlines) for pole in (np.pi / 2, -np.pi / 2))
+stiffness = {HOLD * count / (2 * np.pi * (self.way + 1))!r}
+""" for name, count in zip(MODULI, self.outlines) for pole in (np.pi / 2, -np.pi / 2))
 
-    def speeds(self) -> list[list[float]]:
-        """Of the lower plate: triangles in time, one an approach; both plates go as far."""
-        corners, closed = [], -GAP
-        for i, approach in enumerate(APPROACHES):
-            start, way = i * self.pause, 2 * approach - closed
-            corners += [[start, 0.0], [start + RAMP / 2, 2 * way / RAMP], [start + RAMP, 0.0]]
-            closed = 2 * approach
-        return corners
+    def forces(self, run: Run) -> tuple[np.ndarray, np.ndarray]:
+        """[approaches] of a plate, and how far plates are apart."""
+        upper, lower = (run.at(f"{name}.force_y", self.rests) for name in ("upper", "lower"))
+        return (upper - lower) / 2, 2 * run.at("plate.position_y", self.rests)
 
 
-class Rests:
-    """What a run shows at the end of each pause."""
+class Discs(RestStudy):
+    """Of Squeezes."""
 
-    def __init__(self, squeeze: Squeeze, run: Run) -> None:
-        self.run, self.times = run, squeeze.rests
-        self.upper, self.lower = run.at("upper.force_y", self.times), -run.at("lower.force_y", self.times)
-        self.force = (self.upper + self.lower) / 2
-        self.gap = 2 * run.at("plate.position_y", self.times)
-        self.kinetic = run.at("energy.kinetic", self.times)
+    name, places = "discs", [f"at {100 * approach:g} %" for approach in APPROACHES]
+    compared, between = range(len(APPROACHES)), range(CALCULIX_REACHES)
+    bodies, table = tuple(MODULI), "discs_outlines"
+    group = largest
+    own = "saw tooth between corners and facets, penalty"
+    others = {"GetFEM": "GetFEM 5.4.2 and its difference of two meshes",
+              "CalculiX": "CalculiX 2.20, its mesh and penalty"}
+    both = "mesh of both, penalty"
+    order = ("force over GetFEM, rms of approaches",
+             "linear consistency and a polygon for a circle; the saw tooth's scatter")
+    shape = "corners of the polygon of the circle's area; overlap of the penalty; mesh as of the force"
 
-    def unrest(self) -> np.ndarray:
-        """How far forces may be from those without motion, relative."""
-        return force_of_motion(self.force, self.gap, self.kinetic, STORED) / self.force
+    def __init__(self, case: Case, law: str) -> None:
+        super().__init__(case, law, [Squeeze(size=size, law=law) for size in CHOSEN[law]])
 
-    def outline(self, name: str, level: int) -> np.ndarray:
-        """[nodes x 2] of a body, about the axis of both."""
-        frames = frames_of(self.run)
-        there = frames.grids["outlines"].point_body == NAMES.index(name)
-        frame = frames.nearest(self.times[level])
-        return frames.positions("outlines", frame)[there, :2] - [3, 0]
+    @classmethod
+    def read_getfem(cls, law: str) -> Opinion:
+        return opinion_of(read(f"discs_getfem_{law}").of())
+
+    @classmethod
+    def read_calculix(cls) -> Opinion:
+        """Error: the largest change from half the rings; the product of both losses, as the penalty's second order."""
+        by_rings = calculix_by_rings()
+        losses = 1 - read("discs_calculix_melody").of(rings=CALCULIX_RINGS[-1]) / by_rings[-1]
+        return Opinion(by_rings[-1], np.abs(by_rings[0] / by_rings[-1] - 1).max() + losses.prod(axis=0))
+
+    def slope_error(self) -> float:
+        """From independent saw teeth of all sizes."""
+        return self.slope_error_of(np.sqrt((self.saw**2).mean(axis=1)), 0.0)
+
+    def shape_error(self, body: int, level: int) -> float:
+        """R. A plate's approach that changes the force by its error; corners stand out by x^2/12, the contact's overlap
+        is the penalty's part of the approach."""
+        approach_by_force = 4 / np.gradient(np.log(self.getfem.force), APPROACHES)[level]
+        corners = self.setups[-1].outlines[body]
+        return float((2 * np.pi / corners) ** 2 / 12 + self.lost(level) * approach_by_force / 2)
 
 
-def by_engine(case: Case, squeeze: Squeeze) -> Rests:
-    return Rests(squeeze, case.engine(squeeze.name(), squeeze.scene(case)))
+@cache
+def live(law: str) -> np.ndarray:
+    """[meshes x approaches] forces by GetFEM on the two coarsest meshes, now."""
+    return np.array([by_getfem(law, rings)[0] for rings in RINGS[law][:2]])
 
 
-def by_reference(case: Case, squeeze: Squeeze) -> Rests:
-    """Statics, one load step an approach: it halves them where Newton's method fails."""
-    run = case.reference(squeeze.name() + "_reference", squeeze.scene(case), "--static", "--dt", repr(RAMP))
-    return Rests(squeeze, run)
+def getfem_again(law: str, _: Path) -> np.ndarray:
+    return live(law) / read(f"discs_getfem_{law}").of()[:2] - 1
+
+
+def calculix_again(folder: Path) -> np.ndarray:
+    return np.array([by_calculix(*run, folder) for run in CALCULIX]) / read("discs_calculix_melody").of() - 1
+
+
+AGAIN: list[Again] = [
+    *((f"discs, {law}: GetFEM", partial(getfem_again, law), 1.5e-7,
+       "Newton's residuals of 1e-9 in some fifty nodes on a plate, over the least force") for law in LAWS),
+    ("discs, melody: CalculiX", calculix_again, 3e-5,
+     "where its Newton's method stops: what steps four times shorter change")]

@@ -18,7 +18,7 @@ from fem.dynamics import Explicit
 from fem.meshes import rectangle
 from fem.solid import Material, Solid
 from motion import Motion, read_motion
-from pictures import COLOURS, draw_orders, legend, panels, save
+from pictures import COLOURS, describe, draw_orders, legend, panels, save
 from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
@@ -311,9 +311,7 @@ def draw_pulses(axes: Axes, wave: Wave, motion: Motion) -> None:
                   linewidth=1.2, label="" if i else "engine, mls corrected, 1/24")
         axes.plot(1 + x + way, x + 0.1 * (1 - np.cos(2 * np.pi * way / PULSE)), "--", color=COLOURS[1], linewidth=1.2,
                   label="" if i else "closed form")
-    axes.set_title(f"{wave.name}, c = {wave.speed:.3f}", fontsize=10, loc="left")
-    axes.set_xlabel("c x time")
-    axes.set_ylabel("place along the bar")
+    describe(axes, f"{wave.name}, c = {wave.speed:.3f}", "c x time", "place along the bar")
     axes.set_ylim(-0.9, 0.9)
     legend(axes)
 

@@ -10,8 +10,8 @@ import time
 from dataclasses import asdict
 from pathlib import Path
 
-from pliant.engine import is_finished, start
-from pliant.results import checkpoint_header, read_run
+from pliant.engine import start
+from pliant.results import checkpoint_header, is_finished, read_run
 from pliant.scene import Scene
 from pliant.study import gather as gathering
 from pliant.study.folder import Folder, as_text, copy_if_other, replace, state_beside

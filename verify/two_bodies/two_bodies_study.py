@@ -1,0 +1,185 @@
+"""What all pairs of bodies share: setups of runs, rests, and forces by mesh size beside those of other solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import astuple, dataclass, replace
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from fields import frames_of
+from foreign.stored import Table, distances_from_half
+from squeeze import force_of_motion
+from verification import Case, Run, weights_of_limit
+
+FOLDER = Path(__file__).parent / "oracles"
+LAWS = ("neo-hookean", "melody")
+HARDER = 2.0  # times the contact stiffness
+RAMP = 8.0  # s of a pause in motion
+# Solver, what it computes now over what is stored less 1, tolerance and its source.
+Again = tuple[str, Callable[[Path], np.ndarray], float, str]
+
+
+def read(name: str) -> Table:
+    return Table(FOLDER / f"{name}.csv")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setup:
+    """What a run is made of; the ways of a size differ in outlines."""
+
+    size: int
+    way: int = 0
+    law: str = LAWS[0]
+    stiffness: float = 3e3  # of contact, mu / R
+    pause: float = 24.0  # s from one rest to the next
+
+    WAYS: ClassVar[int]
+    LEVELS: ClassVar[list[float]]  # at which bodies rest
+    STEP: ClassVar[float] = RAMP  # s, of the load in statics, at most
+    STORED: ClassVar[float]  # over the kinetic energy left: damping over the rate of the slowest motion
+    AXIS: ClassVar[float] = 0.0  # x
+
+    @property
+    def rests(self) -> np.ndarray:
+        """[levels] the ends of all pauses, s."""
+        return self.pause * np.arange(1, len(self.LEVELS) + 1)
+
+    def ways(self) -> list[Setup]:
+        return [replace(self, way=way) for way in range(self.WAYS)]
+
+    def run_name(self) -> str:
+        values = (f"{value:g}" if isinstance(value, float) else str(value) for value in astuple(self))
+        return "_".join([type(self).__name__.lower(), *values])
+
+    def by_engine(self, case: Case) -> Run:
+        return case.engine(self.run_name(), self.scene(case))
+
+    def by_reference(self, case: Case) -> Run:
+        """Statics: load steps end at the points of the histories and at outputs."""
+        return case.reference(self.run_name() + "_reference", self.scene(case), "--static", "--dt", repr(self.STEP))
+
+
+def outline(run: Run, body: int, time: float) -> np.ndarray:
+    """[nodes x 2] of a body."""
+    frames = frames_of(run)
+    there = frames.grids["outlines"].point_body == body
+    return frames.positions("outlines", frames.nearest(time))[there, :2]
+
+
+class Rests:
+    """What a run shows at the end of each pause, [levels]."""
+
+    def __init__(self, setup: Setup, run: Run) -> None:
+        self.setup, self.run = setup, run
+        self.force, self.gap = setup.forces(run)
+        self.kinetic = run.at("energy.kinetic", setup.rests)
+
+    def unrest(self) -> np.ndarray:
+        """How far forces may be from those without motion, relative."""
+        return force_of_motion(self.force, self.gap, self.kinetic, self.setup.STORED) / self.force
+
+    def outline(self, body: int, level: int) -> np.ndarray:
+        """[nodes x 2] about the axis."""
+        return outline(self.run, body, self.setup.rests[level]) - [self.setup.AXIS, 0]
+
+
+def lost_by_penalty(usual: np.ndarray, harder: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """[places] mean of what contact lost by its penalty, of order 1 / stiffness, and half of its range, of [ways x
+    places]."""
+    lost = HARDER / (HARDER - 1) * (harder / usual - 1)
+    return lost.mean(axis=0), np.ptp(lost, axis=0) / 2
+
+
+class Study:
+    """One force of a pair of bodies at several places, by mesh size, without penalty, beside those of other solvers,
+    which `read_getfem(law)` and `read_calculix()` know."""
+
+    name: str
+    places: list[str]
+    compared: range  # places of the engine's forces
+    between: range  # places of GetFEM's over CalculiX's
+    long: dict[str, str] = {}  # laws whose runs are long, and why they wait for --full
+    orders: tuple[int, ...] = (2,)  # of errors in the spacing: forces at h = 0 are the mean of lines in these powers
+    counted: slice | np.ndarray = slice(None)  # places of rms
+    own: str  # where errors come from: of the engine; of others, by solver; of GetFEM over CalculiX; of the order
+    others: dict[str, str]
+    both: str
+    order: tuple[str, str] | None = None  # what of, if it is known
+
+    spacings: np.ndarray  # [sizes]
+    force: np.ndarray  # [sizes x places]
+    scatter: np.ndarray  # [sizes x places] error of the force, relative
+    penalty: np.ndarray  # [places] relative
+    penalty_error: np.ndarray
+
+    def __init__(self, case: Case, law: str) -> None:
+        self.case, self.law, self.getfem = case, law, self.read_getfem(law)
+
+    def errors(self) -> np.ndarray:
+        """[sizes x places] relative."""
+        return self.force / self.getfem.force - 1
+
+    def rms(self) -> np.ndarray:
+        """[sizes] of errors, over the places that count."""
+        return np.sqrt((self.errors()[:, self.counted] ** 2).mean(axis=1))
+
+    def weights(self) -> np.ndarray:
+        """[orders x sizes]"""
+        return np.array([weights_of_limit(self.spacings, order) for order in self.orders])
+
+    def limit(self) -> np.ndarray:
+        """[places] forces at h = 0."""
+        return (self.weights() @ self.force).mean(axis=0)
+
+    def limit_error(self) -> np.ndarray:
+        """[places] relative: the order, saw tooth, penalty."""
+        order = np.ptp(self.weights() @ self.force, axis=0) / 2 / self.getfem.force
+        return order + np.abs(self.weights().mean(axis=0)) @ self.scatter + self.penalty_error
+
+    def slope_error_of(self, own: np.ndarray, common: float) -> float:
+        """Of the order in h, from [sizes] relative errors that are independent, and from one that all sizes have."""
+        logs = np.log(self.spacings) - np.log(self.spacings).mean()
+        independent = np.sqrt(((logs * own / self.rms()) ** 2).sum())
+        return float((independent + np.abs((logs * common / self.rms()).sum())) / (logs**2).sum())
+
+
+class RestStudy(Study):
+    """Of setups of several sizes, all ways of each."""
+
+    scatters = 1.0  # times the error of a mean over ways
+    group: Callable[[np.ndarray], np.ndarray]  # at a single place scatter may be small by accident
+    shape: str  # where errors of outlines come from
+    bodies: tuple[str, ...]
+    table: str  # of stored outlines
+
+    def __init__(self, case: Case, law: str, setups: list[Setup]) -> None:
+        super().__init__(case, law)
+        self.setups, self.spacings = setups, np.array([setup.spacing for setup in setups])
+        self.rests = [[Rests(way, way.by_engine(case)) for way in setup.ways()] for setup in setups]
+        ways = np.array([[rests.force for rests in each] for each in self.rests])  # [sizes x ways x levels]
+        harder = [Rests(way, way.by_engine(case)).force
+                  for way in replace(setups[0], stiffness=HARDER * setups[0].stiffness).ways()]
+        self.penalty, self.penalty_error = lost_by_penalty(ways[0], np.array(harder))
+        self.force = ways.mean(axis=1) * (1 + self.penalty)
+        self.saw = self.scatters * ways.std(axis=1, ddof=1) / np.sqrt(ways.shape[1]) / self.getfem.force
+        self.scatter = type(self).group(self.saw)
+
+    @classmethod
+    def outlines(cls) -> dict[str, np.ndarray]:
+        """By body [places x nodes x 2] of the halves x >= 0, from the lowest point up, by GetFEM."""
+        return {name: read(cls.table).outlines(body=i) for i, name in enumerate(cls.bodies)}
+
+    def lost(self, level: int) -> float:
+        """Error of the finest size's force, relative."""
+        return float(np.abs(self.errors()[-1, level]) + self.penalty[level] + self.scatter[-1, level])
+
+    def nodes(self, body: int, level: int) -> np.ndarray:
+        """[nodes x 2] of the finest size."""
+        return self.rests[-1][0].outline(body, level)
+
+    def off(self, body: int, level: int, half: np.ndarray) -> float:
+        """R. The rms distance of nodes from a stored half outline."""
+        return float(np.sqrt((distances_from_half(self.nodes(body, level), half) ** 2).mean()))
