@@ -59,7 +59,7 @@ const std::vector<Bad> bad_probes{
      "\"friction_factor\"\nof = \"floor\"",
      "\"solid_fraction\"\nof = \"all\"\nbox = [[0, 1], [1, 0]]",
      "[[0, 1], [1, 0]]",
-     {"the lower left and the upper right corner"}},
+     {"left < right and bottom < top"}},
     {"TwoRegions",
      "\"friction_factor\"\nof = \"floor\"",
      "\"solid_fraction\"\nof = \"all\"\nbetween = [\"floor\", \"lid\"]\nbox = [[0, 0], [1, 1]]",

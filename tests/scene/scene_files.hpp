@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/scene.hpp"
 
@@ -104,5 +107,16 @@ period = "10 ns"
 period = "0.1 us"
 fields = ["velocity", "von_mises"]
 )";
+
+/// The good scene with some texts replaced, each at its first place.
+inline std::string edited(const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::string text = good_scene;
+  for (const auto& [from, to] : changes) {
+    const auto at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("the good scene has no '" + from + "'");
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
 
 }  // namespace pliant::scene_tests
