@@ -3,6 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
+#include "scene/old_keys.hpp"
 #include "scene/read_tables.hpp"
 #include "scene/text_file.hpp"
 
@@ -64,7 +65,8 @@ Scene read_scene(const fs::path& file) { return read_scene(file, nullptr); }
 Scene read_scene(const fs::path& file, KeyUse* use) {
   const Untrapped untrapped;
   const Source source{file.string(), use};
-  const toml::table document = parse(read_text_file(file, "a scene file (.toml)"), source.file);
+  toml::table document = parse(read_text_file(file, "a scene file (.toml)"), source.file);
+  source.warnings = rename_old_keys(document, source.file);
   TableReader root(document, source);
   Scene scene;
   scene.file = file;

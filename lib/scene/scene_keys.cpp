@@ -21,6 +21,10 @@ std::string allowed(const KeyKind& kind) {
   return std::visit([](const auto& one) { return one.allowed(); }, kind);
 }
 
+std::string meaning(const SceneKey& row) {
+  return row.formerly.empty() ? row.meaning : fmt::format("{} (formerly `{}`)", row.meaning, row.formerly);
+}
+
 std::string text_of_default(const Default& otherwise) {
   if (otherwise.required == required.required) return "required";
   if (otherwise.required.empty()) return otherwise.value;
@@ -49,6 +53,15 @@ const SceneTable& scene_table(const std::string& title) {
   return *table;
 }
 
+const SceneTable& sub_table(const SceneTable& parent, const SceneKey& key) {
+  using Form = SubTable::Form;
+  const Form form = std::get<SubTable>(key.kind).form;
+  if (parent.title != top_table) return scene_table(fmt::format("{} of {}", key.name, parent.title));
+  return scene_table(form == Form::one     ? fmt::format("[{}]", key.name)
+                     : form == Form::named ? fmt::format("[{}.NAME]", key.name)
+                                           : fmt::format("[[{}]]", key.name));
+}
+
 std::span<const std::string> scene_keys() {
   static const std::vector<std::string> names = [] {
     std::set<std::string> all;
@@ -66,7 +79,7 @@ std::string scene_key_tables() {
   for (const SceneTable& table : scene_tables()) {
     text += fmt::format("## {}\n\n| key | meaning | value | default | with |\n|---|---|---|---|---|\n", table.title);
     for (const SceneKey& row : table.keys)
-      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, cell(row.meaning), cell(allowed(row.kind)),
+      text += fmt::format("| `{}` | {} | {} | {} | {} |\n", row.name, cell(meaning(row)), cell(allowed(row.kind)),
                           text_of_default(row.otherwise), row.with);
     text += "\n";
   }

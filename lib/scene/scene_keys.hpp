@@ -56,6 +56,7 @@ struct SceneKey {
   /// When the table may have the key. `law = "a", "b"`: with these names of another key (`!=`: with others); `mix`:
   /// with another key. The reader checks these. Other words are for people.
   std::string with{};
+  std::string formerly{};  ///< an old name, which is read with a warning
 };
 
 struct SceneTable {
@@ -67,6 +68,8 @@ struct SceneTable {
 const std::vector<SceneTable>& scene_tables();
 const SceneTable& scene_table(const std::string& title);
 inline constexpr const char* top_table = "Top level";
+/// Rows of the tables under a key: [key], [key.NAME] or [[key]] at the top, else "key of [[parent]]".
+const SceneTable& sub_table(const SceneTable& parent, const SceneKey& key);
 
 // Their parts.
 std::vector<SceneTable> setting_tables();

@@ -72,26 +72,19 @@ TableReader TableReader::required_table(const std::string& key) {
 
 TableReader TableReader::optional_table(const std::string& key) {
   static const toml::table empty;
-  row_of_tables(key, SubTable::Form::one);
-  if (!has(key)) return child(empty, key);
+  const SceneTable& rows = sub_table(*rows_, row_of_tables(key, SubTable::Form::one));
+  const std::string title = nested() ? fmt::format("{} of {}", key, title_) : fmt::format("[{}]", key);
+  if (!has(key)) return {empty, title, *source_, rows};
   const Value found = value(key);
   if (!found.node.is_table()) found.reject("a table");
-  return child(*found.node.as_table(), key);
-}
-
-TableReader TableReader::child(const toml::table& table, const std::string& key) const {
-  const auto title = [&](const std::string& parent) {
-    return nested() ? fmt::format("{} of {}", key, parent) : fmt::format("[{}]", key);
-  };
-  return {table, title(title_), *source_, scene_table(title(rows_->title))};
+  return {*found.node.as_table(), title, *source_, rows};
 }
 
 std::vector<std::pair<std::string, TableReader>> TableReader::named_tables(const std::string& key) {
-  row_of_tables(key, SubTable::Form::named);
+  const SceneTable& rows = sub_table(*rows_, row_of_tables(key, SubTable::Form::named));
   if (!has(key)) fail_missing(key, fmt::format("at least one table [{}.NAME]", key));
   const Value all = value(key);
   if (!all.node.is_table()) all.reject(fmt::format("tables [{}.NAME]", key));
-  const SceneTable& rows = scene_table(fmt::format("[{}.NAME]", key));
   std::vector<std::pair<std::string, TableReader>> named;
   for (auto&& [name, node] : *all.node.as_table()) {
     const Value one{node, fmt::format("'{}.{}'", key, name.str()), *source_};
@@ -112,9 +105,8 @@ std::vector<TableReader> TableReader::tables(const std::string& key) {
     if (row.otherwise.value.empty()) fail_missing(key, fmt::format("at least one table [[{}]]", key));
     return {};
   }
+  const SceneTable& rows = sub_table(*rows_, row);
   const std::string allowed = fmt::format("an array of tables [[{}]]", key);
-  const SceneTable& rows =
-      scene_table(nested() ? fmt::format("{} of {}", key, rows_->title) : fmt::format("[[{}]]", key));
   std::vector<TableReader> all;
   for (const Value& element : value(key).elements(allowed)) {
     if (!element.node.is_table()) element.reject("a table");

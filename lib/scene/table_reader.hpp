@@ -93,7 +93,6 @@ class TableReader {
   void check_conditions() const;
 
   bool nested() const { return title_.starts_with('['); }
-  TableReader child(const toml::table& table, const std::string& key) const;
   std::vector<const toml::key*> unknown_keys() const;
   /// The likeliest among the keys that nothing asked for; nullptr: none is suspect.
   const toml::key* misspelling_of(const std::string& key) const;
