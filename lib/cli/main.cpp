@@ -88,11 +88,12 @@ int main_program(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
   }
   CLI::App* shape_function_command =
-      app.add_subcommand("shape-function", "CSV of one shape function of a disc, e.g. shape-function --recipe rpim");
+      app.add_subcommand("shape-function", "CSV of one shape function of a disc, e.g. shape-function --method rpim");
   ShapeFunctionRequest shape_function;
-  const std::map<std::string, Recipe> recipes{{"mls", Recipe::mls}, {"rpim", Recipe::rpim}, {"t3", Recipe::t3}};
-  shape_function_command->add_option("--recipe", shape_function.settings.recipe, "mls, rpim or t3")
-      ->transform(CLI::CheckedTransformer(recipes));
+  const std::map<std::string, DiscretisationMethod> methods{
+      {"mls", DiscretisationMethod::mls}, {"rpim", DiscretisationMethod::rpim}, {"t3", DiscretisationMethod::t3}};
+  shape_function_command->add_option("--method,--recipe", shape_function.settings.method, "mls, rpim or t3")
+      ->transform(CLI::CheckedTransformer(methods));
   shape_function_command->add_option("--support", shape_function.settings.support, "Nodes in a support")
       ->check(CLI::Range(7, 25));
   shape_function_command->add_option("--nodes", shape_function.nodes, "Nodes of the disc")->check(CLI::Range(30, 5000));

@@ -43,12 +43,13 @@ TimeSettings read_time(TableReader table) {
 
 DiscretisationSettings read_discretisation(TableReader table) {
   DiscretisationSettings settings;
-  table.optional("recipe", settings.recipe);
+  table.optional("method", settings.method);
   table.optional("mass", settings.mass);
   if (settings.mass == Mass::lumped) table.optional("rim_mass", settings.rim_mass);
-  const bool triangles = settings.recipe == Recipe::t3 || settings.recipe == Recipe::es_t3;
+  const bool triangles = settings.method == DiscretisationMethod::t3 || settings.method == DiscretisationMethod::es_t3;
   if (!triangles) table.optional("support", settings.support);
-  if (!triangles && settings.recipe != Recipe::mls && table.optional("gauss_points", settings.gauss_points)) {
+  if (!triangles && settings.method != DiscretisationMethod::mls &&
+      table.optional("gauss_points", settings.gauss_points)) {
     const int points = settings.gauss_points;
     if (points != 1 && points != 3 && points != 6) table.value("gauss_points").reject("1, 3 or 6");
   }

@@ -21,7 +21,7 @@ enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
 enum class Mass { lumped, corrected };
-enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
+enum class DiscretisationMethod { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive, cohesive_fatigue };
 enum class ContactLength { reference, current };
 /// Where the tractions of contact are evaluated: at nodes, or integrated over segments (docs/method.md 4).
@@ -274,7 +274,7 @@ struct TimeSettings {
 };
 
 struct DiscretisationSettings {
-  Recipe recipe = Recipe::mls;
+  DiscretisationMethod method = DiscretisationMethod::mls;
   int support = 8;       ///< nodal support radius = distance to the support-th nearest node
   int gauss_points = 3;  ///< mls-gauss, rpim: 1, 3 or 6
   Mass mass = Mass::lumped;

@@ -41,7 +41,7 @@ gravity = ["0 m/s2", -9.81]
 end = "2 us"
 tolerance = 1e-2
 [discretisation]
-recipe = "mls"
+method = "mls"
 support = 9
 [materials.soft]
 law = "neo-hookean"
