@@ -45,7 +45,7 @@ DiscretisationSettings read_discretisation(TableReader table) {
   DiscretisationSettings settings;
   table.optional("method", settings.method);
   table.optional("mass", settings.mass);
-  if (settings.mass == Mass::lumped) table.optional("rim_mass", settings.rim_mass);
+  if (settings.mass == Mass::lumped) table.optional("mass_scaling", settings.mass_scaling);
   const bool triangles = settings.method == DiscretisationMethod::t3 || settings.method == DiscretisationMethod::es_t3;
   if (!triangles) table.optional("support", settings.support);
   if (!triangles && settings.method != DiscretisationMethod::mls &&

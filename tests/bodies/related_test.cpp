@@ -14,7 +14,7 @@ namespace {
 
 constexpr int grains_in_all = 11;
 
-enum class Extras { none, damping_and_corrected_mass, rim_mass };
+enum class Extras { none, damping_and_corrected_mass, mass_scaling };
 
 /// Fourier grains of eleven shapes and several sizes on a floor, pushed together, and a rigid disc.
 Scene heap(DiscretisationMethod method, Integrator integrator, Extras extras = Extras::none) {
@@ -27,7 +27,7 @@ Scene heap(DiscretisationMethod method, Integrator integrator, Extras extras = E
     scene.discretisation.mass = Mass::corrected;
     for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
   }
-  if (extras == Extras::rim_mass) scene.discretisation.rim_mass = 1.6;
+  if (extras == Extras::mass_scaling) scene.discretisation.mass_scaling = 1.6;
   scene.contacts = {mohr_coulomb(60, 0.3)};
   for (int i = 0; i < grains_in_all; ++i) {
     ShapeSpec shape;
@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Related,
                                                               DiscretisationMethod::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling),
                                             ::testing::Values(Extras::none, Extras::damping_and_corrected_mass,
-                                                              Extras::rim_mass)));
+                                                              Extras::mass_scaling)));
 
 /// EXACT: the same bits with one, two and three threads.
 TEST(RelatedBodies, do_not_depend_on_the_number_of_threads) {

@@ -14,23 +14,38 @@ using scene_tests::edited;
 using scene_tests::good_scene;
 using scene_tests::SceneFile;
 
-/// New names as the good scene has them, and old ones.
-const std::vector<std::pair<std::string, std::string>> renamed{
-    {"method = \"mls\"", "recipe = \"mls\""},
+struct Renamed {
+  std::string now, formerly;
 };
+const std::vector<Renamed> keys{{"method", "recipe"}, {"mass_scaling", "rim_mass"}};
+
+/// The good scene with all of these keys, by their present or their old names.
+std::string scene_with(std::string Renamed::* name) {
+  std::string text = edited({{"support = 9", "support = 9\nmass_scaling = 1.5"}});
+  for (const Renamed& key : keys) text.replace(text.find("\n" + key.now + " =") + 1, key.now.size(), key.*name);
+  return text;
+}
 
 TEST(OldKeys, AreReadAsTheNewOnesWithAWarningAtTheirPlace) {
-  const std::string text = edited(renamed);
+  const std::string text = scene_with(&Renamed::formerly), present = scene_with(&Renamed::now);
   const SceneFile old(text);
   const Scene scene = read_scene(old.path());
-  ASSERT_EQ(scene.warnings.size(), renamed.size());
+  ASSERT_EQ(scene.warnings.size(), keys.size());
   EXPECT_EQ(scene.warnings[0], old.path().string() +
                                    ":9:1: 'recipe' in [discretisation] is now called 'method'; the next version will "
                                    "refuse the old name");
-  EXPECT_EQ(scene.discretisation.method, DiscretisationMethod::mls);
-  EXPECT_EQ(scene_difference(text, good_scene), "");
-  EXPECT_EQ(start_difference(text, good_scene), "");
+  EXPECT_EQ(scene.discretisation.mass_scaling, 1.5);
+  EXPECT_EQ(scene_difference(text, present), "");
+  EXPECT_EQ(start_difference(text, present), "");
   EXPECT_EQ(place_of_key(text, "discretisation.method"), "9:10");
+}
+
+// The list of keys above is that of the table.
+TEST(OldKeys, AreAllTried) {
+  std::size_t rows = 0;
+  for (const SceneTable& table : scene_tables())
+    for (const SceneKey& row : table.keys) rows += row.formerly.empty() ? 0 : 1;
+  EXPECT_EQ(rows, keys.size());
 }
 
 TEST(OldKeys, HaveNoWarningUnderTheirNewNames) {

@@ -8,8 +8,8 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-Scene with_rim(Scene scene, double rim_mass) {
-  scene.discretisation.rim_mass = rim_mass;
+Scene with_rim(Scene scene, double mass_scaling) {
+  scene.discretisation.mass_scaling = mass_scaling;
   return scene;
 }
 
