@@ -191,7 +191,7 @@ std::vector<SceneTable> wall_tables() {
             "Side of its line on which the wall is solid"},
            {"level", Quantity{"m"}, required, "Height of the flat line, or of asperities of height 0"},
            {"spacing", length, derived("finest of the grains"), "Outline spacing"},
-           {"caps", one_table, "none", "Asperities: circular arcs of equal diameter"},
+           {"asperities", one_table, "none", "Asperities: circular arcs of equal diameter", "", "caps"},
            {"x", held, R"("fixed")", "Motion along x"},
            {"x", one_table, "none", "Drive along x"},
            {"y", held, R"("fixed")", "Motion along y"},
@@ -200,7 +200,7 @@ std::vector<SceneTable> wall_tables() {
             required_if("(> 0) unless fixed or at a given velocity for good", "0 m"),
             "Thickness that gives the mass: density x period x thickness"},
        }},
-      {"caps of [[walls]]",
+      {"asperities of [[walls]]",
        {
            {"diameter", length, required, "Diameter of the arcs"},
            {"count", Integer{1, SceneLimits::wall_nodes}, required, "Number of asperities over the period"},

@@ -18,32 +18,33 @@ bool needs_mass(const Drive& drive) {
   return (drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity) || !drive.window.always();
 }
 
-/// Caps side by side must leave room for the straight segments that join them.
-void check_caps(const TableReader& table, const Caps& caps, double period) {
+/// Asperities side by side must leave room for the straight segments that join them.
+void check_asperities(const TableReader& table, const Asperities& asperities, double period) {
   const auto half_width = [&](int i) {
-    return caps.diameter / 2 * std::sin(caps.half_angles[static_cast<std::size_t>(i) % caps.half_angles.size()]);
+    return asperities.diameter / 2 *
+           std::sin(asperities.half_angles[static_cast<std::size_t>(i) % asperities.half_angles.size()]);
   };
-  const double pitch = period / caps.count;
-  for (int i = 0; i < caps.count; ++i) {
-    const double taken = half_width(i) + half_width((i + 1) % caps.count);
+  const double pitch = period / asperities.count;
+  for (int i = 0; i < asperities.count; ++i) {
+    const double taken = half_width(i) + half_width((i + 1) % asperities.count);
     if (taken < pitch) continue;
     table.fail("half_angles",
-               fmt::format("caps {} and {} take {} m side by side; allowed: less than period / count = {} m", i + 1,
-                           (i + 1) % caps.count + 1, taken, pitch));
+               fmt::format("asperities {} and {} take {} m side by side; allowed: less than period / count = {} m",
+                           i + 1, (i + 1) % asperities.count + 1, taken, pitch));
   }
 }
 
-Caps read_caps(TableReader table, double period) {
-  Caps caps;
-  caps.heights = {0.0};
-  table.required("diameter", caps.diameter);
-  table.required("count", caps.count);
-  table.optional("first", caps.first);
-  table.optional("heights", caps.heights);
-  table.required("half_angles", caps.half_angles);
-  check_caps(table, caps, period);
+Asperities read_asperities(TableReader table, double period) {
+  Asperities asperities;
+  asperities.heights = {0.0};
+  table.required("diameter", asperities.diameter);
+  table.required("count", asperities.count);
+  table.optional("first", asperities.first);
+  table.optional("heights", asperities.heights);
+  table.required("half_angles", asperities.half_angles);
+  check_asperities(table, asperities, period);
   table.finish();
-  return caps;
+  return asperities;
 }
 
 void check_levels(const TableReader& table, const Wall& wall, const std::vector<Wall>& others) {
@@ -70,7 +71,7 @@ Wall read_wall(TableReader table, const Scene& scene) {
   check_levels(table, wall, scene.walls);
   const double finest = *scene.period / SceneLimits::wall_nodes;
   table.optional("spacing", wall.spacing, Range{.low = finest, .high = *scene.period});
-  if (table.has("caps")) wall.caps = read_caps(table.optional_table("caps"), *scene.period);
+  if (table.has("asperities")) wall.asperities = read_asperities(table.optional_table("asperities"), *scene.period);
   wall.x = read_drive(table, "x", drive_kinds(false), {});
   wall.y = read_drive(table, "y", drive_kinds(true), {});
   if (needs_mass(wall.x) || needs_mass(wall.y)) {

@@ -174,7 +174,7 @@ const std::vector<Bad> bad_walls_and_contacts{
     {"HistoryRow", "['1 us', '1 GPa']", "['1 us']", "['1 us']", "[time, value]"},
     {"HistoryEmpty", "[['0 us', 0], ['1 us', '1 GPa']]", "[]", "[]", "found an array of 0 elements"},
     {"NoThickness", "thickness = '5 um'\n", "", "[[walls]]\nname = 'lid'", "missing key 'thickness'"},
-    {"WideCaps", "count = 10", "count = 25", "['30 deg', 0.5]", "side by side ... less than period / count"},
+    {"WideAsperities", "count = 10", "count = 25", "['30 deg', 0.5]", "side by side ... less than period / count"},
     {"CapHalfAngle", "0.5] }", "'90 deg'] }", "'90 deg'", "'half_angles' ... > 0"},
     {"CapCountZero", "count = 10", "count = 0", "0, first", "an integer from 1"},
     {"UnknownLaw", "law = 'cohesive'", "law = 'cohesiv'", "'cohesiv'", "nearest: cohesive"},

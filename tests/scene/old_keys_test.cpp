@@ -17,7 +17,7 @@ using scene_tests::SceneFile;
 struct Renamed {
   std::string now, formerly;
 };
-const std::vector<Renamed> keys{{"method", "recipe"}, {"mass_scaling", "rim_mass"}};
+const std::vector<Renamed> keys{{"method", "recipe"}, {"mass_scaling", "rim_mass"}, {"asperities", "caps"}};
 
 /// The good scene with all of these keys, by their present or their old names.
 std::string scene_with(std::string Renamed::* name) {

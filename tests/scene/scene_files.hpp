@@ -78,7 +78,7 @@ name = "floor"
 material = "hard"
 solid = "below"
 level = "-1 um"
-caps = { diameter = "1 um", count = 10, first = "0.5 um", heights = ["0 um", "0.1 um"], half_angles = ["30 deg", 0.5] }
+asperities = { diameter = "1 um", count = 10, first = "0.5 um", heights = [0, "0.1 um"], half_angles = ["30 deg", 0.5] }
 [[walls]]
 name = "lid"
 material = "hard"
