@@ -163,7 +163,7 @@ def count_all(programs: Path, names: list[str], scratch: Path) -> dict[str, Coun
             counted = marginal_cost.count(programs / "pliant_engine", SCENES[name](PLAIN), folder)
             return Count(counted.instructions, counted.libraries, counted.evaluations)
         folder.mkdir()
-        edit = appended('\n[discretisation]\nrecipe = "es-t3"\n') if name.endswith("es_t3") else str
+        edit = appended('\n[discretisation]\nmethod = "es-t3"\n') if name.endswith("es_t3") else str
         (folder / "scene.toml").write_text(edit(KERNEL_SCENE))
         command = [str(programs / "pliant_counted_kernels"), str(folder / "scene.toml"), KERNELS[name]]
         return count(command, "pliant_counted", folder)

@@ -139,9 +139,9 @@ FEATURES = [
     Feature("energy probe, 40 rows", appended('\n[[probes]]\nname = "energy"\nquantity = "energy"\nperiod = "1 ns"\n')),
     Feature("frames, 5", appended('\n[frames]\nperiod = "10 ns"\nfields = ["von_mises", "velocity"]\n')),
     Feature("corrected mass", appended('\n[discretisation]\nmass = "corrected"\n')),
-    Feature("recipe mls-gauss, 3 points", appended('\n[discretisation]\nrecipe = "mls-gauss"\n')),
-    Feature("recipe es-t3", appended('\n[discretisation]\nrecipe = "es-t3"\n')),
-    Feature("recipe t3", appended('\n[discretisation]\nrecipe = "t3"\n')),
+    Feature("method mls-gauss, 3 points", appended('\n[discretisation]\nmethod = "mls-gauss"\n')),
+    Feature("method es-t3", appended('\n[discretisation]\nmethod = "es-t3"\n')),
+    Feature("method t3", appended('\n[discretisation]\nmethod = "t3"\n')),
     Feature("law melody", replaced('law = "neo-hookean"', 'law = "melody"')),
     Feature("step doubling", replaced("tolerance = 1e-2", 'integrator = "step-doubling"')),
 ]

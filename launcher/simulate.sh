@@ -142,5 +142,5 @@ study() {
 
 schema() {
   need pliant_engine
-  exec "$(program pliant_engine)" schema "$root"/docs/keys/*.toml "$root"/cases/*.toml
+  exec "$(program pliant_engine)" schema
 }

@@ -43,8 +43,8 @@ class ShapeFunction:
         return xs, ys, phi
 
 
-def evaluate(engine: Path, recipe: str, nodes: int, support: int, grid: int) -> ShapeFunction:
-    command = [str(engine), "shape-function", "--recipe", recipe, "--nodes", str(nodes), "--support", str(support), "--grid", str(grid)]
+def evaluate(engine: Path, method: str, nodes: int, support: int, grid: int) -> ShapeFunction:
+    command = [str(engine), "shape-function", "--method", method, "--nodes", str(nodes), "--support", str(support), "--grid", str(grid)]
     result = subprocess.run(command, capture_output=True, text=True)
     if result.returncode != 0:
         sys.stderr.write(result.stderr)
@@ -67,13 +67,13 @@ def largest_jump(function: ShapeFunction) -> float:
 def draw(functions: dict[str, ShapeFunction]) -> plt.Figure:
     figure, axes = plt.subplots(2, 3, figsize=(13, 7.5), constrained_layout=True)
     span = 3.6
-    for row, (recipe, function) in zip(axes, functions.items()):
+    for row, (method, function) in zip(axes, functions.items()):
         xs, ys, phi = function.grid()
         cx, cy = function.node
         top = np.nanmax(phi)
         image = row[0].pcolormesh(xs - cx, ys - cy, phi, cmap="viridis", vmin=min(0, np.nanmin(phi)), vmax=top, shading="nearest")
         row[0].plot(*(function.nodes - function.node).T, ".", color="white", markersize=3)
-        row[0].set(xlim=(-span, span), ylim=(-span, span), aspect="equal", title=f"{NAMES[recipe]}: $\\phi$", xlabel="x / d", ylabel="y / d")
+        row[0].set(xlim=(-span, span), ylim=(-span, span), aspect="equal", title=f"{NAMES[method]}: $\\phi$", xlabel="x / d", ylabel="y / d")
         figure.colorbar(image, ax=row[0], shrink=0.85)
         line = phi[np.argmin(np.abs(ys - cy))]
         row[1].plot(xs - cx, line, color="tab:blue", linewidth=1)
@@ -101,7 +101,7 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
 def main(arguments: list[str]) -> int:
     options = parse_arguments(arguments)
     engine = Path(os.environ.get("PLIANT_ENGINE", Path(__file__).resolve().parents[1] / "build/release/pliant_engine"))
-    functions = {recipe: evaluate(engine, recipe, options.nodes, options.support, options.grid) for recipe in NAMES}
+    functions = {method: evaluate(engine, method, options.nodes, options.support, options.grid) for method in NAMES}
     try:
         draw(functions).savefig(options.out, dpi=130)
     except (OSError, ValueError) as error:

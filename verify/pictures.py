@@ -87,10 +87,10 @@ def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]
 
 def draw_ratios(axes: Axes, percent: np.ndarray, engine: dict[str, np.ndarray], references: dict[str, np.ndarray],
                 elements: np.ndarray, error: float) -> None:
-    """By recipe [approaches], over finite elements, whose own relative error the bars show, less 1, in percent."""
-    for (recipe, force), colour, marker in zip(engine.items(), COLOURS, MARKERS):
+    """By method [approaches], over finite elements, whose own relative error the bars show, less 1, in percent."""
+    for (method, force), colour, marker in zip(engine.items(), COLOURS, MARKERS):
         axes.plot(percent, 100 * (force / elements - 1), marker=marker, markersize=4, linewidth=1.1, color=colour,
-                  label=f"engine, {recipe}")
+                  label=f"engine, {method}")
     for i, force in enumerate(references.values()):
         axes.plot(percent, 100 * (force / elements - 1), "kx", markersize=5, label="" if i else "reference")
     axes.errorbar(percent, 0 * percent, 100 * error, fmt="none", ecolor="0.3", capsize=3,

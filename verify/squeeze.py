@@ -13,7 +13,7 @@ from histories import speeds
 from verification import Case, Run
 
 SCENE = "../plates/scene.toml"
-RECIPES = ["mls", "mls-gauss", "t3", "es-t3"]
+METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
 OUTLINE = {168: 48, 340: 68, 700: 100, 1400: 140}  # nodes on the outline: multiples of four, so both poles are alike
 GAP = 0.01  # of either plate at the start
 PAUSE, RAMP = 8.0, 2.5  # s from one approach to the next; of them in motion
@@ -31,7 +31,7 @@ class Squeeze:
     """One run: a disc of so many nodes with a corner or, turned by half a segment, a facet at each pole."""
 
     approaches: tuple[float, ...]
-    recipe: str = "mls"
+    method: str = "mls"
     nodes: int = 168
     facet: bool = False
     stiffness: float = 3e3  # of the contact, mu / R
@@ -44,13 +44,13 @@ class Squeeze:
 
     def name(self) -> str:
         turned = "facet" if self.facet else "corner"
-        return f"{self.recipe}_{self.nodes}_{turned}_{self.stiffness:g}_{self.poisson:g}_{len(self.approaches)}_{self.pause:g}"
+        return f"{self.method}_{self.nodes}_{turned}_{self.stiffness:g}_{self.poisson:g}_{len(self.approaches)}_{self.pause:g}"
 
     def scene(self, case: Case) -> str:
         up = speeds([-GAP, *self.approaches], self.pause, RAMP)
         outline = OUTLINE[self.nodes]
-        quadrature = "segments" if self.recipe == "t3" else "nodes"  # at nodes the light ones of t3 rattle
-        return case.scene(SCENE, recipe=self.recipe, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
+        quadrature = "segments" if self.method == "t3" else "nodes"  # at nodes the light ones of t3 rattle
+        return case.scene(SCENE, method=self.method, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
                           damping=self.damping, angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
                           young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
                           up=up, down=[[t, -v] for t, v in up])

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import product
 
-RECIPES = ["mls", "mls-gauss", "t3", "es-t3"]
+METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
 MASSES = ["lumped", "corrected"]
 SAFETIES = [0.2, 0.4, 0.6, 0.9]
 TOLERANCES = [1e-3, 1e-4]
@@ -19,7 +19,7 @@ REFERENCE_STEPS = [0.04, 0.02, 0.01]  # over the scene's unit of time
 class Choice:
     """Of one run. As it stands: the engine's defaults."""
 
-    recipe: str = "mls"
+    method: str = "mls"
     mass: str = "lumped"
     nodes: int = 168
     integrator: str = "verlet"
@@ -32,12 +32,12 @@ class Choice:
     def family(self) -> str:
         """All but the number of nodes, as curves are named."""
         if self.step is not None:
-            return f"reference, {self.recipe}, {self.mass}, dt {self.step:g}"
+            return f"reference, {self.method}, {self.mass}, dt {self.step:g}"
         scheme = f"safety {self.safety:g}" if self.integrator == "verlet" else "step doubling"
         if self.integrator != "verlet" or self.bound != 1e-2:
             scheme += f", {self.bound:g}"
         stiff = "" if self.stiffness == 1 else f", {self.stiffness:g} x kn"
-        return f"{self.recipe}, {self.mass}, {scheme}{stiff}"
+        return f"{self.method}, {self.mass}, {scheme}{stiff}"
 
     def time_keys(self) -> str:
         """Lines of [time]."""
@@ -47,7 +47,7 @@ class Choice:
 
     def discretisation_keys(self) -> str:
         """Lines of [discretisation]."""
-        return f'recipe = "{self.recipe}"\nmass = "{self.mass}"'
+        return f'method = "{self.method}"\nmass = "{self.mass}"'
 
 
 DEFAULT = Choice()
@@ -55,9 +55,9 @@ PAPER = Choice("mls-gauss", "lumped", integrator="step-doubling", bound=TARGETS[
 
 
 def of_space(sizes: list[int]) -> Iterator[Choice]:
-    """All recipes and masses on all sizes, else by default."""
-    for recipe, mass, nodes in product(RECIPES, MASSES, sizes):
-        yield Choice(recipe, mass, nodes)
+    """All methods and masses on all sizes, else by default."""
+    for method, mass, nodes in product(METHODS, MASSES, sizes):
+        yield Choice(method, mass, nodes)
 
 
 def of_paper(sizes: list[int]) -> Iterator[Choice]:

@@ -10,7 +10,7 @@ from error_study.measure import Measured
 from error_study.pareto import cost_at, front
 
 CORRECTED = Choice(mass="corrected")
-SMOOTHED = Choice(recipe="es-t3", mass="corrected")
+SMOOTHED = Choice(method="es-t3", mass="corrected")
 NAMED = {"default": DEFAULT, "default, corrected mass": CORRECTED, "es-t3, corrected mass": SMOOTHED}
 
 
@@ -48,7 +48,7 @@ def paper_against_others(rows: list[Measured], scene: str) -> list[AtEqualError]
     found = []
     for row in finished(rows, scene):
         choice = row.choice
-        if (choice.recipe, choice.mass, choice.integrator) != (PAPER.recipe, PAPER.mass, PAPER.integrator):
+        if (choice.method, choice.mass, choice.integrator) != (PAPER.method, PAPER.mass, PAPER.integrator):
             continue
         costs = {name: cost_at(row.error, points) for name, points in others.items()}
         ratios = {name: row.seconds / cost if cost else None for name, cost in costs.items()}

@@ -20,7 +20,7 @@ from error_study.measure import Programs, Runner
 from error_study.scenes import HERE, SCENES, layer_of, rms
 
 NODES, SAFETY = 1200, 0.4
-RECIPES = ["mls", "es-t3"]
+METHODS = ["mls", "es-t3"]
 
 
 def main() -> None:
@@ -29,8 +29,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as scratch:
         runner = Runner(Programs(build / "pliant_engine", build / "pliant_reference_solver"), Path(scratch), 1)
         layers = []
-        for recipe in RECIPES:
-            message = runner.run(scene, Choice(recipe, "corrected", NODES, safety=SAFETY))
+        for method in METHODS:
+            message = runner.run(scene, Choice(method, "corrected", NODES, safety=SAFETY))
             if message:
                 sys.exit(message)
             layers.append(layer_of(runner.out))

@@ -22,7 +22,7 @@ from error_study.scenes import Scene
 from plots.curves import COLOURS
 
 HERE = Path(__file__).resolve().parent
-DRAWN = {**judge.NAMED, "t3": Choice(recipe="t3"), "the paper's way": PAPER}
+DRAWN = {**judge.NAMED, "t3": Choice(method="t3"), "the paper's way": PAPER}
 MARKERS = ["o", "s", "D", "^", "x"]
 
 

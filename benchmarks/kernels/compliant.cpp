@@ -1,4 +1,4 @@
-// Kernels of compliant bodies: internal forces of all recipes and layouts, the integrator's update, outlines, and a
+// Kernels of compliant bodies: internal forces of all methods and layouts, the integrator's update, outlines, and a
 // step of grains that touch nothing.
 #include <vector>
 
@@ -16,10 +16,10 @@ namespace {
 
 constexpr double dt = 1e-15;  ///< so short that what the plain loops move stays where it is
 
-Cloud& mls() { return grains_of(Recipe::mls); }
-Cloud& mls_gauss() { return grains_of(Recipe::mls_gauss); }
-Cloud& es_t3() { return grains_of(Recipe::es_t3); }
-Cloud& t3() { return grains_of(Recipe::t3); }
+Cloud& mls() { return grains_of(DiscretisationMethod::mls); }
+Cloud& mls_gauss() { return grains_of(DiscretisationMethod::mls_gauss); }
+Cloud& es_t3() { return grains_of(DiscretisationMethod::es_t3); }
+Cloud& t3() { return grains_of(DiscretisationMethod::t3); }
 
 /// Batches of lanes are shared out as in a step; of a nodewise body its parts are.
 void add_all(const Model& model, const Dofs& position, Dofs& force) {

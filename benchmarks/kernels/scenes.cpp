@@ -21,11 +21,11 @@ namespace {
 constexpr double diameter = 1e-6, pitch = 1.5e-6;
 constexpr int nodes = 168;
 
-Scene bare(Recipe recipe) {
+Scene bare(DiscretisationMethod method) {
   Scene scene;
   scene.name = scene.title = "grains";
   scene.time.end = 1;
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.materials = {{"soft", MaterialLaw::neo_hookean, 1200, 2e9, 0.4}};
   scene.contacts.emplace_back();
   scene.contacts[0].first = scene.contacts[0].second = "all";
@@ -54,7 +54,7 @@ ShapeSpec disc(int field_nodes) {
 
 Model same_topology_model() {
   constexpr int count = 200, columns = 20;
-  Scene scene = bare(Recipe::mls);
+  Scene scene = bare(DiscretisationMethod::mls);
   for (int i = 0; i < count; ++i) {
     ShapeSpec shape;
     shape.name = "grain" + std::to_string(i);
@@ -120,11 +120,11 @@ Cloud::Cloud(Model built) : model(std::move(built)), forces(model) {
   verlet = std::make_unique<Verlet>(forces, state);
 }
 
-Cloud& grains_of(Recipe recipe) {
-  static std::map<Recipe, std::unique_ptr<Cloud>> clouds;
-  std::unique_ptr<Cloud>& cloud = clouds[recipe];
+Cloud& grains_of(DiscretisationMethod method) {
+  static std::map<DiscretisationMethod, std::unique_ptr<Cloud>> clouds;
+  std::unique_ptr<Cloud>& cloud = clouds[method];
   if (!cloud) {
-    Scene scene = bare(recipe);
+    Scene scene = bare(method);
     add_grains(scene, disc(nodes), 40, 25, {0, 0});
     cloud = std::make_unique<Cloud>(build_model(scene));
   }
@@ -138,7 +138,7 @@ Cloud& same_topology() {
 
 Cloud& large_body() {
   static Cloud cloud([] {
-    Scene scene = bare(Recipe::mls);
+    Scene scene = bare(DiscretisationMethod::mls);
     add_grains(scene, disc(10'000), 1, 1, {0, 0});
     return build_model(scene);
   }());

@@ -21,7 +21,7 @@ struct Cloud {
 };
 
 /// 1000 grains of 168 nodes, one shape: a shared table in lanes. `mls_gauss` with 3 points a triangle.
-Cloud& grains_of(Recipe recipe);
+Cloud& grains_of(DiscretisationMethod method);
 /// 200 Fourier grains of 168 nodes, each of its own shape, with common connectivity.
 Cloud& same_topology();
 /// One disc of 10,000 nodes, vectorised over its nodes.

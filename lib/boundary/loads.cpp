@@ -36,7 +36,7 @@ double applied_load(const RigidDof& dof, const Instant& at, double g) {
 
 namespace {
 
-/// Density of gravitational mass for a batch's masses at unit density: rim_mass adds inertia but no weight.
+/// Density of gravitational mass for a batch's masses at unit density: mass_scaling adds inertia but no weight.
 Lanes weighing_density(const Model& model, const Batch& batch) {
   const Lanes density =
       with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; });

@@ -117,10 +117,10 @@ void print_masses(const Model& model) {
   }
   print_share("", "all grains", grains);
   if (const double added = added_mass(model); added > 0)
-    print_row("",
-              fmt::format("rim_mass adds {:.2g} % to the inertia of compliant grains, not to their weight; inertial "
-                          "numbers grow by up to {:.2g} %",
-                          100 * added, 100 * (std::sqrt(1 + added) - 1)));
+    print_row(
+        "", fmt::format("mass_scaling adds {:.2g} % to the inertia of compliant grains, not to their weight; inertial "
+                        "numbers grow by up to {:.2g} %",
+                        100 * added, 100 * (std::sqrt(1 + added) - 1)));
   if (all.bodies > grains.bodies) print_share("", "all bodies", all);
 }
 
@@ -213,7 +213,7 @@ void print_time_step(const Model& model, const Stability& stable, double skin) {
   print_row("", fmt::format("{} with all contacts {:.0f} times as stiff: {:.2g} times as many steps",
                             si(stable.stiffer_dt, "s"), stiffer, stable.dt / stable.stiffer_dt));
   if (!bounded) print_row("", "step doubling sets its own by the error; it is not stable far beyond that bound");
-  if (const auto advice = advice_on_rim_mass(model, stable)) print_row("", *advice);
+  if (const auto advice = advice_on_mass_scaling(model, stable)) print_row("", *advice);
   const double speed = prescribed_speed(scene);
   if (speed * stable.dt > skin)
     print_row(

@@ -49,14 +49,14 @@ GridSize grid_size(const Model& model) {
   return size;
 }
 
-/// 1/m of a body's outline where it is round all over or in its caps; 0 where it may lie flat.
+/// 1/m of a body's outline where it is round all over or in its asperities; 0 where it may lie flat.
 double curvature_of(const Model& model, const Body& body) {
   if (!body.wall) {
     const ShapeSpec& shape = model.scene.shapes[body.shape];
     return shape.kind == ShapeKind::disc ? 2 / (body.scale * shape.diameter) : 0;
   }
   for (const Wall& wall : model.scene.walls)
-    if (wall.name == body.name && wall.caps) return 2 / wall.caps->diameter;
+    if (wall.name == body.name && wall.asperities) return 2 / wall.asperities->diameter;
   return 0;
 }
 

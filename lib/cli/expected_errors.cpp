@@ -37,9 +37,9 @@ int fewest_nodes(const Model& model) {
 
 }  // namespace
 
-std::optional<ExpectedErrors> expected_errors(Recipe recipe, Mass mass, int nodes) {
+std::optional<ExpectedErrors> expected_errors(DiscretisationMethod method, Mass mass, int nodes) {
   const auto known = std::ranges::find_if(
-      measured_errors, [&](const MeasuredErrors& m) { return m.recipe == recipe && m.mass == mass; });
+      measured_errors, [&](const MeasuredErrors& m) { return m.method == method && m.mass == mass; });
   if (known == std::end(measured_errors)) return {};
   return ExpectedErrors{between(known->oscillation, nodes), between(known->plates, nodes),
                         between(known->impact, nodes)};
@@ -48,14 +48,14 @@ std::optional<ExpectedErrors> expected_errors(Recipe recipe, Mass mass, int node
 std::string describe_expected_errors(const Model& model) {
   const DiscretisationSettings& chosen = model.scene.discretisation;
   const int nodes = fewest_nodes(model);
-  const auto errors = expected_errors(chosen.recipe, chosen.mass, nodes);
+  const auto errors = expected_errors(chosen.method, chosen.mass, nodes);
   if (nodes == 0 || !errors) return {};
   std::string text = fmt::format(
       "discs of {} nodes were off by {} {:.2g} % of their swing after three periods, {:.2g} % of the force when "
       "squeezed "
-      "to 30 %, {:.2g} % of their speed in a fast bounce (docs/defaults.md, \"Recipe, mass and nodes\")",
+      "to 30 %, {:.2g} % of their speed in a fast bounce (docs/defaults.md, \"DiscretisationMethod, mass and nodes\")",
       nodes, likeness(nodes), 100 * errors->oscillation, 100 * errors->plates, 100 * errors->impact);
-  if (const auto corrected = expected_errors(chosen.recipe, Mass::corrected, nodes);
+  if (const auto corrected = expected_errors(chosen.method, Mass::corrected, nodes);
       chosen.mass == Mass::lumped && corrected->oscillation < 0.5 * errors->oscillation)
     text +=
         fmt::format("; with mass = \"corrected\" by {:.2g}, {:.2g} and {:.2g} %, for a quarter to a third more steps",

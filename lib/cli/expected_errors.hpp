@@ -16,8 +16,8 @@ struct ExpectedErrors {
 };
 
 /// Of discs of so many nodes: between those that were measured, by powers of their number; beyond, of the nearest.
-/// Nothing of recipes that were not.
-std::optional<ExpectedErrors> expected_errors(Recipe recipe, Mass mass, int nodes);
+/// Nothing of methods that were not.
+std::optional<ExpectedErrors> expected_errors(DiscretisationMethod method, Mass mass, int nodes);
 
 /// Of the scene's coarsest compliant grains, with what the other mass would change. Empty where there is nothing to
 /// say.

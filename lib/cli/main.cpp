@@ -15,7 +15,7 @@
 #include "files/output_folder.hpp"
 #include "run/run.hpp"
 #include "scene/late_conditions.hpp"
-#include "scene/schema.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/units.hpp"
 
 namespace pliant {
@@ -47,19 +47,16 @@ void run(Arguments arguments) {
   run_scene(scene, arguments.run);
 }
 
-/// The keys of scene files, learned from scenes that together ask for all of them.
-void print_schema(const std::vector<std::string>& files) {
-  SceneSchema schema;
-  for (const std::string& file : files) read_scene(file, &schema);
+void print_schema() {
   fmt::print(
       "# Keys of scene files\n\n"
-      "`./pliant schema` writes this page from the code that reads scenes. To change the page, change that code\n"
-      "and run `./pliant schema > docs/scene.md`. A quantity is a number in SI units or a string with a unit,\n"
-      "such as \"2 GPa\"; \"a number\" has no unit. An angle without a unit is in radians. The units deg, rad and\n"
-      "turn apply only to quantities in rad and rad/s and to friction angles. `with` names the choice in the\n"
-      "same table that a key belongs to. Unknown keys are refused. [defaults.md](defaults.md) gives the reasons\n"
-      "of the defaults.\n\n{}",
-      schema.markdown());
+      "`./pliant schema` writes this page from the table that scenes are read by (`scene_tables` in `lib/scene/`). A\n"
+      "quantity is a number in SI units or a string with a unit, such as \"2 GPa\"; \"a number\" has no unit. An "
+      "angle\n"
+      "without a unit is in radians. The units deg, rad and turn apply only to quantities in rad and rad/s and to\n"
+      "friction angles. `with` names the choice in the same table that a key belongs to. Unknown keys are refused.\n"
+      "[defaults.md](defaults.md) gives the reasons of the defaults.\n\n{}",
+      scene_key_tables());
 }
 
 CLI::App* add_modes(CLI::App& app, std::string& scene, ModesRequest& modes) {
@@ -91,11 +88,12 @@ int main_program(int argc, char** argv) {
         ->check(CLI::Range(1, 1024));
   }
   CLI::App* shape_function_command =
-      app.add_subcommand("shape-function", "CSV of one shape function of a disc, e.g. shape-function --recipe rpim");
+      app.add_subcommand("shape-function", "CSV of one shape function of a disc, e.g. shape-function --method rpim");
   ShapeFunctionRequest shape_function;
-  const std::map<std::string, Recipe> recipes{{"mls", Recipe::mls}, {"rpim", Recipe::rpim}, {"t3", Recipe::t3}};
-  shape_function_command->add_option("--recipe", shape_function.settings.recipe, "mls, rpim or t3")
-      ->transform(CLI::CheckedTransformer(recipes));
+  const std::map<std::string, DiscretisationMethod> methods{
+      {"mls", DiscretisationMethod::mls}, {"rpim", DiscretisationMethod::rpim}, {"t3", DiscretisationMethod::t3}};
+  shape_function_command->add_option("--method,--recipe", shape_function.settings.method, "mls, rpim or t3")
+      ->transform(CLI::CheckedTransformer(methods));
   shape_function_command->add_option("--support", shape_function.settings.support, "Nodes in a support")
       ->check(CLI::Range(7, 25));
   shape_function_command->add_option("--nodes", shape_function.nodes, "Nodes of the disc")->check(CLI::Range(30, 5000));
@@ -109,9 +107,7 @@ int main_program(int argc, char** argv) {
   run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
   ModesRequest modes;
   CLI::App* modes_command = add_modes(app, arguments.scene, modes);
-  CLI::App* schema_command = app.add_subcommand("schema", "Table of the keys that the given scenes are asked for");
-  std::vector<std::string> files;
-  schema_command->add_option("scenes", files, "Scene files (TOML)")->required();
+  CLI::App* schema_command = app.add_subcommand("schema", "Table of the keys of scene files");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -119,7 +115,7 @@ int main_program(int argc, char** argv) {
   }
   if (arguments.run.quiet) spdlog::set_level(spdlog::level::err);
   if (*run_command) run(arguments);
-  if (*schema_command) print_schema(files);
+  if (*schema_command) print_schema();
   if (*check_command) print_check(load(arguments), arguments.run.threads);
   if (*modes_command) print_modes(load(arguments), modes);
   if (*shape_function_command) fmt::print("{}", shape_function_csv(shape_function));

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-constexpr double tried = 2;          ///< rim_mass
+constexpr double tried = 2;          ///< mass_scaling
 constexpr double worth_while = 1.1;  ///< times as long
 constexpr std::size_t most_bodies = 3000;
 
@@ -41,19 +41,19 @@ double added_mass(const Model& model) {
   return without > 0 ? added / without : 0;
 }
 
-std::optional<std::string> advice_on_rim_mass(const Model& model, const Stability& as_it_is) {
+std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stability& as_it_is) {
   const DiscretisationSettings& settings = model.scene.discretisation;
-  if (settings.mass != Mass::lumped || settings.rim_mass > 1 || model.groups.empty() ||
+  if (settings.mass != Mass::lumped || settings.mass_scaling > 1 || model.groups.empty() ||
       model.bodies.size() > most_bodies || !std::isfinite(as_it_is.dt) ||
       !traits_of(model.scene.time.integrator).is_bounded)
     return {};
   Scene scene = model.scene;
-  scene.discretisation.rim_mass = tried;
+  scene.discretisation.mass_scaling = tried;
   const Model heavier = build_model(scene);
   const double longer = stability(heavier).dt / as_it_is.dt;
   if (longer < worth_while) return {};
   return fmt::format(
-      "rim_mass = {:.0f} would make it {:.2g} times as long, for {:.2g} % more inertia of compliant grains; see "
+      "mass_scaling = {:.0f} would make it {:.2g} times as long, for {:.2g} % more inertia of compliant grains; see "
       "docs/defaults.md",
       tried, longer, 100 * added_mass(heavier));
 }

@@ -17,11 +17,11 @@ struct Stability {
 };
 Stability stability(const Model& model);
 
-/// What [discretisation] rim_mass adds to the mass of the model's compliant grains, over theirs; 0 without it.
+/// What [discretisation] mass_scaling adds to the mass of the model's compliant grains, over theirs; 0 without it.
 double added_mass(const Model& model);
 
 /// What it could do for a scene without it: try it. Nothing where steps do not depend on it, or for scenes of more
 /// bodies than are tried within a second or so.
-std::optional<std::string> advice_on_rim_mass(const Model& model, const Stability& as_it_is);
+std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stability& as_it_is);
 
 }  // namespace pliant

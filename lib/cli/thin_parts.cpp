@@ -15,18 +15,18 @@ namespace {
 constexpr std::array<int, 6> measured_segments{1, 2, 3, 4, 6, 8};
 
 struct BendingErrors {
-  Recipe recipe;
+  DiscretisationMethod method;
   std::array<double, 6> error;
 };
 
 // FROZEN: by tests/cli/bending_errors_test.cpp, which measures them anew on strips under moments at both ends, nu =
 // 0.4, against beam theory. The outline's spacing is given, all else is by default.
 constexpr BendingErrors measured[] = {
-    {Recipe::mls, {1.146, 0.201, 0.073, 0.025, 0.007, 0.003}},
-    {Recipe::mls_gauss, {-0.303, -0.020, -0.024, -0.007, 0.000, 0.002}},
-    {Recipe::t3, {-0.748, -0.422, -0.244, -0.154, -0.064, -0.032}},
-    {Recipe::es_t3, {-0.430, -0.087, -0.020, -0.009, -0.001, 0.000}},
-    {Recipe::rpim, {0.053, -0.155, -0.013, -0.001, 0.008, 0.007}},
+    {DiscretisationMethod::mls, {1.146, 0.201, 0.073, 0.025, 0.007, 0.003}},
+    {DiscretisationMethod::mls_gauss, {-0.303, -0.020, -0.024, -0.007, 0.000, 0.002}},
+    {DiscretisationMethod::t3, {-0.748, -0.422, -0.244, -0.154, -0.064, -0.032}},
+    {DiscretisationMethod::es_t3, {-0.430, -0.087, -0.020, -0.009, -0.001, 0.000}},
+    {DiscretisationMethod::rpim, {0.053, -0.155, -0.013, -0.001, 0.008, 0.007}},
 };
 
 // Faces across from each other are that nearly antiparallel (cosine), their distance changes by less than that factor
@@ -105,8 +105,8 @@ std::optional<ThinPart> thinnest_part(const Points& outline) {
   return thinnest;
 }
 
-std::optional<double> bending_error(Recipe recipe, double segments_across) {
-  const auto known = std::ranges::find(measured, recipe, &BendingErrors::recipe);
+std::optional<double> bending_error(DiscretisationMethod method, double segments_across) {
+  const auto known = std::ranges::find(measured, method, &BendingErrors::method);
   if (known == std::end(measured)) return {};
   const auto inverse_square = [](double n) { return 1 / (n * n); };
   if (segments_across <= measured_segments.front()) return known->error.front();
@@ -122,16 +122,16 @@ std::optional<double> bending_error(Recipe recipe, double segments_across) {
 namespace {
 
 /// From here on bending is right to worth_a_warning.
-int enough_across(Recipe recipe) {
+int enough_across(DiscretisationMethod method) {
   int enough = measured_segments.back() + 1;
-  while (enough > 1 && std::abs(*bending_error(recipe, enough - 1)) < worth_a_warning) --enough;
+  while (enough > 1 && std::abs(*bending_error(method, enough - 1)) < worth_a_warning) --enough;
   return enough;
 }
 
 }  // namespace
 
 std::string describe_bending(const Model& model) {
-  const Recipe recipe = model.scene.discretisation.recipe;
+  const DiscretisationMethod method = model.scene.discretisation.method;
   std::set<int> seen;
   std::optional<ThinPart> worst;
   double error = worth_a_warning;
@@ -140,13 +140,13 @@ std::string describe_bending(const Model& model) {
     if (body.kind != BodyKind::compliant || !seen.insert(body.outline).second) continue;
     const std::optional<ThinPart> limb = thinnest_part(model.outlines[body.outline].points);
     if (!limb) continue;
-    const double found = bending_error(recipe, limb->segments_across).value_or(0);
+    const double found = bending_error(method, limb->segments_across).value_or(0);
     if (std::abs(found) < std::abs(error)) continue;
     worst = limb, error = found, shape = model.scene.shapes[body.shape].name;
   }
   if (!worst) return {};
   const std::string across = fmt::format("{:.2g}", worst->segments_across);
-  const int enough = enough_across(recipe);
+  const int enough = enough_across(method);
   // Rounded down to two digits, so that it suffices.
   double spacing = worst->thickness / enough;
   const double digit = std::pow(10, std::floor(std::log10(spacing)) - 1);

@@ -20,8 +20,8 @@ std::optional<ThinPart> thinnest_part(const Points& outline);
 
 /// How much further than a beam a strip bends that has so many segments of the outline across, relative; below 0: less
 /// far. Between those measured by straight lines in 1/n^2, of more by that power, of fewer than one that of one.
-/// Nothing of recipes that were not measured.
-std::optional<double> bending_error(Recipe recipe, double segments_across);
+/// Nothing of methods that were not measured.
+std::optional<double> bending_error(DiscretisationMethod method, double segments_across);
 
 /// From this share on bending is worth a word.
 inline constexpr double worth_a_warning = 0.05;

@@ -18,7 +18,7 @@ struct ShapeFunctions {
 /// Shape functions of a mesh, at a point of a given triangle: all that tables and masses need from a discretisation.
 using Basis = std::function<ShapeFunctions(const Vec2& x, int triangle)>;
 
-/// Shape functions of the scene's discretisation (`recipe`), on a mesh in mean node distances that must outlive them.
+/// Shape functions of the scene's discretisation (`method`), on a mesh in mean node distances that must outlive them.
 /// Throws InputError if the limits of the discretisation are exceeded.
 Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings);
 

@@ -29,7 +29,7 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
   return mass;
 }
 
-double add_rim_mass(int outline_count, double times, std::vector<double>& mass) {
+double scale_outline_mass(int outline_count, double times, std::vector<double>& mass) {
   const double before = std::accumulate(mass.begin(), mass.end(), 0.0);
   for (int i = 0; i < outline_count; ++i) mass[i] *= times;
   return before / std::accumulate(mass.begin(), mass.end(), 0.0);

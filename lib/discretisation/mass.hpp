@@ -10,7 +10,7 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
 /// Multiplies the mass of the first `outline_count` nodes by `times`. Returns the share of the mass that was there
 /// before.
-double add_rim_mass(int outline_count, double times, std::vector<double>& mass);
+double scale_outline_mass(int outline_count, double times, std::vector<double>& mass);
 
 /// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points per triangle: exact for
 /// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in

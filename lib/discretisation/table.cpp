@@ -9,8 +9,8 @@
 
 #include "core/errors.hpp"
 #include "discretisation/mass.hpp"
+#include "discretisation/methods.hpp"
 #include "discretisation/mls.hpp"
-#include "discretisation/recipes.hpp"
 #include "discretisation/rpim.hpp"
 #include "geometry/polygon.hpp"
 
@@ -20,10 +20,10 @@ namespace {
 constexpr int largest_support_mls = 14, largest_support_others = 25, least_support = 7;
 
 MlsNodes nodes_with_supports(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  const int largest = settings.recipe == Recipe::mls ? largest_support_mls : largest_support_others;
+  const int largest = settings.method == DiscretisationMethod::mls ? largest_support_mls : largest_support_others;
   if (settings.support < least_support || settings.support > largest)
     throw InputError(
-        fmt::format("discretisation: support = {} nodes; allowed for this recipe: {} to {} (8 to 10 advised)",
+        fmt::format("discretisation: support = {} nodes; allowed for this method: {} to {} (8 to 10 advised)",
                     settings.support, least_support, largest));
   if (settings.support > largest_support_mls)
     spdlog::warn("discretisation: support = {} nodes; above 12, row-sum mass creates modes that move no material",
@@ -31,14 +31,14 @@ MlsNodes nodes_with_supports(const FieldMesh& mesh, const DiscretisationSettings
   return make_mls_nodes(mesh, settings.support);
 }
 
-RecipeResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows,
+MethodResult build(const FieldMesh& mesh, const Basis& basis, const ShapeRows& outline_rows,
                    const DiscretisationSettings& settings) {
-  switch (settings.recipe) {
-    case Recipe::mls:
+  switch (settings.method) {
+    case DiscretisationMethod::mls:
       return build_mls(mesh, basis, outline_rows);
-    case Recipe::es_t3:
+    case DiscretisationMethod::es_t3:
       return build_es_t3(mesh);
-    case Recipe::t3:
+    case DiscretisationMethod::t3:
       return build_at_gauss_points(mesh, basis, 1);
     default:
       return build_at_gauss_points(mesh, basis, settings.gauss_points);
@@ -69,11 +69,11 @@ void give_dimensions(Discretisation& result, double length) {
 }  // namespace
 
 Basis make_basis(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  switch (settings.recipe) {
-    case Recipe::t3:
-    case Recipe::es_t3:
+  switch (settings.method) {
+    case DiscretisationMethod::t3:
+    case DiscretisationMethod::es_t3:
       return linear_triangles(mesh);
-    case Recipe::rpim:
+    case DiscretisationMethod::rpim:
       return radial_point_interpolation(nodes_with_supports(mesh, settings));
     default:
       return moving_least_squares(nodes_with_supports(mesh, settings));
@@ -94,16 +94,16 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
   result.mass_at_unit_density = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
-  result.weight_share = add_rim_mass(mesh.outline_count, settings.rim_mass, result.mass_at_unit_density);
+  result.weight_share = scale_outline_mass(mesh.outline_count, settings.mass_scaling, result.mass_at_unit_density);
   if (settings.mass == Mass::corrected) {
     result.mass_correction = mass_correction(scaled, basis, result.mass_at_unit_density);
     result.correction_bound = correction_bound(result.mass_correction, result.mass_at_unit_density);
   }
-  RecipeResult recipe = build(scaled, basis, result.outline_rows, settings);
-  result.table = std::move(recipe.table);
+  MethodResult method = build(scaled, basis, result.outline_rows, settings);
+  result.table = std::move(method.table);
   result.min_shape_value = quality.least_value;
   result.condition = quality.condition;
-  result.completeness_residual = recipe.completeness_residual;
+  result.completeness_residual = method.completeness_residual;
   give_dimensions(result, length);
   return result;
 }

@@ -40,7 +40,7 @@ struct Discretisation {
   /// lumped mass.
   ShapeRows mass_correction;
   double correction_bound = 1;       ///< bound on its largest eigenvalue
-  double weight_share = 1;           ///< share of the mass without the addition of rim_mass
+  double weight_share = 1;           ///< share of the mass without the addition of mass_scaling
   double min_shape_value = 0;        ///< least phi at integration points and nodes (docs/method.md 2)
   double condition = 1;              ///< largest condition number of the systems that the shape functions solve
   double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)

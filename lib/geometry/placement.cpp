@@ -56,12 +56,13 @@ std::vector<Points> outlines_of(const Scene& scene, const std::vector<Placement>
   return outlines;
 }
 
-/// Walls whose caps, or levels, reach into the region that grains fill.
+/// Walls whose asperities, or levels, reach into the region that grains fill.
 std::vector<WallProfile> walls_in(const Scene& scene, const Strip& region) {
   std::vector<WallProfile> profiles;
   for (const Wall& wall : scene.walls) {
-    // Points on caps: the error between them is 1e-3 of a cap's radius.
-    const double spacing = std::min(*scene.period / 8, wall.caps ? wall.caps->diameter / 20 : *scene.period / 8);
+    // Points on asperities: the error between them is 1e-3 of an asperity's radius.
+    const double spacing =
+        std::min(*scene.period / 8, wall.asperities ? wall.asperities->diameter / 20 : *scene.period / 8);
     WallProfile profile = located(wall.where, [&] { return WallProfile(wall, *scene.period, spacing); });
     if (profile.reaches_into(region)) profiles.push_back(std::move(profile));
   }

@@ -21,7 +21,7 @@ void append_line(Points& chain, const Vec2& a, const Vec2& b, double spacing) {
   for (int k = 0; k < n; ++k) chain.push_back(a + static_cast<double>(k) / n * (b - a));
 }
 
-// Arc of one cap, from left to right.
+// Arc of one asperity, from left to right.
 struct Arc {
   Vec2 centre;
   double radius, half_angle, side;  // side: +1 when the grains are above the wall, -1 below
@@ -35,28 +35,28 @@ void append_arc(Points& chain, const Arc& arc, double spacing) {
   for (int k = 0; k < n; ++k) chain.push_back(arc.at((2.0 * k / n - 1) * arc.half_angle));
 }
 
-void require_valid_caps(const Wall& wall) {
-  const Caps& caps = *wall.caps;
-  if (caps.count < 1 || !(caps.diameter > 0))
-    throw InputError(fmt::format("wall '{}': {} caps of diameter {:.6g} m; both must be positive", wall.name,
-                                 caps.count, caps.diameter));
-  if (caps.heights.empty() || caps.half_angles.empty())
-    throw InputError(fmt::format("wall '{}': caps need at least one height and one half angle", wall.name));
-  for (const double angle : caps.half_angles)
+void require_valid_asperities(const Wall& wall) {
+  const Asperities& asperities = *wall.asperities;
+  if (asperities.count < 1 || !(asperities.diameter > 0))
+    throw InputError(fmt::format("wall '{}': {} asperities of diameter {:.6g} m; both must be positive", wall.name,
+                                 asperities.count, asperities.diameter));
+  if (asperities.heights.empty() || asperities.half_angles.empty())
+    throw InputError(fmt::format("wall '{}': asperities need at least one height and one half angle", wall.name));
+  for (const double angle : asperities.half_angles)
     if (!(angle > 0 && angle < std::numbers::pi / 2))
       throw InputError(
-          fmt::format("wall '{}': cap half angle {:.6g} rad; allowed: above 0, below pi/2", wall.name, angle));
+          fmt::format("wall '{}': asperity half angle {:.6g} rad; allowed: above 0, below pi/2", wall.name, angle));
 }
 
 // Arcs of one period, followed by the first one, shifted.
-std::vector<Arc> cap_arcs(const Wall& wall, double period) {
-  const Caps& caps = *wall.caps;
+std::vector<Arc> asperity_arcs(const Wall& wall, double period) {
+  const Asperities& asperities = *wall.asperities;
   const double side = wall.solid == Wall::Solid::below ? 1 : -1;
   std::vector<Arc> arcs;
-  for (int j = 0; j < caps.count; ++j) {
-    const double height = caps.heights[j % caps.heights.size()];
-    arcs.push_back({Vec2(caps.first + j * period / caps.count, wall.level + side * height), caps.diameter / 2,
-                    caps.half_angles[j % caps.half_angles.size()], side});
+  for (int j = 0; j < asperities.count; ++j) {
+    const double height = asperities.heights[j % asperities.heights.size()];
+    arcs.push_back({Vec2(asperities.first + j * period / asperities.count, wall.level + side * height),
+                    asperities.diameter / 2, asperities.half_angles[j % asperities.half_angles.size()], side});
   }
   arcs.push_back(arcs.front());
   arcs.back().centre.x() += period;
@@ -64,15 +64,15 @@ std::vector<Arc> cap_arcs(const Wall& wall, double period) {
 }
 
 Points capped_chain(const Wall& wall, double period, double spacing) {
-  require_valid_caps(wall);
-  const std::vector<Arc> arcs = cap_arcs(wall, period);
+  require_valid_asperities(wall);
+  const std::vector<Arc> arcs = asperity_arcs(wall, period);
   Points chain;
   for (std::size_t j = 0; j + 1 < arcs.size(); ++j) {
     const Vec2 from = arcs[j].right(), to = arcs[j + 1].left();
     if (!(from.x() < to.x()))
       throw InputError(
-          fmt::format("wall '{}': cap {} ends at x = {:.6g} m, beyond the start of the next at {:.6g} m; take "
-                      "fewer caps or smaller half angles",
+          fmt::format("wall '{}': asperity {} ends at x = {:.6g} m, beyond the start of the next at {:.6g} m; take "
+                      "fewer asperities or smaller half angles",
                       wall.name, j, from.x(), to.x()));
     append_arc(chain, arcs[j], spacing);
     append_line(chain, from, to, spacing);
@@ -98,7 +98,7 @@ Points wall_outline(const Wall& wall, double period, double spacing) {
     throw InputError(fmt::format("wall '{}': period {:.6g} m, outline spacing {:.6g} m; both must be positive",
                                  wall.name, period, spacing));
   Points chain;
-  if (wall.caps)
+  if (wall.asperities)
     chain = wrapped(capped_chain(wall, period, spacing), period);
   else
     append_line(chain, Vec2(0, wall.level), Vec2(period, wall.level), spacing);

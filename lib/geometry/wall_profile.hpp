@@ -12,7 +12,7 @@ namespace pliant {
 /// Wall for the placement of grains beside it: a line y(x) that is periodic.
 class WallProfile {
  public:
-  /// of its points on caps and lines, m
+  /// of its points on asperities and lines, m
   WallProfile(const Wall& wall, double period, double spacing);
 
   const std::string& name() const { return name_; }

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace pliant {
-
-/// All names that keys have in some table of a scene file, sorted.
-std::span<const std::string_view> scene_keys();
-
-/// Whether some table of a scene file has a key of this name: others are misspelt, whatever table they stand in.
-bool is_scene_key(std::string_view word);
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours, one character each.
 int edit_distance(std::string_view a, std::string_view b);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "scene/names.hpp"
+#include "scene/old_keys.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
@@ -73,7 +74,8 @@ class FileNames {
 }  // namespace
 
 std::string place_of_key(const std::string& text, const std::string& key) {
-  const toml::table scene = toml::parse(text);
+  toml::table scene = toml::parse(text);
+  rename_old_keys(scene, "the scene");
   const toml::node* at = &scene;
   std::string place;
   for (std::size_t begin = 0; begin < key.size();) {

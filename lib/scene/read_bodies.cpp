@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "scene/read_tables.hpp"
 #include "scene/sizes.hpp"
@@ -8,11 +7,10 @@ namespace pliant {
 
 namespace {
 
-const Choice<BodyKind> body_kinds{{{"compliant", BodyKind::compliant}, {"rigid", BodyKind::rigid}}};
 MixEntry read_mix_entry(TableReader& table, const Scene& scene) {
   MixEntry entry;
-  table.required("body", entry.body, body_kinds);
-  table.required("material", entry.material, OneOf{"material", names_of(scene.materials)});
+  table.required("body", entry.body);
+  table.required("material", entry.material, names_of(scene.materials));
   if (entry.body == BodyKind::compliant && scene.material(entry.material).law == MaterialLaw::rigid) {
     table.fail("material", fmt::format("material '{}' has the law \"rigid\"; a compliant body needs an elastic law",
                                        entry.material));
@@ -32,7 +30,7 @@ std::vector<MixEntry> read_mix(TableReader& table, const Scene& scene) {
   double sum = 0;
   for (TableReader& part : table.tables("mix")) {
     mix.push_back(read_mix_entry(part, scene));
-    part.required("share", mix.back().share, Quantity{"1", Range{.low = 0, .high = 1}});
+    part.required("share", mix.back().share);
     part.finish();
     sum += mix.back().share;
   }
@@ -45,12 +43,11 @@ bool fills_a_region(const Packing& packing) {
 }
 
 void read_mix_order(TableReader& table, Grains& grains) {
-  const Choice<MixOrder> orders{{{"random", MixOrder::random}, {"in turn", MixOrder::in_turn}}};
   if (!table.has("mix")) {
     if (table.has("mix_order")) table.fail("mix_order", "there is no 'mix' to be put in an order; remove it");
     return;
   }
-  table.optional("mix_order", grains.mix_order, orders);
+  table.optional("mix_order", grains.mix_order);
   if (grains.mix_order == MixOrder::in_turn && fills_a_region(grains.packing)) {
     table.fail("mix_order",
                "this packing puts its grains at random places, which have no order; allowed: \"random\" here, "
@@ -60,9 +57,9 @@ void read_mix_order(TableReader& table, Grains& grains) {
 
 InitialVelocity read_velocity(TableReader table, const Grains& grains) {
   InitialVelocity velocity;
-  table.optional("uniform", velocity.uniform, Vector{"m/s"});
-  table.optional("rotation", velocity.rotation, Quantity{"rad/s"});
-  if (table.optional("gradient", velocity.gradient, Matrix{"1/s"}) && has_body(grains, BodyKind::rigid)) {
+  table.optional("uniform", velocity.uniform);
+  table.optional("rotation", velocity.rotation);
+  if (table.optional("gradient", velocity.gradient) && has_body(grains, BodyKind::rigid)) {
     table.fail("gradient", "the grains are rigid; allowed: for compliant bodies only");
   }
   table.finish();
@@ -74,8 +71,7 @@ void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
   const bool shapes = grains.packing.shapes.empty() && scene.shape_shares(grains).size() > 1;
   const bool mixed = grains.mix.size() > 1 && grains.mix_order == MixOrder::random;
   const bool random = mixed || !grains.angle || sizes || fills_a_region(grains.packing) || shapes;
-  const Integer seed{0, std::numeric_limits<std::int64_t>::max()};
-  if (random) table.required("seed", grains.seed, seed);
+  if (random) table.required("seed", grains.seed);
   if (!random && table.has("seed"))
     table.fail("seed",
                "nothing is random here; remove it (a mix in random order, shapes, sizes, a packing or a random "
@@ -83,7 +79,7 @@ void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
 }
 
 void read_angle(TableReader& table, Grains& grains) {
-  const bool given = table.optional("angle", grains.angle, QuantityOr{"random", {"rad"}});
+  const bool given = table.optional("angle", grains.angle);
   if (given && !grains.packing.shapes.empty())
     table.fail("angle", "the grains are in place as their points are; remove it");
   if (given && !grains.packing.angles.empty())
@@ -132,14 +128,14 @@ std::vector<std::string> shape_names(const Scene& scene) {
 }
 
 void read_grain_shapes(TableReader& table, const Scene& scene, Grains& grains) {
-  const OneOf known{"shape", shape_names(scene)};
+  const std::vector<std::string> known = shape_names(scene);
   if (!table.has("shapes")) return table.required("shape", grains.shape, known);
   if (table.has("shape")) table.fail("shape", "both it and 'shapes' are given; remove one");
   double sum = 0;
   for (TableReader& part : table.tables("shapes")) {
     ShapeShare& entry = grains.shapes.emplace_back();
     part.required("shape", entry.shape, known);
-    part.required("share", entry.share, share_of_grains);
+    part.required("share", entry.share);
     part.finish();
     sum += entry.share;
   }
@@ -156,24 +152,18 @@ Material read_material(TableReader table, const std::string& name) {
   if (name == "all") table.fail("a material cannot be called 'all': contacts use that word for all materials");
   Material material;
   material.name = name;
-  table.required("law", material.law,
-                 Choice<MaterialLaw>{{{"neo-hookean", MaterialLaw::neo_hookean},
-                                      {"neo-hookean-quadratic", MaterialLaw::neo_hookean_quadratic},
-                                      {"melody", MaterialLaw::melody},
-                                      {"linear-elastic", MaterialLaw::linear_elastic},
-                                      {"neo-hookean-maxwell", MaterialLaw::neo_hookean_maxwell},
-                                      {"rigid", MaterialLaw::rigid}}});
-  table.required("density", material.density, Quantity{"kg/m3", positive});
+  table.required("law", material.law);
+  table.required("density", material.density);
   if (material.law != MaterialLaw::rigid) {
-    table.required("young", material.young, Quantity{"Pa", positive});
-    table.required("poisson", material.poisson, Quantity{"1", Range{.low = 0, .high = 0.5, .high_open = true}});
+    table.required("young", material.young);
+    table.required("poisson", material.poisson);
     if (material.law == MaterialLaw::neo_hookean_maxwell) {
-      table.required("branch_modulus", material.branch_modulus, Quantity{"Pa", positive});
-      table.required("relaxation_time", material.relaxation_time, Quantity{"s", positive});
+      table.required("branch_modulus", material.branch_modulus);
+      table.required("relaxation_time", material.relaxation_time);
     }
-    table.optional("viscosity", material.viscosity, Quantity{"Pa s", non_negative});
+    table.optional("viscosity", material.viscosity);
   }
-  table.optional("mass_damping", material.mass_damping, Quantity{"1/s", non_negative});
+  table.optional("mass_damping", material.mass_damping);
   table.finish();
   return material;
 }
@@ -182,9 +172,9 @@ Grains read_grains(TableReader table, const Scene& scene) {
   Grains grains;
   grains.where = table.place();
   grains.name = default_grains_name(scene.grains.size() + 1);
-  table.optional("name", grains.name, Identifier{});
+  table.optional("name", grains.name);
   read_grain_shapes(table, scene, grains);
-  if (table.has("size")) grains.size = read_size(table.required_table("size"));
+  if (table.has("size")) grains.size = read_size(table.optional_table("size"));
   grains.packing = read_packing(table.required_table("packing"), scene, grains);
   if (table.has("size") && !grains.packing.shapes.empty())
     table.fail("size", "the grains are in place as their points are; remove it");
@@ -194,7 +184,7 @@ Grains read_grains(TableReader table, const Scene& scene) {
   read_mix_order(table, grains);
   read_angle(table, grains);
   read_seed(table, scene, grains);
-  if (table.has("velocity")) grains.velocity = read_velocity(table.required_table("velocity"), grains);
+  if (table.has("velocity")) grains.velocity = read_velocity(table.optional_table("velocity"), grains);
   check_size(table, grains, scene);
   table.finish();
   return grains;

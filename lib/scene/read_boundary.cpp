@@ -20,7 +20,7 @@ const Grains& grains_of(const Condition& condition, const Scene& scene) {
 
 /// "ring" for all bodies of a set, "ring 17" for one of them.
 void read_target(TableReader& table, Condition& condition, const Scene& scene) {
-  table.required("of", condition.grains, Text{});
+  table.required("of", condition.grains);
   const std::string text = condition.grains;
   const std::size_t space = text.find_last_of(' ');
   int number = 0;
@@ -43,26 +43,21 @@ void read_target(TableReader& table, Condition& condition, const Scene& scene) {
 OutlinePart read_part(TableReader table) {
   OutlinePart part;
   std::vector<double> angles;
-  Eigen::Matrix2d box;
+  std::optional<ProbeBox> box;
+  std::optional<OutlineSide> side;
   int given = 0;
-  if (table.optional("angles", angles, List<Quantity>{{"rad"}, 2, 2})) {
+  if (table.optional("angles", angles)) {
     if (angles[0] == angles[1]) table.fail("angles", "both directions are the same; allowed: two different ones");
     part = {.kind = OutlinePart::Kind::angles, .first = angles[0], .second = angles[1]};
     ++given;
   }
-  if (table.optional("box", box, Matrix{"m"})) {
-    if (box(0, 0) >= box(1, 0) || box(0, 1) >= box(1, 1))
-      table.fail("box", "allowed: [[left, bottom], [right, top]] with left < right and bottom < top");
-    part = {.kind = OutlinePart::Kind::box, .low = box.row(0), .high = box.row(1)};
+  if (table.optional("box", box)) {
+    part = {.kind = OutlinePart::Kind::box, .low = box->low, .high = box->high};
     ++given;
   }
-  if (table.has("side")) {
-    enum class Side { left, right, bottom, top } side;
-    table.required(
-        "side", side,
-        Choice<Side>{{{"left", Side::left}, {"right", Side::right}, {"bottom", Side::bottom}, {"top", Side::top}}});
+  if (table.optional("side", side)) {
     const Vec2 outward[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    part = {.kind = OutlinePart::Kind::side, .side = outward[static_cast<int>(side)]};
+    part = {.kind = OutlinePart::Kind::side, .side = outward[static_cast<int>(*side)]};
     ++given;
   }
   table.finish();
@@ -72,24 +67,22 @@ OutlinePart read_part(TableReader table) {
 
 void read_pressure(TableReader& table, Condition& condition) {
   condition.kind = Condition::Kind::pressure;
-  table.required("pressure", condition.pressure, HistoryOf{{"Pa"}});
-  table.optional("mode", condition.following, Choice<bool>{{{"following", true}, {"oriented", false}}});
-  Vec2 direction;
-  if (condition.following || !table.optional("direction", direction, Vector{"1"})) return;
-  if (direction.norm() == 0) table.fail("direction", "[0, 0]; allowed: any other");
-  condition.direction = direction.normalized();
+  table.required("pressure", condition.pressure);
+  table.optional("mode", condition.following);
+  if (condition.following || !table.optional("direction", condition.direction)) return;
+  if (condition.direction->norm() == 0) table.fail("direction", "[0, 0]; allowed: any other");
+  condition.direction->normalize();
 }
 
 void read_support(TableReader& table, Condition& condition) {
   condition.kind = Condition::Kind::support;
-  const std::vector<DriveKind> kinds{{"displacement", "m", Drive::Mode::displacement, ""},
-                                     {"velocity", "m/s", Drive::Mode::velocity, ""}};
+  const std::vector<DriveKind> kinds{{"displacement", Drive::Mode::displacement}, {"velocity", Drive::Mode::velocity}};
   for (auto [axis, drive] : {std::pair("x", &condition.x), std::pair("y", &condition.y)}) {
     *drive = read_drive(table, axis, kinds, *drive);
     if (!drive->window.always()) table.fail(axis, "from and until of a soft support stand beside x and y");
   }
-  table.optional("stiffness", condition.stiffness, QuantityOr{"auto", {"Pa/m", positive}});
-  table.optional("damping", condition.damping, Quantity{"Pa s/m", non_negative});
+  table.optional("stiffness", condition.stiffness);
+  table.optional("damping", condition.damping);
 }
 
 bool overlaps(const Condition& a, const Condition& b) {
@@ -99,10 +92,8 @@ bool overlaps(const Condition& a, const Condition& b) {
 void read_drives(TableReader& table, Condition& condition, const Scene& scene) {
   Drive Condition::* drives[] = {&Condition::x, &Condition::y, &Condition::angle};
   for (int c = 0; c < 3; ++c) {
-    const bool turn = c == 2;
-    const std::vector<DriveKind> kinds{
-        {"velocity", turn ? "rad/s" : "m/s", Drive::Mode::velocity, ""},
-        {turn ? "moment" : "force", turn ? "N" : "N/m", Drive::Mode::force, turn ? "N s" : "Pa s"}};
+    const std::vector<DriveKind> kinds{{"velocity", Drive::Mode::velocity},
+                                       {c == 2 ? "moment" : "force", Drive::Mode::force, true}};
     condition.*drives[c] = read_drive(table, axes[c], kinds, condition.*drives[c]);
     if ((condition.*drives[c]).mode == Drive::Mode::free) continue;
     for (const Condition& other : scene.boundary)
@@ -133,7 +124,7 @@ BoundaryCondition read_condition(TableReader table, const Scene& scene) {
   if (!moves && !table.has("pressure")) table.fail_missing("pressure", "'pressure', or what moves 'x', 'y' or 'angle'");
   moves ? read_motion(table, condition, scene) : read_pressure(table, condition);
   if (condition.kind != Condition::Kind::drive) {
-    if (table.has("part")) condition.part = read_part(table.required_table("part"));
+    if (table.has("part")) condition.part = read_part(table.optional_table("part"));
     condition.window = read_window(table);
   }
   table.finish();

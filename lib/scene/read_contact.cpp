@@ -6,8 +6,6 @@ namespace pliant {
 
 namespace {
 
-const QuantityOr automatic_stiffness{"auto", {"Pa/m", positive}};
-
 /// What a side of a rule may be called.
 std::vector<std::string> group_names(const Scene& scene) {
   std::vector<std::string> names = names_of(scene.materials);
@@ -25,13 +23,13 @@ void refuse_ambiguous(const TableReader& table, const std::string& name, const s
 
 void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
   if (table.has("between") && table.value("between").node.is_string()) {
-    table.required("between", rule.first, OneOf{"word", {"all"}});
+    table.required("between", rule.first);
     rule.second = rule.first;
     return;
   }
   const std::vector<std::string> names = group_names(scene);
   std::vector<std::string> pair;
-  table.required("between", pair, List<OneOf>{{"material, grains or wall", names}, 2, 2});
+  table.required("between", pair, names);
   for (const std::string& name : pair) refuse_ambiguous(table, name, names);
   rule.first = pair[0];
   rule.second = pair[1];
@@ -47,28 +45,24 @@ void check_unique(const TableReader& table, const ContactRule& rule, const std::
 
 /// Keys of the two laws without tension: a dashpot needs a constant stiffness, so it excludes a smooth start.
 void read_impact(TableReader& table, ContactRule& rule) {
-  table.optional("smoothing", rule.smoothing, Quantity{"1", Range{.low = 0, .high = 1}});
-  const Range restitution{.low = 0.01, .high = 1};
-  double value = 1;
-  if (table.optional("restitution", value, Quantity{"1", restitution})) {
-    rule.restitution = value;
-    table.optional("pull", rule.pull, Flag{});
-    if (rule.smoothing > 0)
-      table.fail("smoothing", "has no meaning with restitution, whose dashpot goes with a constant stiffness");
-  }
+  table.optional("smoothing", rule.smoothing);
+  if (!table.optional("restitution", rule.restitution)) return;
+  table.optional("pull", rule.pull);
+  if (rule.smoothing > 0)
+    table.fail("smoothing", "has no meaning with restitution, whose dashpot goes with a constant stiffness");
 }
 
 void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
-  table.optional("shear_stiffness", rule.shear_stiffness, automatic_stiffness);
-  table.required("friction", rule.friction, Friction{});
-  table.optional("cohesion", rule.cohesion, Quantity{"Pa", non_negative});
-  table.optional("tension", rule.tension, Quantity{"Pa", non_negative});
+  table.optional("shear_stiffness", rule.shear_stiffness);
+  table.required("friction", rule.friction);
+  table.optional("cohesion", rule.cohesion);
+  table.optional("tension", rule.tension);
   if (rule.tension == 0) read_impact(table, rule);
 }
 
 void read_strength(TableReader& table, ContactRule& rule) {
-  table.required("strength", rule.strength, Quantity{"Pa", positive});
-  table.optional("range", rule.range, QuantityOr{"auto", {"m", positive}});
+  table.required("strength", rule.strength);
+  table.optional("range", rule.range);
   if (!rule.range || !rule.stiffness) return;
   const double peak = rule.strength / *rule.stiffness;
   if (*rule.range <= peak) {
@@ -78,28 +72,26 @@ void read_strength(TableReader& table, ContactRule& rule) {
 }
 
 void read_cohesive(TableReader& table, ContactRule& rule) {
-  table.optional("shear_stiffness", rule.shear_stiffness, automatic_stiffness);
+  table.optional("shear_stiffness", rule.shear_stiffness);
   read_strength(table, rule);
-  table.optional("shear_strength", rule.shear_strength, QuantityOr{"auto", {"Pa", non_negative}});
+  table.optional("shear_strength", rule.shear_strength);
 }
 
 void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
   read_strength(table, rule);
-  table.required("bond_gap", rule.bond_gap, Quantity{"m", non_negative});
-  table.optional("shear_ratio", rule.shear_ratio, Quantity{"1", positive});
-  table.optional("friction", rule.friction, Friction{});
+  table.required("bond_gap", rule.bond_gap);
+  table.optional("shear_ratio", rule.shear_ratio);
+  table.optional("friction", rule.friction);
   const Range up_to_strength{.low = 0, .high = rule.strength};
-  table.optional("residual_strength", rule.residual_strength, Quantity{"Pa", up_to_strength});
-  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate, Quantity{"Pa-1", non_negative});
+  table.optional("residual_strength", rule.residual_strength, up_to_strength);
+  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate);
   rule.shear_fatigue_rate = rule.fatigue_rate;
-  const bool grows_in_shear =
-      table.optional("shear_fatigue_rate", rule.shear_fatigue_rate, Quantity{"Pa-1", non_negative});
+  const bool grows_in_shear = table.optional("shear_fatigue_rate", rule.shear_fatigue_rate);
   const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
-  const Quantity threshold{"Pa", below_strength};
   if (grows || grows_in_shear)
-    table.required("fatigue_threshold", rule.fatigue_threshold, threshold);
+    table.required("fatigue_threshold", rule.fatigue_threshold, below_strength);
   else
-    table.optional("fatigue_threshold", rule.fatigue_threshold, threshold);
+    table.optional("fatigue_threshold", rule.fatigue_threshold, below_strength);
 }
 
 }  // namespace
@@ -108,12 +100,8 @@ ContactRule read_contact(TableReader table, const Scene& scene) {
   ContactRule rule;
   read_between(table, rule, scene);
   check_unique(table, rule, scene.contacts);
-  table.required("law", rule.law,
-                 Choice<ContactLawKind>{{{"frictionless", ContactLawKind::frictionless},
-                                         {"mohr-coulomb", ContactLawKind::mohr_coulomb},
-                                         {"cohesive", ContactLawKind::cohesive},
-                                         {"cohesive-fatigue", ContactLawKind::cohesive_fatigue}}});
-  table.optional("stiffness", rule.stiffness, automatic_stiffness);
+  table.required("law", rule.law);
+  table.optional("stiffness", rule.stiffness);
   switch (rule.law) {
     case ContactLawKind::frictionless:
       read_impact(table, rule);

@@ -7,9 +7,6 @@ namespace pliant {
 
 namespace {
 
-/// Spacings: beyond, contact sees into bodies further than outlines resolve them, and the stable step only shrinks.
-constexpr double most_skin = 4;
-
 std::string name_of(const ContactGroup& group) {
   return group.name.empty() ? fmt::format("'{}'", group.material)
                             : fmt::format("'{}' of '{}'", group.name, group.material);
@@ -76,31 +73,26 @@ void check_rules(const TableReader& root, const Scene& scene, const std::vector<
 
 /// "safe", a whole number of steps, or a time.
 void read_refresh(TableReader& table, ContactSettings& contact) {
-  if (!table.has("refresh")) return;
-  const std::string allowed = "\"safe\", a number of steps from 1, or a time with its unit, > 0";
-  const Value value = table.value("refresh");
-  if (value.node.is_integer()) {
-    table.required("refresh", contact.refresh_steps, Integer{1, 1'000'000});
-  } else if (!value.node.is_string()) {
-    value.reject(allowed);
-  } else {
-    contact.refresh_period = QuantityOr{"safe", {"s", positive}}(value).value_or(0);
+  const bool given = table.has("refresh");
+  if (given && table.value("refresh").node.is_integer()) {
+    table.optional("refresh", contact.refresh_steps);
+    return;
   }
+  if (given && !table.value("refresh").node.is_string())
+    table.value("refresh").reject("\"safe\", a number of steps from 1, or a time with its unit, > 0");
+  std::optional<double> period;
+  table.optional("refresh", period);
+  contact.refresh_period = period.value_or(0);
 }
 
 void read_settings(TableReader settings, Scene& scene) {
-  settings.optional("skin", scene.skin, Quantity{"1", Range{.low = 0, .high = most_skin, .low_open = true}});
-  settings.optional("quadrature", scene.contact.quadrature,
-                    Choice<ContactQuadrature>{{{"auto", ContactQuadrature::automatic},
-                                               {"nodes", ContactQuadrature::nodes},
-                                               {"segments", ContactQuadrature::segments}}});
-  settings.optional(
-      "length", scene.contact.length,
-      Choice<ContactLength>{{{"reference", ContactLength::reference}, {"current", ContactLength::current}}});
+  settings.optional("skin", scene.skin);
+  settings.optional("quadrature", scene.contact.quadrature);
+  settings.optional("length", scene.contact.length);
   read_refresh(settings, scene.contact);
-  settings.optional("self_contact", scene.contact.self_contact, Flag{});
+  settings.optional("self_contact", scene.contact.self_contact);
   if (traits_of(scene.time.integrator).corrects_energy)
-    settings.optional("energy_consistent", scene.contact.energy_consistent, Flag{});
+    settings.optional("energy_consistent", scene.contact.energy_consistent);
   if (settings.has("energy_consistent") && scene.contact.energy_consistent &&
       scene.contact.length == ContactLength::current)
     settings.value("energy_consistent")

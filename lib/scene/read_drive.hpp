@@ -10,9 +10,8 @@ namespace pliant {
 /// A history that can move an axis.
 struct DriveKind {
   std::string key;
-  std::string unit;
   Drive::Mode mode;
-  std::string damping_unit;  ///< of a dashpot beside it; empty: none
+  bool damped = false;  ///< may have a dashpot beside it
 };
 
 /// "fixed", "free", or a table with one of the histories, its dashpot and its times; `otherwise` without the key.

@@ -12,9 +12,6 @@ namespace pliant {
 
 namespace {
 
-/// What scenes call packings.
-enum class PackingName { hexagonal, grid, positions, file, in_place, random, fourier_voronoi };
-
 PackingKind kind_of(PackingName name) {
   switch (name) {
     case PackingName::hexagonal:
@@ -31,14 +28,13 @@ PackingKind kind_of(PackingName name) {
 }
 
 void read_lattice(TableReader& table, Packing& packing) {
-  const Integer count{1, SceneLimits::bodies};
-  table.required("columns", packing.columns, count);
-  table.required("rows", packing.rows, count);
-  table.required("pitch", packing.pitch, Quantity{"m", positive});
+  table.required("columns", packing.columns);
+  table.required("rows", packing.rows);
+  table.required("pitch", packing.pitch);
   // A hexagonal packing of columns that touch: the rows of a column lie one diameter apart.
   packing.row_pitch = packing.kind == PackingKind::hexagonal ? packing.pitch * 2 / std::sqrt(3.0) : packing.pitch;
-  table.optional("row_pitch", packing.row_pitch, Quantity{"m", positive});
-  table.optional("origin", packing.origin, Vector{"m"});
+  table.optional("row_pitch", packing.row_pitch);
+  table.optional("origin", packing.origin);
 }
 
 void check_fit(const TableReader& table, const Packing& packing, double period) {
@@ -57,20 +53,18 @@ void check_fit(const TableReader& table, const Packing& packing, double period) 
   }
 }
 
-const Quantity solid_fraction{"1", Range{.low = 0, .high = 1, .low_open = true, .high_open = true}};
-
 /// The part of the plane that grains are to fill.
 void read_region(TableReader& table, const Scene& scene, Packing& packing) {
-  table.required("bottom", packing.bottom, Quantity{"m"});
-  table.required("top", packing.top, Quantity{"m", Range{.low = packing.bottom, .low_open = true}});
+  table.required("bottom", packing.bottom);
+  table.required("top", packing.top, Range{.low = packing.bottom, .low_open = true});
   if (scene.period) {
     packing.left = 0, packing.right = *scene.period;
     return;
   }
   if (packing.kind == PackingKind::fourier_voronoi)
     table.fail("kind", "the scene has no period, which these cells need; add [domain] period, or take \"random\"");
-  table.required("left", packing.left, Quantity{"m"});
-  table.required("right", packing.right, Quantity{"m", Range{.low = packing.left, .low_open = true}});
+  table.required("left", packing.left);
+  table.required("right", packing.right, Range{.low = packing.left, .low_open = true});
 }
 
 /// As many grains as give the solid fraction at the sizes that they have.
@@ -96,12 +90,12 @@ int count_for(const TableReader& table, const Scene& scene, const Grains& grains
 void read_filling(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
   read_region(table, scene, packing);
   const bool sized = packing.kind == PackingKind::random;
-  const bool counted = table.optional("count", packing.count, Integer{1, SceneLimits::bodies});
+  const bool counted = table.optional("count", packing.count);
   if (sized && counted && table.has("solid_fraction"))
     table.fail("solid_fraction", "both it and 'count' are given; remove one");
   if (sized && !counted && !table.has("solid_fraction"))
     table.fail_missing("solid_fraction", "'solid_fraction' (a number) or 'count' (of grains)");
-  if (!sized || !counted) table.required("solid_fraction", packing.solid_fraction, solid_fraction);
+  if (!sized || !counted) table.required("solid_fraction", packing.solid_fraction);
   if (!counted) packing.count = count_for(table, scene, grains, packing);
 }
 
@@ -156,7 +150,7 @@ void read_grains_of_file(TableReader& table, const Scene& scene, const Grains& g
 
 /// Each shape once, where its points lie.
 void read_in_place(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
-  table.optional("origin", packing.origin, Vector{"m"});
+  table.optional("origin", packing.origin);
   if (!grains.shapes.empty())
     table.fail("kind", "each shape is there once, so that 'shapes' with their shares say nothing; give 'shape'");
   for (const auto& [index, share] : scene.shape_shares(grains)) {
@@ -171,8 +165,8 @@ void read_in_place(TableReader& table, const Scene& scene, const Grains& grains,
 }
 
 void read_list(TableReader& table, SizeDistribution& size) {
-  table.required("factors", size.factors, List<Quantity>{{"1", positive}});
-  table.required("shares", size.shares, List<Quantity>{share_of_grains, size.factors.size(), size.factors.size()});
+  table.required("factors", size.factors);
+  table.required("shares", size.shares, Count{size.factors.size()});
   double sum = 0;
   for (const double share : size.shares) sum += share;
   check_shares(table, "shares", sum);
@@ -188,21 +182,17 @@ void check_shares(const TableReader& table, const std::string& key, double sum) 
 SizeDistribution read_size(TableReader table) {
   using Kind = SizeDistribution::Kind;
   SizeDistribution size;
-  table.required("distribution", size.kind,
-                 Choice<Kind>{{{"list", Kind::list},
-                               {"uniform", Kind::uniform},
-                               {"normal", Kind::normal},
-                               {"lognormal", Kind::lognormal}}});
+  table.required("distribution", size.kind);
   if (size.kind == Kind::list) {
     read_list(table, size);
   } else {
-    table.required("low", size.low, Quantity{"1", positive});
-    table.required("high", size.high, Quantity{"1", Range{.low = size.low, .low_open = true}});
+    table.required("low", size.low);
+    table.required("high", size.high, Range{.low = size.low, .low_open = true});
   }
   if (size.kind == Kind::normal || size.kind == Kind::lognormal) {
     table.required(size.kind == Kind::normal ? "mean" : "median", size.centre,
-                   Quantity{"1", Range{.low = size.low, .high = size.high}});
-    table.required("deviation", size.deviation, Quantity{"1", positive});
+                   Range{.low = size.low, .high = size.high});
+    table.required("deviation", size.deviation);
   }
   table.finish();
   return size;
@@ -210,18 +200,11 @@ SizeDistribution read_size(TableReader table) {
 
 Packing read_packing(TableReader table, const Scene& scene, const Grains& grains) {
   PackingName name;
-  table.required("kind", name,
-                 Choice<PackingName>{{{"hexagonal", PackingName::hexagonal},
-                                      {"grid", PackingName::grid},
-                                      {"positions", PackingName::positions},
-                                      {"file", PackingName::file},
-                                      {"in place", PackingName::in_place},
-                                      {"random", PackingName::random},
-                                      {"fourier-voronoi", PackingName::fourier_voronoi}}});
+  table.required("kind", name);
   Packing packing;
   packing.kind = kind_of(name);
   if (name == PackingName::positions) {
-    table.required("positions", packing.positions, List<Vector>{{"m"}, 1, SceneLimits::bodies});
+    table.required("positions", packing.positions);
   } else if (name == PackingName::file) {
     read_grains_of_file(table, scene, grains, packing);
   } else if (name == PackingName::in_place) {

@@ -84,27 +84,15 @@ bool is_single(const std::string& of, const Scene& scene) {
   return grains != scene.grains.end() && grains->packing.grain_count() == 1;
 }
 
-/// [[x, y], [x, y]]: opposite corners.
-struct Corners {
-  std::string allowed() const { return "[[x, y], [x, y]], the lower left and the upper right corner in m"; }
-  ProbeBox operator()(const Value& value) const {
-    const auto points = List<Vector>{Vector{"m"}, 2, 2}(value);
-    if (points[0].x() < points[1].x() && points[0].y() < points[1].y()) return {points[0], points[1]};
-    value.reject(allowed());
-  }
-};
-
 void read_reduction(TableReader& table, const ProbeQuantity& quantity, Probe& probe) {
   if (quantity.reductions.empty()) return;
-  Choice<Reduction> choice;
-  for (Reduction reduction : quantity.reductions) choice.entries.emplace_back(reduction_name(reduction), reduction);
-  table.optional("reduce", probe.reduce, choice);
+  std::vector<std::string> names;
+  for (Reduction reduction : quantity.reductions) names.push_back(reduction_name(reduction));
+  table.optional("reduce", probe.reduce, names);
 }
 
 void read_node(TableReader& table, const ProbeQuantity& quantity, const Scene& scene, Probe& probe) {
-  if (quantity.node == ProbeQuantity::Node::none ||
-      !table.optional("node", probe.node, Integer{0, SceneLimits::nodes_per_shape}))
-    return;
+  if (quantity.node == ProbeQuantity::Node::none || !table.optional("node", probe.node)) return;
   if (!is_single(probe.of, scene))
     table.fail("node", fmt::format("a node is one of one body, '{}' are several; name one, such as of = \"{} 0\"",
                                    probe.of, scene.grains.front().name));
@@ -114,9 +102,8 @@ void read_node(TableReader& table, const ProbeQuantity& quantity, const Scene& s
 /// Two walls or a box, where a quantity is of a region.
 void read_region(TableReader& table, const ProbeQuantity& quantity, const Scene& scene, Probe& probe) {
   if (quantity.where == Where::nowhere) return;
-  const List<OneOf> walls{{"wall", names_of(scene.walls)}, 2, 2};
-  const bool between = table.optional("between", probe.between, walls);
-  const bool box = table.optional("box", probe.box, Corners{});
+  const bool between = table.optional("between", probe.between, names_of(scene.walls));
+  const bool box = table.optional("box", probe.box);
   if (between && box) table.fail("box", "the region is given by between or by box, not by both; remove one");
   if (!between && !box && quantity.where == Where::region_needed)
     table.fail(fmt::format("{} needs a region; add between = [lower wall, upper wall] or box = {}", quantity.name,
@@ -134,11 +121,11 @@ void read_region(TableReader& table, const ProbeQuantity& quantity, const Scene&
 
 Probe read_probe(TableReader table, const Scene& scene) {
   Probe probe;
-  table.required("name", probe.name, Identifier{});
-  table.required("quantity", probe.quantity, OneOf{"quantity", names_of(probe_quantities())});
+  table.required("name", probe.name);
+  table.required("quantity", probe.quantity);
   const ProbeQuantity& quantity = probe_quantity(probe.quantity);
   if (quantity.of != Of::whole) table.required("of", probe.of, Target{quantity.of, scene});
-  table.required("period", probe.period, Quantity{"s", positive});
+  table.required("period", probe.period);
   check_output_count(table, scene.time.end, probe.period);
   read_reduction(table, quantity, probe);
   read_node(table, quantity, scene, probe);
@@ -150,15 +137,15 @@ Probe read_probe(TableReader table, const Scene& scene) {
 
 Frames read_frames(TableReader table, const Scene& scene) {
   Frames frames;
-  table.required("period", frames.period, Quantity{"s", positive});
+  table.required("period", frames.period);
   check_output_count(table, scene.time.end, frames.period);
-  table.optional("fields", frames.fields, List<OneOf>{{"field", names_of(frame_fields())}, 0});
+  table.optional("fields", frames.fields);
   for (std::size_t i = 0; i < frames.fields.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (frames.fields[i] == frames.fields[j]) table.fail("fields", fmt::format("\"{}\" twice", frames.fields[i]));
     }
   }
-  table.optional("contacts", frames.contacts, Flag{});
+  table.optional("contacts", frames.contacts);
   table.finish();
   return frames;
 }

@@ -3,6 +3,7 @@
 
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
+#include "scene/old_keys.hpp"
 #include "scene/read_tables.hpp"
 #include "scene/text_file.hpp"
 
@@ -29,9 +30,6 @@ void check_new_name(const TableReader& table, const std::string& name, std::set<
 }
 
 void read_materials_and_shapes(TableReader& root, Scene& scene) {
-  for (const char* key : {"materials", "shapes"}) {
-    if (!root.has(key)) root.fail_missing(key, fmt::format("at least one table [{}.NAME]", key));
-  }
   for (auto& [name, table] : root.named_tables("materials")) scene.materials.push_back(read_material(table, name));
   for (auto& [name, table] : root.named_tables("shapes"))
     for (ShapeSpec& shape : read_shape(table, name)) scene.shapes.push_back(std::move(shape));
@@ -39,7 +37,6 @@ void read_materials_and_shapes(TableReader& root, Scene& scene) {
 
 void read_bodies(TableReader& root, Scene& scene) {
   std::set<std::string> taken{"all", "compliant", "rigid"};
-  if (!root.has("grains")) root.fail_missing("grains", "at least one table [[grains]]");
   for (TableReader& table : root.tables("grains")) {
     scene.grains.push_back(read_grains(table, scene));
     check_angle(table, scene.grains.back(), scene);
@@ -58,23 +55,24 @@ void read_outputs(TableReader& root, Scene& scene) {
     scene.probes.push_back(read_probe(table, scene));
     check_new_name(table, scene.probes.back().name, taken);
   }
-  if (root.has("frames")) scene.frames = read_frames(root.required_table("frames"), scene);
+  if (root.has("frames")) scene.frames = read_frames(root.optional_table("frames"), scene);
 }
 
 }  // namespace
 
 Scene read_scene(const fs::path& file) { return read_scene(file, nullptr); }
 
-Scene read_scene(const fs::path& file, SceneSchema* schema) {
+Scene read_scene(const fs::path& file, KeyUse* use) {
   const Untrapped untrapped;
-  const Source source{file.string()};
-  const toml::table document = parse(read_text_file(file, "a scene file (.toml)"), source.file);
-  TableReader root(document, "the scene", source, schema, top_pattern);
+  const Source source{file.string(), use};
+  toml::table document = parse(read_text_file(file, "a scene file (.toml)"), source.file);
+  source.warnings = rename_old_keys(document, source.file);
+  TableReader root(document, source);
   Scene scene;
   scene.file = file;
   scene.name = file.stem().string();
   scene.title = scene.name;
-  root.optional("title", scene.title, Text{});
+  root.optional("title", scene.title);
   read_domain(root.optional_table("domain"), scene);
   scene.time = read_time(root.required_table("time"));
   scene.discretisation = read_discretisation(root.optional_table("discretisation"));
@@ -83,7 +81,7 @@ Scene read_scene(const fs::path& file, SceneSchema* schema) {
   for (const TableReader& table : root.tables("boundary")) scene.boundary.push_back(read_condition(table, scene));
   read_contacts(root, scene);
   read_outputs(root, scene);
-  if (root.has("start")) read_start(root.required_table("start"), scene);
+  if (root.has("start")) read_start(root.optional_table("start"), scene);
   read_checkpoint(root.optional_table("checkpoint"), scene);
   root.finish();
   scene.warnings = source.warnings;

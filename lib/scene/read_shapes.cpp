@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "scene/curves.hpp"
@@ -14,14 +13,9 @@ namespace pliant {
 
 namespace {
 
-enum class ShapeName { disc, polygon, regular, ellipse, fourier, file };
-
-constexpr std::size_t most_polygon_points = 10'000;
-constexpr std::int64_t most_variants = 1000;
-
 void read_polygon(TableReader& table, ShapeSpec& shape) {
   shape.in_place = true;
-  table.required("points", shape.points, List<Vector>{{"m"}, 3, most_polygon_points});
+  table.required("points", shape.points);
   for (std::size_t i = 0; i < shape.points.size(); ++i)
     if (shape.points[i].cwiseAbs().maxCoeff() > largest_length)
       table.fail("points", fmt::format("point {} is out of range; allowed: coordinates of at most {:g} m either way",
@@ -37,16 +31,16 @@ void read_polygon(TableReader& table, ShapeSpec& shape) {
 
 void read_regular(TableReader& table, ShapeSpec& shape) {
   int sides = 0;
-  table.required("diameter", shape.diameter, Quantity{"m", positive});
-  table.required("sides", sides, Integer{3, most_polygon_points});
+  table.required("diameter", shape.diameter);
+  table.required("sides", sides);
   shape.points = regular_polygon(sides, shape.diameter);
 }
 
 /// Arcs for corners: the outline is a smooth curve then.
 void read_rounding(TableReader& table, ShapeSpec& shape) {
-  double radius = 0;
-  if (!table.optional("rounding", radius, Quantity{"m", positive})) return;
-  const Points rounded = rounded_polygon(shape.points, radius);
+  std::optional<double> radius;
+  if (!table.optional("rounding", radius)) return;
+  const Points rounded = rounded_polygon(shape.points, *radius);
   if (rounded.empty())
     table.value("rounding")
         .reject(fmt::format("a radius that fits all corners, at most {:.6g} m", largest_rounding(shape.points)));
@@ -56,8 +50,8 @@ void read_rounding(TableReader& table, ShapeSpec& shape) {
 
 void read_ellipse(TableReader& table, ShapeSpec& shape) {
   double width = 0, height = 0;
-  table.required("width", width, Quantity{"m", positive});
-  table.required("height", height, Quantity{"m", positive});
+  table.required("width", width);
+  table.required("height", height);
   shape.points = ellipse(width, height);
 }
 
@@ -79,20 +73,19 @@ void name_member(ShapeSpec& shape, std::size_t n) {
 std::vector<ShapeSpec> read_file(TableReader& table, ShapeSpec shape) {
   const NamedFile file = read_named_file(table);
   std::string parts;
-  if (table.optional("parts", parts, Text{}) && parts.empty())
+  if (table.optional("parts", parts) && parts.empty())
     table.value("parts").reject("\"all\", \"merged\", or the name of a part or of a physical group");
   const std::vector<Points> outlines = [&] {
     try {
-      return read_outline_file(file.path, file.unit, parts, most_polygon_points);
+      return read_outline_file(file.path, file.unit, parts, SceneLimits::polygon_points);
     } catch (const PartsError& error) {
       table.fail("parts", error.what());
     }
   }();
-  shape.in_place = !table.optional("diameter", shape.diameter, Quantity{"m", positive});
-  table.optional("outline", shape.kind,
-                 Choice<ShapeKind>{{{"polygon", ShapeKind::polygon}, {"curve", ShapeKind::curve}}});
-  if (outlines.size() > static_cast<std::size_t>(most_variants))
-    table.fail("parts", fmt::format("{} parts; allowed: at most {}", outlines.size(), most_variants));
+  shape.in_place = !table.optional("diameter", shape.diameter);
+  table.optional("outline", shape.kind);
+  if (outlines.size() > static_cast<std::size_t>(SceneLimits::variants))
+    table.fail("parts", fmt::format("{} parts; allowed: at most {}", outlines.size(), SceneLimits::variants));
   if (outlines.size() > 1 && !shape.in_place)
     table.fail("diameter", fmt::format("the file gives {} parts; allowed: for a single outline", outlines.size()));
   std::vector<ShapeSpec> shapes(outlines.size(), shape);
@@ -109,31 +102,30 @@ std::vector<ShapeSpec> read_file(TableReader& table, ShapeSpec shape) {
 struct Variants {
   std::vector<double> descriptors;
   std::int64_t seed = 1;
-  int count = 1;
-  bool named = false;  ///< a family, be it of one
+  std::optional<int> count;  ///< of a family, be it of one
 };
 
 Variants read_variants(TableReader& table, ShapeSpec& shape) {
   Variants variants;
-  table.required("diameter", shape.diameter, Quantity{"m", positive});
-  table.required("descriptors", variants.descriptors, List<Quantity>{{"1", Range{.low = 0, .high = 1}}});
-  table.optional("seed", variants.seed, Integer{0, std::numeric_limits<std::int32_t>::max()});
-  variants.named = table.has("variants");
-  if (!variants.named) return variants;
-  const Value value = table.value("variants");
-  if (!value.node.is_string()) {
-    table.required("variants", variants.count, Integer{1, most_variants});
-  } else {
-    if (value.text("") != "each") value.reject(fmt::format("an integer from 1 to {}, or \"each\"", most_variants));
-    shape.descriptors = variants.descriptors;
-    variants.named = false;
+  table.required("diameter", shape.diameter);
+  table.required("descriptors", variants.descriptors);
+  table.optional("seed", variants.seed);
+  if (!table.has("variants") || !table.value("variants").node.is_string()) {
+    table.optional("variants", variants.count);
+    return variants;
   }
+  const Value value = table.value("variants");
+  if (value.text("") != "each")
+    value.reject(fmt::format("an integer from 1 to {}, or \"each\"", SceneLimits::variants));
+  std::optional<Variant> each;
+  table.optional("variants", each);
+  shape.descriptors = variants.descriptors;
   return variants;
 }
 
 /// Shapes from the seeds seed, seed + 1, ...: they differ in nothing else.
 std::vector<ShapeSpec> make_variants(const TableReader& table, const ShapeSpec& shape, const Variants& variants) {
-  std::vector<ShapeSpec> shapes(static_cast<std::size_t>(variants.count), shape);
+  std::vector<ShapeSpec> shapes(static_cast<std::size_t>(variants.count.value_or(1)), shape);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     shapes[i].points =
         fourier_grain(shape.diameter, variants.descriptors, variants.seed + static_cast<std::int64_t>(i));
@@ -142,7 +134,7 @@ std::vector<ShapeSpec> make_variants(const TableReader& table, const ShapeSpec& 
                  fmt::format("with seed {} the radius is not positive all round; allowed: descriptors whose sum is "
                              "below 1",
                              variants.seed + static_cast<std::int64_t>(i)));
-    if (!variants.named) continue;
+    if (!variants.count) continue;
     name_member(shapes[i], i + 1);
   }
   return shapes;
@@ -151,16 +143,10 @@ std::vector<ShapeSpec> make_variants(const TableReader& table, const ShapeSpec& 
 /// Reads one kind of shape by the name it has in scene files.
 std::vector<ShapeSpec> read_outline(TableReader& table, ShapeSpec shape) {
   ShapeName name;
-  table.required("kind", name,
-                 Choice<ShapeName>{{{"disc", ShapeName::disc},
-                                    {"polygon", ShapeName::polygon},
-                                    {"regular", ShapeName::regular},
-                                    {"ellipse", ShapeName::ellipse},
-                                    {"fourier", ShapeName::fourier},
-                                    {"file", ShapeName::file}}});
+  table.required("kind", name);
   const bool curved = name == ShapeName::ellipse || name == ShapeName::fourier;
   shape.kind = name == ShapeName::disc ? ShapeKind::disc : curved ? ShapeKind::curve : ShapeKind::polygon;
-  if (name == ShapeName::disc) table.required("diameter", shape.diameter, Quantity{"m", positive});
+  if (name == ShapeName::disc) table.required("diameter", shape.diameter);
   if (name == ShapeName::polygon) read_polygon(table, shape);
   if (name == ShapeName::regular) read_regular(table, shape);
   if (name == ShapeName::polygon || name == ShapeName::regular) read_rounding(table, shape);
@@ -175,9 +161,9 @@ void read_nodes(TableReader& table, ShapeSpec& shape) {
   if (table.has("nodes") && table.has("spacing")) table.fail("spacing", "both it and 'nodes' are given; remove one");
   if (!table.has("nodes") && !table.has("spacing")) table.fail_missing("nodes", "'nodes' (a number) or 'spacing' (m)");
   const auto fewest = shape.kind == ShapeKind::polygon ? static_cast<std::int64_t>(shape.points.size()) : 6;
-  table.optional("nodes", shape.nodes, Integer{7, SceneLimits::nodes_per_shape});
-  table.optional("outline_nodes", shape.outline_nodes, Integer{fewest, SceneLimits::nodes_per_shape});
-  if (!table.optional("spacing", shape.spacing, Quantity{"m", positive})) return;
+  table.optional("nodes", shape.nodes);
+  table.optional("outline_nodes", shape.outline_nodes, Least{fewest});
+  if (!table.optional("spacing", shape.spacing)) return;
   const double largest = extent_of(shape) / 2;
   if (*shape.spacing > largest)
     table.value("spacing").reject(fmt::format("at most half of the shape's extent, {} m", largest));
@@ -193,8 +179,8 @@ void read_nodes(TableReader& table, ShapeSpec& shape) {
 NamedFile read_named_file(TableReader& table) {
   NamedFile named;
   std::string file;
-  table.required("file", file, Text{});
-  if (table.optional("unit", named.unit, Text{})) require_length_unit(table, named.unit);
+  table.required("file", file);
+  if (table.optional("unit", named.unit)) require_length_unit(table, named.unit);
   named.path = std::filesystem::path(table.file()).parent_path() / file;
   if (!std::filesystem::is_regular_file(named.path))
     table.value("file").reject(fmt::format("a file; {} is none", named.path.string()));

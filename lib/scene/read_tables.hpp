@@ -13,15 +13,6 @@ namespace pliant {
 // One function a table of the scene file. `scene` holds what has been read so far: names are checked against it, so
 // the order is that of read_scene. All throw InputError.
 
-/// Limits that keep a slip of the pen from asking for all of the memory.
-struct SceneLimits {
-  static constexpr std::int64_t nodes_per_shape = 200'000;
-  static constexpr std::int64_t bodies = 1'000'000;
-  static constexpr std::int64_t field_nodes = 100'000'000;
-  static constexpr std::int64_t wall_nodes = 1'000'000;
-  static constexpr std::int64_t outputs = 10'000'000;
-};
-
 void read_domain(TableReader table, Scene& scene);
 TimeSettings read_time(TableReader table);
 DiscretisationSettings read_discretisation(TableReader table);
@@ -54,7 +45,6 @@ NamedFile read_named_file(TableReader& table);
 double extent_of(const ShapeSpec& shape);  ///< largest distance of two points, m
 double area_of(const ShapeSpec& shape);    ///< m2
 
-inline const Quantity share_of_grains{"1", Range{.low = 0, .high = 1, .low_open = true}};
 /// Throws InputError at the key unless the sum is 1.
 void check_shares(const TableReader& table, const std::string& key, double sum);
 

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 
 #include "scene/read_drive.hpp"
 #include "scene/read_tables.hpp"
@@ -10,9 +9,8 @@ namespace {
 
 /// What may drive a wall along one axis; a pressure has no meaning along the wall.
 std::vector<DriveKind> drive_kinds(bool normal) {
-  std::vector<DriveKind> kinds{{"velocity", "m/s", Drive::Mode::velocity, ""},
-                               {"force", "N/m", Drive::Mode::force, "Pa s"}};
-  if (normal) kinds.push_back({"pressure", "Pa", Drive::Mode::pressure, "Pa s/m"});
+  std::vector<DriveKind> kinds{{"velocity", Drive::Mode::velocity}, {"force", Drive::Mode::force, true}};
+  if (normal) kinds.push_back({"pressure", Drive::Mode::pressure, true});
   return kinds;
 }
 
@@ -20,33 +18,33 @@ bool needs_mass(const Drive& drive) {
   return (drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity) || !drive.window.always();
 }
 
-/// Caps side by side must leave room for the straight segments that join them.
-void check_caps(const TableReader& table, const Caps& caps, double period) {
+/// Asperities side by side must leave room for the straight segments that join them.
+void check_asperities(const TableReader& table, const Asperities& asperities, double period) {
   const auto half_width = [&](int i) {
-    return caps.diameter / 2 * std::sin(caps.half_angles[static_cast<std::size_t>(i) % caps.half_angles.size()]);
+    return asperities.diameter / 2 *
+           std::sin(asperities.half_angles[static_cast<std::size_t>(i) % asperities.half_angles.size()]);
   };
-  const double pitch = period / caps.count;
-  for (int i = 0; i < caps.count; ++i) {
-    const double taken = half_width(i) + half_width((i + 1) % caps.count);
+  const double pitch = period / asperities.count;
+  for (int i = 0; i < asperities.count; ++i) {
+    const double taken = half_width(i) + half_width((i + 1) % asperities.count);
     if (taken < pitch) continue;
     table.fail("half_angles",
-               fmt::format("caps {} and {} take {} m side by side; allowed: less than period / count = {} m", i + 1,
-                           (i + 1) % caps.count + 1, taken, pitch));
+               fmt::format("asperities {} and {} take {} m side by side; allowed: less than period / count = {} m",
+                           i + 1, (i + 1) % asperities.count + 1, taken, pitch));
   }
 }
 
-Caps read_caps(TableReader table, double period) {
-  const Range acute{.low = 0, .high = std::numbers::pi / 2, .low_open = true, .high_open = true};
-  Caps caps;
-  caps.heights = {0.0};
-  table.required("diameter", caps.diameter, Quantity{"m", positive});
-  table.required("count", caps.count, Integer{1, SceneLimits::wall_nodes});
-  table.optional("first", caps.first, Quantity{"m"});
-  table.optional("heights", caps.heights, List<Quantity>{{"m"}});
-  table.required("half_angles", caps.half_angles, List<Quantity>{{"rad", acute}});
-  check_caps(table, caps, period);
+Asperities read_asperities(TableReader table, double period) {
+  Asperities asperities;
+  asperities.heights = {0.0};
+  table.required("diameter", asperities.diameter);
+  table.required("count", asperities.count);
+  table.optional("first", asperities.first);
+  table.optional("heights", asperities.heights);
+  table.required("half_angles", asperities.half_angles);
+  check_asperities(table, asperities, period);
   table.finish();
-  return caps;
+  return asperities;
 }
 
 void check_levels(const TableReader& table, const Wall& wall, const std::vector<Wall>& others) {
@@ -64,23 +62,22 @@ void check_levels(const TableReader& table, const Wall& wall, const std::vector<
 Wall read_wall(TableReader table, const Scene& scene) {
   Wall wall;
   wall.where = table.place();
-  table.required("name", wall.name, Identifier{});
+  table.required("name", wall.name);
   if (!scene.period)
     table.fail(fmt::format("wall '{}' spans the period, and the scene has none; add [domain] period", wall.name));
-  table.required("material", wall.material, OneOf{"material", names_of(scene.materials)});
-  table.required("solid", wall.solid,
-                 Choice<Wall::Solid>{{{"below", Wall::Solid::below}, {"above", Wall::Solid::above}}});
-  table.required("level", wall.level, Quantity{"m"});
+  table.required("material", wall.material, names_of(scene.materials));
+  table.required("solid", wall.solid);
+  table.required("level", wall.level);
   check_levels(table, wall, scene.walls);
   const double finest = *scene.period / SceneLimits::wall_nodes;
-  table.optional("spacing", wall.spacing, Quantity{"m", Range{.low = finest, .high = *scene.period}});
-  if (table.has("caps")) wall.caps = read_caps(table.required_table("caps"), *scene.period);
+  table.optional("spacing", wall.spacing, Range{.low = finest, .high = *scene.period});
+  if (table.has("asperities")) wall.asperities = read_asperities(table.optional_table("asperities"), *scene.period);
   wall.x = read_drive(table, "x", drive_kinds(false), {});
   wall.y = read_drive(table, "y", drive_kinds(true), {});
   if (needs_mass(wall.x) || needs_mass(wall.y)) {
-    table.required("thickness", wall.thickness, Quantity{"m", positive});
+    table.required("thickness", wall.thickness, positive);
   } else {
-    table.optional("thickness", wall.thickness, Quantity{"m", non_negative});
+    table.optional("thickness", wall.thickness);
   }
   table.finish();
   return wall;

@@ -21,7 +21,7 @@ enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
 enum class Mass { lumped, corrected };
-enum class Recipe { mls, mls_gauss, t3, es_t3, rpim };
+enum class DiscretisationMethod { mls, mls_gauss, t3, es_t3, rpim };
 enum class ContactLawKind { frictionless, mohr_coulomb, cohesive, cohesive_fatigue };
 enum class ContactLength { reference, current };
 /// Where the tractions of contact are evaluated: at nodes, or integrated over segments (docs/method.md 4).
@@ -172,11 +172,11 @@ struct Drive {
 };
 
 /// Half-round bumps of discs on a wall, one column after another across the period, joined by straight segments.
-struct Caps {
+struct Asperities {
   double diameter = 0;
   int count = 0;                    ///< over the period: pitch = period / count
-  double first = 0;                 ///< x of the first cap's centre, m
-  std::vector<double> heights;      ///< cyclic: height of the cap centres above `level` towards the grains, m
+  double first = 0;                 ///< x of the first asperity's centre, m
+  std::vector<double> heights;      ///< cyclic: height of the asperity centres above `level` towards the grains, m
   std::vector<double> half_angles;  ///< cyclic: arc kept on either side of the wall's normal, rad, in (0, pi/2)
 };
 
@@ -185,10 +185,10 @@ struct Wall {
   std::string name;
   std::string material;
   enum class Solid { below, above } solid = Solid::below;  ///< on which side of the line the wall is solid
-  double level = 0;                                        ///< y of the flat line, or of the cap centres of height 0, m
-  double spacing = 0;                                      ///< outline spacing; 0: the finest outline of the grains
-  double thickness = 0;                                    ///< mass = density x period x thickness; m
-  std::optional<Caps> caps;
+  double level = 0;      ///< y of the flat line, or of the asperity centres of height 0, m
+  double spacing = 0;    ///< outline spacing; 0: the finest outline of the grains
+  double thickness = 0;  ///< mass = density x period x thickness; m
+  std::optional<Asperities> asperities;
   Drive x, y;           ///< rotation is blocked
   std::string where{};  ///< file, line and column of its table, for messages
 };
@@ -289,11 +289,11 @@ struct TimeSettings {
 };
 
 struct DiscretisationSettings {
-  Recipe recipe = Recipe::mls;
+  DiscretisationMethod method = DiscretisationMethod::mls;
   int support = 8;       ///< nodal support radius = distance to the support-th nearest node
   int gauss_points = 3;  ///< mls-gauss, rpim: 1, 3 or 6
   Mass mass = Mass::lumped;
-  double rim_mass = 1;  ///< of nodes on outlines, lumped: times theirs, so that contact allows longer steps
+  double mass_scaling = 1;  ///< of nodes on outlines, lumped: times theirs, so that contact allows longer steps
 };
 
 struct Scene {

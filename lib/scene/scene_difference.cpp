@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "scene/old_keys.hpp"
 #include "scene/scene.hpp"
 #include "scene/units.hpp"
 
@@ -19,6 +20,7 @@ namespace {
 toml::table significant(const std::string& text) {
   try {
     toml::table table = toml::parse(text);
+    rename_old_keys(table, "the scene");
     table.erase("title");
     table.erase("checkpoint");
     if (toml::table* time = table["time"].as_table()) time->erase("end");

@@ -166,6 +166,17 @@ std::string OneOf::operator()(const Value& value) const {
   value.fail(fmt::format("{}: unknown {} {}; {}", value.label, what, value.found(), allowed_names(name, names)));
 }
 
+std::vector<std::string> Choice::all() const {
+  std::vector<std::string> names;
+  for (const auto& [name, entry] : entries) names.push_back(name);
+  return names;
+}
+
+int Choice::operator()(const Value& value) const {
+  const std::string name = OneOf{"name", all()}(value);
+  return std::ranges::find(entries, name, &std::pair<std::string, int>::first)->second;
+}
+
 Vec2 Vector::operator()(const Value& value) const {
   const std::vector<Value> parts = value.elements(allowed());
   if (parts.size() != 2) value.reject(allowed());
@@ -181,6 +192,12 @@ Eigen::Matrix2d Matrix::operator()(const Value& value) const {
   Eigen::Matrix2d matrix;
   matrix << first.transpose(), second.transpose();
   return matrix;
+}
+
+ProbeBox Corners::operator()(const Value& value) const {
+  const auto points = List<Vector>{Vector{"m"}, 2, 2}(value);
+  if (points[0].x() < points[1].x() && points[0].y() < points[1].y()) return {points[0], points[1]};
+  value.reject(allowed());
 }
 
 History HistoryOf::operator()(const Value& value) const {
@@ -206,6 +223,32 @@ std::vector<History> VectorHistory::operator()(const Value& value) const {
     }
   });
   return histories;
+}
+
+Quantity within(Quantity kind, const Range& range) {
+  kind.range = range;
+  return kind;
+}
+
+Integer within(Integer kind, Least least) { return {least.value, kind.high}; }
+
+OneOf within(OneOf kind, const std::vector<std::string>& names) { return {kind.what, names}; }
+
+List<OneOf> within(List<OneOf> kind, const std::vector<std::string>& names) {
+  kind.element.names = names;
+  return kind;
+}
+
+List<Quantity> within(List<Quantity> kind, Count count) {
+  kind.least = kind.most = count.value;
+  return kind;
+}
+
+Choice within(const Choice& kind, const std::vector<std::string>& names) {
+  Choice some{{}, kind.type};
+  for (const std::string& name : names)
+    some.entries.push_back(*std::ranges::find(kind.entries, name, &std::pair<std::string, int>::first));
+  return some;
 }
 
 }  // namespace pliant

@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <toml++/toml.h>
+#include <initializer_list>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -16,9 +20,12 @@
 
 namespace pliant {
 
+struct SceneKey;
+
 /// A scene file that is being read.
 struct Source {
-  std::string file;  ///< its name, for messages
+  std::string file;                                           ///< its name, for messages
+  std::set<std::pair<const SceneKey*, bool>>* use = nullptr;  ///< see KeyUse
   mutable std::vector<std::string> warnings{};
 };
 
@@ -114,25 +121,21 @@ struct OneOf {
   std::string operator()(const Value& value) const;
 };
 
-/// One of the names of an enumeration.
-template <class Enum>
+/// One of the names of an enumeration, or of true and false.
 struct Choice {
-  std::vector<std::pair<std::string, Enum>> entries;
+  std::vector<std::pair<std::string, int>> entries;
+  const std::type_info* type;  ///< of the values
 
-  std::vector<std::string> names() const {
-    std::vector<std::string> all;
-    for (const auto& entry : entries) all.push_back(entry.first);
-    return all;
-  }
-  std::string allowed() const { return fmt::format("one of \"{}\"", fmt::join(names(), "\", \"")); }
-  Enum operator()(const Value& value) const {
-    const std::string name = OneOf{"name", names()}(value);
-    for (const auto& entry : entries) {
-      if (entry.first == name) return entry.second;
-    }
-    value.reject(allowed());
-  }
+  std::vector<std::string> all() const;
+  std::string allowed() const { return fmt::format("one of \"{}\"", fmt::join(all(), "\", \"")); }
+  int operator()(const Value& value) const;
 };
+template <class Enum>
+Choice choice(std::initializer_list<std::pair<const char*, Enum>> entries) {
+  Choice all{{}, &typeid(Enum)};
+  for (const auto& [name, value] : entries) all.entries.emplace_back(name, static_cast<int>(value));
+  return all;
+}
 
 /// An array of values of one kind, of `least` to `most` elements.
 template <class Element>
@@ -169,6 +172,12 @@ struct Matrix {
   Eigen::Matrix2d operator()(const Value& value) const;
 };
 
+/// [[left, bottom], [right, top]], m.
+struct Corners {
+  std::string allowed() const { return "[[left, bottom], [right, top]] in m, left < right and bottom < top"; }
+  ProbeBox operator()(const Value& value) const;
+};
+
 /// Rows [time, value] of an array, the times growing; take(time, value) gets them one after another.
 template <class Take>
 void for_each_history_entry(const Value& value, const std::string& allowed, Take&& take) {
@@ -197,5 +206,32 @@ struct VectorHistory {
   std::string allowed() const { return fmt::format("a table [[time, [x, y]], ...], x and y in {}", unit); }
   std::vector<History> operator()(const Value& value) const;
 };
+
+// Kinds with what depends on the rest of the scene.
+
+struct Least {
+  std::int64_t value;
+};
+struct Count {
+  std::size_t value;
+};
+
+template <class Kind>
+const Kind& within(const Kind& kind) {
+  return kind;
+}
+Quantity within(Quantity kind, const Range& range);
+Integer within(Integer kind, Least least);
+OneOf within(OneOf kind, const std::vector<std::string>& names);
+List<OneOf> within(List<OneOf> kind, const std::vector<std::string>& names);
+List<Quantity> within(List<Quantity> kind, Count count);
+/// Those of its names, in their order.
+Choice within(const Choice& kind, const std::vector<std::string>& names);
+/// The reader's own kind.
+template <class Kind, class Own>
+  requires std::is_invocable_v<Own, const Value&>
+const Own& within(const Kind& /*kind*/, const Own& own) {
+  return own;
+}
 
 }  // namespace pliant

@@ -142,7 +142,7 @@ void make_consistent(std::vector<Point>& points, const Points& nodes, const std:
   if (!(error < consistent_to))
     throw InputError(
         fmt::format("no consistent gradients on this mesh: they miss the conditions by {:.1e}, allowed {:.0e}; use a "
-                    "larger `support`, more nodes, fewer outline_nodes, or the recipe \"es-t3\"",
+                    "larger `support`, more nodes, fewer outline_nodes, or the method \"es-t3\"",
                     error, consistent_to));
 }
 

@@ -117,13 +117,13 @@ void add_masses(Space& space, const std::function<Row(const Triangle&, const Eig
   if (!(space.lumped.minCoeff(&worst) > 0))
     throw InputError(
         fmt::format("node {} would have the lumped mass {:.2e}, not positive: use a smaller `support` or "
-                    "the recipe \"es-t3\"",
+                    "the method \"es-t3\"",
                     worst, space.lumped[worst]));
 }
 
 /// Discretisation by mesh functions, whose values at nodes are nodal values.
-void fill_with_triangles(Space& space, Recipe recipe) {
-  space.points = recipe == Recipe::t3 ? triangle_points(space.mesh) : edge_points(space.mesh);
+void fill_with_triangles(Space& space, DiscretisationMethod method) {
+  space.points = method == DiscretisationMethod::t3 ? triangle_points(space.mesh) : edge_points(space.mesh);
   for (int i = 0; i < int(space.mesh.nodes.size()); ++i) space.nodes.push_back({{i}, {1.0}});
   add_masses(space, linear_row);
 }
@@ -132,24 +132,25 @@ void fill_with_moving_least_squares(Space& space, const DiscretisationSettings& 
   const MovingLeastSquares mls(space.mesh.nodes, space.mesh.outline_count, settings.support);
   for (const Vec2& node : space.mesh.nodes) space.nodes.push_back(mls.values(node));
   const std::vector<Row> outline(space.nodes.begin(), space.nodes.begin() + space.mesh.outline_count);
-  space.points = gauss_points(space.mesh, mls, settings.recipe == Recipe::mls ? 1 : settings.gauss_points);
-  if (settings.recipe == Recipe::mls) make_consistent(space.points, space.mesh.nodes, outline);
+  space.points =
+      gauss_points(space.mesh, mls, settings.method == DiscretisationMethod::mls ? 1 : settings.gauss_points);
+  if (settings.method == DiscretisationMethod::mls) make_consistent(space.points, space.mesh.nodes, outline);
   add_masses(space, [&](const Triangle& t, const Eigen::Vector3d& at) { return mls.values(place(space.mesh, t, at)); });
 }
 
 }  // namespace
 
 Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  if (settings.rim_mass != 1) throw InputError("[discretisation] rim_mass: not in the reference solver");
-  if (settings.recipe == Recipe::rpim)
+  if (settings.mass_scaling != 1) throw InputError("[discretisation] mass_scaling: not in the reference solver");
+  if (settings.method == DiscretisationMethod::rpim)
     throw InputError(
-        "the reference solver has no recipe \"rpim\": it has \"mls\", \"mls-gauss\", \"t3\" and \"es-t3\"");
+        "the reference solver has no method \"rpim\": it has \"mls\", \"mls-gauss\", \"t3\" and \"es-t3\"");
   const double unit = mean_node_distance(mesh);  // scale of all lengths, until the last lines
   Space space;
   space.mesh = mesh;
   for (Vec2& node : space.mesh.nodes) node /= unit;
-  if (settings.recipe == Recipe::t3 || settings.recipe == Recipe::es_t3)
-    fill_with_triangles(space, settings.recipe);
+  if (settings.method == DiscretisationMethod::t3 || settings.method == DiscretisationMethod::es_t3)
+    fill_with_triangles(space, settings.method);
   else
     fill_with_moving_least_squares(space, settings);
   space.outline.assign(space.nodes.begin(), space.nodes.begin() + mesh.outline_count);

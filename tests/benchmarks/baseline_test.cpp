@@ -120,9 +120,10 @@ TEST(Baseline, RigidPairsAreStifferAsTheEngines) {
 
 /// EXACT: internal forces, outlines and a step of the update to 1e-12 of the largest.
 TEST(Baseline, InternalForcesAndOutlinesAreTheEngines) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3}) {
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
     Scene scene = squeezed(frictionless(100));
-    scene.discretisation.recipe = recipe;
+    scene.discretisation.method = method;
     ContactRig rig(scene);
     shear(rig, 0.1);
     rig.show();

@@ -44,7 +44,7 @@ def test_cost_at_an_error_goes_by_powers() -> None:
 def test_the_default_is_the_engines() -> None:
     """What docs/scene.md says of each key, which is tested against the engine."""
     text = (ROOT / "docs/scene.md").read_text()
-    for key, value in [("recipe", f'"{DEFAULT.recipe}"'), ("mass", f'"{DEFAULT.mass}"'), ("safety", f"{DEFAULT.safety:g}"),
+    for key, value in [("method", f'"{DEFAULT.method}"'), ("mass", f'"{DEFAULT.mass}"'), ("safety", f"{DEFAULT.safety:g}"),
                        ("integrator", f'"{DEFAULT.integrator}"'), ("tolerance", f"{DEFAULT.bound:g}"), ("target", f"{PAPER.bound:g}")]:
         row = next(line for line in text.splitlines() if line.startswith(f"| `{key}` |"))
         assert row.split("|")[3].strip() == value, key
@@ -53,7 +53,7 @@ def test_the_default_is_the_engines() -> None:
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)
 def test_choices_reach_the_scene(scene: error.Scene) -> None:
     made = tomllib.loads(scene.text(Choice("es-t3", "corrected", 84, safety=0.4, bound=1e-3)))
-    assert made["discretisation"] == {"recipe": "es-t3", "mass": "corrected"}
+    assert made["discretisation"] == {"method": "es-t3", "mass": "corrected"}
     assert {key: made["time"][key] for key in ("integrator", "tolerance", "safety")} == \
         {"integrator": "verlet", "tolerance": 1e-3, "safety": 0.4}
     assert made["shapes"]["disc"]["nodes"] == 84
@@ -120,9 +120,9 @@ def test_bad_options() -> None:
 
 
 def table_rows(factor: float = 1.0) -> list[Measured]:
-    """Of all recipes and masses in two sizes; each error names its row."""
-    return [Measured(scene, Choice(recipe, mass, nodes), factor * (0.1 + 0.01 * place) / nodes, 100, 1.0, 1e6)
-            for place, scene in enumerate(keep.KEPT) for recipe in choices.RECIPES for mass in choices.MASSES
+    """Of all methods and masses in two sizes; each error names its row."""
+    return [Measured(scene, Choice(method, mass, nodes), factor * (0.1 + 0.01 * place) / nodes, 100, 1.0, 1e6)
+            for place, scene in enumerate(keep.KEPT) for method in choices.METHODS for mass in choices.MASSES
             for nodes in (40, 84)]
 
 
@@ -150,7 +150,7 @@ def test_kept_errors_are_the_engines(tmp_path: Path) -> None:
     runner = Runner(programs, tmp_path, repetitions=1)
     kept = keep.read_header(keep.HEADER.read_text())
     for scene in (scene for scene in SCENES if scene.name in keep.KEPT):
-        for (recipe, mass), errors in kept.items():
+        for (method, mass), errors in kept.items():
             before = errors[keep.KEPT.index(scene.name)][0]
-            measured = runner.measure(scene, Choice(recipe, mass, 40)).error
+            measured = runner.measure(scene, Choice(method, mass, 40)).error
             assert float(f"{measured:.1e}") == pytest.approx(before, abs=1.01 * 10 ** (math.floor(math.log10(before)) - 1))

@@ -23,7 +23,7 @@ def test_a_packing_of_ten_columns_is_the_small_third_body() -> None:
     made, small = tomllib.loads(scenes.packing(case("third_body"), Size(10, 20, 1))), tomllib.loads(case("third_body_mini"))
     for key in ["domain", "grains", "shapes", "materials"]:
         assert made[key] == small[key], key
-    assert [wall["caps"]["count"] for wall in made["walls"]] == [10, 10]
+    assert [wall["asperities"]["count"] for wall in made["walls"]] == [10, 10]
     assert made["walls"][1]["level"] == small["walls"][1]["level"]
     assert made["contact"]["refresh"] == scenes.REFRESH
 

@@ -13,9 +13,9 @@ namespace {
 using namespace testing;
 
 // Ten compliant discs of one shape at different angles: a batch of eight and one of two. Materials of two stiffnesses.
-Scene ten_discs(MaterialLaw law = MaterialLaw::neo_hookean, Recipe recipe = Recipe::mls) {
+Scene ten_discs(MaterialLaw law = MaterialLaw::neo_hookean, DiscretisationMethod method = DiscretisationMethod::mls) {
   Scene scene = bare_scene();
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.contacts = {frictionless(1)};
   scene.materials[0].law = law;
   scene.materials.push_back({"stiff", law, 3, 5, 0.3});
@@ -106,8 +106,8 @@ TEST(InternalForces, AreTheSumOverThePoints) {
 // order 0.1.
 TEST(InternalForces, AreMinusTheGradientOfTheEnergy) {
   for (const MaterialLaw law : all_laws)
-    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
-      Loaded loaded(ten_discs(law, recipe));
+    for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss}) {
+      Loaded loaded(ten_discs(law, method));
       const Dofs f = loaded.f;
       for (std::size_t dof = 3; dof < loaded.q.compliant.size(); dof += 17) {
         const int b = dof < loaded.model.batches[1].offset ? 0 : 1;
@@ -127,8 +127,8 @@ TEST(InternalForces, AreMinusTheGradientOfTheEnergy) {
 // EXACT: sums over b vanish and P F^T is symmetric, so force and moment balance to rounding of sums of 100 terms.
 TEST(InternalForces, BalanceForceAndMoment) {
   for (const MaterialLaw law : all_laws)
-    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
-      const Loaded loaded(ten_discs(law, recipe));
+    for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss}) {
+      const Loaded loaded(ten_discs(law, method));
       for (const Batch& batch : loaded.model.batches) {
         Lanes fx{}, fy{}, moment{}, magnitude{};
         for (std::size_t i = batch.offset; i < batch.offset + 2 * loaded.model.shape_of(batch).nodes(); i += 2) {

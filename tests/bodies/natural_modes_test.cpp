@@ -42,8 +42,9 @@ MatrixXd linear_stiffness(const Discretisation& d) {
 
 /// EXACT: differences of the kernel's forces; 1e-10 for their truncation and rounding.
 TEST(NaturalModes, stiffness_is_the_linear_one_of_the_table) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3}) {
-    const Model model = build_model(free_disc(61, {.recipe = recipe}));
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
+    const Model model = build_model(free_disc(61, {.method = method}));
     const MatrixXd exact = linear_stiffness(model.shapes[0].space),
                    found = small_motions(model, model.bodies[0]).stiffness;
     EXPECT_LT((found - exact).cwiseAbs().maxCoeff(), 1e-10 * exact.cwiseAbs().maxCoeff());
@@ -92,7 +93,7 @@ TEST(NaturalModes, of_two_masses) {
 }
 
 TEST(NaturalModes, too_many_nodes_are_refused) {
-  const Model model = build_model(free_disc(most_modal_nodes + 100, {.recipe = Recipe::t3}));
+  const Model model = build_model(free_disc(most_modal_nodes + 100, {.method = DiscretisationMethod::t3}));
   EXPECT_THROW(small_motions(model, model.bodies[0]), InputError);
 }
 

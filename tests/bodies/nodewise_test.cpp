@@ -24,9 +24,9 @@ const BuildOptions always_nodewise{.least_sparse_nodes = 0, .unite_topologies = 
 const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .unite_topologies = true, .scales = sizes};
 
 /// Two discs of 603 nodes (two regions, with padding) and one of 60 of another law, on a floor under rigid grains.
-Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
+Scene pile(DiscretisationMethod method, Integrator integrator = Integrator::verlet) {
   Scene scene = on_a_floor(2, 5, 0.1, {0.01, -0.05});
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.time.integrator = integrator;
   scene.time.tolerance = scene.time.target = 1;  // steps are given
   scene.materials.push_back({"other", MaterialLaw::melody, 1.5, 2, 0.3});
@@ -45,7 +45,7 @@ Scene pile(Recipe recipe, Integrator integrator = Integrator::verlet) {
 /// Sums of some twenty terms in another order, times what a disc's stiffness makes of rounded positions.
 constexpr double rounding = 1e-12;
 
-class Nodewise : public ::testing::TestWithParam<std::tuple<Recipe, Integrator>> {};
+class Nodewise : public ::testing::TestWithParam<std::tuple<DiscretisationMethod, Integrator>> {};
 
 void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
   ASSERT_EQ(a.size(), b.size());
@@ -54,9 +54,9 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
 }
 
 TEST_P(Nodewise, bodies_move_as_those_in_lanes) {
-  const auto [recipe, integrator] = GetParam();
-  Steered here(build_model(pile(recipe, integrator), always_nodewise));
-  Steered there(build_model(pile(recipe, integrator), never_nodewise));
+  const auto [method, integrator] = GetParam();
+  Steered here(build_model(pile(method, integrator), always_nodewise));
+  Steered there(build_model(pile(method, integrator), never_nodewise));
   const Model &nodewise = here.bench.model, &lanes = there.bench.model;
   ASSERT_EQ(nodewise.lane_batches, 0);
   ASSERT_EQ(nodewise.batches.size(), 3U);
@@ -88,8 +88,8 @@ TEST_P(Nodewise, bodies_move_as_those_in_lanes) {
   EXPECT_LT(a.momentum_error, 1e-12) << "EXACT";
 }
 
-INSTANTIATE_TEST_SUITE_P(Recipes, Nodewise,
-                         ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
+INSTANTIATE_TEST_SUITE_P(Methods, Nodewise,
+                         ::testing::Combine(::testing::Values(DiscretisationMethod::mls, DiscretisationMethod::es_t3, DiscretisationMethod::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling)));
 
 /// Random smooth deformations, the same in both models.
@@ -113,9 +113,9 @@ Dofs deformed(const Model& model, std::uint64_t seed) {
 /// EXACT: energies and least Jacobians of a state; forces are minus the gradient of the energy (central differences:
 /// 1e-10 of forces of order 1 by rounding over 1e-5, and 1e-9 by the third derivative).
 TEST(NodewiseForces, belong_to_the_energy) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss}) {
-    const Model nodewise = build_model(pile(recipe), always_nodewise),
-                lanes = build_model(pile(recipe), never_nodewise);
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss}) {
+    const Model nodewise = build_model(pile(method), always_nodewise),
+                lanes = build_model(pile(method), never_nodewise);
     Dofs q = deformed(nodewise, 3);
     const Dofs p = deformed(lanes, 3);
     Dofs f = zero_dofs(nodewise), g = zero_dofs(lanes);
@@ -160,7 +160,7 @@ TEST(NodewiseForces, belong_to_the_energy) {
 /// EXACT: the same bits with one, two and three threads.
 TEST(NodewiseForces, do_not_depend_on_the_number_of_threads) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
-    const Model model = build_model(pile(Recipe::mls, integrator), always_nodewise);
+    const Model model = build_model(pile(DiscretisationMethod::mls, integrator), always_nodewise);
     const int before = omp_get_max_threads();
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 3}) {
@@ -179,7 +179,7 @@ TEST(NodewiseForces, do_not_depend_on_the_number_of_threads) {
 
 /// EXACT: all nodes once, all points once, the two tables the same numbers.
 TEST(NodewiseShape, is_the_table_in_another_order) {
-  const Model model = build_model(pile(Recipe::mls), always_nodewise);
+  const Model model = build_model(pile(DiscretisationMethod::mls), always_nodewise);
   const NodewiseShape& shape = model.nodewise_shapes[0];
   const Discretisation& space = model.shapes[0].space;
   std::vector<int> offsets = shape.offset;
@@ -198,7 +198,7 @@ TEST(NodewiseShape, is_the_table_in_another_order) {
 /// Neighbours in space are neighbours in memory: the mean distance of the places of nodes that share a point. The
 /// mesh's own order has a sixth of all nodes.
 TEST(NodewiseShape, keeps_neighbours_together) {
-  const Model model = build_model(pile(Recipe::mls), always_nodewise);
+  const Model model = build_model(pile(DiscretisationMethod::mls), always_nodewise);
   const NodewiseShape& shape = model.nodewise_shapes[0];
   double total = 0;
   int count = 0;
@@ -210,7 +210,7 @@ TEST(NodewiseShape, keeps_neighbours_together) {
 
 /// EXACT: an inverted element is found and told with its node's place in the mesh, a NaN with its node.
 TEST(NodewiseBodies, fail_by_name) {
-  Bench bench(build_model(pile(Recipe::mls), always_nodewise));
+  Bench bench(build_model(pile(DiscretisationMethod::mls), always_nodewise));
   const Body& body = bench.model.bodies[1];
   const BodyOffsets offsets(bench.model, body);
   set_node(offsets, 600, BodyView(bench.model, body, bench.state.position)[600] + Vec2(0.5, 0), bench.state.position);
@@ -226,10 +226,10 @@ TEST(NodewiseBodies, fail_by_name) {
 
 /// The rule: many nodes in nearly empty batches.
 TEST(NodewiseBodies, are_those_that_would_leave_lanes_empty) {
-  const Model model = build_model(pile(Recipe::es_t3));  // 1266 sparse nodes
+  const Model model = build_model(pile(DiscretisationMethod::es_t3));  // 1266 sparse nodes
   EXPECT_EQ(model.lane_batches, 0);
   const BuildOptions nodewise{.least_sparse_nodes = 0, .unite_topologies = true, .scales = {}};
-  Scene many = pile(Recipe::es_t3);
+  Scene many = pile(DiscretisationMethod::es_t3);
   for (int i = 0; i < 7; ++i) many.grains[0].packing.positions.push_back({1.2, 4.0 + 3 * i});
   const Model mixed = build_model(many, nodewise);  // nine large discs: eight in lanes, one nodewise
   EXPECT_EQ(mixed.lane_batches, 1);

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int grains_in_all = 11;
 
-enum class Extras { none, damping_and_corrected_mass, rim_mass };
+enum class Extras { none, damping_and_corrected_mass, mass_scaling };
 
 /// Fourier grains of eleven shapes and several sizes on a floor, pushed together, and a rigid disc.
-Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
+Scene heap(DiscretisationMethod method, Integrator integrator, Extras extras = Extras::none) {
   Scene scene = on_a_floor(2, 9, 0.2, {0.01, -0.05});
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.time.integrator = integrator;
   scene.time.tolerance = scene.time.target = 1;  // steps are given
   scene.materials.push_back({"tough", MaterialLaw::neo_hookean, 1.7, 4, 0.3});
@@ -28,7 +28,7 @@ Scene heap(Recipe recipe, Integrator integrator, Extras extras = Extras::none) {
     scene.discretisation.mass = Mass::corrected;
     for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
   }
-  if (extras == Extras::rim_mass) scene.discretisation.rim_mass = 1.6;
+  if (extras == Extras::mass_scaling) scene.discretisation.mass_scaling = 1.6;
   scene.contacts = {mohr_coulomb(60, 0.3)};
   for (int i = 0; i < grains_in_all; ++i) {
     ShapeSpec shape;
@@ -76,11 +76,11 @@ void expect_equal_points(const Points& a, const Points& b, double tolerance, con
     ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
 }
 
-class SameTopology : public ::testing::TestWithParam<std::tuple<Recipe, Integrator, Extras>> {};
+class SameTopology : public ::testing::TestWithParam<std::tuple<DiscretisationMethod, Integrator, Extras>> {};
 
 TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
-  const auto [recipe, integrator, extras] = GetParam();
-  Steered here(build_model(heap(recipe, integrator, extras), always()));
+  const auto [method, integrator, extras] = GetParam();
+  Steered here(build_model(heap(method, integrator, extras), always()));
   Steered there(nodewise(here.bench.model));
   const Model &united = here.bench.model, &alone = there.bench.model;
   ASSERT_EQ(united.batches.size(), 2U) << "eight bodies and three";
@@ -109,15 +109,15 @@ TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
   if (here.verlet) EXPECT_LT(here.auditor.balance_error(a.energy), 2e-3) << "FROZEN: with either";
 }
 
-INSTANTIATE_TEST_SUITE_P(Recipes, SameTopology,
-                         ::testing::Combine(::testing::Values(Recipe::mls, Recipe::es_t3, Recipe::mls_gauss),
+INSTANTIATE_TEST_SUITE_P(Methods, SameTopology,
+                         ::testing::Combine(::testing::Values(DiscretisationMethod::mls, DiscretisationMethod::es_t3, DiscretisationMethod::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling),
                                             ::testing::Values(Extras::none, Extras::damping_and_corrected_mass,
-                                                              Extras::rim_mass)));
+                                                              Extras::mass_scaling)));
 
 /// EXACT: the same bits with one, two and three threads.
 TEST(SameTopologyBodies, do_not_depend_on_the_number_of_threads) {
-  const Model model = build_model(heap(Recipe::mls, Integrator::verlet), always());
+  const Model model = build_model(heap(DiscretisationMethod::mls, Integrator::verlet), always());
   const int before = omp_get_max_threads();
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2, 3}) {
@@ -134,7 +134,7 @@ TEST(SameTopologyBodies, do_not_depend_on_the_number_of_threads) {
 /// EXACT: the rule. Small scenes are left alone, as are shapes with many bodies, polygons and fewer than three
 /// relatives.
 TEST(SameTopologyBodies, are_few_of_many_smooth_shapes) {
-  Scene scene = heap(Recipe::es_t3, Integrator::verlet);
+  Scene scene = heap(DiscretisationMethod::es_t3, Integrator::verlet);
   const Model small = build_model(scene);  // 880 nodes
   EXPECT_EQ(small.batches.size(), 11U);
   EXPECT_EQ(small.lane_batches, 11);

@@ -26,9 +26,9 @@ const std::vector<Grain> grains_of_all_sizes = {
     {0.13, BodyKind::compliant, {11, 3}, 0.4, "tough"}};
 
 /// `shared`: all of one shape, to be given the sizes as scales; else each of a shape of its own size.
-Scene scene_of(bool shared, Integrator integrator, Recipe recipe) {
+Scene scene_of(bool shared, Integrator integrator, DiscretisationMethod method) {
   Scene scene = on_a_floor(2, 12, 0.2, {0.01, -0.02});
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.time.integrator = integrator;
   scene.time.tolerance = scene.time.target = 1;  // steps are given, and the skin allows them: light nodes are fast
   scene.skin = 1;
@@ -61,12 +61,12 @@ BuildOptions sizes() {
 /// steps.
 constexpr double rounding = 1e-9;
 
-class Sizes : public ::testing::TestWithParam<std::tuple<Integrator, Recipe>> {};
+class Sizes : public ::testing::TestWithParam<std::tuple<Integrator, DiscretisationMethod>> {};
 
 TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
-  const auto [integrator, recipe] = GetParam();
-  Steered here(build_model(scene_of(true, integrator, recipe), sizes()));
-  Steered there(build_model(scene_of(false, integrator, recipe)));
+  const auto [integrator, method] = GetParam();
+  Steered here(build_model(scene_of(true, integrator, method), sizes()));
+  Steered there(build_model(scene_of(false, integrator, method)));
   const Model &model = here.bench.model, &twin = there.bench.model;
   ASSERT_EQ(model.batches.size(), 1U) << "one group, one batch";
   ASSERT_EQ(twin.batches.size(), 4U);
@@ -106,11 +106,11 @@ TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
 
 INSTANTIATE_TEST_SUITE_P(All, Sizes,
                          ::testing::Combine(::testing::Values(Integrator::verlet, Integrator::step_doubling),
-                                            ::testing::Values(Recipe::mls, Recipe::es_t3)));
+                                            ::testing::Values(DiscretisationMethod::mls, DiscretisationMethod::es_t3)));
 
 /// EXACT: bodies of one shape and size share their outline, others have their own; lanes carry what belongs to each.
 TEST(BodySizes, share_what_is_equal) {
-  const Model model = build_model(scene_of(true, Integrator::verlet, Recipe::mls), sizes());
+  const Model model = build_model(scene_of(true, Integrator::verlet, DiscretisationMethod::mls), sizes());
   const auto outline = [&](int body) { return model.bodies[body].outline; };
   EXPECT_EQ(outline(3), outline(5));
   EXPECT_NE(outline(3), outline(2));

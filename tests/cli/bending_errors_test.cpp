@@ -50,8 +50,8 @@ struct Bent {
 };
 
 // Linear tractions on both ends, as outline nodes stand for them.
-Bent bend(double length, int segments_across, Recipe recipe) {
-  const Discretisation d = discretise(make_field_mesh(strip(length, segments_across)), {.recipe = recipe});
+Bent bend(double length, int segments_across, DiscretisationMethod method) {
+  const Discretisation d = discretise(make_field_mesh(strip(length, segments_across)), {.method = method});
   const Points tributary = tributary_vectors(d.mesh);
   VectorXd force = VectorXd::Zero(static_cast<Eigen::Index>(2 * d.mesh.nodes.size()));
   double moment = 0;
@@ -66,21 +66,22 @@ Bent bend(double length, int segments_across, Recipe recipe) {
 }
 
 // How much too far a strip bends, from strips of 5 and 10 widths: ends, which bend by themselves, are the same.
-double measured_error(int segments_across, Recipe recipe) {
-  const Bent shorter = bend(5, segments_across, recipe), longer = bend(10, segments_across, recipe);
+double measured_error(int segments_across, DiscretisationMethod method) {
+  const Bent shorter = bend(5, segments_across, method), longer = bend(10, segments_across, method);
   const double rigidity = 4 * mu * (lambda + mu) / (lambda + 2 * mu) / 12;  // E/(1 - nu^2) times the second moment
   return (longer.work - shorter.work) / (5 * longer.moment * longer.moment / rigidity) - 1;
 }
 
-constexpr std::array recipes{Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3, Recipe::rpim};
+constexpr std::array methods{DiscretisationMethod::mls, DiscretisationMethod::mls_gauss, DiscretisationMethod::t3,
+                             DiscretisationMethod::es_t3, DiscretisationMethod::rpim};
 
 // FROZEN: what check knows, to the last of its digits and what another compiler's mesh may change, a fiftieth.
 TEST(BendingErrors, are_those_that_check_knows) {
-  for (const Recipe recipe : recipes)
+  for (const DiscretisationMethod method : methods)
     for (const int n : {1, 2, 3, 4, 6, 8}) {
-      const double found = measured_error(n, recipe);
-      EXPECT_NEAR(*bending_error(recipe, n), found, 6e-4 + 0.02 * std::abs(found))
-          << static_cast<int>(recipe) << ", " << n << " across";
+      const double found = measured_error(n, method);
+      EXPECT_NEAR(*bending_error(method, n), found, 6e-4 + 0.02 * std::abs(found))
+          << static_cast<int>(method) << ", " << n << " across";
     }
 }
 
@@ -88,17 +89,19 @@ TEST(BendingErrors, are_those_that_check_knows) {
 // that are of order one with one segment across are below (1/8)^2 times two with eight, but for linear triangles, whose
 // coefficient is the shear that a bent triangle cannot but have, 2 (1 - nu)/(1 - 2 nu) = 6 times as much.
 TEST(BendingErrors, go_to_nothing) {
-  for (const Recipe recipe : recipes)
-    EXPECT_LT(std::abs(measured_error(8, recipe)), (recipe == Recipe::t3 ? 6 : 2) / 64.0) << static_cast<int>(recipe);
+  for (const DiscretisationMethod method : methods)
+    EXPECT_LT(std::abs(measured_error(8, method)), (method == DiscretisationMethod::t3 ? 6 : 2) / 64.0)
+        << static_cast<int>(method);
 }
 
 // EXACT: lines in 1/n^2 between what was measured, that power beyond, the coarsest below.
 TEST(BendingErrors, between_those_that_were_measured) {
-  const double coarse = *bending_error(Recipe::mls, 2), fine = *bending_error(Recipe::mls, 3);
+  const double coarse = *bending_error(DiscretisationMethod::mls, 2),
+               fine = *bending_error(DiscretisationMethod::mls, 3);
   const double n = 1 / std::sqrt(0.5 * (1.0 / 4 + 1.0 / 9));
-  EXPECT_NEAR(*bending_error(Recipe::mls, n), 0.5 * (coarse + fine), 1e-12);
-  EXPECT_NEAR(*bending_error(Recipe::t3, 16), *bending_error(Recipe::t3, 8) / 4, 1e-12);
-  EXPECT_EQ(*bending_error(Recipe::mls, 0.3), *bending_error(Recipe::mls, 1));
+  EXPECT_NEAR(*bending_error(DiscretisationMethod::mls, n), 0.5 * (coarse + fine), 1e-12);
+  EXPECT_NEAR(*bending_error(DiscretisationMethod::t3, 16), *bending_error(DiscretisationMethod::t3, 8) / 4, 1e-12);
+  EXPECT_EQ(*bending_error(DiscretisationMethod::mls, 0.3), *bending_error(DiscretisationMethod::mls, 1));
 }
 
 // EXACT: thickness and place of limbs drawn by hand, and bodies that have none.
@@ -122,9 +125,9 @@ TEST(ThinParts, are_found) {
   EXPECT_FALSE(thinnest_part(make_outline(wedge))) << "thick and thin";
 }
 
-std::string bending_of(double length, int segments_across, Recipe recipe = Recipe::mls) {
+std::string bending_of(double length, int segments_across, DiscretisationMethod method = DiscretisationMethod::mls) {
   Scene scene = empty_scene(1);
-  scene.discretisation.recipe = recipe;
+  scene.discretisation.method = method;
   scene.shapes = {strip(length, segments_across)};
   add_grain(scene, "strip", BodyKind::compliant, {0, 0});
   return describe_bending(build_model(scene));
@@ -138,7 +141,7 @@ TEST(ThinParts, of_a_scene_are_told) {
             std::string::npos)
       << text;
   EXPECT_NE(bending_of(6, 1).find("'strip' is 1 segment across"), std::string::npos);
-  EXPECT_NE(bending_of(6, 2, Recipe::t3).find("too little"), std::string::npos);
+  EXPECT_NE(bending_of(6, 2, DiscretisationMethod::t3).find("too little"), std::string::npos);
   EXPECT_EQ(bending_of(6, 4), "");
   EXPECT_EQ(bending_of(1.5, 2), "") << "no limb";
 }

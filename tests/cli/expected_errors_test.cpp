@@ -15,7 +15,7 @@ namespace {
 // EXACT: what was measured where it was, a power of the number of nodes between, the nearest beyond.
 TEST(ExpectedErrors, go_by_powers_between_sizes) {
   for (const MeasuredErrors& known : measured_errors) {
-    const auto at = [&](int nodes) { return expected_errors(known.recipe, known.mass, nodes)->oscillation; };
+    const auto at = [&](int nodes) { return expected_errors(known.method, known.mass, nodes)->oscillation; };
     for (std::size_t i = 0; i < std::size(measured_nodes); ++i)
       EXPECT_NEAR(at(measured_nodes[i]), known.oscillation[i], 1e-12 * known.oscillation[i]);
     const double power =
@@ -26,10 +26,11 @@ TEST(ExpectedErrors, go_by_powers_between_sizes) {
   }
 }
 
-TEST(ExpectedErrors, are_known_of_all_recipes_but_the_one_for_comparison) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3})
-    for (const Mass mass : {Mass::lumped, Mass::corrected}) EXPECT_TRUE(expected_errors(recipe, mass, 168));
-  EXPECT_FALSE(expected_errors(Recipe::rpim, Mass::lumped, 168));
+TEST(ExpectedErrors, are_known_of_all_methods_but_the_one_for_comparison) {
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3})
+    for (const Mass mass : {Mass::lumped, Mass::corrected}) EXPECT_TRUE(expected_errors(method, mass, 168));
+  EXPECT_FALSE(expected_errors(DiscretisationMethod::rpim, Mass::lumped, 168));
 }
 
 TEST(ExpectedErrors, of_a_scene_are_those_of_its_coarsest_grains) {

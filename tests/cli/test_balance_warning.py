@@ -11,7 +11,7 @@ end = 6
 {time}
 
 [discretisation]
-recipe = "es-t3"
+method = "es-t3"
 
 [materials.soft]
 law = "neo-hookean"

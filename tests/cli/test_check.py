@@ -171,20 +171,20 @@ def test_facets_and_restitution_are_stated_where_there_are_some(desk) -> None:
 
 def test_short_edges_are_told(desk) -> None:
     """By `check` and `run`; points nearer than 1e-6 of the extent are one."""
-    def text(edge: float | None, recipe: str = "mls") -> str:
+    def text(edge: float | None, method: str = "mls") -> str:
         corner = "" if edge is None else f", [1e-6, {edge * 1e-6:.12f}]"
         square = f'kind = "polygon"\npoints = [[0, 0], [1e-6, 0]{corner}, [1e-6, 1e-6], [0, 1e-6]]\nspacing = "0.1 um"\n'
         scene = TWO_DISCS.replace('kind = "disc"\ndiameter = "1 um"\nnodes = 60\n', square)
-        return f'{scene}[discretisation]\nrecipe = "{recipe}"\n'
+        return f'{scene}[discretisation]\nmethod = "{method}"\n'
 
     steps = {}
-    for edge, recipe, is_told in ((None, "mls", False), (2e-3, "mls", True), (5e-7, "mls", False), (2e-3, "es-t3", True)):
-        told = checked(desk, text(edge, recipe)).get("mind", "")
+    for edge, method, is_told in ((None, "mls", False), (2e-3, "mls", True), (5e-7, "mls", False), (2e-3, "es-t3", True)):
+        told = checked(desk, text(edge, method)).get("mind", "")
         result = desk.run("--out", "out", "--force", "--until", "0.2 ns")
         assert result.returncode == 0, result.stderr
         for said in told, result.stderr:
             assert ("'disc' has an edge of 2e-09 m" in said) == is_told, said
-        steps[edge, recipe] = desk.summary("out")["state_hash"]
+        steps[edge, method] = desk.summary("out")["state_hash"]
     assert steps[5e-7, "mls"] == steps[None, "mls"], "the point is left out"
 
 

@@ -13,9 +13,9 @@ THREADS = [1, 2, 3, 4, 8]
 HARD = ROOT / "verify/hard_cases"
 
 
-def hard(name: str, recipe: str, end: str) -> str:
+def hard(name: str, method: str, end: str) -> str:
     """Of verify/hard_cases, up to an end."""
-    text = (HARD / f"{name}.toml").read_text().replace("@recipe@", recipe)
+    text = (HARD / f"{name}.toml").read_text().replace("@method@", method)
     before = next(line for line in text.splitlines() if line.startswith("end = "))
     return text.replace(before, f"end = {end}")
 

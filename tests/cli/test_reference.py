@@ -239,7 +239,7 @@ def test_bad_options(desk, arguments: list[str], message: str) -> None:
 
 @pytest.mark.parametrize("old, new, message", [
     ('law = "frictionless"', 'law = "frictionless"\nrestitution = 0.5', "restitution"),
-    ("[frames]", '[discretisation]\nrecipe = "rpim"\n\n[frames]', "rpim"),
+    ("[frames]", '[discretisation]\nmethod = "rpim"\n\n[frames]', "rpim"),
     ("[frames]", '[contact]\nlength = "current"\n\n[frames]', 'length = "current" of contacts at nodes'),
     ("[frames]", "[contact]\nself_contact = true\n\n[frames]", "self_contact")])
 def test_what_it_has_not_is_refused(desk, old: str, new: str, message: str) -> None:

@@ -13,16 +13,16 @@ ENGINE = Path(os.environ["PLIANT_ENGINE"])
 def test_only_rpim_jumps() -> None:
     """RATE: on a grid three times finer the largest step from point to point of a continuous function falls to a third."""
     ratio = {}
-    for recipe in ("mls", "rpim"):
-        coarse, fine = (largest_jump(evaluate(ENGINE, recipe, 100, 9, grid)) for grid in (101, 301))
-        ratio[recipe] = fine / coarse
+    for method in ("mls", "rpim"):
+        coarse, fine = (largest_jump(evaluate(ENGINE, method, 100, 9, grid)) for grid in (101, 301))
+        ratio[method] = fine / coarse
     assert abs(ratio["mls"] - 1 / 3) < 0.05
     assert ratio["rpim"] > 0.6
 
 
 def test_values() -> None:
     """EXACT: radial point interpolation is 1 at its own node, but for the grid, and falls below zero; moving least squares do not interpolate."""
-    rpim, mls = (evaluate(ENGINE, recipe, 100, 9, 301) for recipe in ("rpim", "mls"))
+    rpim, mls = (evaluate(ENGINE, method, 100, 9, 301) for method in ("rpim", "mls"))
     assert abs(rpim.phi.max() - 1) < 0.02 and rpim.phi.min() < -0.01
     assert mls.phi.max() < 0.8 and mls.phi.min() > -0.03
 

@@ -107,7 +107,7 @@ def test_what_may_change(desk, change) -> None:
 REFUSED = {
     "period": ("period = 6", "period = 6.5", "domain.period"),
     "nodes": ("nodes = 40", "nodes = 60", "shapes.disc.nodes"),
-    "recipe": ("[materials.soft]", '[discretisation]\nrecipe = "t3"\n[materials.soft]', "discretisation"),
+    "method": ("[materials.soft]", '[discretisation]\nmethod = "t3"\n[materials.soft]', "discretisation"),
     "law of a material": ('"neo-hookean"', '"melody"', "materials.soft.law"),
     "seed": ("seed = 3", "seed = 4", "grains 1.seed"),
     "rows": ("rows = 3", "rows = 2", "grains 1.packing.rows"),

@@ -91,7 +91,7 @@ TEST(ClosePhase, MissesNothingOnRandomOutlines) {
   EXPECT_GT(near, 1500);
 }
 
-// EXACT: the same across the period and against walls with caps, seen from bodies several periods away.
+// EXACT: the same across the period and against walls with asperities, seen from bodies several periods away.
 TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
   for (int sample = 0; sample < 60; ++sample) {
     SCOPED_TRACE(sample);
@@ -104,7 +104,7 @@ TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
     add_body(scene, outline_shape("outline", random_outline(random, random.below(4))), BodyKind::rigid,
              {x + 2 - 10, 1.5}, 2);
     scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.2), flat_wall("lid", Wall::Solid::above, 2.3, 0.2)};
-    scene.walls[0].caps = Caps{0.8, 5, 0.3, {0}, {random.uniform(0.4, 1.2)}};
+    scene.walls[0].asperities = Asperities{0.8, 5, 0.3, {0}, {random.uniform(0.4, 1.2)}};
     const ContactRig rig(scene);
     const double margin = random.uniform(0.05, 0.2);
     EXPECT_EQ(missed(Pair(rig, {0, 1, 2}, margin), 0), 0);

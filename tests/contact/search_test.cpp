@@ -77,7 +77,7 @@ TEST(ContactSearch, EqualsBruteForceOnRandomOutlines) {
 }
 
 // A heap: five rigid and three compliant bodies in a narrow period between two walls, squeezed towards each other.
-Scene heap(Random& random, const ContactRule& rule, bool caps) {
+Scene heap(Random& random, const ContactRule& rule, bool asperities) {
   Scene scene = nodal_scene();
   scene.period = 4;
   scene.contacts = {rule};
@@ -88,13 +88,13 @@ Scene heap(Random& random, const ContactRule& rule, bool caps) {
     add_body(scene, polygonal_disc("disc", 2, 30, compliant ? std::optional<int>(60) : std::nullopt),
              compliant ? BodyKind::compliant : BodyKind::rigid, centre + beside, random.uniform(0, 6));
   }
-  scene.walls = {flat_wall("floor", Wall::Solid::below, caps ? -0.46 : 0.0, 0.15),
+  scene.walls = {flat_wall("floor", Wall::Solid::below, asperities ? -0.46 : 0.0, 0.15),
                  flat_wall("lid", Wall::Solid::above, 7.83, 0.15)};
-  if (caps) scene.walls[0].caps = Caps{0.9, 4, 0.2, {0, 0.05}, {0.8, 0.5}};
+  if (asperities) scene.walls[0].asperities = Asperities{0.9, 4, 0.2, {0, 0.05}, {0.8, 0.5}};
   return scene;
 }
 
-// INDEPENDENT: walls with and without caps, discs across the period and several periods away, both kinds of body.
+// INDEPENDENT: walls with and without asperities, discs across the period and several periods away, both kinds of body.
 TEST(ContactSearch, EqualsBruteForceInAPeriodicHeap) {
   for (int sample = 0; sample < 12; ++sample) {
     SCOPED_TRACE(sample);

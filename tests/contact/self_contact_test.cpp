@@ -208,7 +208,7 @@ class Jaws {
   static Scene clamp_of_elements(ContactQuadrature quadrature) {
     Scene scene = clamp(true, 0.3);
     scene.contact.quadrature = quadrature;
-    scene.discretisation.recipe = Recipe::es_t3;
+    scene.discretisation.method = DiscretisationMethod::es_t3;
     return scene;
   }
   /// Where the clamp's own x = 0 has come to: outlines stand about their centre of area.

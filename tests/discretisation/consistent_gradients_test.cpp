@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 
 #include "../geometry/shapes.hpp"
+#include "discretisation/methods.hpp"
 #include "discretisation/mls.hpp"
-#include "discretisation/recipes.hpp"
 
 namespace pliant {
 namespace {
@@ -83,7 +83,7 @@ TEST(ConsistentGradients, ChangeIsTheLeast) {
   EXPECT_GT(largest, 1e-4);
 }
 
-// EXACT: the residual that the recipe reports sees a gradient moved by 1e-6.
+// EXACT: the residual that the method reports sees a gradient moved by 1e-6.
 TEST(ConsistentGradients, ResidualSeesAChange) {
   const FieldMesh mesh = mesh_in_node_distances(testing::disc(84));
   const MlsNodes nodes = make_mls_nodes(mesh.nodes, 9);

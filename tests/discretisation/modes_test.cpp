@@ -77,17 +77,17 @@ void expect_errors(int nodes, const DiscretisationSettings& settings, double ova
 // as many nodes: the oval's within a fifth, the rms not a tenth above. A rim mode that moves hardly any material, as a
 // mesh too coarse behind its outline has, would be among the ten and raise the rms to 20 %.
 TEST(DiscModes, ErrorsAreThoseOfThePrototype) {
-  expect_errors(168, {.recipe = Recipe::mls, .support = 9}, 1.6e-2, 4.9e-2);
-  expect_errors(168, {.recipe = Recipe::mls_gauss, .support = 9, .gauss_points = 3}, 1.6e-2, 5.7e-2);
-  expect_errors(700, {.recipe = Recipe::mls, .support = 9}, 0.36e-2, 1.1e-2);
+  expect_errors(168, {.method = DiscretisationMethod::mls, .support = 9}, 1.6e-2, 4.9e-2);
+  expect_errors(168, {.method = DiscretisationMethod::mls_gauss, .support = 9, .gauss_points = 3}, 1.6e-2, 5.7e-2);
+  expect_errors(700, {.method = DiscretisationMethod::mls, .support = 9}, 0.36e-2, 1.1e-2);
 }
 
 // INDEPENDENT: linear triangles with row-sum mass in the prototype of docs/method.md 2: oval 0.3 %, rms 1.1 %; too
 // stiff and too heavy cancel. EXACT: smoothed over edges the stiffness is nearly right and what lumping does is seen:
 // frequencies too low, yet less so than with moving least squares (rms 4.1 %), whose functions are wider.
 TEST(DiscModes, Triangles) {
-  const ModeErrors plain = mode_errors(168, {.recipe = Recipe::t3}),
-                   smoothed = mode_errors(168, {.recipe = Recipe::es_t3});
+  const ModeErrors plain = mode_errors(168, {.method = DiscretisationMethod::t3}),
+                   smoothed = mode_errors(168, {.method = DiscretisationMethod::es_t3});
   EXPECT_LT(std::abs(plain.oval), 0.3e-2);
   EXPECT_LT(plain.rms, 1.1 * 1.1e-2) << fmt::format("rms {:.4f}", plain.rms);
   EXPECT_LT(smoothed.oval, 0);
@@ -102,18 +102,19 @@ TEST(DiscModes, CorrectedMass) {
     settings.mass = Mass::corrected;
     return mode_errors(nodes, settings).rms;
   };
-  EXPECT_LT(rms(168, {.recipe = Recipe::mls, .support = 9}), 1.2 * 0.8e-2);
-  EXPECT_LT(rms(168, {.recipe = Recipe::mls, .support = 8}), 1.2 * 0.8e-2);
-  EXPECT_LT(rms(168, {.recipe = Recipe::mls_gauss, .support = 9, .gauss_points = 3}), 1.2 * 0.9e-2);
-  EXPECT_LT(rms(168, {.recipe = Recipe::es_t3}), 1.2 * 0.10e-2);
-  EXPECT_LT(rms(700, {.recipe = Recipe::mls, .support = 9}), 1.2 * 0.06e-2);
+  EXPECT_LT(rms(168, {.method = DiscretisationMethod::mls, .support = 9}), 1.2 * 0.8e-2);
+  EXPECT_LT(rms(168, {.method = DiscretisationMethod::mls, .support = 8}), 1.2 * 0.8e-2);
+  EXPECT_LT(rms(168, {.method = DiscretisationMethod::mls_gauss, .support = 9, .gauss_points = 3}), 1.2 * 0.9e-2);
+  EXPECT_LT(rms(168, {.method = DiscretisationMethod::es_t3}), 1.2 * 0.10e-2);
+  EXPECT_LT(rms(700, {.method = DiscretisationMethod::mls, .support = 9}), 1.2 * 0.06e-2);
 }
 
 // EXACT: C is symmetric under D, keeps constants, and its eigenvalues lie in [1, bound], bound <= 2.
 TEST(MassCorrection, IsSymmetricKeepsMomentumAndIsBounded) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3}) {
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
     const Discretisation d =
-        discretise(make_field_mesh(testing::disc(84, 2)), {.recipe = recipe, .mass = Mass::corrected});
+        discretise(make_field_mesh(testing::disc(84, 2)), {.method = method, .mass = Mass::corrected});
     const auto n = static_cast<Eigen::Index>(d.mesh.nodes.size());
     MatrixXd c = MatrixXd::Zero(n, n);
     for (int i = 0; i < n; ++i)
@@ -144,7 +145,7 @@ std::array<double, 2> fork_modes(int nodes, double gap, const DiscretisationSett
   return {std::sqrt(modes.eigenvalues()[3]), std::sqrt(modes.eigenvalues()[4])};
 }
 
-// INDEPENDENT: linear triangles know nothing of supports. Gaps of 1, 1.5 and 2 node distances of 0.47. A recipe's own
+// INDEPENDENT: linear triangles know nothing of supports. Gaps of 1, 1.5 and 2 node distances of 0.47. A method's own
 // error is that with a gap of 4 node distances, which no support spans, for prongs that are thinner by a third there:
 // 1.1 times that holds it, and twice that of `rpim`, which is not compatible and scatters from mesh to mesh. Triangles
 // of half the node distance add a third of what halving it changes, at most 1 %. Supports across the gap give up to 7
@@ -152,17 +153,18 @@ std::array<double, 2> fork_modes(int nodes, double gap, const DiscretisationSett
 TEST(ForkModes, GapsOfANodeDistanceAreGaps) {
   std::array<std::array<double, 2>, 3> error{};
   for (const double gap : {1.88, 0.47, 0.7, 0.94}) {
-    const std::array<double, 2> triangles = fork_modes(720, gap, {.recipe = Recipe::es_t3});
-    for (std::size_t recipe = 0; recipe < 3; ++recipe) {
-      const Recipe which = std::array{Recipe::mls, Recipe::mls_gauss, Recipe::rpim}[recipe];
-      const std::array<double, 2> own = fork_modes(180, gap, {.recipe = which});
+    const std::array<double, 2> triangles = fork_modes(720, gap, {.method = DiscretisationMethod::es_t3});
+    for (std::size_t method = 0; method < 3; ++method) {
+      const DiscretisationMethod which =
+          std::array{DiscretisationMethod::mls, DiscretisationMethod::mls_gauss, DiscretisationMethod::rpim}[method];
+      const std::array<double, 2> own = fork_modes(180, gap, {.method = which});
       for (std::size_t mode = 0; mode < 2; ++mode) {
         const double found = std::abs(own[mode] / triangles[mode] - 1);
         if (gap == 1.88)
-          EXPECT_LT(error[recipe][mode] = found, 0.05);
+          EXPECT_LT(error[method][mode] = found, 0.05);
         else
-          EXPECT_LT(found, (which == Recipe::rpim ? 2 : 1.1) * error[recipe][mode] + 0.01)
-              << "gap " << gap << ", " << recipe << ", mode " << mode;
+          EXPECT_LT(found, (which == DiscretisationMethod::rpim ? 2 : 1.1) * error[method][mode] + 0.01)
+              << "gap " << gap << ", " << method << ", mode " << mode;
       }
     }
   }

@@ -15,8 +15,8 @@ using testing::disc;
 using testing::error_of;
 using testing::outline_of;
 
-DiscretisationSettings settings(Recipe recipe, int support = 9, int gauss_points = 3) {
-  return {.recipe = recipe, .support = support, .gauss_points = gauss_points};
+DiscretisationSettings settings(DiscretisationMethod method, int support = 9, int gauss_points = 3) {
+  return {.method = method, .support = support, .gauss_points = gauss_points};
 }
 
 double length_of(const Discretisation& d) {
@@ -62,7 +62,7 @@ TEST(TableMls, SatisfiesBothConditions) {
   for (const ShapeSpec& shape : all_shapes())
     for (const int support : {7, 8, 9, 10, 12, 14}) {
       SCOPED_TRACE(shape.name + ", support " + std::to_string(support));
-      const Discretisation d = discretise(make_field_mesh(shape), settings(Recipe::mls, support));
+      const Discretisation d = discretise(make_field_mesh(shape), settings(DiscretisationMethod::mls, support));
       expect_complete(d);
       EXPECT_LT(balance_defect(d), 1e-12);
       EXPECT_LT(d.completeness_residual, 1e-12);
@@ -73,13 +73,14 @@ TEST(TableMls, SatisfiesBothConditions) {
 // EXACT: finite elements satisfy both conditions as they are.
 TEST(TableTriangles, SatisfyBothConditions) {
   for (const ShapeSpec& shape : all_shapes())
-    for (const Recipe recipe : {Recipe::t3, Recipe::es_t3}) {
-      const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
+    for (const DiscretisationMethod method : {DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
+      const Discretisation d = discretise(make_field_mesh(shape), settings(method));
       expect_complete(d);
       EXPECT_LT(balance_defect(d), 1e-12);
       // Euler: a triangulated disc has nodes + triangles - 1 edges.
-      EXPECT_EQ(d.table.weight.size(),
-                recipe == Recipe::t3 ? d.mesh.triangles.size() : d.mesh.nodes.size() + d.mesh.triangles.size() - 1);
+      EXPECT_EQ(d.table.weight.size(), method == DiscretisationMethod::t3
+                                           ? d.mesh.triangles.size()
+                                           : d.mesh.nodes.size() + d.mesh.triangles.size() - 1);
       EXPECT_EQ(d.node_rows.node.size(), d.mesh.nodes.size());
       EXPECT_GE(d.min_shape_value, 0);
     }
@@ -87,7 +88,7 @@ TEST(TableTriangles, SatisfyBothConditions) {
 
 // EXACT: an edge's point stands for the triangles beside it, so every triangle has a share in three.
 TEST(TableTriangles, EdgesStandForTheirTriangles) {
-  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(Recipe::es_t3));
+  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(DiscretisationMethod::es_t3));
   std::vector<double> shares(d.mesh.triangles.size(), 0);
   for (const auto& [a, b] : d.table.cells) {
     shares[a] += 0.5;
@@ -102,7 +103,7 @@ TEST(TableTriangles, EdgesStandForTheirTriangles) {
 
 // EXACT: radial point interpolation is complete and interpolates.
 TEST(TableRpim, IsCompleteAndInterpolates) {
-  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(Recipe::rpim, 9, 3));
+  const Discretisation d = discretise(make_field_mesh(disc(84)), settings(DiscretisationMethod::rpim, 9, 3));
   expect_complete(d);
   EXPECT_EQ(d.node_rows.node.size(), d.mesh.nodes.size());
   for (std::size_t k = 0; k < d.mesh.nodes.size(); ++k) {
@@ -114,7 +115,8 @@ TEST(TableRpim, IsCompleteAndInterpolates) {
 // EXACT for completeness. Gauss points fail condition (2), which shows that the check above can fail.
 TEST(TableMlsGauss, IsCompleteButNotBalanced) {
   for (const int points : {1, 3, 6}) {
-    const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls_gauss, 9, points));
+    const Discretisation d =
+        discretise(make_field_mesh(disc(168)), settings(DiscretisationMethod::mls_gauss, 9, points));
     expect_complete(d);
     EXPECT_GT(balance_defect(d), 1e-4);
     EXPECT_EQ(d.table.weight.size(), points * d.mesh.triangles.size());
@@ -125,8 +127,10 @@ TEST(TableMlsGauss, IsCompleteButNotBalanced) {
 // integral of x - sum phi X = 0: linear reproduction makes it exact.
 TEST(Table, AreaAndMasses) {
   for (const ShapeSpec& shape : all_shapes())
-    for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3, Recipe::rpim}) {
-      const Discretisation d = discretise(make_field_mesh(shape), settings(recipe));
+    for (const DiscretisationMethod method :
+         {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss, DiscretisationMethod::t3,
+          DiscretisationMethod::es_t3, DiscretisationMethod::rpim}) {
+      const Discretisation d = discretise(make_field_mesh(shape), settings(method));
       const double area = polygon_properties(outline_of(d.mesh)).area;
       EXPECT_NEAR(std::accumulate(d.table.weight.begin(), d.table.weight.end(), 0.0) / area, 1, 1e-13);
       EXPECT_NEAR(std::accumulate(d.mass_at_unit_density.begin(), d.mass_at_unit_density.end(), 0.0) / area, 1, 1e-13);
@@ -140,7 +144,7 @@ TEST(Table, AreaAndMasses) {
 
 // EXACT: rows of values sum to one and reproduce the places they belong to.
 TEST(Table, RowsReproducePlaces) {
-  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
+  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(DiscretisationMethod::mls));
   for (const ShapeRows* rows : {&d.outline_rows, &d.node_rows})
     for (std::size_t k = 0; k + 1 < rows->start.size(); ++k) {
       Vec2 place(0, 0);
@@ -153,14 +157,14 @@ TEST(Table, RowsReproducePlaces) {
 
 // INDEPENDENT: the prototype of docs/method.md 2 met -0.03; ours must be negative and of that size.
 TEST(Table, LeastShapeValueIsReported) {
-  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(Recipe::mls));
+  const Discretisation d = discretise(make_field_mesh(disc(168)), settings(DiscretisationMethod::mls));
   EXPECT_LT(d.min_shape_value, 0);
   EXPECT_GT(d.min_shape_value, -0.1);
 }
 
 // EXACT: brute force.
 TEST(Table, NodalDistances) {
-  const Discretisation d = discretise(make_field_mesh(disc(50)), settings(Recipe::mls));
+  const Discretisation d = discretise(make_field_mesh(disc(50)), settings(DiscretisationMethod::mls));
   for (std::size_t i = 0; i < d.mesh.nodes.size(); ++i) {
     double least = 1;
     for (std::size_t j = 0; j < d.mesh.nodes.size(); ++j)
@@ -172,9 +176,9 @@ TEST(Table, NodalDistances) {
 // EXACT: a shape 1e9 times larger has the same table but for its unit, to the rounding of the solve.
 TEST(Table, DoesNotDependOnUnits) {
   FieldMesh mesh = make_field_mesh(disc(168, 1e-6));
-  const Discretisation small = discretise(mesh, settings(Recipe::mls));
+  const Discretisation small = discretise(mesh, settings(DiscretisationMethod::mls));
   for (Vec2& x : mesh.nodes) x *= 1e9;
-  const Discretisation large = discretise(mesh, settings(Recipe::mls));
+  const Discretisation large = discretise(mesh, settings(DiscretisationMethod::mls));
   ASSERT_EQ(small.table.node, large.table.node);
   for (std::size_t e = 0; e < small.table.gradient.size(); ++e)
     EXPECT_LT((small.table.gradient[e] - 1e9 * large.table.gradient[e]).norm() * length_of(small), 1e-11);
@@ -184,12 +188,15 @@ TEST(Table, DoesNotDependOnUnits) {
 TEST(Table, RefusesSupportsBeyondTheLimits) {
   const FieldMesh mesh = make_field_mesh(disc(168));
   const auto message = [&](const DiscretisationSettings& s) { return error_of([&] { discretise(mesh, s); }); };
-  EXPECT_NE(message(settings(Recipe::mls, 15)).find("allowed for this recipe: 7 to 14"), std::string::npos);
-  EXPECT_NE(message(settings(Recipe::mls, 3)).find("allowed for this recipe"), std::string::npos);
-  EXPECT_NE(message(settings(Recipe::mls_gauss, 26)).find("7 to 25"), std::string::npos);
-  EXPECT_EQ(message(settings(Recipe::mls_gauss, 15)), "");
-  EXPECT_NE(message(settings(Recipe::mls_gauss, 9, 4)).find("1, 3 or 6"), std::string::npos);
-  EXPECT_NE(error_of([] { discretise(make_rigid_mesh(disc(9)), settings(Recipe::mls, 14)); }).find("the shape has 11"),
+  EXPECT_NE(message(settings(DiscretisationMethod::mls, 15)).find("allowed for this method: 7 to 14"),
+            std::string::npos);
+  EXPECT_NE(message(settings(DiscretisationMethod::mls, 3)).find("allowed for this method"), std::string::npos);
+  EXPECT_NE(message(settings(DiscretisationMethod::mls_gauss, 26)).find("7 to 25"), std::string::npos);
+  EXPECT_EQ(message(settings(DiscretisationMethod::mls_gauss, 15)), "");
+  EXPECT_NE(message(settings(DiscretisationMethod::mls_gauss, 9, 4)).find("1, 3 or 6"), std::string::npos);
+  EXPECT_NE(error_of([] {
+              discretise(make_rigid_mesh(disc(9)), settings(DiscretisationMethod::mls, 14));
+            }).find("the shape has 11"),
             std::string::npos);
 }
 

@@ -136,7 +136,7 @@ TEST_P(ContactBound, covers_contacts_of_every_kind_of_body) {
     }
 }
 
-/// Direction of the lightest node on the outline of the scene's first shape, for recipes that interpolate.
+/// Direction of the lightest node on the outline of the scene's first shape, for methods that interpolate.
 double lightest_direction(const Scene& scene) {
   const Model model = build_model(scene);
   const CompliantShape& shape = model.shape_of(model.bodies[0]);
@@ -157,7 +157,7 @@ TEST(TimeStepBound, covers_light_nodes_face_to_face) {
        {std::pair(frictionless(3000), Mass::lumped), std::pair(mohr_coulomb(3000, 100), Mass::lumped),
         std::pair(frictionless(3000), Mass::corrected), std::pair(mohr_coulomb(3000, 100), Mass::corrected)}) {
     Scene scene = free_disc(40, 1);
-    scene.discretisation.recipe = Recipe::es_t3;
+    scene.discretisation.method = DiscretisationMethod::es_t3;
     scene.discretisation.mass = mass;
     scene.grains.push_back(grains("other", "disc", BodyKind::compliant, {{1.99, 0}}));
     scene.grains[0].angle = -lightest_direction(scene);
@@ -175,7 +175,7 @@ TEST(TimeStepBound, covers_light_nodes_face_to_face) {
 /// The corner of a rigid polygon, far coarser than a disc's outline, presses on it, `x` beside its topmost node.
 Scene corner_on_fine_outline(double x, int outline_nodes) {
   Scene scene = free_disc(150, 1);
-  scene.discretisation.recipe = Recipe::t3;
+  scene.discretisation.method = DiscretisationMethod::t3;
   scene.shapes[0].outline_nodes = outline_nodes;
   scene.shapes.push_back(polygonal_disc("polygon", 6, 12));
   scene.contacts = {frictionless(6000)};

@@ -52,13 +52,13 @@ Wall capped_wall(const std::string& name, Wall::Solid solid, double level) {
   wall.name = name;
   wall.solid = solid;
   wall.level = level;
-  wall.caps = Caps{0.9, 7, 0.3, {0.1, -0.1, 0.2}, {0.8, 1.2}};
+  wall.asperities = Asperities{0.9, 7, 0.3, {0.1, -0.1, 0.2}, {0.8, 1.2}};
   return wall;
 }
 
-/// A wall's solid over three periods, to a depth of 2, with points on caps ten times finer than the packing's.
+/// A wall's solid over three periods, to a depth of 2, with points on asperities ten times finer than the packing's.
 Points solid_of(const Wall& wall, double period) {
-  Points line = wall_outline(wall, period, wall.caps->diameter / 200), solid;
+  Points line = wall_outline(wall, period, wall.asperities->diameter / 200), solid;
   const bool below = wall.solid == Wall::Solid::below;
   if (below) std::reverse(line.begin(), line.end());
   for (const double turn : {-1.0, 0.0, 1.0})
@@ -76,9 +76,9 @@ int overlaps_with_walls(const Scene& scene, const std::vector<Points>& outlines,
   return count;
 }
 
-// EXACT: caps that stand in the region meet no grain, by a test that the packing does not use; without the walls they
-// would.
-TEST(RandomPacking, SeesTheCapsOfWalls) {
+// EXACT: asperities that stand in the region meet no grain, by a test that the packing does not use; without the walls
+// they would.
+TEST(RandomPacking, SeesTheAsperitiesOfWalls) {
   Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.6, 60);
   const std::vector<Wall> walls{capped_wall("lower", Wall::Solid::below, -3),
                                 capped_wall("upper", Wall::Solid::above, 5)};
@@ -89,13 +89,13 @@ TEST(RandomPacking, SeesTheCapsOfWalls) {
   EXPECT_EQ(overlapping_pairs(outlines, scene.period), 0);
 }
 
-// EXACT: grains come as near to caps as the clearance lets them: a lone grain between two walls a little further apart
-// than it.
-TEST(RandomPacking, FillsTheRoomBetweenCaps) {
+// EXACT: grains come as near to asperities as the clearance lets them: a lone grain between two walls a little further
+// apart than it.
+TEST(RandomPacking, FillsTheRoomBetweenAsperities) {
   Scene scene = packing_scene(PackingKind::random, {disc(80, 1)}, 0.5, 8);
   scene.grains[0].size = {};
   Wall wall = capped_wall("lower", Wall::Solid::below, 0);
-  wall.caps = Caps{1, 10, 0.5, {0}, {1.2}};
+  wall.asperities = Asperities{1, 10, 0.5, {0}, {1.2}};
   scene.walls = {wall};
   scene.grains[0].packing.bottom = -0.5;
   scene.grains[0].packing.top = 1.55;
@@ -110,13 +110,13 @@ TEST(RandomPacking, DoesNotSeeWallsOutside) {
   Scene scene = packing_scene(PackingKind::random, mixed_shapes(), 0.5, 20);
   const Packed alone = pack(scene);
   scene.walls = {capped_wall("lower", Wall::Solid::below, -3)};
-  scene.walls[0].caps.reset();
+  scene.walls[0].asperities.reset();
   const Packed beside = pack(scene);
   for (std::size_t i = 0; i < alone.grains.size(); ++i) EXPECT_EQ(alone.grains[i].centre, beside.grains[i].centre);
 }
 
 // EXACT: grains in cells do not know of walls, and are refused where they meet one.
-TEST(VoronoiPacking, IsRefusedWhereItMeetsCaps) {
+TEST(VoronoiPacking, IsRefusedWhereItMeetsAsperities) {
   Scene scene = packing_scene(PackingKind::fourier_voronoi, mixed_shapes(), 0.5, 40);
   scene.grains[0].where = "scene.toml:7:1";
   scene.walls = {capped_wall("lower", Wall::Solid::below, -3)};

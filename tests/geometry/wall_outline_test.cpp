@@ -21,7 +21,8 @@ Wall flat(Wall::Solid solid) {
 
 Wall capped(Wall::Solid solid) {
   Wall wall = flat(solid);
-  wall.caps = Caps{.diameter = 1, .count = 10, .first = 0.1, .heights = {0, 0.5}, .half_angles = {0.7, 1.0}};
+  wall.asperities =
+      Asperities{.diameter = 1, .count = 10, .first = 0.1, .heights = {0, 0.5}, .half_angles = {0.7, 1.0}};
   return wall;
 }
 
@@ -62,8 +63,8 @@ TEST(WallOutline, CappedWallsAreSingleValuedAndClose) {
     for (const double spacing : {0.06, 0.3, 2.0}) expect_valid(capped(solid), 15, spacing);
 }
 
-// EXACT: every point lies on a cap's circle within its half angle, or on the straight line between two arcs' ends.
-TEST(WallOutline, PointsLieOnCapsOrBetween) {
+// EXACT: every point lies on an asperity's circle within its half angle, or on the line between two arcs' ends.
+TEST(WallOutline, PointsLieOnAsperitiesOrBetween) {
   const double period = 15;
   for (const auto solid : {Wall::Solid::below, Wall::Solid::above}) {
     const Wall wall = capped(solid);
@@ -85,21 +86,21 @@ TEST(WallOutline, PointsLieOnCapsOrBetween) {
   }
 }
 
-// EXACT: the highest point of a cap of odd column is its height and radius above the level.
-TEST(WallOutline, CapsReachTowardsTheGrains) {
+// EXACT: the highest point of an asperity of odd column is its height and radius above the level.
+TEST(WallOutline, AsperitiesReachTowardsTheGrains) {
   Wall wall = capped(Wall::Solid::above);
-  wall.caps->half_angles = {0.7};
+  wall.asperities->half_angles = {0.7};
   const Points chain = wall_outline(wall, 15, 0.01);
   const double lowest =
       std::min_element(chain.begin(), chain.end(), [](auto& a, auto& b) { return a.y() < b.y(); })->y();
   EXPECT_NEAR(lowest, 0.25 - 0.5 - 0.5, 0.5 * 0.01 * 0.01);
 }
 
-TEST(WallOutline, RefusesOverlappingCaps) {
+TEST(WallOutline, RefusesOverlappingAsperities) {
   Wall wall = capped(Wall::Solid::below);
-  wall.caps->count = 25;
+  wall.asperities->count = 25;
   EXPECT_NE(error_of([&] { wall_outline(wall, 15, 0.06); }).find("beyond the start of the next"), std::string::npos);
-  wall.caps->half_angles = {1.6};
+  wall.asperities->half_angles = {1.6};
   EXPECT_NE(error_of([&] { wall_outline(wall, 15, 0.06); }).find("half angle"), std::string::npos);
 }
 

@@ -129,14 +129,6 @@ def test_a_named_program_must_be_there(launcher: Launcher) -> None:
         assert result.returncode == 2 and "no such program" in result.stderr and not launcher.log.exists()
 
 
-def test_schema_reads_the_scenes_of_docs_and_cases(launcher: Launcher) -> None:
-    for name in ["docs/keys/a.toml", "cases/b.toml"]:
-        (launcher.root / name).parent.mkdir(parents=True)
-        (launcher.root / name).touch()
-    files = [f"[{launcher.root}/{name}]" for name in ["docs/keys/a.toml", "cases/b.toml"]]
-    assert launcher("schema").stdout.startswith("[schema]" + "".join(files))
-
-
 @pytest.mark.parametrize("command", ["info", "compare", "view", "movie", "docs"])
 def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, command: str) -> None:
     (launcher.root / f"scripts/{command}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")

@@ -8,15 +8,15 @@
 /// Several bodies in contact with each other and with walls, for comparisons of the engine with the reference solver.
 namespace pliant::testing {
 
-/// Discs and a square in a row across the period, on a wall with caps or a flat one, two or three bodies overlapping
-/// each other.
-inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool caps) {
+/// Discs and a square in a row across the period, on a wall with asperities or a flat one, two or three bodies
+/// overlapping each other.
+inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool asperities) {
   Scene scene = nodal_scene();
   scene.contacts = rules;
   scene.materials.push_back({"softer", MaterialLaw::neo_hookean, 1, 0.7, 0.4});
   scene.period = 4.45;
   scene.skin = 1;  // so that no state asks for new candidates: the engine finds them at accepted states only
-  const double turn = random.uniform(0, 6), x = random.uniform(-20, 20), y = caps ? 0.99 : 0.79;
+  const double turn = random.uniform(0, 6), x = random.uniform(-20, 20), y = asperities ? 0.99 : 0.79;
   add_body(scene, polygonal_disc("disc", 1.6, 30, 60), BodyKind::compliant, {x, y}, turn);
   add_body(scene, outline_shape("square", rectangle(1.3, 1.3, 0.13)), BodyKind::rigid, {x + 1.46, y - 0.13},
            random.uniform(-0.01, 0.01));
@@ -24,9 +24,9 @@ inline Scene crowd(Random& random, const std::vector<ContactRule>& rules, bool c
   // In the gap above: overlaps the discs, one of them across the period.
   add_grain(scene, "shape0", BodyKind::compliant, {x - 0.775, y + 1.15}, 2 * turn, "softer");
   scene.grains.back().size.factors = {0.75};
-  scene.walls = {flat_wall("floor", Wall::Solid::below, caps ? -0.26 : 0.0, 0.15),
+  scene.walls = {flat_wall("floor", Wall::Solid::below, asperities ? -0.26 : 0.0, 0.15),
                  flat_wall("lid", Wall::Solid::above, y + 1.745, 0.11)};
-  if (caps) scene.walls[0].caps = Caps{0.9, 4, 0.2, {0, 0.02}, {0.8, 0.5}};
+  if (asperities) scene.walls[0].asperities = Asperities{0.9, 4, 0.2, {0, 0.02}, {0.8, 0.5}};
   return scene;
 }
 

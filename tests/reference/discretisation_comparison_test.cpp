@@ -124,7 +124,7 @@ void compare(const ShapeSpec& shape, DiscretisationSettings settings, LargestFig
 TEST(ReferenceAgainstEngine, discretisations_agree) {
   LargestFigures figures;
   for (const ShapeSpec& shape : reference_shapes())
-    for (const DiscretisationSettings& settings : reference_recipes()) compare(shape, settings, figures);
+    for (const DiscretisationSettings& settings : reference_methods()) compare(shape, settings, figures);
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hooke
 
 TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
   LargestFigures figures;
-  for (const DiscretisationSettings& settings : reference_recipes())
+  for (const DiscretisationSettings& settings : reference_methods())
     for (const MaterialLaw law : all_laws) {
       SCOPED_TRACE(name_of(settings) + ", law " + std::to_string(static_cast<int>(law)));
       figures.note("internal forces: " + name_of(settings), compare_forces(Both(some_grains(law, settings))));
@@ -146,7 +146,7 @@ TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
 }
 
 TEST(ReferenceAgainstEngine, nodewise_bodies_agree) {
-  const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(Recipe::mls), 3), BuildOptions{0, false, {}});
+  const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(DiscretisationMethod::mls), 3), BuildOptions{0, false, {}});
   ASSERT_TRUE(std::any_of(both.model.batches.begin(), both.model.batches.end(),
                           [](const Batch& batch) { return batch.layout == Layout::nodewise; }));
   compare_forces(both);
@@ -157,7 +157,7 @@ struct Remembering : Both {
   Memory memory = initial_memory(model);
 
   explicit Remembering(const BuildOptions& options = {})
-      : Both(some_grains(MaterialLaw::neo_hookean_maxwell, settings_of(Recipe::mls), 6), options) {
+      : Both(some_grains(MaterialLaw::neo_hookean_maxwell, settings_of(DiscretisationMethod::mls), 6), options) {
     forces(q, 0.5, memory);
   }
   struct Found {
@@ -256,7 +256,7 @@ TEST(ReferenceAgainstEngine, maxwell_tangent_is_the_derivative) {
 TEST(ReferenceAgainstEngine, stresses_agree) {
   LargestFigures figures;
   for (const MaterialLaw law : all_laws) {
-    const Both both(some_grains(law, settings_of(Recipe::mls)));
+    const Both both(some_grains(law, settings_of(DiscretisationMethod::mls)));
     for (std::size_t b = 0; b < both.model.bodies.size(); b += 7)
       figures.note("stresses: mls, support 8", compare_stresses(both, both.model.bodies[b]));
   }

@@ -111,8 +111,8 @@ struct Sample {
   double size, angle;
   Eigen::VectorXd rest, q, direction;
 
-  Sample(Recipe recipe, MaterialLaw law, std::uint64_t seed)
-      : space(make_space(make_field_mesh(disc(60, 1)), settings_of(recipe))), material(material_of(law)) {
+  Sample(DiscretisationMethod method, MaterialLaw law, std::uint64_t seed)
+      : space(make_space(make_field_mesh(disc(60, 1)), settings_of(method))), material(material_of(law)) {
     Random random(seed);
     size = random.uniform(0.5, 2), angle = random.uniform(0, 6);
     const Eigen::Rotation2Dd turned(angle);
@@ -126,12 +126,13 @@ struct Sample {
   InternalForces forces() const { return {space, material, size, angle}; }
 };
 
-const Recipe all_recipes[] = {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3};
+const DiscretisationMethod all_methods[] = {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3};
 
 TEST(ReferenceInternalForces, residual_and_tangent_are_the_limits_of_differences) {
-  for (const Recipe recipe : all_recipes)
+  for (const DiscretisationMethod method : all_methods)
     for (const MaterialLaw law : all_laws) {
-      Sample sample(recipe, law, 7);
+      Sample sample(method, law, 7);
       sample.material.viscosity = 0.3;
       const InternalForces forces = sample.forces();
       const InternalState state = forces.evaluate(sample.q, true);
@@ -156,9 +157,10 @@ TEST(ReferenceInternalForces, residual_and_tangent_are_the_limits_of_differences
 }
 
 TEST(ReferenceInternalForces, start_at_rest_and_do_not_see_rotations) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::t3, Recipe::es_t3})
+  for (const DiscretisationMethod method :
+       {DiscretisationMethod::mls, DiscretisationMethod::t3, DiscretisationMethod::es_t3})
     for (const MaterialLaw law : all_laws) {
-      const Sample sample(recipe, law, 8);
+      const Sample sample(method, law, 8);
       const InternalState state = sample.forces().evaluate(sample.rest, false);
       EXPECT_LT(state.residual.cwiseAbs().maxCoeff(), 1e-12) << "EXACT";
       EXPECT_NEAR(state.energy, 0, 1e-13) << "EXACT";
@@ -168,7 +170,7 @@ TEST(ReferenceInternalForces, start_at_rest_and_do_not_see_rotations) {
 
 TEST(ReferenceInternalForces, affine_states_have_the_stress_of_their_law) {
   for (const MaterialLaw law : all_laws) {
-    const Sample sample(Recipe::mls, law, 9);
+    const Sample sample(DiscretisationMethod::mls, law, 9);
     const InternalForces forces = sample.forces();
     const Deformation<double> G{1.1, 0.2, -0.05, 0.9};
     Eigen::Matrix2d matrix;
@@ -194,7 +196,7 @@ TEST(ReferenceInternalForces, affine_states_have_the_stress_of_their_law) {
 }
 
 TEST(ReferenceInternalForces, find_the_point_that_is_turned_over) {
-  Sample sample(Recipe::t3, MaterialLaw::neo_hookean, 10);
+  Sample sample(DiscretisationMethod::t3, MaterialLaw::neo_hookean, 10);
   Eigen::VectorXd q = sample.rest;
   q.head<2>() *= -1;  // node 0, of the outline, beyond the centre
   const InternalState state = sample.forces().evaluate(q, false);
@@ -204,7 +206,7 @@ TEST(ReferenceInternalForces, find_the_point_that_is_turned_over) {
 }
 
 TEST(ReferenceInternalForces, viscosity_resists_no_rotation_and_dissipates_what_the_law_says) {
-  Sample sample(Recipe::mls, MaterialLaw::neo_hookean, 11);
+  Sample sample(DiscretisationMethod::mls, MaterialLaw::neo_hookean, 11);
   sample.material.viscosity = 0.7;
   const InternalForces forces = sample.forces();
   Eigen::VectorXd spin = sample.q;

@@ -49,9 +49,10 @@ Scene one_disc(const DiscretisationSettings& settings) {
 }
 
 TEST(NaturalModesOfBoth, agree) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::mls_gauss, Recipe::t3, Recipe::es_t3})
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
+                                            DiscretisationMethod::t3, DiscretisationMethod::es_t3})
     for (const Mass mass : {Mass::lumped, Mass::corrected}) {
-      const Scene scene = one_disc({.recipe = recipe, .mass = mass});
+      const Scene scene = one_disc({.method = method, .mass = mass});
       const Model model = build_model(scene);
       const SmallMotions motions = small_motions(model, model.bodies[0]);
       const NaturalModes engine = natural_modes(motions);

@@ -2,7 +2,7 @@
 
 #include "geometry/shapes.hpp"
 
-/// Shapes and recipes on which the tests of the reference solver look at its discretisation.
+/// Shapes and methods on which the tests of the reference solver look at its discretisation.
 namespace pliant::testing {
 
 inline std::vector<ShapeSpec> reference_shapes() {
@@ -16,18 +16,22 @@ inline std::vector<ShapeSpec> reference_shapes() {
           curve("fourier", fourier_grain(1e-3, {0.15, 0.1, 0.05}, 3), 168)};
 }
 
-inline DiscretisationSettings settings_of(Recipe recipe, int gauss_points = 3, int support = 8) {
+inline DiscretisationSettings settings_of(DiscretisationMethod method, int gauss_points = 3, int support = 8) {
   DiscretisationSettings settings;
-  settings.recipe = recipe;
+  settings.method = method;
   settings.gauss_points = gauss_points;
   settings.support = support;
   return settings;
 }
 
-inline std::vector<DiscretisationSettings> reference_recipes() {
-  return {settings_of(Recipe::mls),          settings_of(Recipe::mls, 1, 10),       settings_of(Recipe::mls_gauss, 1),
-          settings_of(Recipe::mls_gauss, 3), settings_of(Recipe::mls_gauss, 6, 12), settings_of(Recipe::t3),
-          settings_of(Recipe::es_t3)};
+inline std::vector<DiscretisationSettings> reference_methods() {
+  return {settings_of(DiscretisationMethod::mls),
+          settings_of(DiscretisationMethod::mls, 1, 10),
+          settings_of(DiscretisationMethod::mls_gauss, 1),
+          settings_of(DiscretisationMethod::mls_gauss, 3),
+          settings_of(DiscretisationMethod::mls_gauss, 6, 12),
+          settings_of(DiscretisationMethod::t3),
+          settings_of(DiscretisationMethod::es_t3)};
 }
 
 inline double mean_node_distance(const FieldMesh& mesh) {
@@ -39,12 +43,12 @@ inline double mean_node_distance(const FieldMesh& mesh) {
 /// As in scene files, with what is not the default.
 inline std::string name_of(const DiscretisationSettings& settings) {
   const auto number = std::to_string(settings.gauss_points), support = std::to_string(settings.support);
-  switch (settings.recipe) {
-    case Recipe::mls:
+  switch (settings.method) {
+    case DiscretisationMethod::mls:
       return "mls, support " + support;
-    case Recipe::mls_gauss:
+    case DiscretisationMethod::mls_gauss:
       return "mls-gauss of " + number + " points, support " + support;
-    case Recipe::t3:
+    case DiscretisationMethod::t3:
       return "t3";
     default:
       return "es-t3";

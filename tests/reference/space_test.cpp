@@ -120,7 +120,7 @@ TEST(ReferenceSpace, gradients_of_mls_are_consistent) {
   for (const ShapeSpec& shape : reference_shapes()) {
     const FieldMesh mesh = make_field_mesh(shape);
     const double unit = mean_node_distance(mesh);
-    Space space = make_space(mesh, settings_of(Recipe::mls));
+    Space space = make_space(mesh, settings_of(DiscretisationMethod::mls));
     for (Point& point : space.points) {
       point.weight /= unit * unit;
       for (Vec2& b : point.gradient) b *= unit;
@@ -135,7 +135,7 @@ TEST(ReferenceSpace, gradients_of_mls_are_consistent) {
 TEST(ReferenceSpace, change_of_mls_is_the_least) {
   const FieldMesh mesh = in_node_distances(make_field_mesh(disc(60, 1)));
   const MovingLeastSquares mls(mesh.nodes, mesh.outline_count, 8);
-  const Space space = make_space(mesh, settings_of(Recipe::mls));
+  const Space space = make_space(mesh, settings_of(DiscretisationMethod::mls));
   std::vector<Point> other = space.points;
   Random random(4);
   for (Point& point : other)
@@ -158,7 +158,7 @@ TEST(ReferenceSpace, change_of_mls_is_the_least) {
 
 TEST(ReferenceSpace, weights_and_masses_sum_to_area_and_moments) {
   for (const ShapeSpec& shape : reference_shapes())
-    for (const DiscretisationSettings& settings : reference_recipes()) {
+    for (const DiscretisationSettings& settings : reference_methods()) {
       SCOPED_TRACE(described(shape, settings));
       const FieldMesh mesh = make_field_mesh(shape);
       const Space space = make_space(mesh, settings);
@@ -181,7 +181,7 @@ TEST(ReferenceSpace, weights_and_masses_sum_to_area_and_moments) {
 }
 
 TEST(ReferenceSpace, lists_nodes_in_growing_order) {
-  for (const DiscretisationSettings& settings : reference_recipes()) {
+  for (const DiscretisationSettings& settings : reference_methods()) {
     const Space space = make_space(make_field_mesh(disc(60)), settings);
     const auto grows = [](const std::vector<int>& nodes) {
       return std::adjacent_find(nodes.begin(), nodes.end(), std::greater_equal<>()) == nodes.end();
@@ -206,11 +206,11 @@ TEST(ReferenceSpace, quadrature_is_exact_to_its_degree) {
 
 TEST(ReferenceSpace, refuses_what_it_has_not) {
   const FieldMesh mesh = make_field_mesh(disc(60));
-  EXPECT_NE(error_of([&] { make_space(mesh, settings_of(Recipe::rpim)); }).find("no recipe \"rpim\""),
+  EXPECT_NE(error_of([&] { make_space(mesh, settings_of(DiscretisationMethod::rpim)); }).find("no method \"rpim\""),
             std::string::npos);
-  EXPECT_NE(error_of([&] { make_space(mesh, settings_of(Recipe::mls, 1, 60)); }).find("support = 60"),
+  EXPECT_NE(error_of([&] { make_space(mesh, settings_of(DiscretisationMethod::mls, 1, 60)); }).find("support = 60"),
             std::string::npos);
-  EXPECT_THROW(make_space(mesh, settings_of(Recipe::mls_gauss, 4)), InputError);
+  EXPECT_THROW(make_space(mesh, settings_of(DiscretisationMethod::mls_gauss, 4)), InputError);
 }
 
 }  // namespace

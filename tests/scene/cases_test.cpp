@@ -56,26 +56,27 @@ TEST(Cases, GrainsOfTheThirdBodyAreTakenInTurnAndHold400MPa) {
   }
 }
 
-TEST(Cases, CapsOfTheThirdBodyContinueTheLattice) {
-  // EXACT: caps lie one row under the first and over the last grain of their column. Tolerance: 1e-12 of the row pitch.
+TEST(Cases, AsperitiesOfTheThirdBodyContinueTheLattice) {
+  // EXACT: asperities lie one row under the first and over the last grain of their column, to 1e-12 of the pitch.
   for (const char* file : {"third_body.toml", "third_body_mini.toml"}) {
     const Scene scene = read_scene(cases / file);
     const Packing& packing = scene.grains[0].packing;
     ASSERT_EQ(scene.walls.size(), 2u);
     for (const Wall& wall : scene.walls) {
       const bool below = wall.solid == Wall::Solid::below;
-      const Caps& caps = *wall.caps;
-      ASSERT_EQ(caps.count, packing.columns);
-      EXPECT_EQ(caps.first, packing.origin.x());
-      EXPECT_EQ(caps.count % static_cast<int>(caps.heights.size()), 0) << "the cycle closes over the period";
+      const Asperities& asperities = *wall.asperities;
+      ASSERT_EQ(asperities.count, packing.columns);
+      EXPECT_EQ(asperities.first, packing.origin.x());
+      EXPECT_EQ(asperities.count % static_cast<int>(asperities.heights.size()), 0)
+          << "the cycle closes over the period";
       for (std::size_t column = 0; column < 2; ++column) {
         const double shift = column == 1 ? packing.row_pitch / 2 : 0;
         const double row = below ? -1 : packing.rows;
         const double expected = packing.origin.y() + shift + row * packing.row_pitch;
-        const double centre = wall.level + (below ? 1 : -1) * caps.heights[column];
+        const double centre = wall.level + (below ? 1 : -1) * asperities.heights[column];
         EXPECT_NEAR(centre, expected, 1e-12 * packing.row_pitch) << file << " " << wall.name << " " << column;
-        const double protrudes = caps.heights[column] > caps.heights[1 - column] ? 60 : 30;
-        EXPECT_NEAR(caps.half_angles[column], protrudes * std::numbers::pi / 180, 1e-15);
+        const double protrudes = asperities.heights[column] > asperities.heights[1 - column] ? 60 : 30;
+        EXPECT_NEAR(asperities.half_angles[column], protrudes * std::numbers::pi / 180, 1e-15);
       }
     }
   }

@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "scene/scene.hpp"
 
@@ -38,7 +41,7 @@ gravity = ["0 m/s2", -9.81]
 end = "2 us"
 tolerance = 1e-2
 [discretisation]
-recipe = "mls"
+method = "mls"
 support = 9
 [materials.soft]
 law = "neo-hookean"
@@ -75,7 +78,7 @@ name = "floor"
 material = "hard"
 solid = "below"
 level = "-1 um"
-caps = { diameter = "1 um", count = 10, first = "0.5 um", heights = ["0 um", "0.1 um"], half_angles = ["30 deg", 0.5] }
+asperities = { diameter = "1 um", count = 10, first = "0.5 um", heights = [0, "0.1 um"], half_angles = ["30 deg", 0.5] }
 [[walls]]
 name = "lid"
 material = "hard"
@@ -104,5 +107,16 @@ period = "10 ns"
 period = "0.1 us"
 fields = ["velocity", "von_mises"]
 )";
+
+/// The good scene with some texts replaced, each at its first place.
+inline std::string edited(const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::string text = good_scene;
+  for (const auto& [from, to] : changes) {
+    const auto at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("the good scene has no '" + from + "'");
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
 
 }  // namespace pliant::scene_tests

@@ -116,8 +116,6 @@ TEST(Names, NearestOnlyWhenItResembles) {
   EXPECT_EQ(nearest_name("xyzzy", {"young", "density", "law"}), "");
   EXPECT_EQ(nearest_name("", {"a"}), "");
   EXPECT_EQ(allowed_names("a", {}), "none is defined");
-  EXPECT_TRUE(is_scene_key("density"));
-  for (const char* word : {"densty", "", " ", "x y", "alpha angle"}) EXPECT_FALSE(is_scene_key(word)) << word;
 }
 
 TEST(PolygonRules, FindDefects) {

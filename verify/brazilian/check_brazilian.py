@@ -19,7 +19,7 @@ POISSON = 0.4
 END = 25.0  # s; motion decays by exp(-1.5 t) from the end of loading at 5 s on: by 1e-13
 # Outline nodes by nodes; the arcs are whole segments.
 SIZES = {378: 72, 672: 96, 1512: 144, 2688: 192} | ({6048: 288, 10752: 384} if FULL else {})
-RECIPES = ["mls", "t3", "es-t3", "mls-gauss"]
+METHODS = ["mls", "t3", "es-t3", "mls-gauss"]
 LOG_SPACINGS = np.log([1 / count for count in SIZES.values()])
 WIDTH = float(np.sqrt(((LOG_SPACINGS - LOG_SPACINGS.mean())**2).sum()))  # a slope scatters by errors' scatter over it
 # Of stresses inside, where nodes lie on a hexagonal lattice. Gradients averaged over neighbours: h^2 of the lattice and
@@ -30,7 +30,7 @@ SCATTER = np.sqrt(2 / 10) / 2 / WIDTH  # of a slope
 AVERAGED = ((2 + 2.5) / 2, (2.5 - 2) / 2 + SCATTER)
 # What fails the patch test adds its own error, in the middle of a disc of order 3/2: see verify/patch. The lattice: 2.
 INCONSISTENT = ((1.5 + 2) / 2, (2 - 1.5) / 2 + SCATTER)
-# Linear triangles: h, next to which h^2 of the lattice, that of the averaged recipes, is 8 % on the coarsest mesh.
+# Linear triangles: h, next to which h^2 of the lattice, that of the averaged methods, is 8 % on the coarsest mesh.
 LINEAR = (1, float(np.log(1.08) / (LOG_SPACINGS[0] - LOG_SPACINGS[-1])))
 ORDERS = {"mls": AVERAGED, "t3": LINEAR, "es-t3": AVERAGED, "mls-gauss": INCONSISTENT}
 # Of the whole disc: four ends of arcs, each of which a mesh makes wrong by half more or less, in square.
@@ -66,15 +66,15 @@ def hondros(r: np.ndarray) -> np.ndarray:
     return 2 * PRESSURE / np.pi * np.stack([first - second, -first - second], axis=1)
 
 
-def scene(recipe: str, nodes: int) -> str:
-    return CASE.scene(recipe=recipe, nodes=nodes, outline=SIZES[nodes], end=END)
+def scene(method: str, nodes: int) -> str:
+    return CASE.scene(method=method, nodes=nodes, outline=SIZES[nodes], end=END)
 
 
 @pytest.fixture(scope="module")
 def engine() -> dict[str, dict[int, Stresses]]:
-    return {recipe: {nodes: stresses_of(CASE.engine(f"engine_{recipe}_{nodes}",
-                                                    scene(recipe, nodes))) for nodes in SIZES}
-            for recipe in RECIPES}
+    return {method: {nodes: stresses_of(CASE.engine(f"engine_{method}_{nodes}",
+                                                    scene(method, nodes))) for nodes in SIZES}
+            for method in METHODS}
 
 
 def error(stresses: Stresses, reach: float) -> float:
@@ -107,42 +107,42 @@ def spacings_inside(engine: dict[str, dict[int, Stresses]]) -> list[float]:
     return [np.sqrt(mean_area(stresses)) for stresses in engine["t3"].values()]
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_stresses_converge_inside(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
-    errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
-    order, tolerance = ORDERS[recipe]
-    CASE.check_rate(f"{recipe}: stress within half the radius", spacings_inside(engine), errors, order, tolerance,
+@pytest.mark.parametrize("method", METHODS)
+def test_stresses_converge_inside(engine: dict[str, dict[int, Stresses]], method: str) -> None:
+    errors = [error(engine[method][nodes], 0.5) for nodes in SIZES]
+    order, tolerance = ORDERS[method]
+    CASE.check_rate(f"{method}: stress within half the radius", spacings_inside(engine), errors, order, tolerance,
                     "first order of linear triangles, with 8 % of second; averaged gradients: 2 of the lattice (what "
                     "fails the patch test: 3/2), 5/2 of the outline's band, scatter of ten waves")
-    whole = [error(engine[recipe][nodes], 2) for nodes in SIZES]
-    CASE.check_rate(f"{recipe}: stress in the whole disc", spacings(), whole, 1, ENDS,
+    whole = [error(engine[method][nodes], 2) for nodes in SIZES]
+    CASE.check_rate(f"{method}: stress in the whole disc", spacings(), whole, 1, ENDS,
                     "stresses wrong by O(1) in an area of h^2 where the arcs end; first order of linear triangles; "
                     "twice the scatter of four ends")
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_stress_at_the_centre(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_stress_at_the_centre(engine: dict[str, dict[int, Stresses]], method: str) -> None:
     """Mean over a tenth of the radius, in which the exact stress varies by its square."""
     nodes = list(SIZES)[-1]
-    stresses = engine[recipe][nodes]
+    stresses = engine[method][nodes]
     core = np.hypot(*stresses.centres.T) < 0.1
     mean = np.average(stresses.values[core], axis=0, weights=stresses.areas[core])
     expected = np.average(exact(stresses.centres[core]), axis=0, weights=stresses.areas[core])
     off = np.linalg.norm((mean - expected)[:2]) / np.linalg.norm(CENTRE)
     scatter = error(stresses, 0.5) / np.sqrt(core.sum())
-    CASE.check(Label.EXACT, f"{recipe}: stress at the centre, error", off, 0, (2 * np.pi / SIZES[nodes]) ** 2 + scatter,
+    CASE.check(Label.EXACT, f"{method}: stress at the centre, error", off, 0, (2 * np.pi / SIZES[nodes]) ** 2 + scatter,
                "Hondros, mean over a tenth of the radius; h^2 of the outline and the cells' scatter over the root of "
                "their number")
     ratio = stresses.across / (POISSON * stresses.values[:, :2].sum(axis=1))
-    CASE.check(Label.EXACT, f"{recipe}: zz over nu (xx + yy)", np.abs(ratio[core] - 1).max(), 0, 1e-6,
+    CASE.check(Label.EXACT, f"{method}: zz over nu (xx + yy)", np.abs(ratio[core] - 1).max(), 0, 1e-6,
                "plane strain; fields in single precision")
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_both_solvers(engine: dict[str, dict[int, Stresses]], recipe: str) -> None:
-    run = CASE.reference(f"reference_{recipe}", scene(recipe, 672), "--static", "--dt", repr(END))
-    energies = [float(r.probe("energy.strain")[-1]) for r in (Run(CASE.out / f"engine_{recipe}_672"), run)]
-    CASE.check(Label.INDEPENDENT, f"{recipe}: strain energy, engine over reference", energies[0] / energies[1], 1, 1e-8,
+@pytest.mark.parametrize("method", METHODS)
+def test_both_solvers(engine: dict[str, dict[int, Stresses]], method: str) -> None:
+    run = CASE.reference(f"reference_{method}", scene(method, 672), "--static", "--dt", repr(END))
+    energies = [float(r.probe("energy.strain")[-1]) for r in (Run(CASE.out / f"engine_{method}_672"), run)]
+    CASE.check(Label.INDEPENDENT, f"{method}: strain energy, engine over reference", energies[0] / energies[1], 1, 1e-8,
                "motion decays by 1e-13; displacements of 1e-6 are differences of places near 1, rounded to 1e-16: "
                "1e-10")
 
@@ -169,9 +169,9 @@ def test_picture(engine: dict[str, dict[int, Stresses]]) -> None:
     draw_diameter(axes[0], engine["mls"][2688])
     draw_map(figure, axes[1], engine["mls"][2688])
     inside = spacings_inside(engine)
-    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        errors = [error(engine[recipe][nodes], 0.5) for nodes in SIZES]
-        draw_rate(axes[2], inside, errors, recipe, colour, marker)
+    for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
+        errors = [error(engine[method][nodes], 0.5) for nodes in SIZES]
+        draw_rate(axes[2], inside, errors, method, colour, marker)
     for order, style in ((1, "--"), (2, ":")):
         axes[2].loglog(inside, 1e-3 * (np.array(inside) / inside[-1]) ** order, style, color=COLOURS[6],
                        linewidth=1.0,

@@ -44,7 +44,7 @@ def test_engine_and_reference_agree(agreement: dict, figures: dict[str, float]) 
         except AssertionError as error:  # all of them are written down
             red.append(str(error))
     assert not red, red[0]
-    CASE.check(Label.EXACT, "number of figures", len(figures), FIGURES, 0, "7 recipes x (5 tables + forces), distances, stresses, 12 sets of laws, 2 more shapes, own images; integrated: 5 laws of outlines, crowds and own images, a notch, short edges")
+    CASE.check(Label.EXACT, "number of figures", len(figures), FIGURES, 0, "7 methods x (5 tables + forces), distances, stresses, 12 sets of laws, 2 more shapes, own images; integrated: 5 laws of outlines, crowds and own images, a notch, short edges")
     CASE.check(Label.INDEPENDENT, "tests that failed", agreement["failures"], 0, 0, "what has no figure of its own: energies, numbers of contacts")
 
 

@@ -15,7 +15,7 @@ from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__, cost=3)
 
-RECIPES = ["mls", "mls-gauss", "es-t3"]
+METHODS = ["mls", "mls-gauss", "es-t3"]
 SAMPLES = 40  # of a run
 ENERGY, DEPTH, MOMENTUM = 0.01, 0.25, 1e-12
 
@@ -79,9 +79,9 @@ def with_quadrature(text: str, quadrature: str) -> str:
     return text.replace("\n[time]\n", f"\n[contact]\n{key}\n[time]\n", 1)
 
 
-def scene(hard: Hard, recipe: str) -> str:
+def scene(hard: Hard, method: str) -> str:
     """With what tells whether bounds are kept."""
-    text = CASE.scene(f"{hard.name}.toml", recipe=recipe, **({"end": hard.end} if hard.end else {}))
+    text = CASE.scene(f"{hard.name}.toml", method=method, **({"end": hard.end} if hard.end else {}))
     period = ends_at(text) / SAMPLES
     probes = "".join(f'\n[[probes]]\nname = "{quantity}"\nquantity = "{quantity}"\n{options}period = {period!r}\n'
                      for quantity, options in (("energy", ""), ("contact_gap", 'of = "all"\nreduce = "min"\n'),
@@ -90,9 +90,9 @@ def scene(hard: Hard, recipe: str) -> str:
 
 
 @cache
-def engine(name: str, recipe: str, quadrature: str = "auto") -> Run:
+def engine(name: str, method: str, quadrature: str = "auto") -> Run:
     hard = next(h for h in CASES if h.name == name)
-    return CASE.engine(f"{name}_{recipe}_{quadrature}", with_quadrature(scene(hard, recipe), quadrature))
+    return CASE.engine(f"{name}_{method}_{quadrature}", with_quadrature(scene(hard, method), quadrature))
 
 
 def energy_error(run: Run) -> float:
@@ -112,11 +112,11 @@ def shortest_segment(run: Run) -> float:
     return float(np.hypot(*segments.T).min())
 
 
-@pytest.mark.parametrize("recipe, quadrature", [*((recipe, "auto") for recipe in RECIPES), (RECIPES[0], "segments")])
+@pytest.mark.parametrize("method, quadrature", [*((method, "auto") for method in METHODS), (METHODS[0], "segments")])
 @pytest.mark.parametrize("hard", CASES, ids=lambda hard: hard.name)
-def test_bounds(hard: Hard, recipe: str, quadrature: str) -> None:
-    run = engine(hard.name, recipe, quadrature)
-    name = f"{hard.name}, {recipe}" + (", integrated" if quadrature == "segments" else "")
+def test_bounds(hard: Hard, method: str, quadrature: str) -> None:
+    run = engine(hard.name, method, quadrature)
+    name = f"{hard.name}, {method}" + (", integrated" if quadrature == "segments" else "")
     depth = -np.nanmin(np.append(run.probe("contact_gap.contact_gap"), 0)) / shortest_segment(run)
     CASE.check(Label.EXACT, f"{name}: energy", energy_error(run), 0, hard.energy, hard.source)
     CASE.check(Label.EXACT, f"{name}: depth over the shortest segment", depth, 0, hard.depth, hard.source)

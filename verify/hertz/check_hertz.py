@@ -66,7 +66,7 @@ def scene(segments: int, stiffness: float, beside: float, approaches: list[float
     """The flat has a node for each of the block's, `beside` it by a share of their distance."""
     points, spacing = block(segments), 2 / segments
     return CASE.scene(points=points, nodes=NODES[segments], outline=3 * segments, centre=top_above_centroid(points),
-                      left=MIDDLE + beside * spacing, spacing=spacing, stiffness=float(stiffness), recipe="es-t3",
+                      left=MIDDLE + beside * spacing, spacing=spacing, stiffness=float(stiffness), method="es-t3",
                       rest=REST, end=REST * len(approaches), press=levels(approaches, REST, RISE))
 
 

@@ -35,7 +35,7 @@ def engine_run(variant: tuple[str, str], nodes: int, speed: float, safety: float
 
 
 def scene(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY, corrects: bool = True) -> str:
-    return CASE.scene(end=END, period=PERIOD, frames=FRAMES, recipe=variant[0], mass=variant[1], nodes=nodes,
+    return CASE.scene(end=END, period=PERIOD, frames=FRAMES, method=variant[0], mass=variant[1], nodes=nodes,
                       speed=-speed, safety=safety, corrects=str(corrects).lower())
 
 

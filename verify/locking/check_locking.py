@@ -1,4 +1,4 @@
-"""Locking: a nearly incompressible disc (nu = 0.49) between two plates, by all recipes, beside nu = 0.4."""
+"""Locking: a nearly incompressible disc (nu = 0.49) between two plates, by all methods, beside nu = 0.4."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from motion import SINGLE, Motion, read_motion
 from pictures import COLOURS, MARKERS, describe, draw_rate, draw_ratios, legend, panels, save, set_ticks
-from squeeze import LONG_PAUSE, OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_reference, worst_over_reference
+from squeeze import LONG_PAUSE, OUTLINE, METHODS, Rests, Squeeze, both_ways, by_reference, worst_over_reference
 from verification import FULL, Case, Label
 
 CASE = Case(__file__)
@@ -47,19 +47,19 @@ def elements() -> dict[float, np.ndarray]:
 
 @pytest.fixture(scope="module")
 def runs() -> dict[float, dict[str, dict[int, list[Rests]]]]:
-    """By Poisson's ratio, recipe and nodes, both ways."""
-    return {poisson: {recipe: {nodes: both_ways(CASE, squeeze(poisson, recipe, nodes)) for nodes in NODES}
-                      for recipe in RECIPES} for poisson in RATIOS}
+    """By Poisson's ratio, method and nodes, both ways."""
+    return {poisson: {method: {nodes: both_ways(CASE, squeeze(poisson, method, nodes)) for nodes in NODES}
+                      for method in METHODS} for poisson in RATIOS}
 
 
 @pytest.fixture(scope="module")
 def references() -> dict[str, Rests]:
-    """By recipe, nu = 0.49, 168 nodes, corners at the poles."""
-    return {recipe: by_reference(CASE, squeeze(0.49, recipe, 168)) for recipe in RECIPES}
+    """By method, nu = 0.49, 168 nodes, corners at the poles."""
+    return {method: by_reference(CASE, squeeze(0.49, method, 168)) for method in METHODS}
 
 
-def squeeze(poisson: float, recipe: str, nodes: int) -> Squeeze:
-    return Squeeze(APPROACHES, recipe, nodes, stiffness=STIFFNESS, poisson=poisson)
+def squeeze(poisson: float, method: str, nodes: int) -> Squeeze:
+    return Squeeze(APPROACHES, method, nodes, stiffness=STIFFNESS, poisson=poisson)
 
 
 def rms_errors(sizes: dict[int, list[Rests]], elements: np.ndarray) -> np.ndarray:
@@ -81,10 +81,10 @@ def test_finite_elements_agree() -> None:
                    "width")
 
 
-@pytest.mark.parametrize("recipe", [recipe for recipe in RECIPES if recipe != "t3"])
-def test_does_not_lock(runs: dict, elements: dict, recipe: str) -> None:
-    CASE.check_rate(f"{recipe}: error of the force in h at nu = 0.49", spacings(NODES),
-                    list(rms_errors(runs[0.49][recipe], elements[0.49])), 3, 1.2,
+@pytest.mark.parametrize("method", [method for method in METHODS if method != "t3"])
+def test_does_not_lock(runs: dict, elements: dict, method: str) -> None:
+    CASE.check_rate(f"{method}: error of the force in h at nu = 0.49", spacings(NODES),
+                    list(rms_errors(runs[0.49][method], elements[0.49])), 3, 1.2,
                     "from 2, as at nu = 0.4, to 4: a dilation of order h^2 that shapes cannot avoid costs lambda h^4; "
                     "0.2 for ten samples of a saw tooth")
 
@@ -132,11 +132,11 @@ def forces_of_linear_triangles(motion: Motion, poisson: float) -> np.ndarray:
     return np.array([force(displacements) for displacements in motion.displacements[1:]])
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_engine_against_reference(references: dict[str, Rests], recipe: str) -> None:
-    forces = dict(zip(APPROACHES, references[recipe].force))
-    ratio, allowed = worst_over_reference(CASE, squeeze(0.49, recipe, 168), forces)
-    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = 0.49: engine over reference, the worst", ratio, 1, allowed,
+@pytest.mark.parametrize("method", METHODS)
+def test_engine_against_reference(references: dict[str, Rests], method: str) -> None:
+    forces = dict(zip(APPROACHES, references[method].force))
+    ratio, allowed = worst_over_reference(CASE, squeeze(0.49, method, 168), forces)
+    CASE.check(Label.INDEPENDENT, f"{method}, nu = 0.49: engine over reference, the worst", ratio, 1, allowed,
                "as in plates: the force of what still moves, from its kinetic energy; Newton's method")
 
 
@@ -144,8 +144,8 @@ def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> No
     figure, axes = panels(3, "Disc between plates, 5 to 10 %: force", across=True)
     for panel, poisson in zip(axes, RATIOS):
         draw_convergence(panel, runs[poisson], elements[poisson], poisson)
-    draw_ratios(axes[2], 100 * np.array(APPROACHES), {recipe: runs[0.49][recipe][168][0].force for recipe in RECIPES},
-                {recipe: rests.force for recipe, rests in references.items()}, elements[0.49], ELEMENTS_ERROR)
+    draw_ratios(axes[2], 100 * np.array(APPROACHES), {method: runs[0.49][method][168][0].force for method in METHODS},
+                {method: rests.force for method, rests in references.items()}, elements[0.49], ELEMENTS_ERROR)
     axes[2].set_title("nu = 0.49, 168 nodes: over finite elements, less 1 [%]", fontsize=10, loc="left")
     for panel in axes:
         legend(panel)
@@ -153,10 +153,10 @@ def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> No
 
 
 def draw_convergence(axes: Axes, runs: dict[str, dict[int, list[Rests]]], elements: np.ndarray, poisson: float) -> None:
-    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        found = 100 * rms_errors(runs[recipe], elements)
-        locks = ", locks" if (recipe, poisson) == ("t3", 0.49) else ""
-        draw_rate(axes, spacings(NODES), found, recipe + locks, colour, marker)
+    for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
+        found = 100 * rms_errors(runs[method], elements)
+        locks = ", locks" if (method, poisson) == ("t3", 0.49) else ""
+        draw_rate(axes, spacings(NODES), found, method + locks, colour, marker)
     ends = np.array([min(spacings(NODES)), max(spacings(NODES))])
     axes.loglog(ends, 0.15 * (ends / ends[0]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
     set_ticks(axes, spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])

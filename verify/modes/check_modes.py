@@ -24,7 +24,7 @@ COUNT = 10  # frequencies compared
 NODES = [168, 340, 700, 1400] if FULL else [168, 340, 700]
 H = [float(np.sqrt(np.pi / n)) for n in NODES]  # mean distance of nodes
 POISSON = [0.3, 0.4, 0.49]
-RECIPES = {"mls": "", "mls-gauss 1": "gauss_points = 1", "mls-gauss 3": "gauss_points = 3",
+METHODS = {"mls": "", "mls-gauss 1": "gauss_points = 1", "mls-gauss 3": "gauss_points = 3",
            "mls-gauss 6": "gauss_points = 6", "t3": "", "es-t3": ""}
 MASSES = ["lumped", "corrected"]
 LAST = 8.0  # of the stored roots, w R / c_s
@@ -40,8 +40,8 @@ FIGURES = {"mls": ("4.10 2.03 0.96", "0.161 0.111 0.082"), "mls-gauss 1": ("4.19
 LAST_DIGIT = "our own earlier figure, +- half of its last digit: the same meshes, whose nodes rounding alone may move"
 
 
-def scene(recipe: str, mass: str, poisson: float, nodes: int, extra: str = "") -> str:
-    return CASE.scene(recipe=recipe.split()[0], mass=mass, points=RECIPES[recipe] + extra, nodes=nodes, poisson=poisson,
+def scene(method: str, mass: str, poisson: float, nodes: int, extra: str = "") -> str:
+    return CASE.scene(method=method.split()[0], mass=mass, points=METHODS[method] + extra, nodes=nodes, poisson=poisson,
                       young=2 * (1 + poisson))
 
 
@@ -66,25 +66,25 @@ def answer_of(words: list, text: str, file: Path, answer: Path) -> dict:
 
 
 @cache
-def errors(recipe: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
+def errors(method: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
     """[COUNT] relative, sorted by frequency."""
-    name = named(recipe, mass, poisson, nodes)
+    name = named(method, mass, poisson, nodes)
     exported = poisson == 0.4 or nodes == NODES[0]  # see matrices() and residual_of_translations()
     export = ["--matrices", str(CASE.out / name)] if exported else []
-    answer = ask(name, scene(recipe, mass, poisson, nodes), *export)
-    CASE.check(Label.EXACT, f"{recipe}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
+    answer = ask(name, scene(method, mass, poisson, nodes), *export)
+    CASE.check(Label.EXACT, f"{method}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
                answer["motions_at_rest"], 3, 0, "two translations and a rotation; more were mechanisms")
     return np.array(answer["frequencies"]) / frequencies(poisson, COUNT) - 1
 
 
-def named(recipe: str, mass: str, poisson: float, nodes: int) -> str:
-    return f"{recipe.replace(' ', '_')}_{mass}_{poisson:g}_{nodes}"
+def named(method: str, mass: str, poisson: float, nodes: int) -> str:
+    return f"{method.replace(' ', '_')}_{mass}_{poisson:g}_{nodes}"
 
 
 @cache
-def errors_of_the_reference(recipe: str, mass: str, poisson: float) -> np.ndarray:
+def errors_of_the_reference(method: str, mass: str, poisson: float) -> np.ndarray:
     """[COUNT] as errors(), on the coarsest mesh."""
-    answer = ask_the_reference(named(recipe, mass, poisson, NODES[0]), scene(recipe, mass, poisson, NODES[0]))
+    answer = ask_the_reference(named(method, mass, poisson, NODES[0]), scene(method, mass, poisson, NODES[0]))
     return np.array(answer["frequencies"][:COUNT]) / frequencies(poisson, COUNT) - 1
 
 
@@ -140,22 +140,22 @@ def test_finite_elements_agree_with_the_roots(poisson: float) -> None:
 
 
 @pytest.mark.parametrize("poisson", POISSON)
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_lumped_mass_is_of_second_order(recipe: str, poisson: float) -> None:
-    if recipe == "t3" and poisson == 0.49:
+@pytest.mark.parametrize("method", METHODS)
+def test_lumped_mass_is_of_second_order(method: str, poisson: float) -> None:
+    if method == "t3" and poisson == 0.49:
         pytest.skip("locks: see test_locking")
-    error = [rms(errors(recipe, "lumped", poisson, nodes)) for nodes in NODES]
-    CASE.check_rate(f"{recipe}, lumped, nu = {poisson}: rms of the first ten", H, error, 2, 0.3,
+    error = [rms(errors(method, "lumped", poisson, nodes)) for nodes in NODES]
+    CASE.check_rate(f"{method}, lumped, nu = {poisson}: rms of the first ten", H, error, 2, 0.3,
                     "row sums and linear functions; 0.3 for the fourth order in h^2 <= 0.14^2 x 4.8^2")
 
 
-@pytest.mark.parametrize("recipe", FIGURES)
-def test_figures_stay(recipe: str) -> None:
+@pytest.mark.parametrize("method", FIGURES)
+def test_figures_stay(method: str) -> None:
     """On both sides: two errors of opposite sign make those of corrected mass, and one of them alone may change."""
-    for mass, figures in zip(MASSES, FIGURES[recipe]):
+    for mass, figures in zip(MASSES, FIGURES[method]):
         for nodes, figure in zip(NODES, figures.split()):
-            CASE.check(Label.FROZEN, f"{recipe}, {mass}, {nodes} nodes: rms of the first ten [%]",
-                       100 * rms(errors(recipe, mass, 0.4, nodes)), float(figure), half_a_digit(figure), LAST_DIGIT)
+            CASE.check(Label.FROZEN, f"{method}, {mass}, {nodes} nodes: rms of the first ten [%]",
+                       100 * rms(errors(method, mass, 0.4, nodes)), float(figure), half_a_digit(figure), LAST_DIGIT)
 
 
 def half_a_digit(figure: str) -> float:
@@ -169,12 +169,12 @@ def test_support_of_nine_nodes() -> None:
                half_a_digit("0.027"), LAST_DIGIT)
 
 
-def matrices(recipe: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
+def matrices(method: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and consistent mass, both [2 nodes x 2 nodes]: M = 2 D - D W D of the exported inverse masses D^-1
     and W."""
-    folder = {mass: CASE.out / named(recipe, mass, 0.4, nodes) for mass in MASSES}
+    folder = {mass: CASE.out / named(method, mass, 0.4, nodes) for mass in MASSES}
     for mass in MASSES:
-        errors(recipe, mass, 0.4, nodes)
+        errors(method, mass, 0.4, nodes)
     lumped = 1 / mmread(folder["lumped"] / "disc_inverse_mass.mtx").diagonal()
     inverse = mmread(folder["corrected"] / "disc_inverse_mass.mtx").toarray()
     mass = 2 * np.diag(lumped) - lumped[:, None] * inverse * lumped
@@ -182,36 +182,36 @@ def matrices(recipe: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @cache
-def parts(recipe: str) -> tuple[list[float], list[float]]:
+def parts(method: str) -> tuple[list[float], list[float]]:
     """rms over NODES of what the stiffness errs (with the consistent mass), and of what the corrected mass adds to
     that."""
     of_stiffness, of_mass = [], []
     for nodes in NODES:
-        consistent = np.sqrt(eigh(*matrices(recipe, nodes), eigvals_only=True, subset_by_index=(3, 2 + COUNT),
+        consistent = np.sqrt(eigh(*matrices(method, nodes), eigvals_only=True, subset_by_index=(3, 2 + COUNT),
                                   driver="gvx"))
         exact = frequencies(0.4, COUNT)
         of_stiffness.append(rms(consistent / exact - 1))
-        of_mass.append(rms((errors(recipe, "corrected", 0.4, nodes) + 1) * exact / consistent - 1))
+        of_mass.append(rms((errors(method, "corrected", 0.4, nodes) + 1) * exact / consistent - 1))
     return of_stiffness, of_mass
 
 
-@pytest.mark.parametrize("recipe", ["mls", "mls-gauss 3", "t3", "es-t3"])
-def test_corrected_mass_errs_in_fourth_order(recipe: str) -> None:
-    CASE.check_rate(f"{recipe}: corrected over consistent mass", H, parts(recipe)[1], 4, 0.5,
+@pytest.mark.parametrize("method", ["mls", "mls-gauss 3", "t3", "es-t3"])
+def test_corrected_mass_errs_in_fourth_order(method: str) -> None:
+    CASE.check_rate(f"{method}: corrected over consistent mass", H, parts(method)[1], 4, 0.5,
                     "W - M^-1 = -D^-1 (1 - M D^-1)^2 ..., M D^-1 - 1 of the order h^2; half an order for its next term")
 
 
-@pytest.mark.parametrize("recipe", ["mls", "t3"])
-def test_stiffness_is_of_second_order(recipe: str) -> None:
-    CASE.check_rate(f"{recipe}: stiffness with consistent mass", H, parts(recipe)[0], 2, 0.5,
+@pytest.mark.parametrize("method", ["mls", "t3"])
+def test_stiffness_is_of_second_order(method: str) -> None:
+    CASE.check_rate(f"{method}: stiffness with consistent mass", H, parts(method)[0], 2, 0.5,
                     "linear functions; half an order for the h^4 that is left")
 
 
-@pytest.mark.parametrize("recipe", [recipe for recipe in RECIPES if recipe != "t3"])
-def test_does_not_lock(recipe: str) -> None:
+@pytest.mark.parametrize("method", [method for method in METHODS if method != "t3"])
+def test_does_not_lock(method: str) -> None:
     """What near incompressibility adds to the error of each of the ten; corrected mass, so that the stiffness shows."""
-    added = [rms(errors(recipe, "corrected", 0.49, nodes) - errors(recipe, "corrected", 0.3, nodes)) for nodes in NODES]
-    CASE.check_rate(f"{recipe}, corrected: error at nu = 0.49 less that at 0.3, rms of the first ten", H, added, 3, 1,
+    added = [rms(errors(method, "corrected", 0.49, nodes) - errors(method, "corrected", 0.3, nodes)) for nodes in NODES]
+    CASE.check_rate(f"{method}, corrected: error at nu = 0.49 less that at 0.3, rms of the first ten", H, added, 3, 1,
                     "from 2, as all errors of linear functions, to 4: a dilation of order h^2 that shapes cannot avoid "
                     "costs lambda h^4; that of order h of what locks costs lambda h^2, until nothing moves: below 2")
 
@@ -248,28 +248,28 @@ def test_linear_triangles_of_dolfinx_lock_alike() -> None:
 
 
 @pytest.mark.parametrize("poisson", [0.4, 0.49])
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_engine_against_reference(recipe: str, poisson: float) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_engine_against_reference(method: str, poisson: float) -> None:
     off, allowed = [], []
     for mass in MASSES:
-        engine, reference = (1 + of(recipe, mass, poisson) for of in (coarsest_errors, errors_of_the_reference))
+        engine, reference = (1 + of(method, mass, poisson) for of in (coarsest_errors, errors_of_the_reference))
         off.append(engine / reference - 1)
-        allowed.append(residual_of_translations(recipe, mass, poisson) / (2 * frequencies(poisson, COUNT)**2))
+        allowed.append(residual_of_translations(method, mass, poisson) / (2 * frequencies(poisson, COUNT)**2))
     worst = np.unravel_index((np.abs(off) / np.array(allowed)).argmax(), np.shape(off))
-    CASE.check(Label.INDEPENDENT, f"{recipe}, nu = {poisson}: engine over reference - 1, the worst of both masses",
+    CASE.check(Label.INDEPENDENT, f"{method}, nu = {poisson}: engine over reference - 1, the worst of both masses",
                off[worst[0]][worst[1]], 0, allowed[worst[0]][worst[1]],
                "differences of forces leave translations a residual, exactly 0; one of as much moves w^2 by no more")
 
 
-def coarsest_errors(recipe: str, mass: str, poisson: float) -> np.ndarray:
-    return errors(recipe, mass, poisson, NODES[0])
+def coarsest_errors(method: str, mass: str, poisson: float) -> np.ndarray:
+    return errors(method, mass, poisson, NODES[0])
 
 
-def residual_of_translations(recipe: str, mass: str, poisson: float) -> float:
+def residual_of_translations(method: str, mass: str, poisson: float) -> float:
     """|A x| / |x| of the symmetric A = L^T K L, W = L L^T the inverse mass, for translations; the larger of the two. For
     any x of a frequency w it would be the error of w^2 that the differences of forces make, at most (Weyl)."""
-    coarsest_errors(recipe, mass, poisson)
-    folder = CASE.out / named(recipe, mass, poisson, NODES[0])
+    coarsest_errors(method, mass, poisson)
+    folder = CASE.out / named(method, mass, poisson, NODES[0])
     stiffness = mmread(folder / "disc_stiffness.mtx").toarray()
     read = mmread(folder / "disc_inverse_mass.mtx")
     inverse = np.kron(read.toarray() if mass == "corrected" else np.diag(read.diagonal()), np.eye(2))
@@ -290,12 +290,12 @@ def test_picture() -> None:
 
 
 def draw_errors(axes: Axes, mass: str, poisson: float, orders: list[int]) -> None:
-    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        values = [100 * rms(errors(recipe, mass, poisson, nodes)) for nodes in NODES]
+    for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
+        values = [100 * rms(errors(method, mass, poisson, nodes)) for nodes in NODES]
         axes.loglog(NODES, values, marker=marker, markersize=4, linewidth=1.1, color=colour,
-                    label=f"engine, {recipe}: {observed_order(H, values):.1f}")
-    of_reference = [100 * rms(errors_of_the_reference(recipe, mass, poisson)) for recipe in RECIPES]
-    axes.plot([NODES[0]] * len(RECIPES), of_reference, "kx", markersize=7, label="reference, each of them")
+                    label=f"engine, {method}: {observed_order(H, values):.1f}")
+    of_reference = [100 * rms(errors_of_the_reference(method, mass, poisson)) for method in METHODS]
+    axes.plot([NODES[0]] * len(METHODS), of_reference, "kx", markersize=7, label="reference, each of them")
     rings, nodes, found = finite_elements(poisson)
     values = [100 * rms(f / frequencies(poisson, COUNT) - 1) for f in found]
     order_of_elements = observed_order([1 / n for n in rings], values)

@@ -19,9 +19,9 @@ from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
-RECIPES = ["mls", "mls-gauss", "t3", "es-t3"]
+METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
 MASSES = ["lumped", "corrected"]
-VARIANTS = [(recipe, mass) for recipe in RECIPES for mass in MASSES]
+VARIANTS = [(method, mass) for method in METHODS for mass in MASSES]
 NODES = [700, 1400, 2800] + ([5600] if FULL else [])
 SAFETY = 0.5  # so the step falls with the spacing of nodes, and its error as theirs
 END, PERIOD = 9.0, 0.05  # of the scene and of its frames
@@ -124,9 +124,9 @@ def swings() -> dict[tuple[str, str], dict[int, Swing]]:
     return {variant: {n: engine_swing(*variant, n) for n in NODES} for variant in VARIANTS}
 
 
-def engine_swing(recipe: str, mass: str, nodes: int, safety: float = SAFETY) -> Swing:
-    scene = CASE.scene(recipe=recipe, mass=mass, nodes=nodes, safety=safety)
-    return swing(CASE.engine(f"{recipe}_{mass}_{nodes}_{safety:g}", scene))
+def engine_swing(method: str, mass: str, nodes: int, safety: float = SAFETY) -> Swing:
+    scene = CASE.scene(method=method, mass=mass, nodes=nodes, safety=safety)
+    return swing(CASE.engine(f"{method}_{mass}_{nodes}_{safety:g}", scene))
 
 
 def test_extremes(swings: dict, variant: tuple[str, str]) -> None:
@@ -152,7 +152,7 @@ class Lumping:
 
 @pytest.fixture(scope="module")
 def lumping(swings: dict, elements: list[Oscillation]) -> dict[str, Lumping]:
-    """By recipe. Row sums move mass to nodes: sum of m_i v_i^2 = integral of rho (|v|^2 + grad v S grad v^T), S the
+    """By method. Row sums move mass to nodes: sum of m_i v_i^2 = integral of rho (|v|^2 + grad v S grad v^T), S the
     second moment of the shape functions about the point, of the order h^2. Finite elements with its mean must change
     alike."""
     plain, coarse = of_elements(elements[0]).extremes(), elements[0]
@@ -162,38 +162,38 @@ def lumping(swings: dict, elements: list[Oscillation]) -> dict[str, Lumping]:
         slowed = Oscillation(RINGS[0], END, Material(micro_inertia=micro_inertia), len(coarse.times) - 1)
         return of_elements(slowed).extremes() / plain - 1
 
-    def of(recipe: str) -> Lumping:
-        lumped, corrected = (swings[recipe, mass][700] for mass in MASSES)
+    def of(method: str) -> Lumping:
+        lumped, corrected = (swings[method, mass][700] for mass in MASSES)
         return Lumping(lumped.stretch.extremes() / corrected.stretch.extremes() - 1, expected(lumped.micro_inertia()))
 
-    return {recipe: of(recipe) for recipe, _ in LATE}
+    return {method: of(method) for method, _ in LATE}
 
 
-@pytest.mark.parametrize("recipe, mass", LATE)
-def test_lumping_is_micro_inertia(lumping: dict[str, Lumping], recipe: str, mass: str) -> None:
-    found, expected = lumping[recipe].found, lumping[recipe].expected
+@pytest.mark.parametrize("method, mass", LATE)
+def test_lumping_is_micro_inertia(lumping: dict[str, Lumping], method: str, mass: str) -> None:
+    found, expected = lumping[method].found, lumping[method].expected
     worst = np.abs(expected).argmax()
     allowed = 2 * spacing(700) * abs(expected[worst])
     source = "finite elements with the lumped mass's micro-inertia; another along the outline, 2 h/R of the area"
-    CASE.check(Label.INDEPENDENT, f"{recipe}: extreme at {EXTREMES.time[worst]:.1f}, {mass} over corrected mass - 1",
+    CASE.check(Label.INDEPENDENT, f"{method}: extreme at {EXTREMES.time[worst]:.1f}, {mass} over corrected mass - 1",
                found[worst], expected[worst], allowed, source)
-    CASE.check(Label.INDEPENDENT, f"{recipe}: other extremes, {mass} over corrected mass, less finite elements'",
+    CASE.check(Label.INDEPENDENT, f"{method}: other extremes, {mass} over corrected mass, less finite elements'",
                largest(np.delete(found - expected, worst)), 0, allowed, f"{source}; of the largest")
 
 
-@pytest.mark.parametrize("recipe, mass", LATE)
-def test_late_extremes_of_lumped_mass(swings: dict, lumping: dict[str, Lumping], recipe: str, mass: str) -> None:
+@pytest.mark.parametrize("method, mass", LATE)
+def test_late_extremes_of_lumped_mass(swings: dict, lumping: dict[str, Lumping], method: str, mass: str) -> None:
     """Beyond the half percent that is asked for, by as much as micro-inertia predicts: no more and no less."""
-    errors, stiffness = (swings[recipe, of][700].stretch.extreme_errors() for of in (mass, "corrected"))
-    expected = lumping[recipe].expected
+    errors, stiffness = (swings[method, of][700].stretch.extreme_errors() for of in (mass, "corrected"))
+    expected = lumping[method].expected
     worst = np.abs(expected).argmax()
     allowed = 2 * spacing(700) * abs(expected[worst])
     source = ("finite elements with the lumped mass's micro-inertia, of the largest 2 h/R as of lumped over corrected "
               "mass; and the error of the stiffness, which is that with corrected mass")
-    CASE.check(Label.INDEPENDENT, f"{recipe} {mass}: extreme at {EXTREMES.time[worst]:.1f}, 700 nodes", errors[worst],
+    CASE.check(Label.INDEPENDENT, f"{method} {mass}: extreme at {EXTREMES.time[worst]:.1f}, 700 nodes", errors[worst],
                expected[worst], allowed + abs(stiffness[worst]), source)
     late = (EXTREMES.time >= EARLY) & (np.arange(len(expected)) != worst)
-    CASE.check(Label.INDEPENDENT, f"{recipe} {mass}: other late extremes, 700 nodes, less micro-inertia's",
+    CASE.check(Label.INDEPENDENT, f"{method} {mass}: other late extremes, 700 nodes, less micro-inertia's",
                largest((errors - expected)[late]), 0, allowed + np.abs(stiffness[late]).max(), source)
 
 
@@ -219,12 +219,12 @@ def test_energy_at_the_start(swings: dict, variant: tuple[str, str]) -> None:
                     "error by a fifth")
 
 
-@pytest.mark.parametrize("recipe", ["t3", "es-t3"])
+@pytest.mark.parametrize("method", ["t3", "es-t3"])
 @pytest.mark.parametrize("mass", MASSES)
-def test_energy_of_the_mesh(swings: dict, recipe: str, mass: str) -> None:
-    found = swings[recipe, mass][NODES[0]]
+def test_energy_of_the_mesh(swings: dict, method: str, mass: str) -> None:
+    found = swings[method, mass][NODES[0]]
     expected = triangles_energy(found.motion, mass)
-    CASE.check(Label.EXACT, f"{recipe} {mass}: energy of the mesh", found.run.probe("energy.kinetic")[0] / expected, 1,
+    CASE.check(Label.EXACT, f"{method} {mass}: energy of the mesh", found.run.probe("energy.kinetic")[0] / expected, 1,
                10 * SINGLE, "masses of linear triangles, computed from the mesh in the frames; single precision")
 
 
@@ -264,7 +264,7 @@ def references() -> dict[str, list[Stretch]]:
 
 
 def reference_stretch(mass: str, dt: float) -> Stretch:
-    scene = CASE.scene(recipe="mls", mass=mass, nodes=SOLVERS_NODES, safety=SAFETY)
+    scene = CASE.scene(method="mls", mass=mass, nodes=SOLVERS_NODES, safety=SAFETY)
     return swing(CASE.reference(f"reference_{mass}_{dt:g}", scene, "--dt", repr(dt))).stretch
 
 
@@ -328,13 +328,13 @@ def draw_differences(axes: Axes, swings: dict, elements: list[Oscillation], refe
 
 def test_picture_of_lumping(swings: dict, lumping: dict[str, Lumping]) -> None:
     figure, axes = panels(2, "Extremes of the stretch, 700 nodes: lumped mass and its micro-inertia", across=True)
-    for recipe, colour, marker in zip(lumping, COLOURS, MARKERS):
-        axes[0].plot(EXTREMES.time, 100 * lumping[recipe].found, marker, color=colour, markersize=5, label=recipe)
-        axes[0].plot(EXTREMES.time, 100 * lumping[recipe].expected, "--", color=colour, linewidth=1.0)
+    for method, colour, marker in zip(lumping, COLOURS, MARKERS):
+        axes[0].plot(EXTREMES.time, 100 * lumping[method].found, marker, color=colour, markersize=5, label=method)
+        axes[0].plot(EXTREMES.time, 100 * lumping[method].expected, "--", color=colour, linewidth=1.0)
         for mass, style in zip(MASSES, ("-", ":")):
-            errors = 100 * swings[recipe, mass][700].stretch.extreme_errors()
+            errors = 100 * swings[method, mass][700].stretch.extreme_errors()
             axes[1].plot(EXTREMES.time, errors, style, marker=marker, color=colour, markersize=4, linewidth=1.0,
-                         label=f"{recipe} {mass}")
+                         label=f"{method} {mass}")
     axes[0].set_title("lumped over corrected - 1 [%]; dashed: finite elements", fontsize=10, loc="left")
     axes[1].set_title("over the converged solution - 1 [%]", fontsize=10, loc="left")
     for panel in axes:

@@ -13,7 +13,7 @@ from fem.solid import Material, Solid
 from fem.statics import Minimiser
 from pictures import COLOURS, describe, legend, panels, save, set_ticks
 from pliant.frames import COMPLIANT, Frames
-from squeeze import RECIPES
+from squeeze import METHODS
 from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
@@ -25,7 +25,7 @@ SIDE = {"square": 2.0, "disc": np.sqrt(np.pi)}  # of a square of the shape's are
 # fewer nodes at each of FINE, root mean square of the three.
 SCATTER = {"all": 0.035, "outline": 0.040, "middle": 0.076}
 STRETCH = {"square": np.array([[1.2, 0.1], [0.1, 1.1]]), "disc": 0.9 * np.eye(2)}
-CONSISTENT = [recipe for recipe in RECIPES if recipe != "mls-gauss"]
+CONSISTENT = [method for method in METHODS if method != "mls-gauss"]
 COMPONENTS = {"xx": (0, 0), "yy": (1, 1), "xy": (0, 1)}
 
 
@@ -39,12 +39,12 @@ def stress(F: np.ndarray) -> np.ndarray:
     return MATERIAL.mu * (F - G) + MATERIAL.lame * np.log(np.linalg.det(F)) * G
 
 
-def scene(shape: str, recipe: str, nodes: int = 168) -> str:
+def scene(shape: str, method: str, nodes: int = 168) -> str:
     P = stress(STRETCH[shape])
     if shape == "disc":  # force P N on an area of the start, of which F makes 0.9 times as much
-        return CASE.scene("disc.toml", recipe=recipe, nodes=nodes, pressure=float(-P[0, 0] / STRETCH[shape][0, 0]))
+        return CASE.scene("disc.toml", method=method, nodes=nodes, pressure=float(-P[0, 0] / STRETCH[shape][0, 0]))
     across, along = np.hypot(*P[:, 0]), np.hypot(*P[:, 1])
-    return CASE.scene("square.toml", recipe=recipe, nodes=nodes, across=float(across), along=float(along),
+    return CASE.scene("square.toml", method=method, nodes=nodes, across=float(across), along=float(along),
                       xx=float(P[0, 0]), yx=float(P[1, 0]), xy=float(P[0, 1]), yy=float(P[1, 1]))
 
 
@@ -56,20 +56,20 @@ def largest_error(run: Run, shape: str) -> float:
 
 
 @pytest.mark.parametrize("shape", STRETCH)
-@pytest.mark.parametrize("recipe", CONSISTENT)
-def test_uniform_strain(recipe: str, shape: str) -> None:
-    run = CASE.engine(f"{shape}_{recipe}", scene(shape, recipe))
-    CASE.check(Label.EXACT, f"engine, {recipe}, {shape}: error of the strain", largest_error(run, shape), 0, 1e-12,
+@pytest.mark.parametrize("method", CONSISTENT)
+def test_uniform_strain(method: str, shape: str) -> None:
+    run = CASE.engine(f"{shape}_{method}", scene(shape, method))
+    CASE.check(Label.EXACT, f"engine, {method}, {shape}: error of the strain", largest_error(run, shape), 0, 1e-12,
                "condition of the consistent gradients 1e-12; motion decays to exp(-1.5 x 28)")
-    run = by_reference(shape, recipe)
+    run = by_reference(shape, method)
     bounds = [run.probe(f"{which}_jacobian.jacobian")[-1] for which in ("least", "largest")]
     error = np.abs(np.array(bounds) / np.linalg.det(STRETCH[shape]) - 1).max()
-    CASE.check(Label.EXACT, f"reference, {recipe}, {shape}: error of J", error, 0, 1e-11,
+    CASE.check(Label.EXACT, f"reference, {method}, {shape}: error of J", error, 0, 1e-11,
                "condition of its gradients 1e-11; Newton to 1e-13 of the forces")
 
 
-def by_reference(shape: str, recipe: str) -> Run:
-    return CASE.reference(f"{shape}_{recipe}_reference", scene(shape, recipe), "--static", "--dt", "1",
+def by_reference(shape: str, method: str) -> Run:
+    return CASE.reference(f"{shape}_{method}_reference", scene(shape, method), "--static", "--dt", "1",
                           "--tolerance", "1e-13", "--pseudo-inertia", "1e-6")
 
 
@@ -127,7 +127,7 @@ def test_known_flaw(flawed: dict, shape: str, part: str, order: float, why: str)
 
 
 @pytest.mark.parametrize("shape", STRETCH)
-def test_flaw_is_the_recipe_s(flawed: dict, shape: str) -> None:
+def test_flaw_is_the_method_s(flawed: dict, shape: str) -> None:
     run, other = flawed[shape][168], by_reference(shape, "mls-gauss")
     for which in ("least", "largest"):
         ratio = other.probe(f"{which}_jacobian.jacobian")[-1] / run.probe(f"{which}_jacobian.jacobian")[-1]

@@ -10,13 +10,13 @@ from fem.plates import Plates, Squeezed, hertz_force, hertz_half_width
 from fem.solid import Material
 from oracle_tables import read_oracle
 from pictures import COLOURS, MARKERS, describe, draw_rate, draw_ratios, legend, panels, save, set_ticks
-from squeeze import (OUTLINE, RECIPES, Rests, Squeeze, both_ways, by_engine, by_reference, to_rigid_contact,
+from squeeze import (OUTLINE, METHODS, Rests, Squeeze, both_ways, by_engine, by_reference, to_rigid_contact,
                      to_zero_spacing, worst_over_reference)
 from verification import FULL, Case, Label
 
 CASE = Case(__file__)
-# The cheapest recipe is the furthest off: it gets one size more.
-SIZES = {recipe: [168, 340, 700] + ([1400] if FULL or recipe == "t3" else []) for recipe in RECIPES}
+# The cheapest method is the furthest off: it gets one size more.
+SIZES = {method: [168, 340, 700] + ([1400] if FULL or method == "t3" else []) for method in METHODS}
 APPROACHES = tuple(np.round(0.025 * np.arange(1, 13), 3))
 COMPARED = (0.05, 0.1, 0.2, 0.3)  # with the reference, after a long pause each
 CHECKED = np.array(APPROACHES) >= 0.05
@@ -43,15 +43,15 @@ def elements(squeezed: list[Squeezed]) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, dict[int, list[Rests]]]:
-    """By recipe and nodes, both ways."""
-    return {recipe: {nodes: both_ways(CASE, Squeeze(APPROACHES, recipe, nodes)) for nodes in SIZES[recipe]}
-            for recipe in RECIPES}
+    """By method and nodes, both ways."""
+    return {method: {nodes: both_ways(CASE, Squeeze(APPROACHES, method, nodes)) for nodes in SIZES[method]}
+            for method in METHODS}
 
 
 @pytest.fixture(scope="module")
 def references() -> dict[str, Rests]:
-    """By recipe, 168 nodes, corners at the poles."""
-    return {recipe: by_reference(CASE, Squeeze(APPROACHES, recipe)) for recipe in RECIPES}
+    """By method, 168 nodes, corners at the poles."""
+    return {method: by_reference(CASE, Squeeze(APPROACHES, method)) for method in METHODS}
 
 
 @pytest.fixture(scope="module")
@@ -69,14 +69,14 @@ def errors(both: list[Rests], elements: np.ndarray) -> np.ndarray:
     return np.array([rests.force / elements - 1 for rests in both])[:, CHECKED]
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_convergence_in_node_distance(runs: dict, elements: np.ndarray, recipe: str) -> None:
-    found = rms_errors(runs[recipe], elements)
-    CASE.check_rate(f"{recipe}: error of the force in h", spacings(runs[recipe]), found, 2, 0.4,
+@pytest.mark.parametrize("method", METHODS)
+def test_convergence_in_node_distance(runs: dict, elements: np.ndarray, method: str) -> None:
+    found = rms_errors(runs[method], elements)
+    CASE.check_rate(f"{method}: error of the force in h", spacings(runs[method]), found, 2, 0.4,
                     "second order of triangles, outline and contact's edge; 1.5 to 3 node distances in the half width "
                     "at 5 %, where errors weigh most, and 22 samples of a saw tooth")
-    limit = (at_zero_spacing(runs[recipe]) / elements)[CHECKED]
-    CASE.check(Label.INDEPENDENT, f"{recipe}: force at h = 0 over finite elements", worst(limit), 1, ACCEPTED,
+    limit = (at_zero_spacing(runs[method]) / elements)[CHECKED]
+    CASE.check(Label.INDEPENDENT, f"{method}: force at h = 0 over finite elements", worst(limit), 1, ACCEPTED,
                "dolfinx, same penalty, 1.5e-4; saw tooth of the contact's edges, halved by two ways to lie")
 
 
@@ -119,11 +119,11 @@ def test_force_against_the_oracle(runs: dict, stiff: dict) -> None:
                        found[D] / force, 1, ACCEPTED, f"oracle {error:.1g}; saw tooth 2e-3, its extrapolation 1e-3")
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_energy_of_the_disc(runs: dict, squeezed: list[Squeezed], recipe: str) -> None:
-    strain = [np.mean([rests.strain for rests in both], axis=0) for both in runs[recipe].values()]
-    ratios = to_zero_spacing(SIZES[recipe], strain) / [squeeze.strain_energy for squeeze in squeezed]
-    CASE.check(Label.INDEPENDENT, f"{recipe}: strain energy at h = 0 over finite elements", worst(ratios[CHECKED]), 1,
+@pytest.mark.parametrize("method", METHODS)
+def test_energy_of_the_disc(runs: dict, squeezed: list[Squeezed], method: str) -> None:
+    strain = [np.mean([rests.strain for rests in both], axis=0) for both in runs[method].values()]
+    ratios = to_zero_spacing(SIZES[method], strain) / [squeeze.strain_energy for squeeze in squeezed]
+    CASE.check(Label.INDEPENDENT, f"{method}: strain energy at h = 0 over finite elements", worst(ratios[CHECKED]), 1,
                ACCEPTED, "dolfinx, same penalty, 1.5e-4; the work of the force, so as good as that")
 
 
@@ -142,16 +142,16 @@ def test_work_is_force_times_way(facet: bool) -> None:
                    "Simpson's rule on the force, its difference to the trapezoidal one; what still moves")
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_engine_against_reference(references: dict[str, Rests], recipe: str) -> None:
-    forces = dict(zip(APPROACHES, references[recipe].force))
-    ratio, allowed = worst_over_reference(CASE, Squeeze(COMPARED, recipe), forces)
-    CASE.check(Label.INDEPENDENT, f"{recipe}: engine over reference, the worst", ratio, 1, allowed,
+@pytest.mark.parametrize("method", METHODS)
+def test_engine_against_reference(references: dict[str, Rests], method: str) -> None:
+    forces = dict(zip(APPROACHES, references[method].force))
+    ratio, allowed = worst_over_reference(CASE, Squeeze(COMPARED, method), forces)
+    CASE.check(Label.INDEPENDENT, f"{method}: engine over reference, the worst", ratio, 1, allowed,
                "the force of what still moves, from its kinetic energy by Cauchy and Schwarz; Newton's method")
 
 
 def test_at_rest_and_balanced(runs: dict) -> None:
-    every = [rests for recipe in runs.values() for both in recipe.values() for rests in both]
+    every = [rests for method in runs.values() for both in method.values() for rests in both]
     kinetic = max((rests.kinetic / rests.strain).max() for rests in every)
     CASE.check(Label.EXACT, "kinetic over strain energy at rest, all runs", kinetic, 0, 1e-6,
                "the slowest, turning on the springs at the poles, decays by exp(-1.5 t) over 5.5 s: 7e-8, and as much "
@@ -175,10 +175,10 @@ def test_hertz(runs: dict) -> None:
 def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements: np.ndarray) -> None:
     figure, axes = panels(4, "Disc between plates", across=True)
     draw_forces(axes[0], runs, 100 * np.array(APPROACHES))
-    draw_checked_ratios(axes[1], {recipe: runs[recipe][168][0].force for recipe in RECIPES},
-                        {recipe: rests.force for recipe, rests in references.items()}, elements)
+    draw_checked_ratios(axes[1], {method: runs[method][168][0].force for method in METHODS},
+                        {method: rests.force for method, rests in references.items()}, elements)
     axes[1].set_title("168 nodes, corner at the pole: over FEM, less 1 [%]", fontsize=10, loc="left")
-    draw_checked_ratios(axes[2], {recipe: mean(runs[recipe][700]) for recipe in RECIPES}, {}, elements)
+    draw_checked_ratios(axes[2], {method: mean(runs[method][700]) for method in METHODS}, {}, elements)
     draw_limits(axes[2], limits(runs, stiff))
     axes[2].axhspan(-100 * ACCEPTED, 100 * ACCEPTED, color="0.9")
     axes[2].set_title("700 nodes, both ways to lie: over FEM, less 1 [%]", fontsize=10, loc="left")
@@ -189,7 +189,7 @@ def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements
 
 
 def draw_checked_ratios(axes: Axes, engine: dict, references: dict, elements: np.ndarray) -> None:
-    checked = [{recipe: force[CHECKED] for recipe, force in forces.items()} for forces in (engine, references)]
+    checked = [{method: force[CHECKED] for method, force in forces.items()} for forces in (engine, references)]
     draw_ratios(axes, 100 * np.array(APPROACHES)[CHECKED], *checked, elements[CHECKED], ELEMENTS_ERROR)
 
 
@@ -205,16 +205,16 @@ def draw_forces(axes: Axes, runs: dict, percent: np.ndarray) -> None:
     axes.plot(100 * fine, [hertz_force(D, MATERIAL) for D in fine], ":", color=COLOURS[6], label="Hertz")
     axes.plot(100 * ORACLE["approach_over_diameter"], ORACLE["force_over_muR"], "-", color="0.3",
               label="finite elements")
-    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        axes.plot(percent, mean(runs[recipe][168]), marker, markersize=4, fillstyle="none", color=colour,
-                  label=f"{recipe}, 168 nodes")
+    for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
+        axes.plot(percent, mean(runs[method][168]), marker, markersize=4, fillstyle="none", color=colour,
+                  label=f"{method}, 168 nodes")
     describe(axes, "force on a plate over mu R", "approach over the diameter [%]")
 
 
 def draw_convergence(axes: Axes, runs: dict, elements: np.ndarray) -> None:
-    for recipe, colour, marker in zip(RECIPES, COLOURS, MARKERS):
-        steps, found = spacings(runs[recipe]), 100 * np.array(rms_errors(runs[recipe], elements))
-        draw_rate(axes, steps, found, recipe, colour, marker)
+    for method, colour, marker in zip(METHODS, COLOURS, MARKERS):
+        steps, found = spacings(runs[method]), 100 * np.array(rms_errors(runs[method], elements))
+        draw_rate(axes, steps, found, method, colour, marker)
     ticks = spacings(runs["t3"])
     axes.loglog(ticks, 0.1 * (np.array(ticks) / ticks[-1]) ** 2, "--", color=COLOURS[6], linewidth=1.0, label="slope 2")
     set_ticks(axes, ticks, [f"{h:.3f}" for h in ticks])

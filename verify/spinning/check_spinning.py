@@ -30,8 +30,8 @@ SETTLED = 150.0  # s: exp(-0.19 t) is 4e-13
 EPSILON = np.finfo(float).eps
 
 
-def scene(recipe: str, mass: str, nodes: int, spin: float, end: float, viscosity: float = VISCOSITY) -> str:
-    return CASE.scene(recipe=recipe, mass=mass, nodes=nodes, spin=spin, end=end, viscosity=viscosity, period=PERIOD,
+def scene(method: str, mass: str, nodes: int, spin: float, end: float, viscosity: float = VISCOSITY) -> str:
+    return CASE.scene(method=method, mass=mass, nodes=nodes, spin=spin, end=end, viscosity=viscosity, period=PERIOD,
                       frames=end)
 
 
@@ -53,8 +53,8 @@ class Spun:
 
 
 @cache
-def spun(recipe: str, mass: str, nodes: int, spin: float) -> Spun:
-    run = CASE.engine(f"{recipe}_{mass}_{nodes}_{spin:g}", scene(recipe, mass, nodes, spin, REST))
+def spun(method: str, mass: str, nodes: int, spin: float) -> Spun:
+    run = CASE.engine(f"{method}_{mass}_{nodes}_{spin:g}", scene(method, mass, nodes, spin, REST))
     area, kinetic = run.probe("inside.area"), run.probe("energy.kinetic")[0]
     return Spun(turning(run, REST / 2), float(np.sqrt(area[-1] / np.pi)), float(run.probe("energy.strain")[-1]),
                 float(kinetic / (np.pi / 4 * spin**2)), *polar_strains(run))
@@ -95,8 +95,8 @@ def slope_error(share: float) -> float:
     return float(2 * share / np.sqrt(((logarithms - logarithms.mean()) ** 2).sum()))
 
 
-def rim_errors(recipe: str, mass: str, spin: float) -> list[float]:
-    runs = [spun(recipe, mass, n, spin) for n in NODES]
+def rim_errors(method: str, mass: str, spin: float) -> list[float]:
+    runs = [spun(method, mass, n, spin) for n in NODES]
     return [(run.rim - 1) / (exact_at(run.spin).rim - 1) - 1 for run in runs]
 
 
@@ -107,43 +107,43 @@ def test_closed_form_is_the_limit_of_the_equation() -> None:
                shares[0] ** 2, "a series in spin^2, of which the first term is taken out")
 
 
-@pytest.mark.parametrize("recipe, mass", VARIANTS)
-def test_small_spin(recipe: str, mass: str) -> None:
+@pytest.mark.parametrize("method, mass", VARIANTS)
+def test_small_spin(method: str, mass: str) -> None:
     """The virial: of consistent gradients the mean dilation is that of the exact disc with the mesh's own inertia."""
     closed = linear_strains(SLOW, np.ones(1))[1][0]
     for nodes in NODES:
-        run = spun(recipe, mass, nodes, SLOW)
+        run = spun(method, mass, nodes, SLOW)
         closed, exact = linear_strains(run.spin, np.ones(1))[1][0], exact_at(run.spin)
         second, load = (exact.rim - 1) / closed - 1, run.inertia - 1
-        CASE.check(Label.EXACT, f"{recipe} {mass}, {nodes} nodes: stretch of the rim over closed form and inertia",
+        CASE.check(Label.EXACT, f"{method} {mass}, {nodes} nodes: stretch of the rim over closed form and inertia",
                    (run.rim - 1) / closed / run.inertia / (1 + second), 1,
                    2 * second * (abs(load) + run.shape_error(exact) ** 2),
                    "sum of forces x places; terms of second order, a share of the stretch: changed by twice the error "
                    "of the load and by the square of the shape's")
 
 
-@pytest.mark.parametrize("recipe, mass", VARIANTS)
+@pytest.mark.parametrize("method, mass", VARIANTS)
 @pytest.mark.parametrize("spin", [SLOW, FAST])
-def test_converges(recipe: str, mass: str, spin: float) -> None:
-    order, name = 2 if mass == "lumped" else 3, f"{recipe} {mass}, spin {spin:g}"
-    CASE.check_rate(f"{name}: stretch of the rim", spacings(NODES), np.abs(rim_errors(recipe, mass, spin)).tolist(),
+def test_converges(method: str, mass: str, spin: float) -> None:
+    order, name = 2 if mass == "lumped" else 3, f"{method} {mass}, spin {spin:g}"
+    CASE.check_rate(f"{name}: stretch of the rim", spacings(NODES), np.abs(rim_errors(method, mass, spin)).tolist(),
                     order, slope_error(SCATTER), "as the inertia: second moments of lumped mass h^2, of corrected mass "
                     "h^3; two standard errors of meshes that scatter by a fifth")
-    shapes = [run.shape_error(exact_at(run.spin)) for run in (spun(recipe, mass, n, spin) for n in NODES)]
+    shapes = [run.shape_error(exact_at(run.spin)) for run in (spun(method, mass, n, spin) for n in NODES)]
     CASE.check_rate(f"{name}: strains, rms", spacings(NODES), shapes, 1.75, 0.25 + slope_error(SCATTER / np.sqrt(48)),
                     "strains in the middle of cells: h^2 inside, h in a seam as wide as h, which is h^1.5 in the rms: "
                     "from 1.5 to 2; meshes scatter less the more cells there are on the rim")
 
 
-@pytest.mark.parametrize("recipe, mass", VARIANTS)
-def test_large_spin(recipe: str, mass: str) -> None:
+@pytest.mark.parametrize("method, mass", VARIANTS)
+def test_large_spin(method: str, mass: str) -> None:
     """At zero spacing, against the equation with the angular momentum of the start."""
-    runs, exact = [spun(recipe, mass, n, FAST) for n in NODES], spun_up_to(FAST)
+    runs, exact = [spun(method, mass, n, FAST) for n in NODES], spun_up_to(FAST)
     for what, values, expected in (("spin that is left", [run.spin for run in runs], exact.spin),
                                    ("stretch of the rim", [run.rim - 1 for run in runs], exact.rim - 1),
                                    ("strain energy", [run.energy for run in runs], exact.strain_energy)):
         limit, error = to_no_spacing(values, [2] if mass == "lumped" else [2, 3])
-        CASE.check(Label.INDEPENDENT, f"{recipe} {mass}, spin {FAST:g}: {what} at h = 0 over the equation's",
+        CASE.check(Label.INDEPENDENT, f"{method} {mass}, spin {FAST:g}: {what} at h = 0 over the equation's",
                    limit / expected, 1, error / expected, "neo-Hookean cylinder, ordinary differential equation to "
                    "1e-11; limit of two meshes, whose errors scatter by a fifth; of corrected mass of order 2 or 3")
 
@@ -162,10 +162,10 @@ def to_no_spacing(values: list[float], orders: list[int]) -> tuple[float, float]
 # ---- a hundred turns
 
 @cache
-def long_run(recipe: str, mass: str, viscosity: float) -> Run:
+def long_run(method: str, mass: str, viscosity: float) -> Run:
     spin = spun_up_to(FAST).spin
     end = PERIOD * np.ceil(((SETTLED if viscosity else 0) + TURNS * 2 * np.pi / spin) / PERIOD)
-    return CASE.engine(f"long_{recipe}_{mass}_{viscosity:g}", scene(recipe, mass, 168, FAST, float(end), viscosity))
+    return CASE.engine(f"long_{method}_{mass}_{viscosity:g}", scene(method, mass, 168, FAST, float(end), viscosity))
 
 
 @pytest.mark.parametrize("mass", MASSES)
@@ -218,10 +218,10 @@ def angular_momentum(run: Run, frame: int, mass: str) -> float:
 def test_picture() -> None:
     figure, axes = panels(3, "A spinning disc", across=True)
     draw_strains(axes[0])
-    for (recipe, mass), colour in zip(VARIANTS, COLOURS):
+    for (method, mass), colour in zip(VARIANTS, COLOURS):
         for spin, style, marker in ((SLOW, "-", MARKERS[0]), (FAST, "--", MARKERS[1])):
-            errors = np.abs(rim_errors(recipe, mass, spin))
-            draw_rate(axes[1], spacings(NODES), errors, f"{recipe} {mass}, {spin:g}", colour, marker, style)
+            errors = np.abs(rim_errors(method, mass, spin))
+            draw_rate(axes[1], spacings(NODES), errors, f"{method} {mass}, {spin:g}", colour, marker, style)
     set_ticks(axes[1], spacings(NODES), [f"{h:.3f}" for h in spacings(NODES)])
     describe(axes[1], "error of the rim's stretch", "spacing of nodes over R")
     draw_energies(axes[2])

@@ -18,8 +18,8 @@ from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__)
 
-RECIPES = ["mls", "es-t3"]  # the first is the default
-STEPS = {recipe: 1_000_000 if FULL else steps for recipe, steps in (("mls", 200_000), ("es-t3", 50_000))}
+METHODS = ["mls", "es-t3"]  # the first is the default
+STEPS = {method: 1_000_000 if FULL else steps for method, steps in (("mls", 200_000), ("es-t3", 50_000))}
 STEP = {"mls": 0.0412, "es-t3": 0.0391}  # s, a little more than what the engine takes, so that there are so many steps
 SAMPLES = 100
 DIAMETER, PITCH, NODES = 1.5, 1.7, 30
@@ -72,68 +72,68 @@ def of_polygon(points: np.ndarray) -> tuple[float, np.ndarray, float]:
     return float(area), centre, float(about_origin - area * centre @ centre)
 
 
-def scene(recipe: str) -> str:
-    end = STEPS[recipe] * STEP[recipe]
+def scene(method: str) -> str:
+    end = STEPS[method] * STEP[method]
     period = end / SAMPLES
     probes = "".join(f'\n[[probes]]\nname = "{name}_{quantity}"\nquantity = "{quantity}"\n'
                      f'of = "{name}"\nperiod = {period!r}\n' for name in RIGID for quantity in ("position", "velocity"))
-    return CASE.scene(end=end, recipe=recipe, diameter=DIAMETER, nodes=NODES, ring=ring().tolist(), grains=grains(),
+    return CASE.scene(end=end, method=method, diameter=DIAMETER, nodes=NODES, ring=ring().tolist(), grains=grains(),
                       centre=of_polygon(ring())[1].tolist(),
                       period=period, probes=probes)
 
 
 @cache
-def run_of(recipe: str) -> Run:
-    return CASE.engine(recipe, scene(recipe))
+def run_of(method: str) -> Run:
+    return CASE.engine(method, scene(method))
 
 
-def energy(recipe: str) -> np.ndarray:
+def energy(method: str) -> np.ndarray:
     """[samples] over that of the start, less 1."""
-    run = run_of(recipe)
+    run = run_of(method)
     total = sum(run.probe(f"energy.{part}") for part in ("kinetic", "strain", "contact"))
     return total / total[0] - 1
 
 
 @cache
-def kept_by_verlet(recipe: str) -> np.ndarray:
+def kept_by_verlet(method: str) -> np.ndarray:
     """[samples] dt^2/8 times the sum of m |a|^2 over the soft discs' nodes, over the energy; with `mls` about."""
-    run, frames = run_of(recipe), frames_of(run_of(recipe))
+    run, frames = run_of(method), frames_of(run_of(method))
     mass = soft_motion(run)[1]
     squares = [mass @ (plane(frames, i, "acceleration") ** 2).sum(axis=1) for i in range(len(frames.times))]
     start = sum(run.probe(f"energy.{part}")[0] for part in ("kinetic", "strain", "contact"))
     return run.steps("dt").max() ** 2 / 8 * np.array(squares) / start
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_energy(recipe: str) -> None:
-    steps, errors = run_of(recipe).summary["steps"], energy(recipe)
-    CASE.check(Label.EXACT, f"{recipe}: {STEPS[recipe]} steps and more", float(steps >= STEPS[recipe]), 1, 0,
+@pytest.mark.parametrize("method", METHODS)
+def test_energy(method: str) -> None:
+    steps, errors = run_of(method).summary["steps"], energy(method)
+    CASE.check(Label.EXACT, f"{method}: {STEPS[method]} steps and more", float(steps >= STEPS[method]), 1, 0,
                "what is asked for")
-    CASE.check(Label.EXACT, f"{recipe}: energy over that of the start - 1, largest", np.abs(errors).max(), 0,
-               1e-2 + kept_by_verlet(recipe).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: "
+    CASE.check(Label.EXACT, f"{method}: energy over that of the start - 1, largest", np.abs(errors).max(), 0,
+               1e-2 + kept_by_verlet(method).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: "
                "discs that ring have forces")
-    CASE.check(Label.EXACT, f"{recipe}: forces and moments of contacts and stresses, what does not cancel",
-               run_of(recipe).summary["momentum_error"], 0, 1e-12, "promised")
+    CASE.check(Label.EXACT, f"{method}: forces and moments of contacts and stresses, what does not cancel",
+               run_of(method).summary["momentum_error"], 0, 1e-12, "promised")
 
 
 @pytest.mark.skipif(not FULL, reason="the first hundred time units, in which discs begin to ring, are a tenth of the run")
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_no_drift(recipe: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_no_drift(method: str) -> None:
     # K + U - dt^2 sum F^2/8m + (dt^2 sum F F_before/m - sum dx dF)/12: over slow vibrations either of the last is
     # dt^2 F^2/m in the mean
-    errors = energy(recipe) + kept_by_verlet(recipe) / 3
+    errors = energy(method) + kept_by_verlet(method) / 3
     halves = [Mean(block_means(half, BLOCK)) for half in (errors[1 : SAMPLES // 2 + 1], errors[SAMPLES // 2 + 1 :])]
-    CASE.check(Label.EXACT, f"{recipe}: what Verlet keeps, mean of the second half less that of the first",
+    CASE.check(Label.EXACT, f"{method}: what Verlet keeps, mean of the second half less that of the first",
                halves[1].value - halves[0].value, 0, halves[0].error + halves[1].error,
                f"no drift: both are means of one motion, {halves[0]} each")
 
 
-@pytest.mark.parametrize("recipe", RECIPES)
-def test_discs_collide(recipe: str) -> None:
+@pytest.mark.parametrize("method", METHODS)
+def test_discs_collide(method: str) -> None:
     """They change their places for others'."""
-    at = np.array([part[2] for part in rigid_parts(run_of(recipe))[:-1]])
+    at = np.array([part[2] for part in rigid_parts(run_of(method))[:-1]])
     ways = np.linalg.norm(at[:, -1, :2] - at[:, 0, :2], axis=1)
-    CASE.check(Label.EXACT, f"{recipe}: hard discs have gone further than a place, rms", float(
+    CASE.check(Label.EXACT, f"{method}: hard discs have gone further than a place, rms", float(
         np.sqrt((ways**2).mean()) > PITCH), 1, 0, "otherwise they would not meet")
 
 
@@ -185,11 +185,11 @@ def test_momenta() -> None:
 
 
 def test_picture() -> None:
-    figure, axes = panels(3, f"37 discs in a free ring, {STEPS[RECIPES[0]]} steps, nothing damped", across=True)
+    figure, axes = panels(3, f"37 discs in a free ring, {STEPS[METHODS[0]]} steps, nothing damped", across=True)
     draw_discs(axes[0])
-    for recipe, colour in zip(RECIPES, COLOURS):
-        times = run_of(recipe).times("energy.kinetic")
-        axes[1].plot(times, 1e4 * energy(recipe), ".-", color=colour, linewidth=0.6, markersize=3, label=recipe)
+    for method, colour in zip(METHODS, COLOURS):
+        times = run_of(method).times("energy.kinetic")
+        axes[1].plot(times, 1e4 * energy(method), ".-", color=colour, linewidth=0.6, markersize=3, label=method)
     axes[1].set_title("energy over its start - 1 [1e-4]", fontsize=10, loc="left")
     total, size = momenta()
     for column, what in enumerate(("momentum along x", "momentum along y", "angular momentum")):

@@ -104,9 +104,9 @@ def fitted_sine(times: np.ndarray, values: np.ndarray, guess: float) -> Sine:
     return Sine(frequency, float(np.sqrt(2 * np.mean(found.fun**2))), frequency * float(times[-1] - times[0]))
 
 
-def standing_scene(wave: Wave, recipe: str, mass: str, spacing: float) -> str:
+def standing_scene(wave: Wave, method: str, mass: str, spacing: float) -> str:
     period = 2 * np.pi / wave.frequency
-    return CASE.scene("standing.toml", end=float(PERIODS * period), recipe=recipe, mass=mass, spacing=spacing,
+    return CASE.scene("standing.toml", end=float(PERIODS * period), method=method, mass=mass, spacing=spacing,
                       gradient=wave.gradient(), axis="xy"[wave.held], stiffness=STIFFNESS,
                       period=float(period / SAMPLES))
 
@@ -123,9 +123,9 @@ def mode_frequency(wave: Wave, motion: Motion) -> float:
 
 
 @cache
-def engine_run(wave: Wave, recipe: str, mass: str, spacing: float) -> Run:
-    scene = standing_scene(wave, recipe, mass, spacing)
-    return CASE.engine(f"{wave.name}_{recipe}_{mass}_{spacing:.4f}", scene)
+def engine_run(wave: Wave, method: str, mass: str, spacing: float) -> Run:
+    scene = standing_scene(wave, method, mass, spacing)
+    return CASE.engine(f"{wave.name}_{method}_{mass}_{spacing:.4f}", scene)
 
 
 def engine_speed(wave: Wave, *variant: str | float) -> float:
@@ -140,7 +140,7 @@ def wave(request: pytest.FixtureRequest) -> Wave:
 
 @pytest.fixture(scope="module")
 def errors() -> dict[tuple[str, str, str], list[float]]:
-    """Of the engine's wave speeds, relative, by wave, recipe and mass, for SPACINGS."""
+    """Of the engine's wave speeds, relative, by wave, method and mass, for SPACINGS."""
     return {(wave.name, *variant): [engine_speed(wave, *variant, h) - 1 for h in SPACINGS]
             for wave in WAVES.values() for variant in CONVERGE}
 
@@ -253,7 +253,7 @@ def travelling_scene(wave: Wave) -> str:
     duration, end = PULSE / wave.speed, 2.8 / wave.speed
     times = np.linspace(0, duration, 41)
     pulse = AMPLITUDE * wave.modulus * (1 - np.cos(2 * np.pi * times / duration)) / 2
-    return CASE.scene("travelling.toml", end=end, recipe="mls", mass="corrected", spacing=TRAVELLING_SPACING,
+    return CASE.scene("travelling.toml", end=end, method="mls", mass="corrected", spacing=TRAVELLING_SPACING,
                       axis="xy"[wave.held], stiffness=STIFFNESS, period=end / 280,
                       direction=[1, 0] if wave.axis == 0 else [0, 1],
                       pulse=[[float(t), float(p)] for t, p in zip(times, pulse)])

@@ -1,6 +1,6 @@
 #include <map>
 
-#include "discretisation/recipes.hpp"
+#include "discretisation/methods.hpp"
 
 namespace pliant {
 namespace {
@@ -18,9 +18,9 @@ std::map<std::pair<int, int>, std::vector<int>> triangles_by_edge(const FieldMes
 
 }  // namespace
 
-RecipeResult build_es_t3(const FieldMesh& mesh) {
-  const RecipeResult linear = build_at_gauss_points(mesh, linear_triangles(mesh), 1);
-  RecipeResult result;
+MethodResult build_es_t3(const FieldMesh& mesh) {
+  const MethodResult linear = build_at_gauss_points(mesh, linear_triangles(mesh), 1);
+  MethodResult result;
   IntegrationTable& table = result.table;
   table.start.push_back(0);
   for (const auto& [edge, triangles] : triangles_by_edge(mesh)) {

@@ -1,11 +1,11 @@
+#include "discretisation/methods.hpp"
 #include "discretisation/quadrature.hpp"
-#include "discretisation/recipes.hpp"
 
 namespace pliant {
 
-RecipeResult build_at_gauss_points(const FieldMesh& mesh, const Basis& basis, int gauss_points) {
+MethodResult build_at_gauss_points(const FieldMesh& mesh, const Basis& basis, int gauss_points) {
   const MeshQuadrature quadrature = mesh_quadrature(mesh, gauss_points);
-  RecipeResult result;
+  MethodResult result;
   IntegrationTable& table = result.table;
   table.weight = quadrature.weight;
   table.start.push_back(0);

@@ -9,16 +9,16 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-Scene with_rim(Scene scene, double rim_mass) {
-  scene.discretisation.rim_mass = rim_mass;
+Scene with_rim(Scene scene, double mass_scaling) {
+  scene.discretisation.mass_scaling = mass_scaling;
   return scene;
 }
 
 /// EXACT: nodes on the outline are so many times as heavy, no others; the share is that of the mass before.
 TEST(RimMass, makes_outline_nodes_heavier) {
-  for (const Recipe recipe : {Recipe::mls, Recipe::es_t3}) {
+  for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::es_t3}) {
     Scene scene = free_disc(90, 1);
-    scene.discretisation.recipe = recipe;
+    scene.discretisation.method = method;
     const Model plain = build_model(scene), heavy = build_model(with_rim(scene, 1.7));
     const std::vector<double>&before = plain.shapes[0].space.mass_at_unit_density,
           &now = heavy.shapes[0].space.mass_at_unit_density;
