@@ -72,7 +72,7 @@ void update(benchmark::State& state) {
   for (auto _ : state) {
     grains.verlet->predict(grains.state, dt);
     parallel_for(static_cast<int>(grains.model.regions.size()),
-                 [&](int r) { grains.verlet->finish_region(grains.state, dt, r); });
+                 [&](int r) { grains.verlet->update_region(grains.state, dt, r); });
   }
   report(state, "node", field_nodes(grains.model), work::update(grains.model));
 }
@@ -147,7 +147,7 @@ void compliant_step(benchmark::State& state) {
       add_outline_forces(model, model.regions[b], trial.contact_force, f);
       benchmark::DoNotOptimize(
           add_internal_forces(model, batch, {.position = &trial.position.compliant[batch.offset]}, f));
-      grains.verlet->finish_region(grains.state, dt, b);
+      grains.verlet->update_region(grains.state, dt, b);
     });
   }
   report(state, "point", integration_points(model),

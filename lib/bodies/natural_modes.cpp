@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 /// its inverse; both are some 1e-12 of a stiffness.
 constexpr double difference_step = 1e-3;
 /// Displacements in steps; four lanes compute one column.
-constexpr double way[] = {1, -1, 2, -2};
+constexpr double offsets[] = {1, -1, 2, -2};
 constexpr int ways = 4, columns_at_once = lane_count / ways;
 /// Zero modes by w over the largest w: first modes of finite elements have some 1e-2, differences leave some 1e-6.
 constexpr double at_rest = 1e-4;
@@ -62,7 +62,7 @@ double slope(const double* f) { return (f[0] - f[1]) * 2 / 3 - (f[2] - f[3]) / 1
 std::vector<Lanes> moved_forces(const Model& model, const Batch& batch, std::vector<Lanes> q, Index first, int columns,
                                 double step) {
   for (int lane = 0; lane < columns * ways; ++lane)
-    q[static_cast<std::size_t>(first + lane / ways)][lane] += step * way[lane % ways];
+    q[static_cast<std::size_t>(first + lane / ways)][lane] += step * offsets[lane % ways];
   std::vector<Lanes> force(q.size(), Lanes{});
   add_internal_forces(model, batch, {.position = q.data()}, force.data());
   return force;

@@ -9,8 +9,8 @@
 
 #include <spdlog/spdlog.h>
 
-#include "contact/close_phase.hpp"
 #include "contact/master_window.hpp"
+#include "contact/narrow_phase.hpp"
 #include "contact/pair_forces.hpp"
 #include "contact/pair_queries.hpp"
 #include "core/parallel.hpp"
@@ -88,7 +88,7 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   warn_of_missed_contacts(outlines.position);
   verlet_list_.forget();
   const bool start = !fresh_;  // an empty history may also mean that bodies were far apart
-  take_over_pairs(outlines, outlines.position, history, clock);
+  rebuild_list(outlines, outlines.position, history, clock);
   if (start && !starts_from_a_state()) refuse_self_overlap();
   const auto begin = [&](const ContactPair& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
   if (start) parallel_for(table_.count(), [&](int p) { begin(contact_pairs()[p]); });
@@ -102,7 +102,7 @@ bool ContactSystem::renew_candidates(const Outlines& outlines, ContactHistory& h
                             laws_.law_interval(clock.time) == laws_.law_interval(refreshed_.time);
   if (pair_by_pair) {
     if (!trial) verlet_list_.skin_is_exceeded(asked);
-    return take_over_pairs(outlines, asked, history, clock);
+    return rebuild_list(outlines, asked, history, clock);
   }
   find_candidates(outlines, history, clock);
   return candidates_hold(asked, clock);
@@ -125,24 +125,24 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
 }
 
 /// Searches pairs that exceed the skin and transfers the history. Returns whether candidates are valid for the trial.
-bool ContactSystem::take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
-                                    const RunClock& clock) {
+bool ContactSystem::rebuild_list(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                                 const RunClock& clock) {
   if (laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time))
-    history.last.elapsed = 0;  // the laws have changed
+    history.last.dt = 0;  // the laws have changed
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
-  const std::vector<int> exceeded = verlet_list_.exceeded(outlines.position);
-  remember(outlines, exceeded);
-  const std::vector<ContactPair> found = search(exceeded);
-  found_ = exceeded;  // contact pairs are ordered as the pairs, unless there is self-contact
+  const std::vector<int> to_search = verlet_list_.pairs_to_search(outlines.position);
+  remember(outlines, to_search);
+  const std::vector<ContactPair> found = search(to_search);
+  found_ = to_search;  // contact pairs are ordered as the pairs, unless there is self-contact
   const auto carry = [&](const ContactPair& old, const ContactPair& now) {
     if (corrects_energy()) carry_forces(model_, old, history.last.forces, now, history.last.forces);
   };
-  if (!same_pairs || !table_.replace(exceeded, found, history, carry)) lay_out_anew(found, history);
+  if (!same_pairs || !table_.replace(to_search, found, history, carry)) lay_out_anew(found, history);
   parallel_for(static_cast<int>(found_.size()),
                [&](int i) { locate_new_contacts(view(contact_pairs()[found_[i]]), history); });
-  return verlet_list_.hold(exceeded, trial);
+  return verlet_list_.hold(to_search, trial);
 }
 
 std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
@@ -180,7 +180,7 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
   if (!corrects_energy()) return make_room(unkept_);
   make_room(history.last);
-  history.last.refreshes = before.refreshes, history.last.elapsed = before.elapsed;
+  history.last.refreshes = before.refreshes, history.last.dt = before.dt;
   auto from = old.begin();
   for (int p = 0; p < table_.count(); ++p) {
     while (from != old.end() && comes_before(*from, contact_pairs()[p])) ++from;
@@ -230,14 +230,13 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   table_.follow(from, to);  // also where no contact pair writes: states are compared bitwise
   StepForces& now = corrects_energy() ? to.last : unkept_;
   now.refreshes = refreshes_;
-  now.elapsed = step ? step->elapsed : 0;
+  now.dt = step ? step->dt : 0;
   const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for(table_.count(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(contact_pairs()[p + 1], outlines.position, step, from, to, now.forces);
-    const PairView view{model_, outlines, contact_pairs()[p], skin_, thread_scratch(), step ? step->elapsed : 0.0,
-                        moved};
+    const PairView view{model_, outlines, contact_pairs()[p], skin_, thread_scratch(), step ? step->dt : 0.0, moved};
     PairTotals& totals = now.totals[p];
     if (view.contact_pair.is_empty())
       totals = {};

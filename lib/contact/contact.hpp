@@ -26,7 +26,7 @@ struct RunClock {
 /// State at the start of a step.
 struct StepStart {
   const OutlineField& position;      ///< of the outlines, with their cyclic copies
-  double elapsed;                    ///< time since the start, s
+  double dt;                         ///< size of the step, s
   const RigidStep* rigid = nullptr;  ///< [rigid bodies]; null without energy correction
 };
 
@@ -104,8 +104,8 @@ class ContactSystem {
   }
 
  private:
-  bool take_over_pairs(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
-                       const RunClock& clock);
+  bool rebuild_list(const Outlines& outlines, const OutlineField& trial, ContactHistory& history,
+                    const RunClock& clock);
   void remember(const Outlines& outlines, const std::vector<int>& pairs);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);

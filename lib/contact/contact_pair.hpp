@@ -82,7 +82,7 @@ struct PairView {
   const ContactPair& contact_pair;
   double skin;                          ///< m
   MasterWindow& window;                 ///< scratch: master segments of the current half pass
-  double elapsed = 0;                   ///< size of the step that led here, s; 0: unknown
+  double dt = 0;                        ///< size of the step that led here, s; 0: unknown
   const OutlineField* moved = nullptr;  ///< displacements of outline nodes in that step, m; null: none
   int body(int side) const { return side == 0 ? contact_pair.first : contact_pair.second; }
   /// Shift of one side's body in x, by its periods, m.
@@ -94,13 +94,14 @@ struct PairTotals {
   double stored = 0;         ///< normal and elastic tangential energy, J/m
   double dissipated = 0;     ///< work of slip and damage since the last accepted step, J/m
   double damping_power = 0;  ///< power of dashpots, W/m
-  double deepest = 0;        ///< largest penetration over the longest segment near; contacts can be lost beyond 1
-  int contacts = 0;          ///< active slave nodes; slave segments if integrated
-  // For energy_correction.hpp; work and kept energy are 0 without a step:
-  double work_before = 0;  ///< work of the forces at the step's start over its displacements, J/m
-  double work = 0;         ///< work of the present forces over the same displacements, J/m
-  double kept = 0;         ///< energy that rigid bodies keep where the step changes or forces jump, J/m
-  double squares = 0;      ///< squared pressures over kn, integrated over length, J/m
+  double deepest =
+      0;  ///< largest penetration over the longest segment of the master window; contacts can be lost beyond 1
+  int contacts = 0;  ///< active slave nodes; slave segments if integrated
+  // For energy_correction.hpp; work and step_change are 0 without a step:
+  double work_before = 0;    ///< work of the forces at the step's start over its displacements, J/m
+  double work = 0;           ///< work of the present forces over the same displacements, J/m
+  double step_change = 0;    ///< energy that rigid bodies keep where the step changes or forces jump, J/m
+  double pressure_norm = 0;  ///< S_p: squared pressures over kn, integrated over length, J/m
 
   /// Adds the sums of another contact pair, except those of the energy correction, which belong to one pair alone.
   void add(const PairTotals& other) {
@@ -112,7 +113,8 @@ struct PairTotals {
   void visit(Visitor&& visitor) {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts);
-    visitor("work_before", work_before), visitor("work", work), visitor("kept", kept), visitor("squares", squares);
+    visitor("work_before", work_before), visitor("work", work), visitor("step_change", step_change),
+        visitor("pressure_norm", pressure_norm);
   }
 };
 

@@ -28,10 +28,10 @@ void carry_forces(const Model& model, const ContactPair& old, const PairForceBuf
   }
 }
 
-double relative_correction(double error, double most, const PairTotals& now, double work_before) {
+double relative_correction(double error, double share, const PairTotals& now, double work_before) {
   const double square = std::max(now.work * now.work, work_before * work_before);
-  if (square == 0 || now.squares == 0) return 0;
-  const double limit = most / now.squares;
+  if (square == 0 || now.pressure_norm == 0) return 0;
+  const double limit = share / now.pressure_norm;
   return -std::clamp(error / square, -limit, limit) * now.work;
 }
 
@@ -57,22 +57,22 @@ PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pai
          &correction = to.correction[contact_pair] = from.correction[contact_pair];
   const PairTotals& before = from.last.totals[contact_pair];
   // Parts of a body with self-contact change with a search.
-  const bool known = step && from.last.elapsed > 0 &&
-                     (!view.contact_pair.of_itself() || view.contact_pair.found <= from.last.refreshes);
+  const bool known =
+      step && from.last.dt > 0 && (!view.contact_pair.of_itself() || view.contact_pair.found <= from.last.refreshes);
   const auto rigid = [&](int side) {
     const int number = model_.bodies[view.body(side)].rigid;
     return known && step->rigid && number >= 0 ? &step->rigid[number] : nullptr;
   };
-  const PairStep way{
-      known ? &step->position : nullptr, from.last.forces, {rigid(0), rigid(1)}, view.elapsed, from.last.elapsed};
+  const PairStep pair_step{
+      known ? &step->position : nullptr, from.last.forces, {rigid(0), rigid(1)}, view.dt, from.last.dt};
   const auto compute = [&](const PairView& as) {
-    return compute_pair(as, known ? &way : nullptr, from, to, to.last.forces);
+    return compute_pair(as, known ? &pair_step : nullptr, from, to, to.last.forces);
   };
   // The error that is left when a pair separates is corrected by the forces of a law that still reaches it.
   const auto compute_apart = [&] {
     ContactPair near = view.contact_pair;
     near.law = parting_law(near.law, skin_);
-    return compute(PairView{model_, view.outlines, near, skin_, view.window, view.elapsed});
+    return compute(PairView{model_, view.outlines, near, skin_, view.window, view.dt});
   };
 
   PairTotals now, correcting;
@@ -81,12 +81,12 @@ PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pai
   if (was_apart) correcting = compute_apart();
   const bool still_apart = was_apart && correcting.deepest == 0;
   if (still_apart)
-    now.work_before = correcting.work_before, now.kept = correcting.kept;
+    now.work_before = correcting.work_before, now.step_change = correcting.step_change;
   else
     now = compute(view);
   // The work of a dashpot depends on the step size: the difference is not an energy error.
   if (is_damped(view.contact_pair.law)) return now;
-  if (known) energy_error += gain(now) - (before.stored - now.stored - now.dissipated);
+  if (known) energy_error += kinetic_energy_gain(now) - (before.stored - now.stored - now.dissipated);
   if (now.contacts > 0) {
     if (step)
       correction = relative_correction(energy_error, largest_correction_, now, before.contacts > 0 ? before.work : 0);

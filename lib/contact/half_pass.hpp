@@ -25,7 +25,7 @@ struct HalfPass {
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
   double damping = 0;  ///< Pa s/m
-  double elapsed = 0;  ///< see PairView, s
+  double dt = 0;       ///< see PairView, s
 };
 
 struct SlaveNodes {

@@ -18,11 +18,11 @@ struct StepForces {
   PairForceBuffer forces;
   std::vector<PairTotals> totals;  ///< [contact pairs]
   long refreshes = 0;              ///< number of rebuilds before it
-  double elapsed = 0;              ///< size of the step, s; 0: no step led to the state
+  double dt = 0;                   ///< size of the step, s; 0: no step led to the state
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("forces", forces), visitor("totals", totals), visitor("refreshes", refreshes), visitor("elapsed", elapsed);
+    visitor("forces", forces), visitor("totals", totals), visitor("refreshes", refreshes), visitor("dt", dt);
   }
 };
 
@@ -40,7 +40,7 @@ struct ContactHistory {
   std::vector<Lanes> numbers;  ///< [eights of records][columns]
   std::int32_t columns = first_of_law;
   std::vector<double> energy_error;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
-  /// [contact pairs] likewise: factor of the correcting forces, which add to the others, see energy_correction.hpp.
+  /// [contact pairs] relative change -chi W1 of the forces; after separation, factor of the forces of parting_law().
   std::vector<double> correction;
   StepForces last;  ///< empty without correction; no part of the motion
   /// Version of the storage layout (pair_table.hpp): histories with the same number store each node's record at the

@@ -12,7 +12,7 @@
 namespace pliant {
 namespace {
 
-/// Smaller depths, over the longest segment near, are rounding of positions.
+/// Smaller depths, over the longest segment of the master window, are rounding of positions.
 constexpr double least_depth_share = 1e-9;
 
 /// Node below the other body's outline.

@@ -11,7 +11,7 @@ struct InitialOverlap {
   int pairs = 0;              ///< pairs of bodies that overlap
   int first = 0, second = 0;  ///< the pair with the largest depth
   double depth = 0;           ///< of a node below the other outline, m
-  double share = 0;           ///< depth over the longest segment near, as PairTotals::deepest
+  double share = 0;           ///< depth over the longest segment of the master window, as PairTotals::deepest
   double stored = 0;          ///< compression energy of all overlapping contacts, J/m
   double separation = 0;      ///< distance by which the deepest pair must move apart to remove its overlap, m
   double growth = 1;          ///< factor on the pitch of lattices that removes the overlaps of their own grains

@@ -17,7 +17,7 @@ namespace {
 
 /// PairTotals before the lanes are added up.
 struct LaneTotals {
-  Lanes stored{}, dissipated{}, damping_power{}, squares{}, deepest{};
+  Lanes stored{}, dissipated{}, damping_power{}, pressure_norm{}, deepest{};
   int contacts = 0;
 };
 
@@ -54,7 +54,7 @@ template <class Law>
 Lanes add_damping(const Law& law, const HalfPass& pass, int i, const Projection& p, LaneBits touching, Lanes weight,
                   Traction& traction) {
   const Lanes rate = gap_rate(pass, i, p, touching);
-  const Lanes damping = law.damping_pressure(traction.pressure, p.gap, rate, pass.damping, pass.elapsed);
+  const Lanes damping = law.damping_pressure(traction.pressure, p.gap, rate, pass.damping, pass.dt);
   add_pressure(law, damping, traction);
   return select(touching, -weight * damping * rate, Lanes{});
 }
@@ -118,7 +118,7 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     if (!any(touching)) continue;
     const Lanes pressure = select(touching, c.pressure, Lanes{}), shear = select(touching, c.shear, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
-    totals.squares += half_length * pressure * pressure;
+    totals.pressure_norm += half_length * pressure * pressure;
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
     const Force force = force_on(p, select(touching, half_length, Lanes{}), pressure, shear);
     reactions.add(p, force.x, force.y, force.couple);
@@ -147,7 +147,7 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
     HalfPass pass = make_half_pass(view, slave_side, runs);
     if constexpr (has_dashpot<Law>) {
       load_velocities(view, slave_side, pass);
-      pass.damping = damping, pass.elapsed = view.elapsed;
+      pass.damping = damping, pass.dt = view.dt;
     }
     fill_window(view, 1 - slave_side);
     compute_half_pass(law, pass, view, accounts);
@@ -157,7 +157,7 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
   PairTotals result{sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest),
                     totals.contacts};
-  result.squares = sum(totals.squares) / law.normal_stiffness;
+  result.pressure_norm = sum(totals.pressure_norm) / law.normal_stiffness;
   return result;
 }
 
@@ -166,7 +166,7 @@ class StepWork {
  public:
   StepWork(const PairView& view, const PairStep& step, int side)
       : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {
-    const double now = 0.125 * step.elapsed * step.elapsed, before = 0.125 * step.elapsed_before * step.elapsed_before;
+    const double now = 0.125 * step.dt * step.dt, before = 0.125 * step.dt_before * step.dt_before;
     for (int c = 0; rigid_ && c < 3; ++c)
       kept_by_force_[c] = before * rigid_->acceleration_before[c] - now * rigid_->acceleration[c];
   }
@@ -177,21 +177,22 @@ class StepWork {
     const Lanes x0 = load(&step_.before->x[node]), y0 = load(&step_.before->y[node]), x1 = load(&now_.x[node]),
                 y1 = load(&now_.y[node]);
     if (!rigid_) {
-      const Lanes way_x = x1 - x0, way_y = y1 - y0;
-      add_in_order(old_x * way_x + old_y * way_y, before_);
-      add_in_order(x * way_x + y * way_y, now_work_);
+      const Lanes displacement_x = x1 - x0, displacement_y = y1 - y0;
+      add_in_order(old_x * displacement_x + old_y * displacement_y, before_);
+      add_in_order(x * displacement_x + y * displacement_y, now_work_);
       return;
     }
     const RigidStep& r = *rigid_;
-    const double way_x = r.to.x() - r.from.x(), way_y = r.to.y() - r.from.y();
+    const double displacement_x = r.to.x() - r.from.x(), displacement_y = r.to.y() - r.from.y();
     const Lanes arm_x = x0 - r.from.x(), arm_y = y0 - r.from.y();
-    add_in_order(old_x * (way_x - r.turn * arm_y) + old_y * (way_y + r.turn * arm_x), before_);
-    add_in_order(x * (way_x - r.turn * (y1 - r.to.y())) + y * (way_y + r.turn * (x1 - r.to.x())), now_work_);
+    add_in_order(old_x * (displacement_x - r.turn * arm_y) + old_y * (displacement_y + r.turn * arm_x), before_);
+    add_in_order(x * (displacement_x - r.turn * (y1 - r.to.y())) + y * (displacement_y + r.turn * (x1 - r.to.x())),
+                 now_work_);
     const auto& [kept_x, kept_y, kept_turn] = kept_by_force_;
     add_in_order(old_x * (kept_x - kept_turn * arm_y) + old_y * (kept_y + kept_turn * arm_x), kept_);
   }
   void add_to(PairTotals& totals) const {
-    totals.work_before += before_, totals.work += now_work_, totals.kept += kept_;
+    totals.work_before += before_, totals.work += now_work_, totals.step_change += kept_;
   }
 
  private:

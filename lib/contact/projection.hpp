@@ -19,8 +19,8 @@ struct Projection {
   Lanes height;  ///< distance from the segment's line, positive outside, m
   Lanes gap;     ///< m, negative inside
   Lanes normal_x, normal_y;
-  Lanes xi;   ///< [0, 1] along the segment
-  Lanes fan;  ///< beyond an end: sine of the angle from the segment's normal to the node's; 0 on the segment
+  Lanes xi;           ///< [0, 1] along the segment
+  Lanes sine_beyond;  ///< beyond an end: sine of the angle from the segment's normal to the node's; 0 on the segment
 };
 
 /// Row of the segment whose line is nearest, among those whose Voronoi regions contain the nodes, at most `reach` away;
@@ -60,7 +60,7 @@ inline Projection project_on_row(const MasterWindow& window, Lanes px, Lanes py,
   Projection p;
   p.row = row_of_node;
   p.hit = p.row >= 0.0;
-  p.fan = Lanes{};  // read even without a projection
+  p.sine_beyond = Lanes{};  // read even without a projection
   if (!any(p.hit)) return p;
   const Lanes some_row = max(p.row, Lanes{});
   const LaneBits rows = __builtin_convertvector(some_row, LaneBits);
@@ -83,10 +83,10 @@ inline Projection project_on_row(const MasterWindow& window, Lanes px, Lanes py,
     const LaneBits radial = beyond & (distance > 0.0);
     const Lanes gap = select(radial, select(p.height < 0.0, -distance, distance), broadcast(1));
     p.gap = select(radial, gap, p.gap);
-    p.fan = select(radial, over / gap, p.fan);
+    p.sine_beyond = select(radial, over / gap, p.sine_beyond);
     const Lanes cosine = select(radial, p.height / gap, broadcast(1));
-    p.normal_x = cosine * p.tangent_y + p.fan * p.tangent_x;
-    p.normal_y = p.fan * p.tangent_y - cosine * p.tangent_x;
+    p.normal_x = cosine * p.tangent_y + p.sine_beyond * p.tangent_x;
+    p.normal_y = p.sine_beyond * p.tangent_y - cosine * p.tangent_x;
   }
   return p;
 }
@@ -106,7 +106,7 @@ inline Projection project(const MasterWindow& window, Lanes px, Lanes py, double
   p.hit = p.hit & (abs(p.height) < reach);
   // Up to this sine a node is at most 1 % nearer to the line than to the segment.
   constexpr double steep = 0.14;
-  if (const LaneBits misled = p.hit & (abs(p.fan) > steep); any(misled)) [[unlikely]]
+  if (const LaneBits misled = p.hit & (abs(p.sine_beyond) > steep); any(misled)) [[unlikely]]
     project_to_nearest(window, px, py, misled, reach, outward, p);
   return p;
 }

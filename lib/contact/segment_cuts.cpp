@@ -181,12 +181,12 @@ void SegmentCuts::add_segment_parts(const SegmentPairs& pairs, PackedParts& part
   }
 }
 
-SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int way, LaneBits which) const {
+SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int direction, LaneBits which) const {
   NextLanes result{};
   for (int lane = 0; lane < lane_count; ++lane) {
     const int row = static_cast<int>(rows[lane]);
     if (!which[lane] || window_.rivals(row) == 0) continue;
-    const int other = window_.rival(row, way < 0 ? 0 : 1);
+    const int other = window_.rival(row, direction < 0 ? 0 : 1);
     if (other < 0) continue;
     result.shorter[lane] = -1, result.length[lane] = window_[other].length;
   }

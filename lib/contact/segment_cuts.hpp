@@ -60,12 +60,12 @@ class SegmentCuts {
   RelativeToRow relative_to_row(const SlaveSegments& slaves, LaneBits rows) const;
   Linear past_bisector(const SlaveSegments& slaves, LaneBits rows) const;
   Span8 fan_region(const SlaveSegments& slaves, const NodeLanes& nodes, LaneBits rows) const;
-  /// The segments next to others, in the direction `way`, -1 or 1, where these are shorter.
+  /// The segments next to others, before (-1) or after (1), where these are shorter.
   struct NextLanes {
     LaneBits shorter;
     Lanes length;  ///< m
   };
-  NextLanes shorter_next(LaneBits rows, int way, LaneBits which) const;
+  NextLanes shorter_next(LaneBits rows, int direction, LaneBits which) const;
   void leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans8& spans) const;
   Spans8 nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
                          const Span8& fan) const;

@@ -22,7 +22,7 @@ struct SegmentHalfPass {
 };
 
 struct Totals {
-  double stored = 0, dissipated = 0, damping_power = 0, squares = 0, deepest = 0;
+  double stored = 0, dissipated = 0, damping_power = 0, pressure_norm = 0, deepest = 0;
   int segments = 0;  ///< in contact
 };
 
@@ -89,7 +89,7 @@ class TractionVisitor {
     pairs_ = &pairs, xi_ = xi, hit_ = LaneBits{};
     pressure_ = {}, in_fans_ = {}, stored_ = squares_ = damping_power_ = Lanes{};
     if constexpr (Law::has_shear) {
-      weight_ = limit_ = way_ = gap_ = {};
+      weight_ = limit_ = slip_ = gap_ = {};
       for (int power = 0; power < 3; ++power) on_segments_[power] = shear_x_[power] = shear_y_[power] = Lanes{};
       if (at_.moved) motion_ = TangentialMotion(pairs, xi, *at_.moved);
     }
@@ -106,7 +106,7 @@ class TractionVisitor {
       on_segments_[0] += p.weight, on_segments_[1] += first, on_segments_[2] += first * p.s;
       limit_.add(p.weight * traction.shear_limit, p.s);
       gap_.add(p.weight * p.gap, p.s);
-      if (at_.moved) way_.add(p.weight * motion_.on_segment(p), p.s);
+      if (at_.moved) slip_.add(p.weight * motion_.on_segment(p), p.s);
     }
   }
 
@@ -128,15 +128,15 @@ class TractionVisitor {
     for (int power = 0; power < 3; ++power) shear_x_[power] -= f.normal_y[power], shear_y_[power] += f.normal_x[power];
     gap_.plain += f.gap.plain, gap_.times_s += f.gap.times_s;
     if (!at_.moved) return;
-    const Moments way = motion_.in_fan(f);
-    way_.plain += way.plain, way_.times_s += way.times_s;
+    const Moments slip = motion_.in_fan(f);
+    slip_.plain += slip.plain, slip_.times_s += slip.times_s;
   }
 
   void end() {
     for_each_lane(hit_, [&](int lane) {
       char& touched = scratch_.touched[static_cast<std::size_t>(pairs_->slave[lane])];
       totals_.segments += !touched, touched = 1;
-      totals_.stored += stored_[lane], totals_.squares += squares_[lane];
+      totals_.stored += stored_[lane], totals_.pressure_norm += squares_[lane];
     });
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
@@ -148,7 +148,7 @@ class TractionVisitor {
       const Moments weight{weight_.plain + on_segments_[0], weight_.times_s + on_segments_[1]};
       HatSums(weight).add_to(scratch_.sums.weight, *pairs_, hit_);
       HatSums(limit_).add_to(scratch_.sums.shear_limit, *pairs_, hit_);
-      if (at_.moved) HatSums(way_).add_to(scratch_.sums.motion, *pairs_, hit_);
+      if (at_.moved) HatSums(slip_).add_to(scratch_.sums.motion, *pairs_, hit_);
       if (scratch_.shearing.size() == scratch_.shearing_count) scratch_.shearing.emplace_back();
       ShearingPairs& s = scratch_.shearing[scratch_.shearing_count++];
       s.hit = hit_, s.slave = pairs_->slave, s.row = pairs_->row, s.xi = xi_, s.forces = forces, s.gap = gap_;
@@ -175,7 +175,7 @@ class TractionVisitor {
   template <class Point>
   void add_damping(const Point& p, Lanes normal_x, Lanes normal_y, Traction& traction) {
     const Lanes rate = rates_.along(normal_x, normal_y, p.s, xi_.at(p.s));
-    const Lanes damping = law_.damping_pressure(traction.pressure, p.gap, rate, at_.pass.damping, at_.pass.elapsed);
+    const Lanes damping = law_.damping_pressure(traction.pressure, p.gap, rate, at_.pass.damping, at_.pass.dt);
     add_pressure(law_, damping, traction);
     damping_power_ += select(p.hit & (p.gap < 0.0), -p.weight * damping * rate, Lanes{});
   }
@@ -191,7 +191,7 @@ class TractionVisitor {
   Lanes stored_, squares_, damping_power_;
   Moments pressure_;    ///< on segments
   PairForces in_fans_;  ///< of pressures in vertex regions
-  Moments weight_, limit_, way_, gap_;
+  Moments weight_, limit_, slip_, gap_;
   Lanes on_segments_[3], shear_x_[3],
       shear_y_[3];  ///< weights on segments, tangents in vertex regions, times powers of s
   TangentialMotion motion_;
@@ -275,7 +275,7 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
         if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
       thread_local PairMotion moved, speeds;
       for_each_half_pass(view, runs, [&](HalfPass& pass, int slave_side) {
-        pass.damping = damping, pass.elapsed = view.elapsed;
+        pass.damping = damping, pass.dt = view.dt;
         SegmentHalfPass at{pass, view.window, nullptr, nullptr, forces};
         if constexpr (Law::has_shear)
           if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
@@ -286,7 +286,7 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
   };
   std::visit(both_passes, view.contact_pair.law);
   PairTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};
-  result.squares = totals.squares / normal_stiffness_of(view.contact_pair.law);
+  result.pressure_norm = totals.pressure_norm / normal_stiffness_of(view.contact_pair.law);
   return result;
 }
 

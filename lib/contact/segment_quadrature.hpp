@@ -53,13 +53,13 @@ class SegmentQuadrature {
     if (parts_.begin() == parts_.end()) return;
     visit.begin(pairs, {pairs.along.at0 * pairs.inverse_length, pairs.along.at1 * pairs.inverse_length});
     for (const PackedParts::Eight& part : parts_) {
-      const Lanes way = select(part.hit, part.span.high - part.span.low, Lanes{}),
-                  weight = 0.25 * way * pairs.segments.length;
+      const Lanes span_length = select(part.hit, part.span.high - part.span.low, Lanes{}),
+                  weight = 0.25 * span_length * pairs.segments.length;
       deepest_ = max(deepest_,
                      select(part.hit, -min(pairs.height.at(part.span.low), pairs.height.at(part.span.high)), Lanes{}));
       constexpr double gauss = 0.21132486540518713;  // 1/2 - 1/sqrt(12)
       for (const double share : {gauss, 1 - gauss}) {
-        const Lanes s = part.span.low + share * way;
+        const Lanes s = part.span.low + share * span_length;
         visit.on_segment(QuadraturePoint{part.hit, s, pairs.height.at(s), weight});
       }
     }
@@ -79,18 +79,18 @@ class SegmentQuadrature {
     };
     const Lanes whole = sqrt(dx * dx + dy * dy);
     for (const PackedParts::Eight& part : parts_) {
-      const Lanes way = select(part.hit, part.span.high - part.span.low, Lanes{});
+      const Lanes span_length = select(part.hit, part.span.high - part.span.low, Lanes{});
       // The error of three points is rho^-6 of a part. There rho + 1/rho is twice the sum of the distances of its ends
       // from the node, over its length (Trefethen 2008, doi 10.1137/060659831): 1e-8 at 21.6.
       const LaneBits wide =
-          nodes.convex & (2.0 * (distance(part.span.low) + distance(part.span.high)) < 21.6 * way * whole);
+          nodes.convex & (2.0 * (distance(part.span.low) + distance(part.span.high)) < 21.6 * span_length * whole);
       FanShape shape{part.hit & ~wide};
       const auto point = [&](double share, double of_length) {
-        const Lanes s = part.span.low + share * way, x = x0 + s * dx, y = y0 + s * dy, square = x * x + y * y;
+        const Lanes s = part.span.low + share * span_length, x = x0 + s * dx, y = y0 + s * dy, square = x * x + y * y;
         const LaneBits apart = square > 0.0;
         const Lanes outward = side * select(apart, inverse_sqrt(select(apart, square, broadcast(1))), Lanes{});
-        const Lanes weight = select(wide, Lanes{}, (0.5 * of_length) * way * slaves.length), gap = square * outward,
-                    normal_x = x * outward, normal_y = y * outward;
+        const Lanes weight = select(wide, Lanes{}, (0.5 * of_length) * span_length * slaves.length),
+                    gap = square * outward, normal_x = x * outward, normal_y = y * outward;
         deepest_ = max(deepest_, select(part.hit, -gap, Lanes{}));
         const Lanes second = s * weight, first = weight - second;
         visit.in_fan(FanPoint{part.hit & ~wide,

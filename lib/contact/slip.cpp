@@ -34,14 +34,14 @@ MasterSegment at(const MasterWindow& window, int row) {
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];
 }
 
-double way_onward(const MasterWindow& window, const Place& from, const Place& to, double height, double gap) {
-  double way =
+double distance_onward(const MasterWindow& window, const Place& from, const Place& to, double height, double gap) {
+  double distance =
       (1 - from.xi) * at(window, from.row).length + to.xi * at(window, to.row).length + gap * (to.angle - from.angle);
   for (int row = from.row + 1; row <= to.row; ++row) {
-    way += corner(at(window, row - 1), at(window, row), height, gap);
-    if (row < to.row) way += at(window, row).length;
+    distance += corner(at(window, row - 1), at(window, row), height, gap);
+    if (row < to.row) distance += at(window, row).length;
   }
-  return way;
+  return distance;
 }
 
 /// Position of a node, and the tangent along which its shear acts there.
@@ -70,16 +70,17 @@ bool are_folded(const MasterSegment& a, const MasterSegment& b) {
 
 }  // namespace
 
-double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place) {
+double distance_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place) {
   const double old_number = std::floor(0.5 * (old_place + 0.5)), old_u = old_place - 2 * old_number;
   const double old_xi = std::clamp(old_u, 0.0, 1.0);
   double rows = old_number - p.number[lane];
   rows -= window.outline_count() * std::round(rows / window.outline_count());
-  const Place now{static_cast<int>(p.row[lane]), p.xi[lane], angle_of(p.fan[lane])};
+  const Place now{static_cast<int>(p.row[lane]), p.xi[lane], angle_of(p.sine_beyond[lane])};
   const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(fan_of(broadcast(old_u - old_xi))[0])};
   const double height = p.height[lane], gap = p.gap[lane];
   if (are_folded(at(window, old.row), at(window, now.row))) return across_fold(window, old, now, gap);
-  return old.row < now.row ? way_onward(window, old, now, height, gap) : -way_onward(window, now, old, height, gap);
+  return old.row < now.row ? distance_onward(window, old, now, height, gap)
+                           : -distance_onward(window, now, old, height, gap);
 }
 
 }  // namespace pliant

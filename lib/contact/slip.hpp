@@ -6,14 +6,14 @@
 namespace pliant {
 
 /// Surface coordinate of a node on the master's outline as one number, for the history: twice the segment's number,
-/// plus xi on the segment. Beyond an end it is outside [0, 1]: by |fan|/4 outside the outline, by 0.3 + 0.15 |fan|
+/// plus xi on the segment. Beyond an end it is outside [0, 1]: by |sine_beyond|/4 outside the outline, by 0.3 + 0.15 |sine_beyond|
 /// inside a re-entrant corner, where the normal turns against the direction of motion. The offset is always less than
 /// 1/2, so that every coordinate belongs to one segment.
 inline Lanes place_of(const Projection& p) {
-  const Lanes turn = abs(p.fan);
+  const Lanes turn = abs(p.sine_beyond);
   const Lanes off = select(p.gap < 0.0, 0.3 + 0.15 * turn, 0.25 * turn);
   const Lanes onward = select(p.xi > 0.5, off, -off);
-  return 2.0 * p.number + p.xi + select(p.fan != 0.0, onward, Lanes{});
+  return 2.0 * p.number + p.xi + select(p.sine_beyond != 0.0, onward, Lanes{});
 }
 
 /// The fan of a surface coordinate that is `off` outside [0, 1].
@@ -25,7 +25,7 @@ inline Lanes fan_of(Lanes off) {
 /// Path length along the outline, signed, m, from an old surface coordinate on another segment to the projection in one
 /// lane, at its present gap and shape. Faces count by their length, corners by the rotation of the normal. Between
 /// flanks of a fold the displacement along them counts instead.
-double way_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
+double distance_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
 
 /// Slip increment of eight nodes along the master since the last accepted step, m. It is a rate in the present shape
 /// (on a segment l d(xi), beyond an end g d(angle)), so that the shear force is its exact conjugate. `place`:
@@ -44,7 +44,7 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
   }
   if (const LaneBits crossed = counted & ~same; any(crossed))
     for (int lane = 0; lane < lane_count; ++lane)
-      if (crossed[lane]) moved[lane] = way_between_segments(window, p, lane, old_place[lane]);
+      if (crossed[lane]) moved[lane] = distance_between_segments(window, p, lane, old_place[lane]);
   return select(counted, moved, Lanes{});
 }
 

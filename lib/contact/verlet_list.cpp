@@ -12,10 +12,10 @@ namespace {
 
 constexpr double extra_skins = 4;
 /// Diameter of a body's displacements, as a share of the skin, from which the body gets a new reference.
-constexpr double blurred = 0.25;
+constexpr double reset_threshold = 0.25;
 /// Share of the skin up to which a pair is kept when others are searched; likewise for the broad phase. Few pairs move
 /// by much more than the others (docs/notes/contact_search.md).
-constexpr double kept = 0.75;
+constexpr double search_threshold = 0.75;
 /// Bound of the rounding of stored displacements of some skins, over the skin, with a wide margin.
 constexpr double rounded = 1e-4;
 
@@ -79,7 +79,7 @@ void VerletList::loaded() {
     throw ArchiveError("displacements are those of other bodies");
   if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
     throw ArchiveError("displacements are those of other pairs");
-  use_.assign(pairs_.size(), all);
+  use_.assign(pairs_.size(), search_again);
 }
 
 /// Sets motion_ and returns how far bodies have come since the last broad phase, relative to the mean of all bodies, m.
@@ -112,7 +112,7 @@ double VerletList::measure(const OutlineField& now) {
 double VerletList::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
                                      const OutlineField& now) const {
   const BodyPlace& then = swept_at_[body];
-  if (from_mean < kept * own_skin_ || then.inner < 0) return from_mean;
+  if (from_mean < search_threshold * own_skin_ || then.inner < 0) return from_mean;
   const BodyPlace place = place_of(model_, body, now);
   const double dx = place.x - then.x - drift_x, dy = place.y - then.y - drift_y;
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
@@ -138,11 +138,11 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   come_out_ = measure(now);
   use_.resize(pairs_.size());
   const bool some = parallel_any(count(), [&](int p) {
-    if (!watched_[p]) return use_[p] = little, false;
+    if (!watched_[p]) return use_[p] = keep, false;
     // If the disc bound is below the skin, the pair is valid and an estimate suffices.
     const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : displacement(p, now);
-    use_[p] = likely < kept * skin_ ? little : likely < (1 - rounded) * skin_ ? much : all;
-    return use_[p] == all;
+    use_[p] = likely < search_threshold * skin_ ? keep : likely < (1 - rounded) * skin_ ? check : search_again;
+    return use_[p] == search_again;
   });
   return some || !(come_out_ < own_skin_);
 }
@@ -150,7 +150,7 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
 /// Sets a new reference for bodies that have deformed or rotated since theirs. The bounds of all their pairs would
 /// become overestimates.
 void VerletList::reset_references(const OutlineField& here, const OutlineField& trial) {
-  const auto is_due = [&](int b) { return displacement_diameter(motion_[b]) >= blurred * skin_; };
+  const auto is_due = [&](int b) { return displacement_diameter(motion_[b]) >= reset_threshold * skin_; };
   parallel_for(pair_displacements_.count(), [&](int e) {
     if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, displacements(here));
   });
@@ -171,7 +171,7 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
     reference_ = here;
   } else {
     reset_references(here, trial);
-    if (come_out_ < kept * own_skin_) return false;
+    if (come_out_ < search_threshold * own_skin_) return false;
   }
   just_swept_ = true;
   std::vector<Box> boxes(model_.bodies.size());
@@ -223,16 +223,16 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   }
 }
 
-std::vector<int> VerletList::exceeded(const OutlineField& here) {
+std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
-    if (use_[p] != much) return;
+    if (use_[p] != check) return;
     const double exact = displacement(p, here);
     excess_[p] = std::max(0.0, displacement_bound(p, here) - exact);
-    if (exact < kept * skin_) use_[p] = little;
+    if (exact < search_threshold * skin_) use_[p] = keep;
   });
   std::vector<int> result;
   for (int p = 0; p < count(); ++p)
-    if (use_[p] != little) result.push_back(p);
+    if (use_[p] != keep) result.push_back(p);
   return result;
 }
 
@@ -249,7 +249,7 @@ void VerletList::searched(int pair, const OutlineField& now, double gap) {
 
 void VerletList::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
-  use_.push_back(little);
+  use_.push_back(keep);
   excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);
   for (int body : {pair.first, pair.second}) pair_displacements_.append(body);
   searched(count() - 1, now, 0);

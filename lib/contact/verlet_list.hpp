@@ -36,7 +36,7 @@ class VerletList {
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
   /// Call once after each update. Returns the pairs whose candidates must be searched again; all others are valid for
   /// the trial.
-  std::vector<int> exceeded(const OutlineField& here);
+  std::vector<int> pairs_to_search(const OutlineField& here);
   /// Whether the candidates of pairs that were searched are valid for the trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
   /// Gap beyond which pairs that the broad phase just found need no monitoring, m.
@@ -75,8 +75,8 @@ class VerletList {
   std::vector<DisplacementDisc> motion_;  ///< [bodies] discs of the outline nodes' displacements from the reference
   double come_out_ = 0;                   ///< result of measure(), m
   bool just_swept_ = false;               ///< whether the last update ran the broad phase
-  enum Use : char { little, much, all };
-  std::vector<Use> use_;  ///< [pairs] used share of the skin at the last test
+  enum Use : char { keep, check, search_again };
+  std::vector<Use> use_;  ///< [pairs] what the last test of the skin asks for
   std::vector<BodyPair> pairs_;
   /// [pairs] overestimate of the disc bound at the last exact check, m. It is subtracted from later bounds below the
   /// skin, so that few pairs are checked node by node.

@@ -66,17 +66,17 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   thread_local std::vector<Lanes> impulse, less, scratch;  // memory is allocated once
   impulse.resize(size), less.resize(size), scratch.resize(size);
   return with_nodes(model, batch, [&](const auto& nodes) {
-    Lanes mass{}, way[2]{}, old_mean[2]{};
+    Lanes mass{}, mean_displacement[2]{}, old_mean[2]{};
     for (int slot = 0; slot < batch.slots; ++slot) {
       mass += nodes.mass_at_unit_density[slot];
       for (int c = 0; c < 2; ++c) {
         const int i = 2 * slot + c;
-        way[c] += nodes.mass_at_unit_density[slot] * (q[i] - old_q[i]), old_mean[c] += old_f[i];
+        mean_displacement[c] += nodes.mass_at_unit_density[slot] * (q[i] - old_q[i]), old_mean[c] += old_f[i];
       }
     }
     mass = sum_over_body(batch, mass);
     for (int c = 0; c < 2; ++c) {
-      way[c] = sum_over_body(batch, way[c]) / mass;
+      mean_displacement[c] = sum_over_body(batch, mean_displacement[c]) / mass;
       old_mean[c] = sum_over_body(batch, old_mean[c]) / mass;
     }
     Lanes change{};
@@ -84,7 +84,7 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
       const Lanes half_step = 0.5 * dt * (nodes.inverse_mass_at_unit_density[i / 2] * batch.inverse_density);
       impulse[i] = half_step * f[i];
       less[i] = half_step * (f[i] - 2.0 / 3 * (old_f[i] - nodes.mass_at_unit_density[i / 2] * old_mean[i % 2]));
-      change += (q[i] - old_q[i] - way[i % 2]) * (f[i] - old_f[i]);
+      change += (q[i] - old_q[i] - mean_displacement[i % 2]) * (f[i] - old_f[i]);
     }
     const auto product = [&](const Lanes* a, const Lanes* b) {  // product of reduced momenta, weighted by mass
       if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();

@@ -137,7 +137,7 @@ template <class Tried>
 std::optional<Failure> found(const Evaluation& evaluation, const Tried& tried, const Forces& forces) {
   if (!(evaluation.least_jacobian > 0)) return inversion(forces.model(), tried.position);
   if (std::optional<Failure> nan = number_that_is_none(forces.model(), tried.position, tried.force)) return nan;
-  if (!evaluation.sound) return lost_contact(forces, tried.outlines);
+  if (!evaluation.valid) return lost_contact(forces, tried.outlines);
   return {};
 }
 

@@ -14,8 +14,9 @@
 namespace pliant {
 namespace {
 
-/// Penetration over segment length: contacts are lost a skin beyond 1, and a warning comes at half of that.
-constexpr double deep_penetration = 0.5, lost_penetration = 1;
+/// Largest penetration over the longest segment of the master window: a run warns beyond the first and rejects a step
+/// beyond the second. Detection ends a skin deeper.
+constexpr double warning_depth = 0.5, rejection_depth = 1;
 
 /// Padding lanes repeat a body, so that they need no masking here.
 double least_of(Lanes jacobian) { return -largest(-jacobian); }
@@ -31,7 +32,7 @@ Forces::Forces(const Model& model)
   if (model.rates || model.material_memory > 0) damping_power_.resize(least_jacobian_.size());
 }
 
-Forces::Candidates Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
+Forces::ListCheck Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
   phases_.enter(Phase::candidates);
   const RunClock clock{time, accepted.steps};
   if (contact_.candidates_hold(trial, clock)) return {};
@@ -46,7 +47,7 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   Evaluation result;
   phases_.enter(Phase::contact);
   if (from.outlines) {
-    const StepStart step{*from.outlines, from.elapsed, from.rigid};
+    const StepStart step{*from.outlines, from.dt, from.rigid};
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force, &step);
   } else {
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
@@ -55,12 +56,12 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   phases_.enter(Phase::internal);
   const OutlineField* on_outlines = &to.contact_force;
   if (has_outline_loads(model_)) {
-    loaded_ = to.contact_force;
-    result.damping_power += add_outline_loads(model_, motion.instant(), outlines, loaded_);
-    on_outlines = &loaded_;
+    outline_force_ = to.contact_force;
+    result.damping_power += add_outline_loads(model_, motion.instant(), outlines, outline_force_);
+    on_outlines = &outline_force_;
   }
   to.memory.material.resize(model_.material_memory);
-  const auto of_batch = [&](int b) {
+  const auto of_batch = [&](int b) {  // region b is all of batch b (Model::regions)
     lane_forces(b, motion, *on_outlines, from, to);
     if (update.region) update.region(b);
   };
@@ -73,7 +74,7 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
-  result.sound = result.least_jacobian > 0 && result.contact.deepest <= lost_penetration;
+  result.valid = result.least_jacobian > 0 && result.contact.deepest <= rejection_depth;
   return result;
 }
 
@@ -81,7 +82,7 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
 BatchMotion Forces::step_of(const Batch& batch, const Motion& motion, const PreviousHistory& from, Memory& to) const {
   BatchMotion step = motion_of(batch, motion.position, from.memory);
   if (batch.viscous) step.velocity = &motion.velocity.compliant[batch.offset];
-  step.elapsed = from.elapsed;
+  step.elapsed = from.dt;
   if (step.memory) step.new_memory = to.material.data() + batch.memory;
   return step;
 }
@@ -139,10 +140,10 @@ void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlin
 }
 
 void Forces::warn_of_depth(const Evaluation& evaluation, double time) {
-  if (evaluation.contact.deepest <= deep_penetration || warned_deep_) return;
+  if (evaluation.contact.deepest <= warning_depth || warned_deep_) return;
   warned_deep_ = true;
   spdlog::warn("penetration reaches {:.2f} of a segment length at t = {:.6g} s (contacts are lost at {:.1f}); {}",
-               evaluation.contact.deepest, time, lost_penetration,
+               evaluation.contact.deepest, time, rejection_depth,
                time > 0 ? "consider a higher contact stiffness" : "move bodies apart that overlap at the start");
 }
 

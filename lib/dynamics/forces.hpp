@@ -17,7 +17,7 @@ struct Evaluation {
   PairTotals contact;
   double damping_power = 0;  ///< power of viscosity and of the dashpots of contacts and supports, W/m
   double least_jacobian = 1e300;
-  bool sound = true;  ///< false for J <= 0 and lost contacts: a trial step must be rejected
+  bool valid = true;  ///< false: the trial must be rejected, for J <= 0, deep penetration, or moves beyond the skin
 };
 
 /// Functions of an integrator for Forces::evaluate_and_update: the update of a region, by its index in Model::regions,
@@ -34,14 +34,14 @@ class Forces {
   explicit Forces(const Model& model);
 
   /// Result of the check of the contact candidates.
-  struct Candidates {
-    bool found_anew = false;
-    bool hold = true;  ///< false for a trial that exceeds the skin in a single step
+  struct ListCheck {
+    bool rebuilt = false;
+    bool valid = true;  ///< false for a trial that exceeds the skin in a single step
   };
   /// Makes sure that the candidates are valid for the outlines of a trial that ends at `time`. If they are not, they
   /// are rebuilt at the accepted state. Its history is stored in a new order and keeps its records, so that a rejected
   /// trial loses none.
-  Candidates ensure_candidates(State& accepted, const OutlineField& trial, double time);
+  ListCheck ensure_candidates(State& accepted, const OutlineField& trial, double time);
 
   /// Output of an evaluation.
   struct Output {
@@ -85,7 +85,7 @@ class Forces {
 
   const Model& model_;
   ContactSystem contact_;
-  OutlineField loaded_;                 ///< sum of contact forces and loads on outlines; empty without such loads
+  OutlineField outline_force_;          ///< sum of contact forces and loads on outlines; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
   std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty without viscosity
   std::vector<std::vector<StressColumns>> stresses_;  ///< [nodewise bodies][points]

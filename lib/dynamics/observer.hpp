@@ -15,7 +15,7 @@ struct Observer {
   bool is_due_at(double time) const { return next_time() == time; }
   /// Whether a sample is due within a step that ends at `time`. The end has a tolerance for rounding, which would
   /// otherwise be left for the next step.
-  bool is_due_before(double time) const { return next_time() <= time * (1 + 1e-12) && !is_due_at(time); }
+  bool is_due_within(double time) const { return next_time() <= time * (1 + 1e-12) && !is_due_at(time); }
 };
 
 /// Holds the state after a shorter step, which does not count, during its lifetime, and then restores the state.
@@ -46,7 +46,7 @@ enum class Shown { all, enough, failed };
 template <class Scheme>
 Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Proposal& proposal,
                       const Observer* observer) {
-  if (!observer || !observer->is_due_before(proposal.end_time)) return Shown::all;
+  if (!observer || !observer->is_due_within(proposal.end_time)) return Shown::all;
   do {
     Proposal shorter = proposal;
     shorter.end_time = observer->next_time(), shorter.dt = shorter.end_time - state.time,
@@ -55,10 +55,10 @@ Shown show_on_the_way(Scheme& scheme, Forces& forces, State& state, const Propos
     report.dt = shorter.dt;
     scheme.attempt(state, shorter, report);
     if (!scheme.within_tolerance(report)) return Shown::failed;
-    scheme.finish(state, report);
+    scheme.add_damping_work(state, report);
     const ShorterStep step(forces.model(), state, scheme.trial(), report);
     if (!observer->write()) return Shown::enough;
-  } while (observer->is_due_before(proposal.end_time));
+  } while (observer->is_due_within(proposal.end_time));
   StepReport again;
   scheme.attempt(state, proposal, again);
   return Shown::all;

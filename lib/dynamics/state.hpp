@@ -29,7 +29,7 @@ struct Memory {
 /// bodies since.
 struct PreviousHistory {
   const Memory& memory;
-  double elapsed = 0;  ///< s
+  double dt = 0;  ///< s
   const OutlineField* outlines = nullptr;
   const RigidStep* rigid = nullptr;  ///< see StepStart
 };

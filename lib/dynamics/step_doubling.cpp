@@ -104,7 +104,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
   find_start_force(state, half);
   half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
-  const bool hold = show(state, first, proposal, report).hold;
+  const bool hold = show(state, first, proposal, report).valid;
   if (!evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report) || !hold)
     return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
@@ -112,7 +112,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
   if (!within_tolerance(report)) return Halves::done;
-  if (show(state, second, proposal, report).found_anew) return Halves::voided;
+  if (show(state, second, proposal, report).rebuilt) return Halves::voided;
   const OutlineField* half_way = start_of_step(trial_.outlines) ? &half_outlines_ : nullptr;
   if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
@@ -140,7 +140,7 @@ Motion StepDoubling::motion(const Instant& at) const {
 }
 
 /// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads.
-Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
+Forces::ListCheck StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
   forces_.phases().enter(Phase::outlines);
@@ -152,10 +152,10 @@ Forces::Candidates StepDoubling::show(State& state, const Instant& at, const Pro
 /// Evaluates forces; returns whether they are valid.
 bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report) {
   report.evaluation = forces_.evaluate(motion(at), trial_.outlines, from, {trial_.force, trial_.contact_force, to});
-  if (!has_mass_damping_) return report.evaluation.sound;
+  if (!has_mass_damping_) return report.evaluation.valid;
   add_mass_damping(model_, at, trial_.reduced_momentum, trial_.force);
   report.evaluation.damping_power += damping_loss_.power(at, trial_.reduced_momentum);
-  return report.evaluation.sound;
+  return report.evaluation.valid;
 }
 
 /// Writes v + half a, and u + half times that v, from `time` on, to the trial; the arguments may be the trial's own.

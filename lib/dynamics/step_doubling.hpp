@@ -25,7 +25,7 @@ class StepDoubling {
   }
   Verdict judge(const State& state, const StepControl& control, const Proposal& proposal,
                 const StepReport& report) const;
-  void finish(const State&, const StepReport&) {}
+  void add_damping_work(const State&, const StepReport&) {}
   void accepted(const State&, const StepReport&) {}
   Trial& trial() { return trial_; }
 
@@ -42,7 +42,7 @@ class StepDoubling {
   const OutlineField* start_of_step(const Outlines& outlines) const;
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
-  Forces::Candidates show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);
+  Forces::ListCheck show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);
   bool evaluate(const Instant& at, const PreviousHistory& from, Memory& to, StepReport& report);
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);

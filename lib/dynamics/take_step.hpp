@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Interface of an integrator. `finish` also follows output samples; only `accepted` is for accepted steps alone.
+/// Interface of an integrator. `add_damping_work` also follows output samples; only `accepted` is for accepted steps alone.
 template <class S>
 concept StepScheme = requires(S& scheme, const S& fixed, State& state, const StepControl& control,
                               const Proposal& proposal, StepReport& report) {
@@ -16,15 +16,16 @@ concept StepScheme = requires(S& scheme, const S& fixed, State& state, const Ste
   { scheme.attempt(state, proposal, report) };                   // fills the trial, not the state
   { fixed.within_tolerance(report) } -> std::same_as<bool>;
   { fixed.judge(state, control, proposal, report) } -> std::same_as<Verdict>;
-  { scheme.finish(state, report) };    // dissipation of the step
-  { scheme.accepted(state, report) };  // after the trial became the state
+  { scheme.add_damping_work(state, report) };  // dissipation of the step
+  { scheme.accepted(state, report) };          // after the trial became the state
   { scheme.trial() } -> std::same_as<Trial&>;
   { fixed.governing() } -> std::convertible_to<std::string>;  // body that limits the step
 };
 
 /// One accepted step that ends at `until` at the latest, for any scheme: it proposes, attempts, judges and finishes. An
-/// observer, if any, sees its samples within the step. The step does not depend on it, unless the observer is done;
-/// then no step is taken and the report has dt = 0.
+/// observer, if any, sees its samples within the step. The step does not depend on it, with two exceptions. If the
+/// observer is done, no step is taken, and the report has dt = 0. If a sample is not within tolerance, the step ends at
+/// the sample.
 template <StepScheme Scheme>
 StepReport take_step(Scheme& scheme, Forces& forces, State& state, StepControl& control, double until,
                      const Observer* observer = nullptr) {
@@ -53,7 +54,7 @@ StepReport take_step(Scheme& scheme, Forces& forces, State& state, StepControl& 
     check_time_step({report, scheme.trial(), next_dt, proposal.largest_dt, scheme.governing()}, state, forces);
   }
   forces.warn_of_depth(report.evaluation, scheme.trial().time);
-  scheme.finish(state, report);
+  scheme.add_damping_work(state, report);
   take_over(forces.model(), state, scheme.trial(), report);
   scheme.accepted(state, report);
   return report;

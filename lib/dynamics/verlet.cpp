@@ -71,22 +71,22 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   const Motion motion{trial_.position, end_velocity_, proposal.end_time, true};
   forces_.phases().enter(Phase::outlines);
   update_outlines(model_, motion, trial_.outlines);
-  Forces::Candidates candidates;
+  Forces::ListCheck candidates;
   if (!proposal.is_output_sample)
     candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
-  if (candidates.found_anew) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
+  if (candidates.rebuilt) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
   report.evaluation = forces_and_velocities(state, motion, proposal.dt);
-  report.evaluation.sound &= candidates.hold;
+  report.evaluation.valid &= candidates.valid;
   ++report.evaluations;
-  report.error = report.evaluation.sound ? error(proposal.dt) : std::numeric_limits<double>::infinity();
+  report.error = report.evaluation.valid ? error(proposal.dt) : std::numeric_limits<double>::infinity();
 }
 
-/// Fused kernel (Forces::evaluate_and_update): all forces at the end of the step, then finish_region and finish_rigid
+/// Fused kernel (Forces::evaluate_and_update): all forces at the end of the step, then update_region and update_rigid
 /// for the velocities there.
 Evaluation Verlet::forces_and_velocities(const State& state, const Motion& motion, double dt) {
   const PreviousHistory from{state.memory, dt, &state.outlines.position, rigid_steps(state)};
-  const auto of_region = [&](int r) { finish_region(state, dt, r); };
-  const auto of_rigid = [&](int r) { finish_rigid(state, dt, r); };
+  const auto of_region = [&](int r) { update_region(state, dt, r); };
+  const auto of_rigid = [&](int r) { update_rigid(state, dt, r); };
   return forces_.evaluate_and_update(motion, trial_.outlines, from, {trial_.force, trial_.contact_force, trial_.memory},
                                      {std::cref(of_region), std::cref(of_rigid)});
 }
@@ -195,7 +195,7 @@ void Verlet::move_by_mean_velocity(const State& state, double dt) {
 /// Computes velocities at the end of the step, and the largest |a_new - a_old| / d. It does so before the step is
 /// accepted, while forces are in the cache. Damping is added at the end: the errors of the step are those of all other
 /// forces, which the step takes as constant.
-void Verlet::finish_region(const State& state, double dt, int r) {
+void Verlet::update_region(const State& state, double dt, int r) {
   const Region& region = model_.regions[r];
   const Batch& batch = model_.batches[region.batch];
   const Lanes* old_force = &state.force.compliant[batch.offset];
@@ -232,8 +232,8 @@ void Verlet::finish_region(const State& state, double dt, int r) {
   });
 }
 
-/// As finish_region; the change is that of the outline nodes, over their spacing.
-void Verlet::finish_rigid(const State& state, double dt, int r) {
+/// As update_region; the change is that of the outline nodes, over their spacing.
+void Verlet::update_rigid(const State& state, double dt, int r) {
   const RigidBody& body = model_.rigid_bodies[r];
   const auto finish_dof = [&](std::size_t c) {  // returns |a_new - a_old|
     const RigidDof& dof = body.dof[c];
@@ -261,7 +261,7 @@ double Verlet::error(double dt) const {
   return dt * dt / 6 * worst;
 }
 
-void Verlet::finish(const State& state, StepReport& report) {
+void Verlet::add_damping_work(const State& state, StepReport& report) {
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);
   if (has_mass_damping_)
     report.damping_work += damping_loss_.work({state.time}, report.dt, state.reduced_momentum, mean_velocity_);

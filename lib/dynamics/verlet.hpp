@@ -23,14 +23,14 @@ class Verlet {
   bool within_tolerance(const StepReport& report) const { return report.error <= 2 * model_.scene.time.tolerance; }
   Verdict judge(const State& state, const StepControl& control, const Proposal& proposal,
                 const StepReport& report) const;
-  void finish(const State& state, StepReport& report);
+  void add_damping_work(const State& state, StepReport& report);
   void accepted(State& state, const StepReport& report);
   Trial& trial() { return trial_; }
 
   // Timed separately by benchmarks:
   const RigidStep* rigid_steps(const State& state);
   void predict(const State& state, double dt);
-  void finish_region(const State& state, double dt, int r);
+  void update_region(const State& state, double dt, int r);
 
   double largest_dt() const { return bound_.largest_dt(); }  ///< s
   std::string governing() const { return bound_.governing(); }
@@ -45,7 +45,7 @@ class Verlet {
   Evaluation forces_and_velocities(const State& state, const Motion& motion, double dt);
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
-  void finish_rigid(const State& state, double dt, int r);
+  void update_rigid(const State& state, double dt, int r);
   double error(double dt) const;
 
   Forces& forces_;

@@ -33,9 +33,9 @@ const Points creased_corner{{4.2, -7.24},   {3.61, -4.9},   {2.58, -2.75}, {1.54
                             {-6.05, 3.353}, {-9, 3.1},      {-9, -9},      {4.4, -9}};
 const Vec2 lip = Vec2(-2.25, 3.65).normalized(), out_of_lip(lip.y(), -lip.x());
 
-/// A place below the lip's outer face, by the way from its edge.
-Vec2 under_lip(const ContactRig& rig, double way, double depth) {
-  return rig.node(0, 5) + way * lip - depth * out_of_lip;
+/// A place below the lip's outer face, by the distance from its edge.
+Vec2 under_lip(const ContactRig& rig, double distance, double depth) {
+  return rig.node(0, 5) + distance * lip - depth * out_of_lip;
 }
 
 Scene crease_scene() {
@@ -46,7 +46,7 @@ Scene crease_scene() {
   return scene;
 }
 
-// EXACT: the lip's outer face is nearer to the tip than its others all the way, by more than the square root of two
+// EXACT: the lip's outer face is nearer to the tip than its others all the distance, by more than the square root of two
 // that the tip's second side is worth, so the tip is pressed with kn times its depth
 // along that face's normal and slides with friction. The bisector between the two faces of the lip leaves the tip to
 // the lip's lower face, which ends before: by that the gap would jump between -0.45 and -1.1 or even to the outside.
@@ -55,15 +55,15 @@ TEST(FoldedOutline, TheNearestFaceCounts) {
   constexpr double depth = 0.45;
   rig.step();
   for (const double shallow : {-0.1, 0.1, 0.2, 0.3, 0.4}) step_to(rig, under_lip(rig, 3.8, shallow));
-  for (double way = 3.8; way > 2.2; way -= 0.02) {
-    step_to(rig, under_lip(rig, way, depth));
+  for (double distance = 3.8; distance > 2.2; distance -= 0.02) {
+    step_to(rig, under_lip(rig, distance, depth));
     const Vec2 force = rig.force(1, 0) / (tip_weight(rig) * stiffness * depth);
-    EXPECT_NEAR(force.dot(out_of_lip), 1, 1e-12) << way;
-    EXPECT_LE(std::abs(force.dot(lip)), friction + 1e-12) << way;
+    EXPECT_NEAR(force.dot(out_of_lip), 1, 1e-12) << distance;
+    EXPECT_LE(std::abs(force.dot(lip)), friction + 1e-12) << distance;
   }
 }
 
-// EXACT: the same way slid to and fro dissipates friction times pressure times length, less what it takes to turn the
+// EXACT: the same distance slid to and fro dissipates friction times pressure times length, less what it takes to turn the
 // shear. Steps of 0.018 end where slip starts, 0.27 after the turn. Rounding of coordinates of order 10.
 TEST(FoldedOutline, SlidingUnderALipDissipatesForceTimesWay) {
   ContactRig rig(crease_scene());
@@ -81,7 +81,7 @@ TEST(FoldedOutline, SlidingUnderALipDissipatesForceTimesWay) {
 }
 
 // EXACT: a tip that crosses a narrow slit at once, straight from beside one flank into the other, has slid along
-// neither. The way along the outline from the one to the other, around the bottom of the slit, is 0.82.
+// neither. The distance along the outline from the one to the other, around the bottom of the slit, is 0.82.
 TEST(FoldedOutline, SlipDoesNotRunAroundASlit) {
   Scene scene = nodal_scene();
   scene.contacts = {mohr_coulomb(stiffness, friction)};

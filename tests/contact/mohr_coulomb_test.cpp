@@ -44,13 +44,13 @@ Tractions tractions(const ContactRig& rig) {
   return result;
 }
 
-// The block `gap` above the bar, then pulled to the right by `way`, in steps that are accepted.
-Tractions pulled(double gap, double way) {
+// The block `gap` above the bar, then pulled to the right by `distance`, in steps that are accepted.
+Tractions pulled(double gap, double distance) {
   ContactRig rig(block_on_bar());
   rig.move(1, {0, gap});
   rig.step();
   for (int step = 0; step < 10; ++step) {
-    rig.move(1, {way / 10, 0});
+    rig.move(1, {distance / 10, 0});
     rig.step();
   }
   return tractions(rig);

@@ -44,7 +44,8 @@ TEST(VerletList, sweeps_no_more_for_what_shakes_and_spins) {
     rig.show();
     watch.skin_is_exceeded(rig.outlines.position);
     EXPECT_FALSE(watch.update(rig.outlines.position, rig.outlines.position));
-    for (int pair : watch.exceeded(rig.outlines.position)) watch.searched(pair, rig.outlines.position), ++searched;
+    for (int pair : watch.pairs_to_search(rig.outlines.position))
+      watch.searched(pair, rig.outlines.position), ++searched;
     EXPECT_FALSE(watch.skin_is_exceeded(rig.outlines.position));
   }
   EXPECT_GT(searched, 1000) << "the pairs of those that spin";
@@ -69,7 +70,7 @@ TEST(VerletList, tells_whether_what_was_searched_holds_on_trial) {
     rig.show();
     EXPECT_TRUE(watch.skin_is_exceeded(rig.outlines.position));
     EXPECT_FALSE(watch.update(begin, rig.outlines.position));
-    const std::vector<int> pairs = watch.exceeded(begin);
+    const std::vector<int> pairs = watch.pairs_to_search(begin);
     EXPECT_FALSE(pairs.empty());
     for (int pair : pairs) watch.searched(pair, begin);
     EXPECT_EQ(watch.hold(pairs, rig.outlines.position), displacement < 1);

@@ -60,7 +60,7 @@ struct FailsOnceAt {
                 const StepReport& report) const {
     return verlet.judge(state, control, proposal, report);
   }
-  void finish(const State& state, StepReport& report) { verlet.finish(state, report); }
+  void add_damping_work(const State& state, StepReport& report) { verlet.add_damping_work(state, report); }
   void accepted(State& state, const StepReport& report) { verlet.accepted(state, report); }
 };
 

@@ -124,11 +124,11 @@ TEST(Rejection, a_trial_far_away_loses_no_record) {
   Trial trial(bench.model);
   Dofs away = state.position;
   away.rigid[1] += 5;
-  const Forces::Candidates candidates = bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1);
-  EXPECT_TRUE(candidates.found_anew) << "EXACT";
-  EXPECT_FALSE(candidates.hold) << "EXACT: further than the skin";
+  const Forces::ListCheck candidates = bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1);
+  EXPECT_TRUE(candidates.rebuilt) << "EXACT";
+  EXPECT_FALSE(candidates.valid) << "EXACT: further than the skin";
   EXPECT_EQ(records(state.memory.contact), before) << "EXACT";
-  EXPECT_TRUE(bench.evaluate(trial).sound);
+  EXPECT_TRUE(bench.evaluate(trial).valid);
   EXPECT_TRUE(same_bits(trial.force.rigid, state.force.rigid)) << "EXACT";
 }
 
@@ -145,7 +145,7 @@ TEST(Rejection, a_refresh_lays_out_the_accepted_history) {
   state.outlines.position = placed_outlines(bench.model, state.position);
   Dofs away = state.position;
   away.rigid[3] += 1;
-  EXPECT_TRUE(bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1).found_anew);
+  EXPECT_TRUE(bench.forces.ensure_candidates(state, placed_outlines(bench.model, away), 1).rebuilt);
   Trial trial(bench.model);
   bench.evaluate(trial);
   const Dofs& force = trial.force;

@@ -1,4 +1,4 @@
-#include "contact/close_phase.hpp"
+#include "contact/narrow_phase.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ Points coarse_outline(Random& random, int kind) {
 }
 
 // EXACT: brute force over all nodes and segments.
-TEST(ClosePhase, MissesNothingOnRandomOutlines) {
+TEST(NarrowPhase, MissesNothingOnRandomOutlines) {
   int near = 0;
   for (int sample = 0; sample < 3000; ++sample) {
     SCOPED_TRACE(sample);
@@ -92,7 +92,7 @@ TEST(ClosePhase, MissesNothingOnRandomOutlines) {
 }
 
 // EXACT: the same across the period and against walls with asperities, seen from bodies several periods away.
-TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
+TEST(NarrowPhase, MissesNothingOnWallsAndAcrossThePeriod) {
   for (int sample = 0; sample < 60; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 900);
@@ -114,7 +114,7 @@ TEST(ClosePhase, MissesNothingOnWallsAndAcrossThePeriod) {
 }
 
 // The purpose: two discs that touch look at a small part of their outlines only.
-TEST(ClosePhase, ArcsAreShort) {
+TEST(NarrowPhase, ArcsAreShort) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {1.99 * i, 0.3 * i});
@@ -128,7 +128,7 @@ TEST(ClosePhase, ArcsAreShort) {
 }
 
 // EXACT: bodies further apart than the margin get no arcs.
-TEST(ClosePhase, NothingBetweenBodiesApart) {
+TEST(NarrowPhase, NothingBetweenBodiesApart) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {2.2 * i, 0});

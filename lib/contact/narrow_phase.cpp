@@ -1,4 +1,4 @@
-#include "contact/close_phase.hpp"
+#include "contact/narrow_phase.hpp"
 
 #include <algorithm>
 #include <cmath>
