@@ -8,7 +8,7 @@ import numpy as np
 
 
 def speeds(places: Sequence[float], pause: float, ramp: float) -> list[list[float]]:
-    """[[time, velocity], ...] from the first of these places to each next one, at the start of each pause: triangles."""
+    """[[time, velocity], ...] from the first of these places to each next one, triangles at each pause's start."""
     corners = []
     for i, way in enumerate(np.diff(places).tolist()):
         start = i * pause

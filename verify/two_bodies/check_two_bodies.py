@@ -52,6 +52,7 @@ def params(*values: object, kind: type[Study], law: str = "neo-hookean") -> obje
 def test_force(kind: type[Study], law: str, solver: str, i: int) -> None:
     known = study(kind, law)
     other = known.getfem if solver == "GetFEM" else kind.read_calculix()
+    # Of discs this tolerance has GetFEM's error as well, 3e-4 beside 6e-3.
     also = known.getfem.error[i] if (kind, solver) == (Discs, "CalculiX") else 0
     CASE.check(Label.INDEPENDENT, f"{kind.name}, {law}: force {kind.places[i]}, engine at h = 0 over {solver}",
                known.limit()[i] / other.force[i], 1, known.limit_error()[i] + other.error[i] + also,

@@ -68,7 +68,7 @@ def by_getfem(law: str) -> dict[str, Table]:
                 (i, slave, rings): forces(polygon.by_getfem, polygon.FIRST[i], law, rings, bodies[slave])
                 for i, slave, rings in pressed}),
             f"push_getfem_{law}": ("rings,rows,steps", PUSH, f"{ON_BLOCK} steps: of load for 0.1 R.", {
-                (rings, push.rows_of(rings), steps): forces(push.by_getfem, law, rings, steps, steps == shortest)
+                (rings, push.ROWS[rings], steps): forces(push.by_getfem, law, rings, steps, steps == shortest)
                 for rings, steps in pushed})}
 
 
@@ -85,7 +85,7 @@ TABLES: dict[str, Table] = {
         (i, list(polygon.MODULI).index(slave), *mesh): partial(polygon.by_calculix, first, slave, *mesh)
         for i, first in enumerate(polygon.FIRST) for slave, *mesh in polygon.CALCULIX}),
     "push_calculix_melody": ("slave,rings,rows,stiffness,down,increment", PUSH, f"{ON_BLOCK} increments down, along.", {
-        (list(push.MODULI).index(slave), rings, push.rows_of(rings), *more[:3]):
+        (list(push.MODULI).index(slave), rings, push.ROWS[rings], *more[:3]):
         partial(push.by_calculix, slave, rings, *more) for slave, rings, *more in push.CALCULIX})}
 
 

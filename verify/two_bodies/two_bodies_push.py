@@ -24,7 +24,7 @@ START = -0.5  # x of the disc
 MODULI = {"disc": 10.0, "block": 1.0}  # mu; lambda = 4 mu
 HOLD = 100.0  # mu / R: of the springs
 GAP = 0.001  # at the start, as in push.toml
-PRESSES = 2  # rests on the way down
+PRESSES = 2  # pauses on the way down, the last one's rest is at a push of 0
 STUCK = [0.0, 0.1, 0.2, 0.3]  # pushes at which all of the contact, or a part of it, sticks
 SLIDING = np.linspace(0.4, 1.2, 33)  # all of it slips
 PUSHES = [*STUCK, *(float(push) for push in SLIDING)]
@@ -42,7 +42,8 @@ CHOSEN = {"neo-hookean": [10, 14, 20, 28], "melody": [10, 14, 20]}
 FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
 CONFIDENCE = 0.95
 COARSE = "two sizes tell 1 % of N and 3 to 8 % of T that sticks, for 16 runs: only three and more are worth it"
-# Rings of the disc, load steps for 0.1 R on the way along; the block has rows_of(rings) rows of squares.
+ROWS = {4: 5, 8: 10, 12: 15, 16: 20, 24: 30}  # of squares in the block, by rings of the disc
+# Rings of the disc, load steps for 0.1 R on the way along.
 RINGS = {"neo-hookean": [8, 12, 16, 24], "melody": [8, 12, 16]}
 STEPS = [2, 4, 8]
 # CalculiX: R, of its increments on the way down and then along, of which forces lag by first order; penalties, mu / R.
@@ -59,13 +60,8 @@ CALCULIX = [*(("disc", rings, stiffness, DOWN, along, True) for rings in CALCULI
             ("disc", CALCULIX_RINGS[0], SOFT, DOWN / 2, LONG, False)]
 
 
-def rows_of(rings: int) -> int:
-    return 5 * rings // 4
-
-
 def meshes(rings: int) -> dict[str, Mesh]:
-    rows = rows_of(rings)
-    return {"disc": full_disc(rings, (START, 1.0)), "block": block(3 * rows, rows, -3.0, 3.0, 2.0)}
+    return {"disc": full_disc(rings, (START, 1.0)), "block": block(3 * ROWS[rings], ROWS[rings], -3.0, 3.0, 2.0)}
 
 
 def by_getfem(law: str, rings: int, steps: int, slides: bool = True) -> tuple[np.ndarray, np.ndarray]:
@@ -82,7 +78,7 @@ def by_getfem(law: str, rings: int, steps: int, slides: bool = True) -> tuple[np
     counts += [round(10 * steps * way) if push <= STUCK[-1] else 1 for push, way in zip(pushes[1:], np.diff(pushes))]
     forces, outlines = bodies.go([{"along": push, "down": -DEPTH} for push in pushes], counts,
                                  lambda: bodies.holding_force("disc") * [1, -1])
-    return np.column_stack([pushes, forces]), outlines["block"][:, :6 * rows_of(rings) + 1]
+    return np.column_stack([pushes, forces]), outlines["block"][:, :6 * ROWS[rings] + 1]
 
 
 def by_calculix(slave: str, rings: int, stiffness: float, down: float, increment: float, slides: bool,
@@ -160,17 +156,12 @@ class Push(Setup):
     slides: bool = True
     sample: float = 0.0025  # of the push in slip: of outputs
 
-    WAYS, LEVELS, STEP = 4, STUCK, 40.0
+    WAYS, LEVELS, STEP, FIRST_REST = 4, STUCK, 40.0, PRESSES
 
     @property
     def speed(self) -> float:
         """Of the disc that slides."""
         return 0.1 / self.pause
-
-    @property
-    def rests(self) -> np.ndarray:
-        """[pushes of STUCK] their times, s."""
-        return self.pause * np.arange(PRESSES, PRESSES + len(STUCK))
 
     @property
     def end(self) -> float:
@@ -184,9 +175,6 @@ class Push(Setup):
     def time_of(self, push: float) -> float:
         """Of the last one of STUCK, or the end."""
         return float(self.rests[-1]) if push in STUCK else self.end
-
-    def slower(self) -> Push:
-        return replace(self, pause=2 * self.pause)
 
     def scene(self, case: Case) -> str:
         discs, disc_nodes, blocks, block_nodes = SIZES[self.size]
@@ -317,7 +305,7 @@ class Sliding(Study):
         """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: that of
         a mean over meshes, of which the spread is the largest of all places, and of the order in the rate."""
         ways = Push(size=size, law=self.law).ways()
-        usual, slower = self._of(ways[:2]), self._of([way.slower() for way in ways[:2]])
+        usual, slower = self._of(ways[:2]), self._of([replace(way, pause=2 * way.pause) for way in ways[:2]])
         late = (slower - usual).mean(axis=0)
         stuck = np.concatenate([usual[:, ~SLIPS], self._of([replace(way, slides=False) for way in ways[2:]])])
         force = np.concatenate([stuck.mean(axis=0), usual[:, SLIPS].mean(axis=0)]) + FACTOR * late
@@ -346,7 +334,7 @@ def engine_and_reference(case: Case) -> dict[str, tuple[np.ndarray, np.ndarray]]
     """By kind [places] both forces' ratio on the same nodes, the engine's rate taken out, and how far it may be from 1.
     Load steps in slip are longer than the engine's outputs."""
     push = Push(size=CHOSEN[LAWS[0]][0])
-    moving, slow = by_engine(case, push), by_engine(case, push.slower())
+    moving, slow = by_engine(case, push), by_engine(case, replace(push, pause=2 * push.pause))
     static, long_steps = (Pushed(way, way.by_reference(case)) for way in (
         replace(push, sample=0.00625), replace(push, sample=0.00625, points=push.points // 2, slides=False)))
     found = {}

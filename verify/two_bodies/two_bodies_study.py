@@ -38,14 +38,15 @@ class Setup:
 
     WAYS: ClassVar[int]
     LEVELS: ClassVar[list[float]]  # at which bodies rest
+    FIRST_REST: ClassVar[int] = 1  # pauses until then
     STEP: ClassVar[float] = RAMP  # s, of the load in statics, at most
     STORED: ClassVar[float]  # over the kinetic energy left: damping over the rate of the slowest motion
     AXIS: ClassVar[float] = 0.0  # x
 
     @property
     def rests(self) -> np.ndarray:
-        """[levels] the ends of all pauses, s."""
-        return self.pause * np.arange(1, len(self.LEVELS) + 1)
+        """[levels] the ends of their pauses, s."""
+        return self.pause * np.arange(self.FIRST_REST, self.FIRST_REST + len(self.LEVELS))
 
     def ways(self) -> list[Setup]:
         return [replace(self, way=way) for way in range(self.WAYS)]
