@@ -54,7 +54,7 @@ nodes = 84
 [[grains]]
 name = "layer"
 shape = "disc"
-mix = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
+species = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
 seed = 1
 packing = { kind = "grid", columns = 4, rows = 8, pitch = "1 um", row_pitch = "0.997 um", origin = ["0.5 um", "0.5 um"] }
 

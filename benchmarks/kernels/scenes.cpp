@@ -38,7 +38,7 @@ void add_grains(Scene& scene, const ShapeSpec& shape, int columns, int rows, con
   Grains grains;
   grains.name = grains.shape = shape.name;
   grains.packing = {PackingKind::grid, columns, rows, pitch, pitch, origin, {}};
-  grains.mix = {{BodyKind::compliant, "soft", 1}};
+  grains.species = {{BodyKind::compliant, "soft", 1}};
   grains.angle.reset();
   grains.seed = 1;
   scene.grains.push_back(grains);

@@ -54,8 +54,10 @@ void print_schema() {
       "quantity is a number in SI units or a string with a unit, such as \"2 GPa\"; \"a number\" has no unit. An "
       "angle\n"
       "without a unit is in radians. The units deg, rad and turn apply only to quantities in rad and rad/s and to\n"
-      "friction angles. `with` names the choice in the same table that a key belongs to. Unknown keys are refused.\n"
-      "[defaults.md](defaults.md) gives the reasons of the defaults.\n\n{}",
+      "friction angles. `with` names the choice in the same table that a key belongs to. A name that a key had before "
+      "is\n"
+      "read with a warning. Unknown keys are refused. [defaults.md](defaults.md) gives the reasons of the "
+      "defaults.\n\n{}",
       scene_key_tables());
 }
 

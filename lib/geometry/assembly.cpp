@@ -9,8 +9,8 @@
 #include "core/located.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
-#include "geometry/mix_in_turn.hpp"
 #include "geometry/placement.hpp"
+#include "geometry/species_in_turn.hpp"
 
 namespace pliant {
 namespace {
@@ -22,19 +22,20 @@ int index_of_material(const Scene& scene, const std::string& name) {
 }
 
 void require_all(const Grains& grains, const std::vector<int>& choice) {
-  for (std::size_t m = 0; m < grains.mix.size(); ++m)
-    if (grains.mix[m].share > 0 && std::find(choice.begin(), choice.end(), static_cast<int>(m)) == choice.end())
+  for (std::size_t m = 0; m < grains.species.size(); ++m)
+    if (grains.species[m].share > 0 && std::find(choice.begin(), choice.end(), static_cast<int>(m)) == choice.end())
       throw InputError(fmt::format(
-          "mix: a share of {} of {} grains is less than one of '{}'; take more grains, or leave that entry out",
-          grains.mix[m].share, choice.size(), grains.mix[m].material));
+          "species: a share of {} of {} grains is less than one of '{}'; take more grains, or leave that entry out",
+          grains.species[m].share, choice.size(), grains.species[m].material));
 }
 
-/// [grains] entry of the mix of each grain. Throws InputError if an entry with a share gets no grain.
-std::vector<int> assign_mix(const Grains& grains, int count, std::mt19937_64& random) {
+/// [grains] species of each grain. Throws InputError if an entry with a share gets no grain.
+std::vector<int> assign_species(const Grains& grains, int count, std::mt19937_64& random) {
   std::vector<double> shares;
-  for (const MixEntry& entry : grains.mix) shares.push_back(entry.share);
-  const std::vector<int> choice = grains.mix_order == MixOrder::in_turn ? mix_in_turn(shares, grains.packing)
-                                                                        : assign_shares(shares, count, random);
+  for (const Species& entry : grains.species) shares.push_back(entry.share);
+  const std::vector<int> choice = grains.species_order == SpeciesOrder::in_turn
+                                      ? species_in_turn(shares, grains.packing)
+                                      : assign_shares(shares, count, random);
   located(grains.where, [&] { require_all(grains, choice); });
   return choice;
 }
@@ -43,11 +44,11 @@ void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {
   const Grains& grains = scene.grains[index];
   const int count = static_cast<int>(grains.packing.grain_count());
   std::mt19937_64 random(grains.seed);
-  const std::vector<int> choice = assign_mix(grains, count, random);
+  const std::vector<int> choice = assign_species(grains, count, random);
   Packed packed = place_grains(scene, grains, random);
   for (ShapeSpec& shape : packed.fitted) scene.shapes.push_back(std::move(shape));
   for (int i = 0; i < count; ++i) {
-    const MixEntry& entry = grains.mix[choice[i]];
+    const Species& entry = grains.species[choice[i]];
     const Placement& grain = packed.grains[i];
     PlacedBody body;
     body.name = count == 1 ? grains.name : fmt::format("{} {}", grains.name, i);

@@ -32,7 +32,7 @@ ContactGroup contact_group(const Scene& scene, const std::string& material, cons
 std::vector<ContactGroup> contact_parties(const Scene& scene) {
   std::set<ContactGroup> groups;
   for (const Grains& grains : scene.grains)
-    for (const MixEntry& entry : grains.mix) groups.insert(contact_group(scene, entry.material, grains.name, false));
+    for (const Species& entry : grains.species) groups.insert(contact_group(scene, entry.material, grains.name, false));
   for (const Wall& wall : scene.walls) groups.insert(contact_group(scene, wall.material, wall.name, true));
   return {groups.begin(), groups.end()};
 }
@@ -41,7 +41,7 @@ bool meets_itself(const Scene& scene, const ContactGroup& group) {
   std::int64_t bodies = 0;
   bool may_return = false;  // to its own image or folds, as walls do not
   for (const Grains& grains : scene.grains)
-    for (const MixEntry& entry : grains.mix) {
+    for (const Species& entry : grains.species) {
       if (contact_group(scene, entry.material, grains.name, false) != group) continue;
       bodies += grains.packing.grain_count();
       may_return |= scene.period || (scene.contact.self_contact && entry.body == BodyKind::compliant);
@@ -54,7 +54,8 @@ std::string refusal_of_restitution(const Scene& scene, const ContactRule& rule, 
   std::set<std::string> soft, rigid;  // materials of bodies
   for (const Wall& wall : scene.walls) rigid.insert(wall.material);
   for (const Grains& grains : scene.grains)
-    for (const MixEntry& entry : grains.mix) (entry.body == BodyKind::compliant ? soft : rigid).insert(entry.material);
+    for (const Species& entry : grains.species)
+      (entry.body == BodyKind::compliant ? soft : rigid).insert(entry.material);
   const auto own = std::ranges::find_if(rigid, [&](const std::string& name) { return !soft.contains(name); });
   std::string instead = "take 'restitution' out of this rule";
   if (own != rigid.end())

@@ -96,7 +96,7 @@ SceneTable rule_table() {
            "Range of the quadratic onset of pressure, over the outline spacing", "laws without tension"},
           {"restitution", Quantity{"1", {.low = 0.01, .high = 1}}, "none",
            "Coefficient of restitution of rigid pairs; otherwise no dashpot", "laws without tension"},
-          {"pull", Flag{}, "false", "Whether the dashpot of the restitution may pull", "restitution"},
+          {"pull", Flag{}, "false", "Tension by the dashpot of the restitution", "restitution"},
           {"strength", Quantity{"Pa", positive}, required, "Tensile strength of bonds", bonds},
           {"range", QuantityOr{"auto", {"m", positive}}, R"("auto")", "Gap at which bonds break", bonds},
           {"shear_strength", QuantityOr{"auto", stress}, R"("auto")", "Shear strength; auto: the tensile one",
@@ -131,7 +131,7 @@ std::vector<SceneTable> load_and_contact_tables() {
             R"("reference")", "Length on which nodal contact pressures act"},
            {"refresh", QuantityOr{"safe", {"s", positive}}, R"("safe")", "Time between rebuilds of the Verlet list"},
            {"refresh", Integer{1, 1'000'000}, "none", "Number of steps between rebuilds of the Verlet list"},
-           {"self_contact", Flag{}, "false", "Whether compliant grains may touch themselves"},
+           {"self_contact", Flag{}, "false", "Contact of compliant grains with themselves"},
            {"energy_consistent", Flag{}, "true", "Correction of the energy error of contact",
             R"(the integrator "verlet")"},
        }});

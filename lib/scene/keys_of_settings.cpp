@@ -39,7 +39,7 @@ std::vector<SceneTable> setting_tables() {
            {"integrator",
             choice<Integrator>({{"verlet", Integrator::verlet}, {"step-doubling", Integrator::step_doubling}}),
             R"("verlet")", "Scheme of time integration"},
-           {"stop_at_outputs", Flag{}, "false", "Whether time steps end at output times"},
+           {"stop_at_outputs", Flag{}, "false", "Time steps that end at output times"},
            {"tolerance", pure_share, "0.01", "Error estimate allowed per step, over the nodal distance", verlet},
            {"safety", pure_share, "0.8", "Ratio of the time step to the stability bound", verlet},
            {"target", pure_share, "0.0001", "Error that the step-size controller aims at", doubling},
@@ -102,7 +102,7 @@ std::vector<SceneTable> output_tables() {
        {
            {"period", Quantity{"s", positive}, required, "Time between frames"},
            {"fields", List<OneOf>{{"field", fields}, 0}, "none", "Fields that each frame holds"},
-           {"contacts", Flag{}, "false", "Whether frames hold the contact network"},
+           {"contacts", Flag{}, "false", "Contact network in each frame"},
        }},
   };
 }

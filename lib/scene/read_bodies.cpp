@@ -7,8 +7,8 @@ namespace pliant {
 
 namespace {
 
-MixEntry read_mix_entry(TableReader& table, const Scene& scene) {
-  MixEntry entry;
+Species read_one_species(TableReader& table, const Scene& scene) {
+  Species entry;
   table.required("body", entry.body);
   table.required("material", entry.material, names_of(scene.materials));
   if (entry.body == BodyKind::compliant && scene.material(entry.material).law == MaterialLaw::rigid) {
@@ -18,38 +18,39 @@ MixEntry read_mix_entry(TableReader& table, const Scene& scene) {
   return entry;
 }
 
-std::vector<MixEntry> read_mix(TableReader& table, const Scene& scene) {
-  if (!table.has("mix")) {
-    if (!table.has("body")) table.fail_missing("body", "'body' and 'material', or 'mix' and 'seed'");
-    return {read_mix_entry(table, scene)};
+std::vector<Species> read_species(TableReader& table, const Scene& scene) {
+  if (!table.has("species")) {
+    if (!table.has("body")) table.fail_missing("body", "'body' and 'material', or 'species' and 'seed'");
+    return {read_one_species(table, scene)};
   }
   for (const char* key : {"body", "material"}) {
-    if (table.has(key)) table.fail(key, "both it and 'mix' are given; remove one");
+    if (table.has(key)) table.fail(key, "both it and 'species' are given; remove one");
   }
-  std::vector<MixEntry> mix;
+  std::vector<Species> species;
   double sum = 0;
-  for (TableReader& part : table.tables("mix")) {
-    mix.push_back(read_mix_entry(part, scene));
-    part.required("share", mix.back().share);
+  for (TableReader& part : table.tables("species")) {
+    species.push_back(read_one_species(part, scene));
+    part.required("share", species.back().share);
     part.finish();
-    sum += mix.back().share;
+    sum += species.back().share;
   }
-  check_shares(table, "mix", sum);
-  return mix;
+  check_shares(table, "species", sum);
+  return species;
 }
 
 bool fills_a_region(const Packing& packing) {
   return packing.kind == PackingKind::random || packing.kind == PackingKind::fourier_voronoi;
 }
 
-void read_mix_order(TableReader& table, Grains& grains) {
-  if (!table.has("mix")) {
-    if (table.has("mix_order")) table.fail("mix_order", "there is no 'mix' to be put in an order; remove it");
+void read_species_order(TableReader& table, Grains& grains) {
+  if (!table.has("species")) {
+    if (table.has("species_order"))
+      table.fail("species_order", "there is no 'species' to be put in an order; remove it");
     return;
   }
-  table.optional("mix_order", grains.mix_order);
-  if (grains.mix_order == MixOrder::in_turn && fills_a_region(grains.packing)) {
-    table.fail("mix_order",
+  table.optional("species_order", grains.species_order);
+  if (grains.species_order == SpeciesOrder::in_turn && fills_a_region(grains.packing)) {
+    table.fail("species_order",
                "this packing puts its grains at random places, which have no order; allowed: \"random\" here, "
                "\"in turn\" with packings \"hexagonal\", \"grid\", \"positions\", \"file\" and \"in place\"");
   }
@@ -69,12 +70,12 @@ InitialVelocity read_velocity(TableReader table, const Grains& grains) {
 void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
   const bool sizes = grains.size.kind != SizeDistribution::Kind::list || grains.size.factors.size() > 1;
   const bool shapes = grains.packing.shapes.empty() && scene.shape_shares(grains).size() > 1;
-  const bool mixed = grains.mix.size() > 1 && grains.mix_order == MixOrder::random;
+  const bool mixed = grains.species.size() > 1 && grains.species_order == SpeciesOrder::random;
   const bool random = mixed || !grains.angle || sizes || fills_a_region(grains.packing) || shapes;
   if (random) table.required("seed", grains.seed);
   if (!random && table.has("seed"))
     table.fail("seed",
-               "nothing is random here; remove it (a mix in random order, shapes, sizes, a packing or a random "
+               "nothing is random here; remove it (species in random order, shapes, sizes, a packing or a random "
                "angle use it)");
 }
 
@@ -145,7 +146,8 @@ void read_grain_shapes(TableReader& table, const Scene& scene, Grains& grains) {
 }  // namespace
 
 bool has_body(const Grains& grains, BodyKind kind) {
-  return std::any_of(grains.mix.begin(), grains.mix.end(), [&](const MixEntry& entry) { return entry.body == kind; });
+  return std::any_of(grains.species.begin(), grains.species.end(),
+                     [&](const Species& entry) { return entry.body == kind; });
 }
 
 Material read_material(TableReader table, const std::string& name) {
@@ -180,8 +182,8 @@ Grains read_grains(TableReader table, const Scene& scene) {
     table.fail("size", "the grains are in place as their points are; remove it");
   if (table.has("size") && !(grains.packing.scales.empty() && grains.packing.diameters.empty()))
     table.fail("size", "both it and the sizes of the packing's file are given; remove one");
-  grains.mix = read_mix(table, scene);
-  read_mix_order(table, grains);
+  grains.species = read_species(table, scene);
+  read_species_order(table, grains);
   read_angle(table, grains);
   read_seed(table, scene, grains);
   if (table.has("velocity")) grains.velocity = read_velocity(table.optional_table("velocity"), grains);

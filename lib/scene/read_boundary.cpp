@@ -135,7 +135,7 @@ void check_angle(TableReader& table, const Grains& grains, const Scene& scene) {
   const std::vector<double>& angles = grains.packing.angles;
   const bool turned = std::any_of(angles.begin(), angles.end(), [](double angle) { return angle != 0; });
   if (grains.angle == 0.0 && !turned) return;
-  for (const MixEntry& entry : grains.mix) {
+  for (const Species& entry : grains.species) {
     if (scene.material(entry.material).law != MaterialLaw::linear_elastic) continue;
     const bool given = table.has("angle");
     table.fail(given ? "angle" : "packing",

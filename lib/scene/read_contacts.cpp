@@ -36,7 +36,7 @@ const ContactRule& require_rule(const TableReader& root, const Scene& scene, con
 
 bool has_compliant(const Scene& scene, const ContactGroup& group) {
   for (const Grains& grains : scene.grains)
-    for (const MixEntry& entry : grains.mix)
+    for (const Species& entry : grains.species)
       if (entry.body == BodyKind::compliant && contact_group(scene, entry.material, grains.name, false) == group)
         return true;
   return false;

@@ -124,14 +124,14 @@ struct ShapeShare {
   double share = 1;  ///< all shares sum to 1
 };
 
-struct MixEntry {
+struct Species {
   BodyKind body = BodyKind::compliant;
   std::string material;
-  double share = 1;  ///< shares of a mix sum to 1; 0: no grain, as at the end of a row of studies
+  double share = 1;  ///< shares of all species sum to 1; 0: no grain, as at the end of a row of studies
 };
 
-/// How grains get their entries of a mix.
-enum class MixOrder {
+/// How grains get their species.
+enum class SpeciesOrder {
   random,
   in_turn,  ///< up each column of a lattice, column after column; given positions as listed
 };
@@ -149,8 +149,8 @@ struct Grains {
   std::vector<ShapeShare> shapes;  ///< of grains of several shapes
   SizeDistribution size;
   Packing packing;
-  std::vector<MixEntry> mix;  ///< one entry when the scene gives `body` and `material` directly
-  MixOrder mix_order = MixOrder::random;
+  std::vector<Species> species;  ///< one entry when the scene gives `body` and `material` directly
+  SpeciesOrder species_order = SpeciesOrder::random;
   std::uint64_t seed = 0;
   std::optional<double> angle = 0.0;  ///< rad; nullopt: each grain turned by a random angle
   InitialVelocity velocity;

@@ -40,7 +40,7 @@ struct Default {
       : value(text), required(when_required), derived(by_reader) {}
 
   std::string value;     ///< as a scene would give it, or "none"; the reader checks it; empty: the key must be there
-  std::string required;  ///< when the key must be there, such as "without `mix`"
+  std::string required;  ///< when the key must be there, such as "without `species`"
   bool derived;          ///< `value` are words for what the reader takes from the rest of the scene
 };
 inline const Default required{"", "always"};
@@ -53,7 +53,7 @@ struct SceneKey {
   KeyKind kind;
   Default otherwise;
   std::string meaning;
-  /// When the table may have the key. `law = "a", "b"`: with these names of another key (`!=`: with others); `mix`:
+  /// When the table may have the key. `law = "a", "b"`: with these names of another key (`!=`: with others); `species`:
   /// with another key. The reader checks these. Other words are for people.
   std::string with{};
   std::string formerly{};  ///< an old name, which is read with a warning

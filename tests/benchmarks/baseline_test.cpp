@@ -24,7 +24,7 @@ Scene squeezed(const ContactRule& rule) {
   scene.shapes = {disc_shape("disc", 1, 168)};
   Grains layer = grains("layer", "disc", BodyKind::compliant, {});
   layer.packing = {PackingKind::hexagonal, 6, 4, 0.86, 0.99, {0.43, 0}, {}};
-  layer.mix = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
+  layer.species = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
   layer.seed = 3;
   layer.angle.reset();
   scene.grains = {layer};

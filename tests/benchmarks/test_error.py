@@ -47,7 +47,7 @@ def test_the_default_is_the_engines() -> None:
     for key, value in [("method", f'"{DEFAULT.method}"'), ("mass", f'"{DEFAULT.mass}"'), ("safety", f"{DEFAULT.safety:g}"),
                        ("integrator", f'"{DEFAULT.integrator}"'), ("tolerance", f"{DEFAULT.bound:g}"), ("target", f"{PAPER.bound:g}")]:
         row = next(line for line in text.splitlines() if line.startswith(f"| `{key}` |"))
-        assert row.split("|")[3].strip() == value, key
+        assert row.split("|")[4].strip() == value, key
 
 
 @pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.name)

@@ -15,23 +15,23 @@ namespace {
 
 using namespace testing;
 
-Grains grid_of(int columns, int rows, std::vector<MixEntry> mix, std::uint64_t seed) {
+Grains grid_of(int columns, int rows, std::vector<Species> species, std::uint64_t seed) {
   Grains grains;
   grains.name = "grains";
   grains.shape = "disc";
   grains.packing = {PackingKind::grid, columns, rows, 2, 2, {0, 0}, {}};
-  grains.mix = std::move(mix);
+  grains.species = std::move(species);
   grains.seed = seed;
   return grains;
 }
 
-Scene mixed_scene(int columns, int rows, std::vector<MixEntry> mix, std::uint64_t seed = 1) {
+Scene mixed_scene(int columns, int rows, std::vector<Species> species, std::uint64_t seed = 1) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(1)};
   scene.materials.push_back({"tough", MaterialLaw::neo_hookean, 2, 1, 0.3});
   scene.materials.push_back({"other", MaterialLaw::melody, 3, 1, 0.3});
   scene.shapes = {polygonal_disc("disc", 1, 24, 50)};
-  scene.grains = {grid_of(columns, rows, std::move(mix), seed)};
+  scene.grains = {grid_of(columns, rows, std::move(species), seed)};
   return scene;
 }
 
@@ -43,11 +43,11 @@ int count_of(const Model& model, BodyKind kind, const std::string& material) {
 
 // EXACT: shares that divide the number of grains come out exactly, whatever the seed.
 TEST(BuildModel, MixHasExactShares) {
-  const std::vector<MixEntry> mix = {
+  const std::vector<Species> species = {
       {BodyKind::compliant, "soft", 0.3}, {BodyKind::rigid, "hard", 0.5}, {BodyKind::compliant, "tough", 0.2}};
   std::set<std::vector<int>> arrangements;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const Model model = build_model(mixed_scene(10, 4, mix, seed));
+    const Model model = build_model(mixed_scene(10, 4, species, seed));
     EXPECT_EQ(count_of(model, BodyKind::compliant, "soft"), 12);
     EXPECT_EQ(count_of(model, BodyKind::rigid, "hard"), 20);
     EXPECT_EQ(count_of(model, BodyKind::compliant, "tough"), 8);
@@ -60,10 +60,10 @@ TEST(BuildModel, MixHasExactShares) {
 
 // EXACT: otherwise within one grain of the share, and all are used.
 TEST(BuildModel, MixRoundsByLessThanOneGrain) {
-  const std::vector<MixEntry> mix = {
+  const std::vector<Species> species = {
       {BodyKind::compliant, "soft", 0.37}, {BodyKind::rigid, "hard", 0.33}, {BodyKind::compliant, "tough", 0.3}};
   for (int count = 4; count < 12; ++count) {  // of fewer, a share is less than one grain
-    const Model model = build_model(mixed_scene(count, 1, mix));
+    const Model model = build_model(mixed_scene(count, 1, species));
     const int soft = count_of(model, BodyKind::compliant, "soft"), hard = count_of(model, BodyKind::rigid, "hard");
     const int tough = count_of(model, BodyKind::compliant, "tough");
     EXPECT_EQ(soft + hard + tough, count);
@@ -109,11 +109,11 @@ TEST(BuildModel, PolygonTurnsAboutItsCentroid) {
 // EXACT: lanes, groups and indices point at each other; copies of one shape share one table, each form of law has its
 // own group.
 TEST(BuildModel, BatchesAndBodiesAgree) {
-  const std::vector<MixEntry> mix = {{BodyKind::compliant, "soft", 0.3},
-                                     {BodyKind::rigid, "hard", 0.2},
-                                     {BodyKind::compliant, "tough", 0.3},
-                                     {BodyKind::compliant, "other", 0.2}};
-  const Model model = build_model(mixed_scene(10, 4, mix));
+  const std::vector<Species> species = {{BodyKind::compliant, "soft", 0.3},
+                                        {BodyKind::rigid, "hard", 0.2},
+                                        {BodyKind::compliant, "tough", 0.3},
+                                        {BodyKind::compliant, "other", 0.2}};
+  const Model model = build_model(mixed_scene(10, 4, species));
   EXPECT_EQ(model.shapes.size(), 1U);
   EXPECT_EQ(model.groups.size(), 2U);  // neo-Hookean: soft and tough; MELODY's form: other
   EXPECT_EQ(model.outlines.size(), 2U);

@@ -38,7 +38,7 @@ Scene pile(DiscretisationMethod method, Integrator integrator = Integrator::verl
                   grains("small", "small", BodyKind::compliant, {{2.45, 1.805}}, moving({0, -0.1})),
                   grains("rigid", "small", BodyKind::rigid, {{1.2, 2.49}, {3.3, 2.44}}, moving({0, -0.05}))};
   scene.grains[0].angle = 0.4;
-  scene.grains[1].mix[0].material = "other";
+  scene.grains[1].species[0].material = "other";
   return scene;
 }
 

@@ -43,7 +43,7 @@ Scene heap(DiscretisationMethod method, Integrator integrator, Extras extras = E
     const Vec2 centre(1.2 + 2.12 * (i % 4), 1.08 + 2.12 * (i / 4));
     scene.grains.push_back(grains(shape.name, shape.name, BodyKind::compliant, {centre}, velocity));
     scene.grains.back().angle = 0.3 * i;
-    if (i % 3 == 1) scene.grains.back().mix[0].material = "tough";
+    if (i % 3 == 1) scene.grains.back().species[0].material = "tough";
   }
   scene.shapes.push_back(disc_shape("disc", 1, 60));
   scene.grains.push_back(grains("disc", "disc", BodyKind::rigid, {{4.3, 7.1}}, moving({0, -0.2})));

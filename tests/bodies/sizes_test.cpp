@@ -46,7 +46,7 @@ Scene scene_of(bool shared, Integrator integrator, DiscretisationMethod method) 
     scene.grains.push_back(
         grains("grain" + std::to_string(scene.grains.size()), shape, grain.kind, {grain.centre}, velocity));
     scene.grains.back().angle = grain.angle;
-    scene.grains.back().mix[0].material = grain.material;
+    scene.grains.back().species[0].material = grain.material;
   }
   return scene;
 }

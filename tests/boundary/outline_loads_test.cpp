@@ -108,7 +108,7 @@ TEST(Pressure, on_rigid_grains_gives_force_and_moment) {
   BoundaryCondition right = pressure_on("square", 0.3, false);
   right.part = {.kind = OutlinePart::Kind::box, .low = {1.45, -0.25}, .high = {2, 1}};  // upper half of the right side
   Scene scene = square(right);
-  scene.grains[0].mix = {{BodyKind::rigid, "hard", 1}};
+  scene.grains[0].species = {{BodyKind::rigid, "hard", 1}};
   scene.shapes[0].spacing = 0.25;
   const Bench bench(scene);
   EXPECT_NEAR(bench.state.force.rigid[0], -0.3, 1e-13) << "EXACT: length 1";
@@ -158,7 +158,7 @@ TEST(Work, of_a_pressure_on_a_rigid_grain_is_its_kinetic_energy) {
     right.pressure = {{0, 1}, {0.1, 0.5}};
     right.part = {.kind = OutlinePart::Kind::box, .low = {1.45, -0.25}, .high = {2, 1}};
     Scene scene = square(right);
-    scene.grains[0].mix = {{BodyKind::rigid, "hard", 1}};
+    scene.grains[0].species = {{BodyKind::rigid, "hard", 1}};
     scene.time.end = 4;
     scene.time.tolerance = 1e-4;
     const Model model = build_model(scene);

@@ -89,7 +89,7 @@ Scene three_discs_and_a_wall() {
     grains.shape = "disc";
     const bool soft = grains.name == "soft";
     grains.packing.positions = soft ? Points{{1, 0}} : Points{{3, 0}, {5, 0}};
-    grains.mix = {{soft ? BodyKind::compliant : BodyKind::rigid, material, 1}};
+    grains.species = {{soft ? BodyKind::compliant : BodyKind::rigid, material, 1}};
     scene.grains.push_back(grains);
   }
   Wall wall;

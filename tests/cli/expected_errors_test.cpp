@@ -43,7 +43,7 @@ TEST(ExpectedErrors, of_a_scene_are_those_of_its_coarsest_grains) {
   EXPECT_NE(text.find("mass = \"corrected\""), std::string::npos) << text;
   scene.discretisation.mass = Mass::corrected;
   EXPECT_EQ(describe_expected_errors(build_model(scene)).find("mass ="), std::string::npos);
-  for (Grains& grains : scene.grains) grains.mix[0] = {BodyKind::rigid, "hard", 1};
+  for (Grains& grains : scene.grains) grains.species[0] = {BodyKind::rigid, "hard", 1};
   EXPECT_EQ(describe_expected_errors(build_model(scene)), "") << "nothing compliant";
 }
 

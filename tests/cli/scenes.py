@@ -69,7 +69,7 @@ nodes = 40
 [[grains]]
 shape = "disc"
 packing = { kind = "grid", columns = 3, rows = 3, pitch = 2, row_pitch = 2.01, origin = [1, 0] }
-mix = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
+species = [{ body = "compliant", material = "soft", share = 0.5 }, { body = "rigid", material = "hard", share = 0.5 }]
 angle = "random"
 seed = 3
 velocity = { uniform = [0.4, 0], rotation = 0.1 }

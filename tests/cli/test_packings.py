@@ -49,7 +49,7 @@ nodes = 80
 [[grains]]
 shapes = [{ shape = "wedge", share = 0.5 }, { shape = "pebble", share = 0.5 }]
 packing = { kind = "random", bottom = 0, top = "6 cm", solid_fraction = 0.7 }
-mix = [{ body = "compliant", material = "rubber", share = 0.5 }, { body = "rigid", material = "rubber", share = 0.5 }]
+species = [{ body = "compliant", material = "rubber", share = 0.5 }, { body = "rigid", material = "rubber", share = 0.5 }]
 angle = "random"
 seed = 3
 [[walls]]
@@ -125,8 +125,8 @@ points = [["0 mm", "0 mm"], ["2 mm", "0 mm"], ["2 mm", "1 mm"], ["0 mm", "1 mm"]
 spacing = "0.25 mm"
 [[grains]]
 shape = "block"
-mix = [{ body = "compliant", material = "rubber", share = 0.5 }, { body = "rigid", material = "stone", share = 0.5 }]
-mix_order = "in turn"
+species = [{ body = "compliant", material = "rubber", share = 0.5 }, { body = "rigid", material = "stone", share = 0.5 }]
+species_order = "in turn"
 packing = { kind = "file", file = "blocks.csv" }
 velocity = { uniform = ["0 m/s", "-1 m/s"] }
 [[contacts]]

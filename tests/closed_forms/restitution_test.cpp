@@ -145,7 +145,7 @@ TEST(Restitution, of_two_blocks) {
   scene.shapes = {box_shape("block", 1, 1, 0.25)};
   scene.grains = {grains("left", "block", BodyKind::rigid, {{0, 0}}, moving({0.1, 0})),
                   grains("right", "block", BodyKind::rigid, {{1.002, 0}})};
-  scene.grains[1].mix[0].material = "heavy";
+  scene.grains[1].species[0].material = "heavy";
   scene.contacts = {bouncing(0.5, false)};
   without_error_control(scene, 0.02);
   const Model model = build_model(scene);

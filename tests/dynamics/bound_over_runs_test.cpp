@@ -47,7 +47,7 @@ Scene sudden_contact() {
   scene.materials.push_back(elastic());
   scene.materials.back().name = "stiff";
   scene.materials.back().young *= 1000;
-  scene.grains[1].mix[0].material = "stiff";
+  scene.grains[1].species[0].material = "stiff";
   return scene;
 }
 
@@ -63,7 +63,7 @@ Scene light_between_heavy() {
   scene.materials.push_back(rigid_material(1e4, "heavy"));
   scene.grains.push_back(grains("anvil", "disc", BodyKind::rigid, {{0, -2.02}}));
   scene.grains.push_back(grains("hammer", "disc", BodyKind::rigid, {{0.1, 2.03}}, moving({0, -0.03})));
-  for (int i : {1, 2}) scene.grains[i].mix[0].material = "heavy";
+  for (int i : {1, 2}) scene.grains[i].species[0].material = "heavy";
   scene.contacts = {mohr_coulomb(automatic_stiffness(24), 0.3)};
   return scene;
 }

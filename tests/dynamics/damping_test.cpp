@@ -282,7 +282,7 @@ TEST(Bound, mixed_batches_have_the_bounds_of_their_bodies) {
     scene.materials.back().viscosity = second;
     scene.grains.push_back(scene.grains[0]);
     scene.grains.back().name = "other";
-    scene.grains.back().mix[0].material = "other";
+    scene.grains.back().species[0].material = "other";
     scene.grains.back().packing.positions = {{5, 0}};
     const Model model = build_model(scene);
     return Simulation(model).largest_dt();

@@ -142,7 +142,7 @@ int compare_estimates(const Scene& scene) {
 TEST(StepDoubling, estimator_compares_one_step_with_two_halves) {
   EXPECT_GT(compare_estimates(collision()), 50);
   Scene rigid_pair = collision();
-  rigid_pair.grains[0].mix[0] = {BodyKind::rigid, "hard", 1};
+  rigid_pair.grains[0].species[0] = {BodyKind::rigid, "hard", 1};
   EXPECT_GT(compare_estimates(rigid_pair), 10);
 }
 

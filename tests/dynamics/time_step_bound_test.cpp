@@ -81,7 +81,7 @@ Scene two_compliant_discs(const ContactRule& contact) {
 Scene disc_on_wall(BodyKind kind, const ContactRule& contact) {
   Scene scene = free_disc(40, 1);
   scene.period = 4;
-  scene.grains[0].mix[0] = {kind, kind == BodyKind::rigid ? "hard" : "soft", 1};
+  scene.grains[0].species[0] = {kind, kind == BodyKind::rigid ? "hard" : "soft", 1};
   scene.grains[0].packing.positions = {{2, 0}};
   scene.walls = {flat_wall("floor", Wall::Solid::below, -0.97, 0.25)};
   scene.contacts = {contact};

@@ -75,7 +75,7 @@ Scene listed(const std::vector<std::pair<std::string, double>>& shares) {
   Grains grains;
   for (const auto& [shape, share] : shares) grains.shapes.push_back({shape, share});
   grains.packing.positions = {{3, 0}, {1, 5}, {7, 0}, {9, 9}};
-  grains.mix = {{BodyKind::rigid, "any", 1}};
+  grains.species = {{BodyKind::rigid, "any", 1}};
   scene.grains = {grains};
   return scene;
 }

@@ -107,7 +107,7 @@ TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
 
 TEST(ReferenceSystem, kinds_in_turn_are_those_of_the_engine) {
   Scene scene = small_third_body(1);
-  scene.grains[0].mix_order = MixOrder::in_turn;
+  scene.grains[0].species_order = SpeciesOrder::in_turn;
   const Model model = build_model(scene);
   const reference::Bodies bodies(scene);
   // EXACT: up each of three columns of four, whose grains are numbered along rows.

@@ -50,8 +50,8 @@ TEST(Cases, GrainsOfTheThirdBodyAreTakenInTurnAndHold400MPa) {
   // EXACT: docs/method.md 8.
   for (const char* file : {"third_body.toml", "third_body_mini.toml"}) {
     const Scene scene = read_scene(cases / file);
-    EXPECT_EQ(scene.grains[0].mix_order, MixOrder::in_turn) << file;
-    EXPECT_EQ(scene.grains[0].mix[0].body, BodyKind::compliant) << file;
+    EXPECT_EQ(scene.grains[0].species_order, SpeciesOrder::in_turn) << file;
+    EXPECT_EQ(scene.grains[0].species[0].body, BodyKind::compliant) << file;
     EXPECT_EQ(scene.contacts[0].strength, 400e6) << file;
   }
 }

@@ -17,11 +17,16 @@ using scene_tests::SceneFile;
 struct Renamed {
   std::string now, formerly;
 };
-const std::vector<Renamed> keys{{"method", "recipe"}, {"mass_scaling", "rim_mass"}, {"asperities", "caps"}};
+const std::vector<Renamed> keys{{"method", "recipe"},
+                                {"mass_scaling", "rim_mass"},
+                                {"asperities", "caps"},
+                                {"species", "mix"},
+                                {"species_order", "mix_order"}};
 
 /// The good scene with all of these keys, by their present or their old names.
 std::string scene_with(std::string Renamed::* name) {
-  std::string text = edited({{"support = 9", "support = 9\nmass_scaling = 1.5"}});
+  std::string text = edited(
+      {{"support = 9", "support = 9\nmass_scaling = 1.5"}, {"seed = 7", "seed = 7\nspecies_order = \"random\""}});
   for (const Renamed& key : keys) text.replace(text.find("\n" + key.now + " =") + 1, key.now.size(), key.*name);
   return text;
 }

@@ -103,11 +103,13 @@ TEST(ReadPacking, SeveralShapes) {
 }
 
 TEST(ReadPacking, OrderOfAMix) {
-  EXPECT_EQ(changed({}).grains[0].mix_order, MixOrder::random);
-  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nmix_order = \"random\""}}).grains[0].mix_order, MixOrder::random);
-  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nmix_order = \"in turn\""}}).grains[0].mix_order, MixOrder::in_turn);
-  const Scene unseeded = changed({{"angle = \"random\"\nseed = 7", "mix_order = \"in turn\""}});
-  EXPECT_EQ(unseeded.grains[0].mix_order, MixOrder::in_turn) << "nothing is random, so no seed is needed";
+  EXPECT_EQ(changed({}).grains[0].species_order, SpeciesOrder::random);
+  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nspecies_order = \"random\""}}).grains[0].species_order,
+            SpeciesOrder::random);
+  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nspecies_order = \"in turn\""}}).grains[0].species_order,
+            SpeciesOrder::in_turn);
+  const Scene unseeded = changed({{"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}});
+  EXPECT_EQ(unseeded.grains[0].species_order, SpeciesOrder::in_turn) << "nothing is random, so no seed is needed";
 }
 
 TEST(ReadPacking, FittedShapesKeepTheirDescriptors) {
@@ -183,8 +185,9 @@ TEST(ReadPacking, GrainsFromAFile) {
   EXPECT_EQ(packing.positions, (Points{Vec2(1, 2) * 1e-6, Vec2(3, 4) * 1e-6}));
   EXPECT_EQ(packing.scales, (std::vector<double>{0.5, 9.9}));
   EXPECT_EQ(packing.grain_count(), 2);
-  EXPECT_EQ(changed({{lattice, from_file}, {"angle = \"random\"\nseed = 7", "mix_order = \"in turn\""}}).grains.size(),
-            2U);
+  EXPECT_EQ(
+      changed({{lattice, from_file}, {"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}}).grains.size(),
+      2U);
 }
 
 TEST(ReadPacking, FilesThatSayTooMuchAreRefused) {

@@ -94,8 +94,8 @@ TEST(ReadScene, Grains) {
   EXPECT_EQ(scene.grains[0].name, "grains");
   EXPECT_EQ(scene.grains[0].seed, 7u);
   EXPECT_FALSE(scene.grains[0].angle);
-  EXPECT_EQ(scene.grains[0].mix[1].body, BodyKind::rigid);
-  EXPECT_EQ(scene.grains[0].mix[1].share, 0.75);
+  EXPECT_EQ(scene.grains[0].species[1].body, BodyKind::rigid);
+  EXPECT_EQ(scene.grains[0].species[1].share, 0.75);
   const Grains& boxes = scene.grains[1];
   EXPECT_DOUBLE_EQ(*boxes.angle, std::numbers::pi / 4);
   EXPECT_DOUBLE_EQ(boxes.packing.positions.at(1).x(), 5e-6);

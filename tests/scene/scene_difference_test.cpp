@@ -63,8 +63,8 @@ TEST(SceneDifference, the_first_other_key_is_named_with_both_values) {
   EXPECT_EQ(changed("\"2 GPa\"", "\"3 GPa\""), "'materials.soft.young' was '2 GPa', now '3 GPa'");
   EXPECT_EQ(changed("poisson = 0.4\n", ""), "'materials.soft.poisson' was 0.4, now not there");
   EXPECT_EQ(changed("seed = 7", "seed = 8"), "'grains 1.seed' was 7, now 8");
-  EXPECT_EQ(changed("seed = 7", "seed = 7\nmix_order = \"in turn\""),
-            "'grains 1.mix_order' was not there, now 'in turn'");
+  EXPECT_EQ(changed("seed = 7", "seed = 7\nspecies_order = \"in turn\""),
+            "'grains 1.species_order' was not there, now 'in turn'");
   EXPECT_EQ(changed(", \"von_mises\"]", "]"), "'frames.fields 2' was 'von_mises', now not there");
   EXPECT_EQ(changed("x = { velocity = \"10 m/s\" }", "x = \"fixed\""), "'walls 2.x' was a table, now 'fixed'");
   EXPECT_EQ(changed("[[probes]]", "[[probes]]\nname = \"new\"\nquantity = \"energy\"\nperiod = 1\n[[probes]]"),

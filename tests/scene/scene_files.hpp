@@ -62,7 +62,7 @@ spacing = "0.1 um"
 [[grains]]
 shape = "disc"
 packing = { kind = "hexagonal", columns = 10, rows = 4, pitch = "1 um", row_pitch = "1.1 um" }
-mix = [{ body = "compliant", material = "soft", share = 0.25 }, { body = "rigid", material = "hard", share = 0.75 }]
+species = [{ body = "compliant", material = "soft", share = 0.25 }, { body = "rigid", material = "hard", share = 0.75 }]
 angle = "random"
 seed = 7
 [[grains]]

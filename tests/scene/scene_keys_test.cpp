@@ -95,8 +95,8 @@ TEST(SceneKeys, RowsArePrinted) {
            "| `density` | Mass density of the undeformed material | a quantity in kg/m3, > 0 | required |  |\n",
            "| `tolerance` | Error estimate allowed per step, over the nodal distance | a number, > 0 and <= 1 | 0.01 | "
            "integrator = \"verlet\" |\n",
-           "| `material` | Material of the grains | a material of the scene | required without `mix` |  |\n",
-           "## mix of [[grains]]\n",
+           "| `material` | Material of the grains | a material of the scene | required without `species` |  |\n",
+           "## species of [[grains]]\n",
        })
     EXPECT_NE(text.find(row), std::string::npos) << row << text;
 }

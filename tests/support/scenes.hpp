@@ -130,7 +130,7 @@ inline Grains grains(const std::string& name, const std::string& shape, BodyKind
   result.name = name;
   result.shape = shape;
   result.packing.positions = centres;
-  result.mix = {{kind, kind == BodyKind::compliant ? "soft" : "hard", 1}};
+  result.species = {{kind, kind == BodyKind::compliant ? "soft" : "hard", 1}};
   result.velocity = velocity;
   return result;
 }
@@ -142,7 +142,7 @@ inline void add_grain(Scene& scene, const std::string& shape, BodyKind kind, con
   grains.name = "grain" + std::to_string(scene.grains.size());
   grains.shape = shape;
   grains.packing.positions = {centre};
-  grains.mix = {{kind, !material.empty() ? material : kind == BodyKind::rigid ? "hard" : "soft", 1}};
+  grains.species = {{kind, !material.empty() ? material : kind == BodyKind::rigid ? "hard" : "soft", 1}};
   grains.angle = angle;
   scene.grains.push_back(grains);
 }
@@ -292,7 +292,7 @@ inline Scene small_third_body(double end) {
   scene.shapes = {disc_shape("disc", 2, 60)};
   Grains layer = grains("layer", "disc", BodyKind::compliant, {});
   layer.packing = {PackingKind::grid, 3, 4, 2.0, 2.01, {1, 0}, {}};
-  layer.mix = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
+  layer.species = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
   layer.seed = 3;
   layer.angle.reset();
   scene.grains = {layer};

@@ -13,6 +13,6 @@ std::vector<int> take_turns(const std::vector<double>& shares, int count);
 
 /// Index of the share of each grain of a packing, by its number. Shares take turns up each column of a lattice, column
 /// after column; along given positions as they are listed.
-std::vector<int> mix_in_turn(const std::vector<double>& shares, const Packing& packing);
+std::vector<int> species_in_turn(const std::vector<double>& shares, const Packing& packing);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "geometry/mix_in_turn.hpp"
+#include "geometry/species_in_turn.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ Scene mixed(PackingKind kind, int columns, int rows) {
   grains.packing.rows = rows;
   grains.packing.pitch = 0.87;
   grains.packing.row_pitch = 1.002;
-  grains.mix = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
-  grains.mix_order = MixOrder::in_turn;
+  grains.species = {{BodyKind::compliant, "soft", 0.5}, {BodyKind::rigid, "hard", 0.5}};
+  grains.species_order = SpeciesOrder::in_turn;
   grains.angle = std::nullopt;
   grains.seed = 1;
   scene.grains = {grains};
@@ -69,7 +69,7 @@ long count_along_columns(const Packing& packing, const PlacedBody& body) {
   return column * packing.rows + std::lround(body.centre.y() / packing.row_pitch - shift);
 }
 
-TEST(MixInTurn, KindsAlternateUpEachColumnAndFromOneToTheNext) {
+TEST(SpeciesInTurn, KindsAlternateUpEachColumnAndFromOneToTheNext) {
   for (const PackingKind kind : {PackingKind::hexagonal, PackingKind::grid})
     for (const int rows : {20, 3}) {
       Scene scene = mixed(kind, 4, rows);
@@ -85,7 +85,7 @@ TEST(MixInTurn, KindsAlternateUpEachColumnAndFromOneToTheNext) {
 
 // Rows of one kind: of 29 pairs of neighbours a column, 10 in the mean are of one row, 9.5 of two and 9.5 of the
 // column.
-TEST(MixInTurn, LikeNeighboursOfTheThirdBody) {
+TEST(SpeciesInTurn, LikeNeighboursOfTheThirdBody) {
   Scene scene = mixed(PackingKind::hexagonal, 10, 20);
   const std::vector<PlacedBody> bodies = place_bodies(scene);
   int pairs = 0, like = 0;
@@ -101,7 +101,7 @@ TEST(MixInTurn, LikeNeighboursOfTheThirdBody) {
   EXPECT_EQ(like, 10 * 20);
 }
 
-TEST(MixInTurn, PositionsAsListed) {
+TEST(SpeciesInTurn, PositionsAsListed) {
   Scene scene = mixed(PackingKind::positions, 1, 1);
   scene.grains[0].packing.positions = {{3, 0}, {1, 0}, {5, 0}};
   const std::vector<PlacedBody> bodies = place_bodies(scene);
@@ -113,27 +113,27 @@ TEST(MixInTurn, PositionsAsListed) {
 }
 
 /// EXACT: the end of a row of studies, with nothing of one kind.
-TEST(MixInTurn, AShareOfNothingIsNoGrain) {
-  for (const MixOrder order : {MixOrder::in_turn, MixOrder::random})
+TEST(SpeciesInTurn, AShareOfNothingIsNoGrain) {
+  for (const SpeciesOrder order : {SpeciesOrder::in_turn, SpeciesOrder::random})
     for (const double share : {0.0, 1.0}) {
       Scene scene = mixed(PackingKind::grid, 3, 2);
-      scene.grains[0].mix[0].share = share;
-      scene.grains[0].mix[1].share = 1 - share;
-      scene.grains[0].mix_order = order;
+      scene.grains[0].species[0].share = share;
+      scene.grains[0].species[1].share = 1 - share;
+      scene.grains[0].species_order = order;
       for (const PlacedBody& body : place_bodies(scene))
         EXPECT_EQ(body.kind, share == 1 ? BodyKind::compliant : BodyKind::rigid);
     }
 }
 
-TEST(MixInTurn, AShareOfLessThanOneGrainIsRefused) {
-  for (const MixOrder order : {MixOrder::in_turn, MixOrder::random}) {
+TEST(SpeciesInTurn, AShareOfLessThanOneGrainIsRefused) {
+  for (const SpeciesOrder order : {SpeciesOrder::in_turn, SpeciesOrder::random}) {
     Scene scene = mixed(PackingKind::grid, 2, 2);
-    scene.grains[0].mix[0].share = 0.9;
-    scene.grains[0].mix[1].share = 0.1;
-    scene.grains[0].mix_order = order;
+    scene.grains[0].species[0].share = 0.9;
+    scene.grains[0].species[1].share = 0.1;
+    scene.grains[0].species_order = order;
     scene.grains[0].where = "scene.toml:7:1";
     const std::string message = error_of([&] { place_bodies(scene); });
-    EXPECT_TRUE(message.starts_with("scene.toml:7:1: mix: a share of 0.1 of 4 grains")) << message;
+    EXPECT_TRUE(message.starts_with("scene.toml:7:1: species: a share of 0.1 of 4 grains")) << message;
     EXPECT_NE(message.find("'hard'"), std::string::npos) << message;
   }
 }

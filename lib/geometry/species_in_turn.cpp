@@ -1,4 +1,4 @@
-#include "geometry/mix_in_turn.hpp"
+#include "geometry/species_in_turn.hpp"
 
 namespace pliant {
 
@@ -16,7 +16,7 @@ std::vector<int> take_turns(const std::vector<double>& shares, int count) {
   return choice;
 }
 
-std::vector<int> mix_in_turn(const std::vector<double>& shares, const Packing& packing) {
+std::vector<int> species_in_turn(const std::vector<double>& shares, const Packing& packing) {
   const std::vector<int> turns = take_turns(shares, static_cast<int>(packing.grain_count()));
   if (packing.kind == PackingKind::positions) return turns;
   std::vector<int> choice(turns.size());
