@@ -20,6 +20,7 @@
 #include "core/errors.hpp"
 #include "dynamics/simulation.hpp"
 #include "dynamics/time_step_bound.hpp"
+#include "input/read_scene.hpp"
 #include "setup/build_model.hpp"
 
 /// What is counted: --toggle-collect=pliant_counted. What stands behind the call keeps it from becoming a jump, which

@@ -9,6 +9,7 @@
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
 #include "files/output_folder.hpp"
+#include "input/read_scene.hpp"
 #include "reference/natural_modes.hpp"
 #include "reference/run.hpp"
 #include "scene/units.hpp"

@@ -14,12 +14,12 @@
 #include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 #include "reference/outputs/frames.hpp"
 #include "reference/outputs/probes.hpp"
 #include "reference/overlap.hpp"
 #include "reference/progress.hpp"
-#include "scene/text_file.hpp"
+#include "scene/line_reader.hpp"
 
 namespace pliant::reference {
 namespace {

@@ -93,7 +93,7 @@ void move_to(const Model& model, const Dofs& position, std::vector<Body>& bodies
 }
 
 Contact contact_of(const Model& model, const ContactSystem& contact, std::vector<Body>& bodies) {
-  const ContactLaws& laws = contact.laws();
+  const LawTable& laws = contact.laws();
   std::map<std::pair<int, double>, int> numbers;  // by what laws depend on
   std::vector<int> one;                           // body of each group
   for (int b = 0; b < static_cast<int>(bodies.size()); ++b) {

@@ -11,8 +11,9 @@
 #include "bodies/body_view.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
+#include "geometry/curves.hpp"
+#include "input/read_scene.hpp"
 #include "run/checkpoint.hpp"
-#include "scene/curves.hpp"
 #include "setup/build_model.hpp"
 
 namespace pliant::kernels {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 
 namespace pliant {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bodies/layouts.hpp"
-#include "bodies/outline.hpp"
 #include "bodies/outline_conditions.hpp"
+#include "bodies/outline_fields.hpp"
 #include "core/lanes.hpp"
 #include "discretisation/table.hpp"
 #include "geometry/assembly.hpp"

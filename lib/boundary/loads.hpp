@@ -2,7 +2,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 
 namespace pliant {
 

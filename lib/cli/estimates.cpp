@@ -76,7 +76,7 @@ bool alike(const PairEstimate& a, const PairEstimate& b) {
          same(a.curvature, b.curvature);
 }
 
-PairEstimate make_pair_of(const Model& model, const ContactLaws& laws, int first, int second) {
+PairEstimate make_pair_of(const Model& model, const LawTable& laws, int first, int second) {
   const Body &a = model.bodies[first], &b = model.bodies[second];
   const ContactLaw law = laws.between(first, second);
   PairEstimate pair;
@@ -105,7 +105,7 @@ PairEstimate make_pair_of(const Model& model, const ContactLaws& laws, int first
 
 /// Of the bodies of each group, grains and walls apart, the one with the finest outline, another, and the one with the
 /// coarsest.
-std::vector<std::vector<int>> representatives(const Model& model, const ContactLaws& laws) {
+std::vector<std::vector<int>> representatives(const Model& model, const LawTable& laws) {
   std::map<std::pair<int, bool>, std::vector<int>> groups;
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     groups[{laws.group(b), model.bodies[b].wall}].push_back(b);
@@ -149,7 +149,7 @@ double PairEstimate::penetration(double pressure) const {
   return std::pow(3 * pressure * width / (4 * stiffness * std::sqrt(2 / curvature)), 2.0 / 3.0);
 }
 
-std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& laws) {
+std::vector<PairEstimate> pair_estimates(const Model& model, const LawTable& laws) {
   const std::vector<std::vector<int>> groups = representatives(model, laws);
   std::vector<PairEstimate> pairs;
   const auto is_known = [&](const PairEstimate& pair) {

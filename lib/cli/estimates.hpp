@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 
 namespace pliant {
 
@@ -33,7 +33,7 @@ struct PairEstimate {
 
 /// The pairs of the scene that can meet, each once but for rounding: walls do not meet each other, nor a single body
 /// itself.
-std::vector<PairEstimate> pair_estimates(const Model& model, const ContactLaws& laws);
+std::vector<PairEstimate> pair_estimates(const Model& model, const LawTable& laws);
 
 /// Files of a run, in bytes.
 struct OutputSize {

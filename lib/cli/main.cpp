@@ -13,9 +13,10 @@
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
 #include "files/output_folder.hpp"
+#include "input/read_scene.hpp"
+#include "input/scene_keys.hpp"
 #include "run/run.hpp"
 #include "scene/late_conditions.hpp"
-#include "scene/scene_keys.hpp"
 #include "scene/units.hpp"
 
 namespace pliant {

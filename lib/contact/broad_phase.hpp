@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bodies/model.hpp"
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 
 namespace pliant {
 

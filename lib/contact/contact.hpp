@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "bodies/model.hpp"
-#include "bodies/outline.hpp"
-#include "contact/contact_laws.hpp"
+#include "bodies/outline_fields.hpp"
 #include "contact/contact_pair.hpp"
 #include "contact/energy_correction.hpp"
 #include "contact/history.hpp"
+#include "contact/law_table.hpp"
 #include "contact/pair_table.hpp"
 #include "contact/verlet_list.hpp"
 
@@ -43,7 +43,7 @@ class ContactSystem {
 
   /// Returns false if some close pair may have moved by the skin since its candidates were found, and always before the
   /// first search. With a fixed rebuild interval it returns false when the interval is over; contacts that come earlier
-  /// are missed. It also returns false when laws change: see ContactLaws::law_interval.
+  /// are missed. It also returns false when laws change: see LawTable::law_interval.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
   /// Rebuilds all contact pairs and transfers the history, which must belong to these outlines. New contacts get their
   /// surface coordinates. Throws InputError if a body with self-contact overlaps itself at the start.
@@ -72,7 +72,7 @@ class ContactSystem {
   /// has it.
   std::vector<double> least_internal_variable(const ContactHistory& history, std::string_view name, double none) const;
 
-  const ContactLaws& laws() const { return laws_; }
+  const LawTable& laws() const { return laws_; }
   /// All pairs of the Verlet list; some have no candidates.
   const std::vector<ContactPair>& contact_pairs() const { return table_.contact_pairs(); }
   const PairTable& table() const { return table_; }
@@ -126,7 +126,7 @@ class ContactSystem {
                 const ContactHistory& from, const ContactHistory& to, const PairForceBuffer& forces) const;
 
   const Model& model_;
-  ContactLaws laws_;
+  LawTable laws_;
   double skin_;
   bool may_integrate_;
   VerletList verlet_list_;

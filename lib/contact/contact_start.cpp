@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-PairLaws pair_laws(const ContactLaws& laws, int bodies) {
+PairLaws pair_laws(const LawTable& laws, int bodies) {
   PairLaws all;
   std::vector<int> member;  // [groups] one body of each
   for (int b = 0; b < bodies; ++b) {

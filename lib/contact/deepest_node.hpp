@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bodies/model.hpp"
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 #include "contact/broad_phase.hpp"
 #include "contact/contact.hpp"
 

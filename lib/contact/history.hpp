@@ -102,7 +102,7 @@ void store_record(ContactHistory& history, int record, const std::array<Lanes, c
 /// Kind of law between any two bodies, whether they are close or not.
 struct PairLaws {
   std::vector<std::int32_t> groups;  ///< [bodies] index of each body's group
-  std::vector<std::int32_t> kinds;   ///< [groups x groups] as ContactLaws::kind
+  std::vector<std::int32_t> kinds;   ///< [groups x groups] as LawTable::kind
   std::int32_t count = 0;            ///< number of groups
 
   std::int32_t kind(int first, int second) const { return kinds[groups[first] * count + groups[second]]; }

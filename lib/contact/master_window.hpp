@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 #include "contact/contact_pair.hpp"
 #include "core/lanes.hpp"
 

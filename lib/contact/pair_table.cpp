@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
 

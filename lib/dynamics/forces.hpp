@@ -5,7 +5,7 @@
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
 #include "bodies/nodewise_forces.hpp"
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 #include "contact/contact.hpp"
 #include "core/phase_times.hpp"
 #include "dynamics/state.hpp"

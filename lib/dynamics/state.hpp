@@ -5,7 +5,7 @@
 
 #include "bodies/dofs.hpp"
 #include "bodies/model.hpp"
-#include "bodies/outline.hpp"
+#include "bodies/outline_fields.hpp"
 #include "bodies/point_law.hpp"
 #include "contact/energy_correction.hpp"
 #include "contact/history.hpp"

@@ -91,7 +91,7 @@ std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector
 
 }  // namespace
 
-TimeStepBound::TimeStepBound(const Model& model, const ContactLaws& laws) : model_(model), stiffness_(model) {
+TimeStepBound::TimeStepBound(const Model& model, const LawTable& laws) : model_(model), stiffness_(model) {
   direction_ = start_directions(model);
   internal_.assign(model.batches.size(), Lanes{});
   contact_.assign(model.bodies.size(), 0.0);

@@ -14,7 +14,7 @@ namespace pliant {
 /// w^2 = 1.05 w_b^2 + w_c^2 plus that of soft supports; z = c/(2 w), c the rate of dashpots and viscosity.
 class TimeStepBound {
  public:
-  TimeStepBound(const Model& model, const ContactLaws& laws);
+  TimeStepBound(const Model& model, const LawTable& laws);
 
   /// Two more power iterations on the internal forces of every compliant body.
   void update_internal(const Dofs& position, const Memory& memory, int iterations = 2);

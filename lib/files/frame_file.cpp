@@ -7,7 +7,7 @@
 #include "core/errors.hpp"
 #include "files/atomic_file.hpp"
 #include "files/hdf5_file.hpp"
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 #include "files/xdmf.hpp"
 
 namespace pliant {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/vec2.hpp"
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 
 namespace pliant {
 

@@ -6,10 +6,10 @@
 
 #include "core/errors.hpp"
 #include "geometry/mesh.hpp"
-#include "geometry/outline.hpp"
 #include "geometry/outline_search.hpp"
 #include "geometry/polygon.hpp"
 #include "geometry/relaxation.hpp"
+#include "geometry/shape_outline.hpp"
 #include "geometry/triangulate.hpp"
 
 namespace pliant {

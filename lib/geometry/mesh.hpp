@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/vec2.hpp"
-#include "scene/polygon_rules.hpp"
+#include "geometry/polygon_rules.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {

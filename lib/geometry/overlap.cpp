@@ -1,7 +1,7 @@
 #include "geometry/overlap.hpp"
 
 #include "geometry/polygon.hpp"
-#include "scene/polygon_rules.hpp"
+#include "geometry/polygon_rules.hpp"
 
 namespace pliant {
 

@@ -8,8 +8,8 @@
 #include "core/located.hpp"
 #include "core/random.hpp"
 #include "geometry/mesh.hpp"
+#include "geometry/sizes.hpp"
 #include "geometry/wall_profile.hpp"
-#include "scene/sizes.hpp"
 
 namespace pliant {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/vec2.hpp"
-#include "scene/polygon_rules.hpp"
+#include "geometry/polygon_rules.hpp"
 
 namespace pliant {
 

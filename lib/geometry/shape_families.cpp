@@ -1,8 +1,8 @@
 #include "geometry/shape_families.hpp"
 
 #include "core/located.hpp"
-#include "geometry/outline.hpp"
 #include "geometry/same_topology_mesh.hpp"
+#include "geometry/shape_outline.hpp"
 
 namespace pliant {
 namespace {

@@ -7,10 +7,10 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "geometry/cell_filling.hpp"
+#include "geometry/curves.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/placement.hpp"
 #include "geometry/power_diagram.hpp"
-#include "scene/curves.hpp"
 
 namespace pliant {
 namespace {

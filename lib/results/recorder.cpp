@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "files/atomic_file.hpp"
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 
 namespace pliant {
 

@@ -4,8 +4,8 @@
 
 #include "core/errors.hpp"
 #include "files/atomic_file.hpp"
+#include "scene/line_reader.hpp"
 #include "scene/scene.hpp"
-#include "scene/text_file.hpp"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene/portable_scene.hpp"
+#include "input/portable_scene.hpp"
 
 namespace pliant {
 

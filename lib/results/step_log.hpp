@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "dynamics/simulation.hpp"
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 
 namespace pliant {
 

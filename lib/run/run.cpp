@@ -21,13 +21,15 @@
 #include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
+#include "input/read_scene.hpp"
+#include "input/scene_difference.hpp"
 #include "results/recorder.hpp"
 #include "results/scene_files.hpp"
 #include "run/balance_warning.hpp"
 #include "run/checkpoint.hpp"
 #include "run/failure_report.hpp"
 #include "run/start_file.hpp"
-#include "scene/text_file.hpp"
+#include "scene/line_reader.hpp"
 #include "setup/build_model.hpp"
 
 namespace pliant {

@@ -5,10 +5,11 @@
 
 #include "core/archive.hpp"
 #include "core/errors.hpp"
-#include "run/checkpoint.hpp"
+#include "input/portable_scene.hpp"
+#include "input/scene_difference.hpp"
 #include "results/scene_files.hpp"
-#include "scene/portable_scene.hpp"
-#include "scene/text_file.hpp"
+#include "run/checkpoint.hpp"
+#include "scene/line_reader.hpp"
 
 namespace pliant {
 

@@ -332,20 +332,7 @@ struct Scene {
   std::vector<std::pair<int, double>> shape_shares(const Grains& grains) const;
 };
 
-/// Reads and validates a scene file. Throws InputError with file, line and column, what was found, what is
-/// allowed and the nearest name. Nothing is written.
-Scene read_scene(const std::filesystem::path& file);
-
 /// What a finished run leaves in its folder for others to start from, and what it is called beside their scenes.
 inline constexpr const char *start_file_name = "final.bin", *start_copy_name = "start.bin";
-
-/// What a run that goes on would do otherwise by the text `now` of a scene file than by `before`: the first key that
-/// differs, with both values; empty when none does. The end, the title and [checkpoint] may differ: they change no
-/// step. Throws InputError for text that is not TOML.
-std::string scene_difference(const std::string& before, const std::string& now);
-
-/// Likewise of a run that starts from the end of another one: the first key that differs and must not. Bodies, shapes
-/// and the discretisation must be the same; loads, drives, laws' constants, contact, time and outputs may differ.
-std::string start_difference(const std::string& before, const std::string& now);
 
 }  // namespace pliant

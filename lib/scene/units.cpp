@@ -10,7 +10,7 @@
 
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
-#include "scene/text_file.hpp"
+#include "scene/line_reader.hpp"
 
 namespace pliant {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 #include "reference/outputs/view.hpp"
 
 namespace pliant::reference {

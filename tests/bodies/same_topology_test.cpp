@@ -5,7 +5,7 @@
 
 #include "bodies/make_batches.hpp"
 #include "bodies/nodal.hpp"
-#include "scene/curves.hpp"
+#include "geometry/curves.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"
@@ -110,7 +110,8 @@ TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, SameTopology,
-                         ::testing::Combine(::testing::Values(DiscretisationMethod::mls, DiscretisationMethod::es_t3, DiscretisationMethod::mls_gauss),
+                         ::testing::Combine(::testing::Values(DiscretisationMethod::mls, DiscretisationMethod::es_t3,
+                                                              DiscretisationMethod::mls_gauss),
                                             ::testing::Values(Integrator::verlet, Integrator::step_doubling),
                                             ::testing::Values(Extras::none, Extras::damping_and_corrected_mass,
                                                               Extras::mass_scaling)));

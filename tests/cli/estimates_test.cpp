@@ -107,7 +107,7 @@ TEST(ContactPairs, AreThoseThatCanMeet) {
   scene.contacts.push_back(testing::mohr_coulomb(50, 0.3));
   scene.contacts[1].first = "hard", scene.contacts[1].second = "soft";
   const Model model = build_model(scene);
-  const std::vector<PairEstimate> pairs = pair_estimates(model, ContactLaws(model));
+  const std::vector<PairEstimate> pairs = pair_estimates(model, LawTable(model));
   // EXACT: the only soft disc does not meet itself, and the wall no wall.
   ASSERT_EQ(pairs.size(), 4U);
   const auto find = [&](const std::string& first, const std::string& second) {

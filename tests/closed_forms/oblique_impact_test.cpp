@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 

@@ -1,7 +1,7 @@
 // A rigid block with a flat face falls on a floor: spring and dashpot of one degree of freedom (docs/method.md 4).
 #include <gtest/gtest.h>
 
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
@@ -200,7 +200,7 @@ TEST(Restitution, laws_follow_drives_in_time) {
   scene.boundary = {held};
   scene.contacts = {bouncing(0.5, false)};
   const Model model = build_model(scene);
-  const ContactLaws laws(model);
+  const LawTable laws(model);
   const auto root = [&](double time) { return std::get<Damped<Frictionless>>(laws.between(0, 1, time)).root_damping; };
   EXPECT_EQ(laws.law_interval(0.5), 0);
   EXPECT_EQ(laws.law_interval(1), 1) << "from on";

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "bodies/model.hpp"
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/scenes.hpp"
@@ -34,14 +34,14 @@ void expect_table(const Law& law, const std::vector<StateRow>& table) {
 }
 
 // kn = 10.
-TEST(ContactLaws, Frictionless) {
+TEST(LawTable, Frictionless) {
   expect_table(Frictionless{10, 0, 0},
                {{"pressed", -0.3, 3, 0, 0.45}, {"just met", 0, 0, 0, 0}, {"apart", 0.2, 0, 0, 0}});
 }
 
 // kn = 10, friction 0.5, cohesion 0.2, tensile cut-off 1 at a gap of 0.1. Energy: what closing from the cut-off takes,
 // 5 (g^2 - 0.01).
-TEST(ContactLaws, MohrCoulomb) {
+TEST(LawTable, MohrCoulomb) {
   expect_table(MohrCoulomb{10, 10, 0.1, 0.5, 0.2}, {{"pressed", -0.3, 3, 1.7, 0.4},
                                                     {"just met", 0, 0, 0.2, -0.05},
                                                     {"pulled: no friction from tension", 0.06, -0.6, 0.2, -0.032},
@@ -50,12 +50,12 @@ TEST(ContactLaws, MohrCoulomb) {
 }
 
 // Without tension: dry friction.
-TEST(ContactLaws, Coulomb) {
+TEST(LawTable, Coulomb) {
   expect_table(MohrCoulomb{10, 10, 0, 0.5, 0}, {{"pressed", -0.2, 2, 1, 0.2}, {"apart", 1e-9, 0, 0, 0}});
 }
 
 // kn = 10, strength 2: critical gap 0.2; range 0.6, shear strength 3. Fracture energy 2 x 0.6/2 = 0.6.
-TEST(ContactLaws, Cohesive) {
+TEST(LawTable, Cohesive) {
   expect_table(Cohesive{10, 10, 0.6, 2, 3}, {{"pressed", -0.3, 3, 3, -0.6 + 0.45},
                                              {"just met", 0, 0, 3, -0.6},
                                              {"pulled", 0.1, -1, 3, -0.6 + 0.05},
@@ -67,7 +67,7 @@ TEST(ContactLaws, Cohesive) {
 
 // kn = 10, smooth over 0.2: the straight branch starts at a pressure of 1 and meets zero at 0.1. Energy: 10 x^3/1.2,
 // then the parabola about 0.1 and 10 x 0.04/24.
-TEST(ContactLaws, Smoothed) {
+TEST(LawTable, Smoothed) {
   expect_table(Smoothed<Frictionless>{{10, 0, 0}, 0.2}, {{"end of the start", -0.2, 1, 0, 10 * 0.008 / 1.2},
                                                          {"half way", -0.1, 0.25, 0, 10 * 0.001 / 1.2},
                                                          {"deep", -0.5, 4, 0, 0.8 + 0.4 / 24},
@@ -80,7 +80,7 @@ TEST(ContactLaws, Smoothed) {
 
 // EXACT: dpsi/dg = -p wherever the law is smooth; central differences of quadratics have no truncation error:
 // 1e-16/1e-5.
-TEST(ContactLaws, PressureIsTheDerivativeOfTheEnergy) {
+TEST(LawTable, PressureIsTheDerivativeOfTheEnergy) {
   const auto defect = [](const auto& law, double gap) {
     constexpr double h = 1e-5;
     const double slope = (law(broadcast(gap + h)).energy[0] - law(broadcast(gap - h)).energy[0]) / (2 * h);
@@ -95,7 +95,7 @@ TEST(ContactLaws, PressureIsTheDerivativeOfTheEnergy) {
 }
 
 // EXACT to the last bits, which inlining may change: lanes do not look at each other.
-TEST(ContactLaws, LanesAreIndependent) {
+TEST(LawTable, LanesAreIndependent) {
   const Lanes gaps = {-0.3, 0, 0.1, 0.2, 0.4, 0.6, 0.9, 1e100};
   const Cohesive law{10, 10, 0.6, 2, 3};
   const Traction together = law(gaps);
@@ -203,7 +203,7 @@ TEST(LawsOfPairs, AutomaticStiffnessAndRange) {
   scene.contacts = {with_auto_stiffness(cohesive(0, 1e-3, 0, 0))};
   scene.contacts[0].shear_strength.reset();
   const Model model = build_model(scene);
-  const ContactLaws laws(model);
+  const LawTable laws(model);
   const double coarse = model.outlines[model.bodies[0].outline].spacing,
                fine = model.outlines[model.bodies[2].outline].spacing;
   const auto law = [&](int a, int b) { return std::get<Cohesive>(laws.between(a, b)); };
@@ -230,7 +230,7 @@ TEST(LawsOfPairs, SpecialRuleComesFirst) {
   special.first = "hard", special.second = "soft";
   special.shear_stiffness = 3;
   scene.contacts = {frictionless(5), special};
-  const ContactLaws laws(build_model(scene));
+  const LawTable laws(build_model(scene));
   for (const auto& [a, b] : {std::pair{0, 3}, {3, 0}, {1, 4}, {4, 1}}) {
     const MohrCoulomb law = std::get<MohrCoulomb>(laws.between(a, b));
     EXPECT_EQ(law.normal_stiffness, 7);
@@ -246,7 +246,7 @@ TEST(LawsOfPairs, SpecialRuleComesFirst) {
 
 std::string error_of(const Scene& scene) {
   try {
-    ContactLaws(build_model(scene));
+    LawTable(build_model(scene));
   } catch (const std::exception& error) {
     return error.what();
   }

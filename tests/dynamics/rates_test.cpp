@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <complex>
 
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "dynamics/mass_damping.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"

@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "dynamics/simulation.hpp"
 #include "fuzz/fuzz_input.hpp"
+#include "input/read_scene.hpp"
 #include "results/recorder.hpp"
 #include "run/checkpoint.hpp"
 #include "scene/scene.hpp"

@@ -5,7 +5,7 @@
 #include "core/errors.hpp"
 #include "fuzz/fuzz_input.hpp"
 #include "geometry/mesh.hpp"
-#include "scene/outline_file.hpp"
+#include "geometry/outline_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count) {
   using namespace pliant;

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "fuzz/fuzz_input.hpp"
+#include "input/read_scene.hpp"
 #include "scene/scene.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t count) {

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
+#include "geometry/curves.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/overlap.hpp"
 #include "geometry/placement.hpp"
-#include "scene/curves.hpp"
 #include "shapes.hpp"
 
 /// Packings put together in code and what tests ask of them, in units of order one.

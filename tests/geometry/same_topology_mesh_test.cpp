@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "scene/curves.hpp"
+#include "geometry/curves.hpp"
 
 namespace pliant {
 namespace {

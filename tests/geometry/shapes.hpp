@@ -1,7 +1,7 @@
 #pragma once
 
+#include "geometry/curves.hpp"
 #include "geometry/mesh.hpp"
-#include "scene/curves.hpp"
 
 /// Shapes that the tests of geometry and discretisation share.
 namespace pliant::testing {

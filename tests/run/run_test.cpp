@@ -14,6 +14,7 @@
 
 #include "core/errors.hpp"
 #include "files/temporary_folder.hpp"
+#include "input/read_scene.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 

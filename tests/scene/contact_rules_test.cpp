@@ -4,8 +4,9 @@
 #include <algorithm>
 
 #include "bodies/model.hpp"
-#include "contact/contact_laws.hpp"
+#include "contact/law_table.hpp"
 #include "core/errors.hpp"
+#include "input/read_scene.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene_files.hpp"
 #include "setup/build_model.hpp"
@@ -130,7 +131,7 @@ TEST(ContactRules, ALoneBodyNeedsNoneWithItself) {
   const std::string between = rule("[\"soft\", \"hard\"]", 1), period = "[domain]\nperiod = 8\n";
   const auto refused = [](const std::string& text) {
     try {
-      const ContactLaws laws(build_model(read_scene(SceneFile(text).path())));
+      const LawTable laws(build_model(read_scene(SceneFile(text).path())));
     } catch (const InputError& error) {
       return std::string(error.what());
     }

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/floating_point_traps.hpp"
+#include "geometry/polygon_rules.hpp"
 #include "scene/names.hpp"
-#include "scene/polygon_rules.hpp"
 
 namespace pliant {
 namespace {

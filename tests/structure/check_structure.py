@@ -16,7 +16,7 @@ from order_of_draws import disordered_lines
 
 # A folder of lib/ may include itself and the folders after it: arrows point down only.
 ORDER = ["cli", "run", "results", "dynamics", "contact", "setup", "boundary", "bodies", "materials", "discretisation",
-         "geometry", "files", "scene", "core"]
+         "input", "geometry", "files", "scene", "core"]
 SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts", "python"]
 TEXT_SUFFIXES = {".hpp", ".cpp", ".py", ".sh", ".md", ".toml", ".txt", ".cmake", ".json", ".cff", ""}
 CODE_SUFFIXES = {".hpp", ".cpp", ".py", ".js", ".css"}
@@ -29,7 +29,7 @@ PYTHON_FOLDERS = ["python", "scripts", "verify", "benchmarks", "tests/support"] 
 JUDGED = ["lib", "reference"]  # by what they include
 
 # All of lib/ that the reference solver may share: no mechanics (docs/design.md 6). Of core only these.
-SHARED_FOLDERS = ["files", "geometry", "scene"]
+SHARED_FOLDERS = ["files", "geometry", "input", "scene"]
 SHARED_CORE = {"errors.hpp", "floating_point_traps.hpp", "located.hpp", "memory.hpp", "stop_signals.hpp", "vec2.hpp"}
 
 # What an #include names, in quotes or in brackets; or whatever else stands there, such as a macro.

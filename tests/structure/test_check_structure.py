@@ -11,7 +11,7 @@ import pytest
 
 CHECK = Path(__file__).with_name("check_structure.py")
 CMAKE = """\
-set(PLIANT_SHARED_FOLDERS core files geometry scene)
+set(PLIANT_SHARED_FOLDERS core files geometry input scene)
 target_link_libraries(pliant_lib PUBLIC pliant_scene)
 target_link_libraries(pliant_reference PUBLIC pliant_scene
   umfpack)

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "files/text_files.hpp"
+#include "files/text_output.hpp"
 #include "results/probes/probe_functions.hpp"
 
 namespace pliant {

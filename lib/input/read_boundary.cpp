@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "input/read_drive.hpp"
+#include "input/read_tables.hpp"
+
+namespace pliant {
+
+namespace {
+
+using Condition = BoundaryCondition;
+constexpr const char* axes[] = {"x", "y", "angle"};
+
+const Grains& grains_of(const Condition& condition, const Scene& scene) {
+  for (const Grains& grains : scene.grains)
+    if (grains.name == condition.grains) return grains;
+  return scene.grains.front();
+}
+
+/// "ring" for all bodies of a set, "ring 17" for one of them.
+void read_target(TableReader& table, Condition& condition, const Scene& scene) {
+  table.required("of", condition.grains);
+  const std::string text = condition.grains;
+  const std::size_t space = text.find_last_of(' ');
+  int number = 0;
+  const char* end = text.data() + text.size();
+  if (space != std::string::npos && std::from_chars(text.data() + space + 1, end, number).ptr == end) {
+    condition.grains = text.substr(0, space);
+    condition.number = number;
+  }
+  const Value value = table.value("of");
+  if (condition.number && grains_of(condition, scene).name == condition.grains) {
+    const std::int64_t count = grains_of(condition, scene).packing.grain_count();
+    if (number < 0 || number >= count)
+      value.reject(fmt::format("a number from 0 to {} after the name '{}'", count - 1, condition.grains));
+    return;
+  }
+  condition.number.reset();
+  condition.grains = OneOf{"set of grains, or one of them as in \"grains 17\"", names_of(scene.grains)}(value);
+}
+
+OutlinePart read_part(TableReader table) {
+  OutlinePart part;
+  std::vector<double> angles;
+  std::optional<ProbeBox> box;
+  std::optional<OutlineSide> side;
+  int given = 0;
+  if (table.optional("angles", angles)) {
+    if (angles[0] == angles[1]) table.fail("angles", "both directions are the same; allowed: two different ones");
+    part = {.kind = OutlinePart::Kind::angles, .first = angles[0], .second = angles[1]};
+    ++given;
+  }
+  if (table.optional("box", box)) {
+    part = {.kind = OutlinePart::Kind::box, .low = box->low, .high = box->high};
+    ++given;
+  }
+  if (table.optional("side", side)) {
+    const Vec2 outward[] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    part = {.kind = OutlinePart::Kind::side, .side = outward[static_cast<int>(*side)]};
+    ++given;
+  }
+  table.finish();
+  if (given != 1) table.fail(fmt::format("{}: give one of angles, box, side", table.title()));
+  return part;
+}
+
+void read_pressure(TableReader& table, Condition& condition) {
+  condition.kind = Condition::Kind::pressure;
+  table.required("pressure", condition.pressure);
+  table.optional("mode", condition.following);
+  if (condition.following || !table.optional("direction", condition.direction)) return;
+  if (condition.direction->norm() == 0) table.fail("direction", "[0, 0]; allowed: any other");
+  condition.direction->normalize();
+}
+
+void read_support(TableReader& table, Condition& condition) {
+  condition.kind = Condition::Kind::support;
+  const std::vector<DriveKind> kinds{{"displacement", Drive::Mode::displacement}, {"velocity", Drive::Mode::velocity}};
+  for (auto [axis, drive] : {std::pair("x", &condition.x), std::pair("y", &condition.y)}) {
+    *drive = read_drive(table, axis, kinds, *drive);
+    if (!drive->window.always()) table.fail(axis, "from and until of a soft support stand beside x and y");
+  }
+  table.optional("stiffness", condition.stiffness);
+  table.optional("damping", condition.damping);
+}
+
+bool overlaps(const Condition& a, const Condition& b) {
+  return a.grains == b.grains && (!a.number || !b.number || *a.number == *b.number);
+}
+
+void read_drives(TableReader& table, Condition& condition, const Scene& scene) {
+  Drive Condition::* drives[] = {&Condition::x, &Condition::y, &Condition::angle};
+  for (int c = 0; c < 3; ++c) {
+    const std::vector<DriveKind> kinds{{"velocity", Drive::Mode::velocity},
+                                       {c == 2 ? "moment" : "force", Drive::Mode::force, true}};
+    condition.*drives[c] = read_drive(table, axes[c], kinds, condition.*drives[c]);
+    if ((condition.*drives[c]).mode == Drive::Mode::free) continue;
+    for (const Condition& other : scene.boundary)
+      if (overlaps(condition, other) && (other.*drives[c]).mode != Drive::Mode::free)
+        table.fail(axes[c], "driven by an earlier [[boundary]] as well; a history can change what it does in time");
+  }
+}
+
+/// What stands along x, y and angle: drives of rigid grains, soft supports of compliant ones.
+void read_motion(TableReader& table, Condition& condition, const Scene& scene) {
+  const Grains& grains = grains_of(condition, scene);
+  if (has_body(grains, BodyKind::compliant) && has_body(grains, BodyKind::rigid))
+    table.fail("of", fmt::format("'{}' mixes rigid and compliant grains; allowed: a pressure, or grains of one kind",
+                                 grains.name));
+  has_body(grains, BodyKind::rigid) ? read_drives(table, condition, scene) : read_support(table, condition);
+  for (const Drive* drive : {&condition.x, &condition.y, &condition.angle})
+    if (drive->mode != Drive::Mode::free) return;
+  table.fail(fmt::format("{} does nothing: all axes are free; remove it", table.title()));
+}
+
+}  // namespace
+
+BoundaryCondition read_condition(TableReader table, const Scene& scene) {
+  Condition condition;
+  condition.where = table.place();
+  read_target(table, condition, scene);
+  const bool moves = table.has("x") || table.has("y") || table.has("angle");
+  if (!moves && !table.has("pressure")) table.fail_missing("pressure", "'pressure', or what moves 'x', 'y' or 'angle'");
+  moves ? read_motion(table, condition, scene) : read_pressure(table, condition);
+  if (condition.kind != Condition::Kind::drive) {
+    if (table.has("part")) condition.part = read_part(table.optional_table("part"));
+    condition.window = read_window(table);
+  }
+  table.finish();
+  return condition;
+}
+
+void check_angle(TableReader& table, const Grains& grains, const Scene& scene) {
+  const std::vector<double>& angles = grains.packing.angles;
+  const bool turned = std::any_of(angles.begin(), angles.end(), [](double angle) { return angle != 0; });
+  if (grains.angle == 0.0 && !turned) return;
+  for (const Species& entry : grains.species) {
+    if (scene.material(entry.material).law != MaterialLaw::linear_elastic) continue;
+    const bool given = table.has("angle");
+    table.fail(given ? "angle" : "packing",
+               fmt::format("{}the law \"linear-elastic\" of '{}' counts rotations as strains; allowed: {}",
+                           given    ? ""
+                           : turned ? "an angle in its file: "
+                                    : "it turns its grains: ",
+                           entry.material, given || turned ? "0" : "another law or packing"));
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,122 @@
+#include <algorithm>
+
+#include "input/read_tables.hpp"
+
+namespace pliant {
+
+namespace {
+
+/// What a side of a rule may be called.
+std::vector<std::string> group_names(const Scene& scene) {
+  std::vector<std::string> names = names_of(scene.materials);
+  for (const std::vector<std::string>& more : {names_of(scene.grains), names_of(scene.walls)})
+    names.insert(names.end(), more.begin(), more.end());
+  names.push_back("all");
+  return names;
+}
+
+/// A material may bear the name of grains or a wall, as long as no rule uses it.
+void refuse_ambiguous(const TableReader& table, const std::string& name, const std::vector<std::string>& names) {
+  if (std::count(names.begin(), names.end(), name) < 2) return;
+  table.fail("between", fmt::format("'{}' is a material and also grains or a wall; rename one of them", name));
+}
+
+void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
+  if (table.has("between") && table.value("between").node.is_string()) {
+    table.required("between", rule.first);
+    rule.second = rule.first;
+    return;
+  }
+  const std::vector<std::string> names = group_names(scene);
+  std::vector<std::string> pair;
+  table.required("between", pair, names);
+  for (const std::string& name : pair) refuse_ambiguous(table, name, names);
+  rule.first = pair[0];
+  rule.second = pair[1];
+}
+
+void check_unique(const TableReader& table, const ContactRule& rule, const std::vector<ContactRule>& others) {
+  for (const ContactRule& other : others) {
+    const bool same = (other.first == rule.first && other.second == rule.second) ||
+                      (other.first == rule.second && other.second == rule.first);
+    if (same) table.fail("between", fmt::format("a second rule for {} and {}; keep one", rule.first, rule.second));
+  }
+}
+
+/// Keys of the two laws without tension: a dashpot needs a constant stiffness, so it excludes a smooth start.
+void read_impact(TableReader& table, ContactRule& rule) {
+  table.optional("smoothing", rule.smoothing);
+  if (!table.optional("restitution", rule.restitution)) return;
+  table.optional("pull", rule.pull);
+  if (rule.smoothing > 0)
+    table.fail("smoothing", "has no meaning with restitution, whose dashpot goes with a constant stiffness");
+}
+
+void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
+  table.optional("shear_stiffness", rule.shear_stiffness);
+  table.required("friction", rule.friction);
+  table.optional("cohesion", rule.cohesion);
+  table.optional("tension", rule.tension);
+  if (rule.tension == 0) read_impact(table, rule);
+}
+
+void read_strength(TableReader& table, ContactRule& rule) {
+  table.required("strength", rule.strength);
+  table.optional("range", rule.range);
+  if (!rule.range || !rule.stiffness) return;
+  const double peak = rule.strength / *rule.stiffness;
+  if (*rule.range <= peak) {
+    table.value("range").reject(
+        fmt::format("more than strength / stiffness = {} m, the gap of the greatest tension", peak));
+  }
+}
+
+void read_cohesive(TableReader& table, ContactRule& rule) {
+  table.optional("shear_stiffness", rule.shear_stiffness);
+  read_strength(table, rule);
+  table.optional("shear_strength", rule.shear_strength);
+}
+
+void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
+  read_strength(table, rule);
+  table.required("bond_gap", rule.bond_gap);
+  table.optional("shear_ratio", rule.shear_ratio);
+  table.optional("friction", rule.friction);
+  const Range up_to_strength{.low = 0, .high = rule.strength};
+  table.optional("residual_strength", rule.residual_strength, up_to_strength);
+  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate);
+  rule.shear_fatigue_rate = rule.fatigue_rate;
+  const bool grows_in_shear = table.optional("shear_fatigue_rate", rule.shear_fatigue_rate);
+  const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
+  if (grows || grows_in_shear)
+    table.required("fatigue_threshold", rule.fatigue_threshold, below_strength);
+  else
+    table.optional("fatigue_threshold", rule.fatigue_threshold, below_strength);
+}
+
+}  // namespace
+
+ContactRule read_contact(TableReader table, const Scene& scene) {
+  ContactRule rule;
+  read_between(table, rule, scene);
+  check_unique(table, rule, scene.contacts);
+  table.required("law", rule.law);
+  table.optional("stiffness", rule.stiffness);
+  switch (rule.law) {
+    case ContactLawKind::frictionless:
+      read_impact(table, rule);
+      break;
+    case ContactLawKind::mohr_coulomb:
+      read_mohr_coulomb(table, rule);
+      break;
+    case ContactLawKind::cohesive:
+      read_cohesive(table, rule);
+      break;
+    case ContactLawKind::cohesive_fatigue:
+      read_cohesive_fatigue(table, rule);
+  }
+  table.finish();
+  return rule;
+}
+
+}  // namespace pliant

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "input/table_reader.hpp"
+
+namespace pliant {
+
+/// A history that can move an axis.
+struct DriveKind {
+  std::string key;
+  Drive::Mode mode;
+  bool damped = false;  ///< may have a dashpot beside it
+};
+
+/// "fixed", "free", or a table with one of the histories, its dashpot and its times; `otherwise` without the key.
+Drive read_drive(TableReader& table, const std::string& axis, const std::vector<DriveKind>& kinds,
+                 const Drive& otherwise);
+
+/// The keys `from` and `until`.
+Window read_window(TableReader& table);
+
+}  // namespace pliant
