@@ -55,7 +55,8 @@ void print_schema() {
       "angle\n"
       "without a unit is in radians. The units deg, rad and turn apply only to quantities in rad and rad/s and to\n"
       "friction angles. `with` names the choice in the same table that a key belongs to. Unknown keys are refused.\n"
-      "[defaults.md](defaults.md) gives the reasons of the defaults.\n\n{}",
+      "[defaults.md](defaults.md) gives the reasons of the defaults, [contact_laws.md](contact_laws.md) the contact "
+      "laws.\n\n{}",
       scene_key_tables());
 }
 
