@@ -57,8 +57,8 @@ void print_schema() {
       "without a unit is in radians. The units deg, rad and turn apply only to quantities in rad and rad/s and to\n"
       "friction angles. `with` names the choice in the same table that a key belongs to. A name that a key had before "
       "is\n"
-      "read with a warning. Unknown keys are refused. [defaults.md](defaults.md) gives the reasons of the "
-      "defaults.\n\n{}",
+      "read with a warning. Unknown keys are refused. [defaults.md](defaults.md) gives the reasons of the defaults,\n"
+      "[contact_laws.md](contact_laws.md) the contact laws.\n\n{}",
       scene_key_tables());
 }
 

@@ -87,13 +87,14 @@ std::vector<ProbeQuantity> motions() {
 
 std::vector<ProbeQuantity> forces() {
   return {
-      by_body("force", vector_columns("force", "N/m"), Of::any, sum_first, Node::outline, "of contacts"),
+      by_body("force", vector_columns("force", "N/m"), Of::any, sum_first, Node::outline,
+              "resultant contact force on the selected body, normal and tangential parts"),
       {.name = "friction_factor",
        .columns = {"friction_factor [-]"},
        .of = Of::walls,
        .reduced = {},
        .reductions = {},
-       .meaning = "contact force along the wall over that across it"},
+       .meaning = "contact force on the wall: force_x over the magnitude of force_y; the sign is that of force_x"},
       by_body("internal_force", vector_columns("internal_force", "N/m"), Of::compliant, sum_first, Node::field,
               "of stresses on the degrees of freedom; over a whole body it vanishes to rounding"),
       by_body("body_force", vector_columns("body_force", "N/m"), Of::any, sum_first, Node::none, "of gravity"),
@@ -156,7 +157,8 @@ std::vector<ProbeQuantity> energies() {
 std::vector<ProbeQuantity> contacts() {
   return {
       by_contact("contact_gap", "m", "negative: penetration"),
-      by_contact("contact_slip", "m", "elastic tangential displacement, which carries the shear"),
+      by_contact("contact_slip", "m",
+                 "elongation of the tangential contact spring; not the accumulated sliding distance"),
       by_contact("contact_pressure", "Pa",
                  "of the law, without dashpots and energy correction; means are weighted by length"),
       by_contact("contact_shear", "Pa",
@@ -232,7 +234,7 @@ std::vector<FrameField> all_fields() {
       field(outlines, point, "contact_damage", "-", "least of the node's bonds, 0 whole to 1 torn; 1 without"),
       field(outlines, point, "contact_gap", "m", "least of the node's contacts; NaN without"),
       field(outlines, point, "contact_slip", "m",
-            "of its contacts' elastic tangential displacements the largest, with its sign; 0 without"),
+            "largest elongation of the tangential springs of its contacts, with its sign; 0 without"),
   };
   for (const char* component : {"xx", "yy", "xy", "zz"})
     all.push_back(field(bodies, cell, fmt::format("stress_{}", component), "Pa", "Cauchy stress, tension positive"));

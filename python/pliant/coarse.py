@@ -2,6 +2,8 @@
 
     fields = coarse_fields(run.frames, 10, cell=2e-6)
     fields.solid_fraction, fields.velocity, fields.stress      # [rows x columns ...]
+    layers = profile(run.frames, (0.2, 0.4), height=5e-3)      # means over x and over these times
+    layers.y, layers.velocity[:, 0]
 """
 
 from __future__ import annotations
@@ -30,6 +32,16 @@ class CoarseFields:
     def pressure(self) -> np.ndarray | None:
         """[rows x columns] Pa, in the plane."""
         return None if self.stress is None else -0.5 * np.trace(self.stress, axis1=2, axis2=3)
+
+
+@dataclass
+class Profile:
+    """Means over x and time, in layers from the box's least y up."""
+
+    y: np.ndarray  # [layers] m, of their middles
+    solid_fraction: np.ndarray  # [layers]
+    velocity: np.ndarray | None  # [layers x 2] m/s, mean over the area of grains; NaN without any
+    stress: np.ndarray | None  # [layers x 2 x 2] Pa, as in CoarseFields
 
 
 @dataclass
@@ -73,6 +85,30 @@ def coarse_fields(frames: Frames, index: int, cell: float, box: Box | None = Non
         velocity = momentum / np.where(area > 0, area, np.nan)[:, :, None]
     stress = None if frames.contacts(index) is None else _stress(frames, index, cells)
     return CoarseFields(cells.box, area / cells.area, velocity, stress)
+
+
+def profile(frames: Frames, window: tuple[float, float], height: float, box: Box | None = None) -> Profile:
+    """Means over the frames in a window of time, s, in layers about as high as `height`, m, that fill the box: by
+    default all that grains reach in these frames. ValueError: no frame is in the window."""
+    slack = 1e-9 * (window[1] - window[0])
+    indices = np.flatnonzero((frames.times >= window[0] - slack) & (frames.times <= window[1] + slack))
+    if len(indices) == 0:
+        raise ValueError(f"no frame from {window[0]:g} to {window[1]:g} s; allowed: times from {frames.times[0]:g} to "
+                         f"{frames.times[-1]:g} s")
+    if box is None:
+        left, right, low, high = np.transpose([_cells(frames, i, height, None).box for i in indices])
+        box = (left.min(), right.max(), low.min(), high.max())
+    fields = [coarse_fields(frames, i, height, box) for i in indices]
+    solid = np.mean([f.solid_fraction for f in fields], axis=(0, 2))
+    y = box[2] + (np.arange(len(solid)) + 0.5) * (box[3] - box[2]) / len(solid)
+    velocity = None
+    if all(f.velocity is not None for f in fields):
+        flux = np.mean([f.solid_fraction[:, :, None] * np.nan_to_num(f.velocity) for f in fields], axis=(0, 2))
+        velocity = flux / np.where(solid > 0, solid, np.nan)[:, None]
+    stress = None
+    if all(f.stress is not None for f in fields):
+        stress = np.mean([f.stress for f in fields], axis=(0, 2))
+    return Profile(y, solid, velocity, stress)
 
 
 def _cells(frames: Frames, index: int, cell: float, box: Box | None) -> Cells:

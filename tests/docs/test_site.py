@@ -91,7 +91,7 @@ def test_pages_with_formulas_load_what_typesets_them(site: Path) -> None:
 
 
 @pytest.mark.skipif(BROWSER is None, reason="chromium is not installed")
-@pytest.mark.parametrize("name", ["method", "notes/method"])
+@pytest.mark.parametrize("name", ["method", "contact_laws", "notes/method"])
 def test_a_browser_typesets_all_formulas(site: Path, name: str) -> None:
     command = [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--timeout=60000", "--dump-dom",
                (site / f"{name}.html").as_uri()]

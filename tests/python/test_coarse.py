@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import pliant
-from pliant.coarse import coarse_fields
+from pliant.coarse import coarse_fields, profile
 from pliant.frames import COMPLIANT, RIGID, WALL, BadFolder, Frames
 from pliant.network import of_frame
 
@@ -74,6 +74,33 @@ def test_a_square_over_the_seam_counts_on_both_sides(tmp_path: Path) -> None:
     frames = Frames(write(tmp_path, [square(3.5, 0)]), 4.0)
     fields = coarse_fields(frames, 0, 1.0)
     assert fields.solid_fraction == pytest.approx(np.array([[0.5, 0, 0, 0.5]]), abs=SINGLE)
+
+
+def test_profiles_are_means_over_x_and_time(tmp_path: Path) -> None:
+    """A square in a period of two that lies a layer higher in the second frame, and far away in the third."""
+    file = write(tmp_path, [square(0, 0)])
+    with h5py.File(file, "a") as frames:
+        del frames["times"]
+        frames["times"] = [0.0, 1.0, 2.0]
+        for index, height in ((1, 1.0), (2, 5.0)):
+            points = square(0, height)
+            frames[f"bodies/{index:06}/position"] = frames[f"outlines/{index:06}/position"] = points.astype("f4")
+            frames[f"bodies/{index:06}/velocity"] = velocity_at(points).astype("f4")
+    layers = profile(Frames(file, 2.0), (0, 1), 1.0)
+    assert layers.y == pytest.approx([0.5, 1.5]) and layers.stress is None
+    assert layers.solid_fraction == pytest.approx([0.25, 0.25], rel=SINGLE)
+    assert layers.velocity == pytest.approx(np.array([[3.5, -0.5], [6.5, -0.5]]), rel=SINGLE)
+    both = profile(Frames(file, 2.0), (0, 1), 3.0, (0, 2, 0, 3))
+    assert both.solid_fraction == pytest.approx([1 / 6], rel=SINGLE)
+    assert both.velocity == pytest.approx(np.array([[5, -0.5]]), rel=SINGLE), "weighted by area"
+    assert np.isnan(profile(Frames(file, 2.0), (0, 0), 1.0, (0, 2, 0, 2)).velocity[1]).all()
+    with pytest.raises(ValueError, match="no frame from 3 to 4 s"):
+        profile(Frames(file, 2.0), (3, 4), 1.0)
+
+
+def test_profiles_have_the_stress_of_contacts(tmp_path: Path) -> None:
+    layers = profile(chain(tmp_path), (0, 0), 1.0, (0, 2, 0, 1))
+    assert layers.stress == pytest.approx(np.array([[[-2.5, 0], [-0.5, -1.75]]]), rel=SINGLE)
 
 
 def test_wrong_cells_are_refused(tmp_path: Path) -> None:
