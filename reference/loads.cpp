@@ -14,7 +14,7 @@ namespace pliant::reference {
 namespace {
 
 using Kind = BoundaryCondition::Kind;
-using Mode = Drive::Mode;
+using Mode = AxisCondition::Mode;
 
 Vec2 outward(const Vec2& from, const Vec2& to) { return {(to - from).y(), -(to - from).x()}; }
 
@@ -40,21 +40,21 @@ bool in_part(const OutlinePart& part, const Vec2& a, const Vec2& b, const Vec2& 
 
 /// Displacement of a support's target along one axis. A velocity history is integrated from `from` on, when the window
 /// begins.
-double target(const Drive& drive, double time, double from) {
-  if (drive.mode == Mode::displacement) return drive.history.at(time);
-  return drive.mode == Mode::velocity ? drive.history.integral(from, time) : 0.0;
+double target(const AxisCondition& prescribed, double time, double from) {
+  if (prescribed.mode == Mode::displacement) return prescribed.history.at(time);
+  return prescribed.mode == Mode::velocity ? prescribed.history.integral(from, time) : 0.0;
 }
 
-double target_velocity(const Drive& drive, const Instant& at) {
-  if (drive.mode == Mode::displacement) return slope(drive.history, at);
-  return drive.mode == Mode::velocity ? drive.history.at(at.time) : 0.0;
+double target_velocity(const AxisCondition& prescribed, const Instant& at) {
+  if (prescribed.mode == Mode::displacement) return slope(prescribed.history, at);
+  return prescribed.mode == Mode::velocity ? prescribed.history.at(at.time) : 0.0;
 }
 
 bool acts(const OutlineLoad& load, const Instant& at) { return contains(load.condition.window, at); }
-const Drive& drive_of(const OutlineLoad& support, int axis) {
+const AxisCondition& axis_of(const OutlineLoad& support, int axis) {
   return axis == 0 ? support.condition.x : support.condition.y;
 }
-bool holds(const OutlineLoad& support, int axis) { return drive_of(support, axis).mode != Mode::free; }
+bool holds(const OutlineLoad& support, int axis) { return axis_of(support, axis).mode != Mode::free; }
 
 Vec2 moved(const OutlineLoad& support, double time) {
   const double from = std::max(0.0, support.condition.window.from);
@@ -120,18 +120,18 @@ void Loads::add_walls() {
     const Wall& wall = bodies_.scene().walls[body.placed.number_of_wall];
     rigid_.push_back({body.first_dof, wall.x, 1});
     rigid_.push_back({body.first_dof + 1, wall.y, wall.y.mode == Mode::pressure ? -body.turn_shift : 1});
-    rigid_.push_back({body.first_dof + 2, Drive{}, 1});
+    rigid_.push_back({body.first_dof + 2, AxisCondition{}, 1});
   }
 }
 
 void Loads::add_condition(const BoundaryCondition& condition, const Body& body) {
-  if (condition.kind != Kind::drive) {
+  if (condition.kind != Kind::axes) {
     outline_.push_back(outline_load(condition, body));
     return;
   }
-  const Drive* drives[3] = {&condition.x, &condition.y, &condition.angle};
+  const AxisCondition* conditions[3] = {&condition.x, &condition.y, &condition.angle};
   for (int c = 0; c < 3; ++c)
-    if (drives[c]->mode != Mode::free) rigid_.push_back({body.first_dof + c, *drives[c], 1});
+    if (conditions[c]->mode != Mode::free) rigid_.push_back({body.first_dof + c, *conditions[c], 1});
 }
 
 OutlineLoad Loads::outline_load(const BoundaryCondition& condition, const Body& body) const {
@@ -174,8 +174,8 @@ Vector Loads::applied(const Instant& at) const {
   Vector force = Vector::Zero(bodies_.dofs());
   const Vector weight = gravity(at.time);
   for (const RigidLoad& load : rigid_)
-    if (const double borne = load.drive.mode == Mode::pressure ? weight[load.dof] : 0; load.loaded(at))
-      force[load.dof] += load.factor * load.drive.history.at(at.time) - borne;
+    if (const double borne = load.prescribed.mode == Mode::pressure ? weight[load.dof] : 0; load.loaded(at))
+      force[load.dof] += load.factor * load.prescribed.history.at(at.time) - borne;
   return force;
 }
 
@@ -229,7 +229,7 @@ double Loads::outline_work(const Points& x0, double t0, const Points& x1, const 
 Vector Loads::load_dashpots(const Instant& at) const {
   Vector damping = Vector::Zero(bodies_.dofs());
   for (const RigidLoad& load : rigid_)
-    if (load.loaded(at)) damping[load.dof] += load.drive.damping * std::abs(load.factor);
+    if (load.loaded(at)) damping[load.dof] += load.prescribed.damping * std::abs(load.factor);
   return damping;
 }
 
@@ -242,7 +242,7 @@ Dashpots Loads::dashpots(const Instant& at) const {
         if (!holds(load, c)) continue;
         const double coefficient = load.condition.damping * node.length;
         result.coefficient[2 * node.node + c] += coefficient;
-        result.pull[2 * node.node + c] += coefficient * target_velocity(drive_of(load, c), at);
+        result.pull[2 * node.node + c] += coefficient * target_velocity(axis_of(load, c), at);
       }
   }
   return result;
@@ -256,8 +256,8 @@ double Loads::dashpot_work(const Vector& v0, double t0, const Vector& v1, const 
     for (const LoadedNode& node : load.nodes)
       for (int c = 0; c < 2; ++c) {
         if (!holds(load, c)) continue;
-        double slip = target_velocity(drive_of(load, c), {t0}) - v0[2 * node.node + c];
-        if (acts(load, t1)) slip += target_velocity(drive_of(load, c), t1) - v1[2 * node.node + c];
+        double slip = target_velocity(axis_of(load, c), {t0}) - v0[2 * node.node + c];
+        if (acts(load, t1)) slip += target_velocity(axis_of(load, c), t1) - v1[2 * node.node + c];
         work += 0.5 * load.condition.damping * node.length * slip * motion[c];
       }
   }
@@ -270,13 +270,13 @@ bool Loads::imposed(int dof, double time) const {
 }
 
 double Loads::imposed_position(int dof, double q0, double t0, double t1) const {
-  const Drive& drive = of(dof)->drive;
-  return drive.mode == Mode::velocity ? q0 + drive.history.integral(t0, t1) : q0;
+  const AxisCondition& prescribed = of(dof)->prescribed;
+  return prescribed.mode == Mode::velocity ? q0 + prescribed.history.integral(t0, t1) : q0;
 }
 
 double Loads::imposed_velocity(int dof, double time) const {
-  const Drive& drive = of(dof)->drive;
-  return drive.mode == Mode::velocity ? drive.history.at(time) : 0.0;
+  const AxisCondition& prescribed = of(dof)->prescribed;
+  return prescribed.mode == Mode::velocity ? prescribed.history.at(time) : 0.0;
 }
 
 std::vector<double> Loads::switch_times() const {
@@ -285,12 +285,12 @@ std::vector<double> Loads::switch_times() const {
   const auto history = [&](const History& one) {
     if (one.time.size() > 1) times.insert(one.time.begin(), one.time.end());
   };
-  const auto drive = [&](const Drive& one) { window(one.window), history(one.history); };
+  const auto prescribed = [&](const AxisCondition& one) { window(one.window), history(one.history); };
   for (const History& gravity : bodies_.scene().gravity_history) history(gravity);
-  for (const RigidLoad& load : rigid_) drive(load.drive);
+  for (const RigidLoad& load : rigid_) prescribed(load.prescribed);
   for (const OutlineLoad& load : outline_) {
     const BoundaryCondition& condition = load.condition;
-    window(condition.window), history(condition.pressure), drive(condition.x), drive(condition.y);
+    window(condition.window), history(condition.pressure), prescribed(condition.x), prescribed(condition.y);
   }
   const auto ahead = times.upper_bound(0.0), never = times.lower_bound(std::numeric_limits<double>::infinity());
   return {ahead, never};

@@ -10,13 +10,15 @@ namespace pliant::reference {
 /// Load or prescribed motion of one rigid degree of freedom (docs/method.md 5).
 struct RigidLoad {
   int dof = 0;
-  Drive drive;
+  AxisCondition prescribed;
   double factor = 1;  ///< load = factor x history: signed period for a wall's pressure
   bool imposed(double time) const {
-    return (drive.mode == Drive::Mode::fixed || drive.mode == Drive::Mode::velocity) && drive.window.contains(time);
+    return (prescribed.mode == AxisCondition::Mode::fixed || prescribed.mode == AxisCondition::Mode::velocity) &&
+           prescribed.window.contains(time);
   }
   bool loaded(const Instant& at) const {
-    return (drive.mode == Drive::Mode::force || drive.mode == Drive::Mode::pressure) && contains(drive.window, at);
+    return (prescribed.mode == AxisCondition::Mode::force || prescribed.mode == AxisCondition::Mode::pressure) &&
+           contains(prescribed.window, at);
   }
 };
 

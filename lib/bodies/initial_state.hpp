@@ -14,7 +14,7 @@ void fill_padding(const Model& model, Dofs& dofs);
 /// centres, in units of the body's scale.
 Dofs initial_positions(const Model& model);
 
-/// Sets velocities that drives impose at t = 0; others stay as they are. [3 rigid bodies]
+/// Sets velocities that conditions impose at t = 0; others stay as they are. [3 rigid bodies]
 void set_imposed_velocities(const Model& model, Dofs& velocities);
 
 /// Uniform, rotational and linear initial velocity fields of the scene, and the imposed ones of driven walls at t = 0.

@@ -60,9 +60,9 @@ struct Batch {
   bool viscous = false, mass_damped = false;  ///< nonzero in some lane
 };
 
-/// One degree of freedom of a rigid body and its drive.
+/// One degree of freedom of a rigid body and its condition.
 struct RigidDof {
-  Drive::Mode mode = Drive::Mode::free;
+  AxisCondition::Mode mode = AxisCondition::Mode::free;
   History history;          ///< velocity, force or pressure
   double force_scale = 1;   ///< force = history x force_scale: signed period for a pressure
   double damping = 0;       ///< of the dashpot beside the load, N s/m2 (N s)
@@ -70,25 +70,27 @@ struct RigidDof {
   Window window;            ///< interval in which the mode applies; free outside
   double mass = 0;          ///< kg/m, or kg m for the angle
   double inverse_mass = 0;  ///< 0 if the motion is imposed at all times
-  bool imposed() const { return mode == Drive::Mode::fixed || mode == Drive::Mode::velocity; }  ///< at some time
+  bool imposed() const {
+    return mode == AxisCondition::Mode::fixed || mode == AxisCondition::Mode::velocity;
+  }  ///< at some time
   bool imposed(double time) const { return imposed() && window.contains(time); }
 
   // Motion in a step that begins at `time`: the imposed motion, with the exact integral of its history, or else the
   // free motion that the caller gives.
   double position_after(double time, double dt, double x, double free) const {
     if (!imposed(time)) return free;
-    return mode == Drive::Mode::velocity ? x + history.integral(time, time + dt) : x;
+    return mode == AxisCondition::Mode::velocity ? x + history.integral(time, time + dt) : x;
   }
   double velocity_after(double time, double end, double free) const {
     return imposed(time) ? imposed_velocity(end) : free;
   }
   double acceleration_of(double time, double force) const {
     if (!imposed(time)) return inverse_mass * force;
-    return mode == Drive::Mode::velocity ? history.slope(time) : 0;
+    return mode == AxisCondition::Mode::velocity ? history.slope(time) : 0;
   }
   /// Acceleration per unit force: 0 while the motion is imposed.
   double inverse_mass_at(double time) const { return imposed(time) ? 0 : inverse_mass; }
-  double imposed_velocity(double time) const { return mode == Drive::Mode::velocity ? history.at(time) : 0; }
+  double imposed_velocity(double time) const { return mode == AxisCondition::Mode::velocity ? history.at(time) : 0; }
 };
 
 struct RigidBody {

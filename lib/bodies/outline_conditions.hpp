@@ -29,11 +29,11 @@ struct OutlineSupport {
   int body = 0;  ///< global index
   Window window;
   std::vector<int> nodes;
-  std::vector<double> length;  ///< [nodes], m, tributary length of the node within the part
-  double stiffness = 0;        ///< Pa/m
-  double damping = 0;          ///< Pa s/m
-  Points start;                ///< [nodes], m
-  Drive drive[2];              ///< x, y: fixed, free, velocity or displacement
+  std::vector<double> length;   ///< [nodes], m, tributary length of the node within the part
+  double stiffness = 0;         ///< Pa/m
+  double damping = 0;           ///< Pa s/m
+  Points start;                 ///< [nodes], m
+  AxisCondition prescribed[2];  ///< x, y: fixed, free, velocity or displacement
 };
 
 }  // namespace pliant

@@ -117,16 +117,17 @@ class Target {
   std::vector<PartNode> nodes_;
 };
 
-void apply_drives(RigidBody& rigid, const BoundaryCondition& condition) {
-  const Drive* drives[3] = {&condition.x, &condition.y, &condition.angle};
+void apply_axes(RigidBody& rigid, const BoundaryCondition& condition) {
+  const AxisCondition* conditions[3] = {&condition.x, &condition.y, &condition.angle};
   for (int c = 0; c < 3; ++c)
-    if (drives[c]->mode != Drive::Mode::free) apply_drive(rigid.dof[c], *drives[c], rigid.dof[c].mass, 0);
+    if (conditions[c]->mode != AxisCondition::Mode::free)
+      apply_axis_condition(rigid.dof[c], *conditions[c], rigid.dof[c].mass, 0);
   rigid.driven = true;
 }
 
 void apply(Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int index) {
   const Body& body = model.bodies[index];
-  if (condition.kind == BoundaryCondition::Kind::drive) return apply_drives(model.rigid_bodies[body.rigid], condition);
+  if (condition.kind == BoundaryCondition::Kind::axes) return apply_axes(model.rigid_bodies[body.rigid], condition);
   const Target target(model, outlines, condition, index);
   if (condition.kind == BoundaryCondition::Kind::pressure)
     model.pressures.push_back(target.pressure(condition));
@@ -183,19 +184,19 @@ class SwitchTimes {
   void add(const History& history) {
     if (history.time.size() > 1) std::for_each(history.time.begin(), history.time.end(), [&](double t) { add(t); });
   }
-  void add(const Drive& drive) { add(drive.window), add(drive.history); }
+  void add(const AxisCondition& prescribed) { add(prescribed.window), add(prescribed.history); }
 
   std::vector<double> times_;
 };
 
 }  // namespace
 
-void apply_drive(RigidDof& dof, const Drive& drive, double mass, double pressure_scale) {
-  dof.mode = drive.mode;
-  dof.history = drive.history;
-  dof.window = drive.window;
-  dof.force_scale = drive.mode == Drive::Mode::pressure ? pressure_scale : 1;
-  dof.damping = drive.damping * std::abs(dof.force_scale);
+void apply_axis_condition(RigidDof& dof, const AxisCondition& prescribed, double mass, double pressure_scale) {
+  dof.mode = prescribed.mode;
+  dof.history = prescribed.history;
+  dof.window = prescribed.window;
+  dof.force_scale = prescribed.mode == AxisCondition::Mode::pressure ? pressure_scale : 1;
+  dof.damping = prescribed.damping * std::abs(dof.force_scale);
   dof.mass = mass;
   dof.inverse_mass = dof.imposed() && dof.window.always() ? 0 : 1 / mass;
 }

@@ -29,7 +29,8 @@ void add_rigid_load_change(const RigidBody& rigid, const Gravity& before, const 
 }  // namespace
 
 double applied_load(const RigidDof& dof, const Instant& at, double g) {
-  const bool servo = dof.mode == Drive::Mode::pressure, loaded = servo || dof.mode == Drive::Mode::force;
+  const bool servo = dof.mode == AxisCondition::Mode::pressure,
+             loaded = servo || dof.mode == AxisCondition::Mode::force;
   if (!loaded || !contains(dof.window, at)) return 0;
   return dof.force_scale * dof.history.at(at.time) - (servo ? dof.mass * g : 0);
 }

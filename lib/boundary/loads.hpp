@@ -7,7 +7,7 @@
 namespace pliant {
 
 /// Force that a history applies to one rigid degree of freedom, N/m (0 for imposed and free ones). A body that a
-/// pressure drives is held against its own weight in gravity g, m/s2 along it: contacts bear the pressure
+/// a prescribed pressure is held against its own weight in gravity g, m/s2 along it: contacts bear the pressure
 /// (docs/method.md 5).
 double applied_load(const RigidDof& dof, const Instant& at, double g);
 

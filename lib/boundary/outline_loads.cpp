@@ -36,13 +36,13 @@ struct TargetMotion {
 
   TargetMotion(const OutlineSupport& support, const Instant& at) {
     for (int c = 0; c < 2; ++c) {
-      const Drive& drive = support.drive[c];
-      if (drive.mode == Drive::Mode::displacement) {
-        moved[c] = drive.history.at(at.time);
-        velocity[c] = slope(drive.history, at);
-      } else if (drive.mode == Drive::Mode::velocity) {
-        moved[c] = drive.history.integral(std::max(0.0, support.window.from), at.time);
-        velocity[c] = drive.history.at(at.time);
+      const AxisCondition& prescribed = support.prescribed[c];
+      if (prescribed.mode == AxisCondition::Mode::displacement) {
+        moved[c] = prescribed.history.at(at.time);
+        velocity[c] = slope(prescribed.history, at);
+      } else if (prescribed.mode == AxisCondition::Mode::velocity) {
+        moved[c] = prescribed.history.integral(std::max(0.0, support.window.from), at.time);
+        velocity[c] = prescribed.history.at(at.time);
       }
     }
   }
@@ -51,7 +51,7 @@ struct TargetMotion {
 /// Sets a vector to zero along the free axes.
 Vec2 held(const OutlineSupport& support, Vec2 value) {
   for (int c = 0; c < 2; ++c)
-    if (support.drive[c].mode == Drive::Mode::free) value[c] = 0;
+    if (support.prescribed[c].mode == AxisCondition::Mode::free) value[c] = 0;
   return value;
 }
 

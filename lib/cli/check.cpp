@@ -185,7 +185,7 @@ void print_cautions(const Model& model) {
 }
 
 /// Fastest motion of bodies against each other that the scene prescribes, m/s: what all do together uses up no skin.
-/// Walls that nothing drives rest at the start.
+/// Walls without prescribed motion rest at the start.
 double prescribed_speed(const Scene& scene) {
   Vec2 least = Vec2::Constant(1e300), largest = -least;
   const auto add = [&](int component, double v) {
@@ -195,11 +195,11 @@ double prescribed_speed(const Scene& scene) {
     for (int c = 0; c < 2; ++c) add(c, grains.velocity.uniform[c]);
   for (const Wall& wall : scene.walls)
     for (int c = 0; c < 2; ++c) {
-      const Drive& drive = c == 0 ? wall.x : wall.y;
-      if (drive.mode != Drive::Mode::velocity)
+      const AxisCondition& prescribed = c == 0 ? wall.x : wall.y;
+      if (prescribed.mode != AxisCondition::Mode::velocity)
         add(c, 0);
       else
-        for (double v : drive.history.value) add(c, v);
+        for (double v : prescribed.history.value) add(c, v);
     }
   return (largest - least).norm();
 }

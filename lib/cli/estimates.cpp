@@ -138,8 +138,8 @@ double largest_pressure(const Scene& scene) {
   double largest = 0;
   for (const Wall& wall : scene.walls) {
     const double load = largest_until(wall.y.history, scene.time.end);
-    if (wall.y.mode == Drive::Mode::pressure) largest = std::max(largest, load);
-    if (wall.y.mode == Drive::Mode::force) largest = std::max(largest, load / *scene.period);
+    if (wall.y.mode == AxisCondition::Mode::pressure) largest = std::max(largest, load);
+    if (wall.y.mode == AxisCondition::Mode::force) largest = std::max(largest, load / *scene.period);
   }
   return largest;
 }

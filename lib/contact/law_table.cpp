@@ -31,7 +31,7 @@ double inverse_mass(const Model& model, const Body& body) {
   return std::max(rigid.dof[0].inverse_mass, rigid.dof[1].inverse_mass);
 }
 
-/// The same at a given time, as drives may begin or end.
+/// The same at a given time, as conditions may begin or end.
 double inverse_mass(const Model& model, const Body& body, double time) {
   double largest = 0;
   if (body.kind == BodyKind::rigid)

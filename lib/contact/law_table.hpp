@@ -18,9 +18,9 @@ class LawTable {
   /// and for restitution where a compliant body takes part.
   explicit LawTable(const Model& model);
 
-  /// Law at a given time: a body that a drive moves at that time counts as infinitely heavy for dashpots.
+  /// Law at a given time: a body with a prescribed motion at that time counts as infinitely heavy for dashpots.
   ContactLaw between(int first, int second, double time = 0) const;
-  /// Index, from 0, of the time interval in which laws do not change. There is one interval unless dashpots meet drives
+  /// Index, from 0, of the time interval in which laws do not change. There is one interval unless dashpots meet conditions
   /// with `from` or `until`.
   int law_interval(double time) const;
   bool automatic_stiffness(int first, int second) const;

@@ -179,7 +179,8 @@ std::vector<SceneTable> grain_tables() {
 }
 
 std::vector<SceneTable> wall_tables() {
-  const Choice held = choice<Drive::Mode>({{"fixed", Drive::Mode::fixed}, {"free", Drive::Mode::free}});
+  const Choice held =
+      choice<AxisCondition::Mode>({{"fixed", AxisCondition::Mode::fixed}, {"free", AxisCondition::Mode::free}});
   const SceneKey from{"from", Quantity{"s", non_negative}, derived("start of the run"), "Time from which it acts"};
   const SceneKey until{"until", Quantity{"s", positive}, derived("end of the run"), "Time until which it acts"};
   const Range acute{.low = 0, .high = std::numbers::pi / 2, .low_open = true, .high_open = true};
@@ -194,9 +195,9 @@ std::vector<SceneTable> wall_tables() {
            {"spacing", length, derived("finest of the grains"), "Outline spacing"},
            {"asperities", one_table, "none", "Asperities: circular arcs of equal diameter", "", "caps"},
            {"x", held, R"("fixed")", "Motion along x"},
-           {"x", one_table, "none", "Drive along x"},
+           {"x", one_table, "none", "Motion or load along x"},
            {"y", held, R"("fixed")", "Motion along y"},
-           {"y", one_table, "none", "Drive along y"},
+           {"y", one_table, "none", "Motion or load along y"},
            {"thickness", Quantity{"m", non_negative},
             required_if("(> 0) unless fixed or at a given velocity for good", "0 m"),
             "Thickness that gives the mass: density x period x thickness"},

@@ -7,7 +7,8 @@ namespace {
 constexpr double most_skin = 4;
 
 std::vector<SceneTable> boundary_tables() {
-  const Choice held = choice<Drive::Mode>({{"fixed", Drive::Mode::fixed}, {"free", Drive::Mode::free}});
+  const Choice held =
+      choice<AxisCondition::Mode>({{"fixed", AxisCondition::Mode::fixed}, {"free", AxisCondition::Mode::free}});
   const SceneKey from{"from", Quantity{"s", non_negative}, derived("start of the run"), "Time from which it acts"};
   const SceneKey until{"until", Quantity{"s", positive}, derived("end of the run"), "Time until which it acts"};
   const SceneKey velocity{"velocity", HistoryOf{{"m/s"}}, "none", "Prescribed velocity"};
@@ -27,11 +28,11 @@ std::vector<SceneTable> boundary_tables() {
        {
            {"of", Text{}, required, R"(Set of grains, or one of them as in "grains 17")"},
            {"x", held, R"("free")", "Motion along x"},
-           {"x", one_table, "none", "Drive along x"},
+           {"x", one_table, "none", "Motion or load along x"},
            {"y", held, R"("free")", "Motion along y"},
-           {"y", one_table, "none", "Drive along y"},
+           {"y", one_table, "none", "Motion or load along y"},
            {"angle", held, R"("free")", "Rotation", "rigid grains"},
-           {"angle", one_table, "none", "Drive of the rotation", "rigid grains"},
+           {"angle", one_table, "none", "Rotation or moment", "rigid grains"},
            {"pressure", HistoryOf{{"Pa"}}, required_if("without `x`, `y` and `angle`"),
             "Pressure on the outline, inwards"},
            {"mode", choice<bool>({{"following", true}, {"oriented", false}}), R"("following")",

@@ -1,5 +1,5 @@
-#include "scene/quantities.hpp"
 #include "input/scene_keys.hpp"
+#include "scene/quantities.hpp"
 
 namespace pliant {
 
@@ -18,7 +18,7 @@ std::vector<SceneTable> setting_tables() {
            {"shapes", named_tables, required, "Shapes of grains, with their nodes"},
            {"grains", array_of_tables, required, "Sets of grains"},
            {"walls", array_of_tables, "none", "Walls across the period"},
-           {"boundary", array_of_tables, "none", "Loads, drives and supports of grains"},
+           {"boundary", array_of_tables, "none", "Loads, motions and supports of grains"},
            {"contact", one_table, "none", "Settings of contact for the whole scene"},
            {"contacts", array_of_tables, required_if("where bodies can meet", "none"),
             "Contact laws between pairs of bodies"},

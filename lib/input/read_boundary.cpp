@@ -2,7 +2,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "input/read_drive.hpp"
+#include "input/read_axis_condition.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
@@ -76,10 +76,11 @@ void read_pressure(TableReader& table, Condition& condition) {
 
 void read_support(TableReader& table, Condition& condition) {
   condition.kind = Condition::Kind::support;
-  const std::vector<DriveKind> kinds{{"displacement", Drive::Mode::displacement}, {"velocity", Drive::Mode::velocity}};
-  for (auto [axis, drive] : {std::pair("x", &condition.x), std::pair("y", &condition.y)}) {
-    *drive = read_drive(table, axis, kinds, *drive);
-    if (!drive->window.always()) table.fail(axis, "from and until of a soft support stand beside x and y");
+  const std::vector<AxisConditionKind> kinds{{"displacement", AxisCondition::Mode::displacement},
+                                             {"velocity", AxisCondition::Mode::velocity}};
+  for (auto [axis, prescribed] : {std::pair("x", &condition.x), std::pair("y", &condition.y)}) {
+    *prescribed = read_axis_condition(table, axis, kinds, *prescribed);
+    if (!prescribed->window.always()) table.fail(axis, "from and until of a soft support stand beside x and y");
   }
   table.optional("stiffness", condition.stiffness);
   table.optional("damping", condition.damping);
@@ -89,28 +90,28 @@ bool overlaps(const Condition& a, const Condition& b) {
   return a.grains == b.grains && (!a.number || !b.number || *a.number == *b.number);
 }
 
-void read_drives(TableReader& table, Condition& condition, const Scene& scene) {
-  Drive Condition::* drives[] = {&Condition::x, &Condition::y, &Condition::angle};
+void read_axes(TableReader& table, Condition& condition, const Scene& scene) {
+  AxisCondition Condition::* conditions[] = {&Condition::x, &Condition::y, &Condition::angle};
   for (int c = 0; c < 3; ++c) {
-    const std::vector<DriveKind> kinds{{"velocity", Drive::Mode::velocity},
-                                       {c == 2 ? "moment" : "force", Drive::Mode::force, true}};
-    condition.*drives[c] = read_drive(table, axes[c], kinds, condition.*drives[c]);
-    if ((condition.*drives[c]).mode == Drive::Mode::free) continue;
+    const std::vector<AxisConditionKind> kinds{{"velocity", AxisCondition::Mode::velocity},
+                                               {c == 2 ? "moment" : "force", AxisCondition::Mode::force, true}};
+    condition.*conditions[c] = read_axis_condition(table, axes[c], kinds, condition.*conditions[c]);
+    if ((condition.*conditions[c]).mode == AxisCondition::Mode::free) continue;
     for (const Condition& other : scene.boundary)
-      if (overlaps(condition, other) && (other.*drives[c]).mode != Drive::Mode::free)
+      if (overlaps(condition, other) && (other.*conditions[c]).mode != AxisCondition::Mode::free)
         table.fail(axes[c], "driven by an earlier [[boundary]] as well; a history can change what it does in time");
   }
 }
 
-/// What stands along x, y and angle: drives of rigid grains, soft supports of compliant ones.
+/// What stands along x, y and angle: motions and loads of rigid grains, soft supports of compliant ones.
 void read_motion(TableReader& table, Condition& condition, const Scene& scene) {
   const Grains& grains = grains_of(condition, scene);
   if (has_body(grains, BodyKind::compliant) && has_body(grains, BodyKind::rigid))
     table.fail("of", fmt::format("'{}' mixes rigid and compliant grains; allowed: a pressure, or grains of one kind",
                                  grains.name));
-  has_body(grains, BodyKind::rigid) ? read_drives(table, condition, scene) : read_support(table, condition);
-  for (const Drive* drive : {&condition.x, &condition.y, &condition.angle})
-    if (drive->mode != Drive::Mode::free) return;
+  has_body(grains, BodyKind::rigid) ? read_axes(table, condition, scene) : read_support(table, condition);
+  for (const AxisCondition* prescribed : {&condition.x, &condition.y, &condition.angle})
+    if (prescribed->mode != AxisCondition::Mode::free) return;
   table.fail(fmt::format("{} does nothing: all axes are free; remove it", table.title()));
 }
 
@@ -123,7 +124,7 @@ BoundaryCondition read_condition(TableReader table, const Scene& scene) {
   const bool moves = table.has("x") || table.has("y") || table.has("angle");
   if (!moves && !table.has("pressure")) table.fail_missing("pressure", "'pressure', or what moves 'x', 'y' or 'angle'");
   moves ? read_motion(table, condition, scene) : read_pressure(table, condition);
-  if (condition.kind != Condition::Kind::drive) {
+  if (condition.kind != Condition::Kind::axes) {
     if (table.has("part")) condition.part = read_part(table.optional_table("part"));
     condition.window = read_window(table);
   }

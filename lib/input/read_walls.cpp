@@ -1,21 +1,23 @@
 #include <cmath>
 
-#include "input/read_drive.hpp"
+#include "input/read_axis_condition.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
 
 namespace {
 
-/// What may drive a wall along one axis; a pressure has no meaning along the wall.
-std::vector<DriveKind> drive_kinds(bool normal) {
-  std::vector<DriveKind> kinds{{"velocity", Drive::Mode::velocity}, {"force", Drive::Mode::force, true}};
-  if (normal) kinds.push_back({"pressure", Drive::Mode::pressure, true});
+/// Conditions that a wall may have along one axis; a pressure has no meaning along the wall.
+std::vector<AxisConditionKind> axis_condition_kinds(bool normal) {
+  std::vector<AxisConditionKind> kinds{{"velocity", AxisCondition::Mode::velocity},
+                                       {"force", AxisCondition::Mode::force, true}};
+  if (normal) kinds.push_back({"pressure", AxisCondition::Mode::pressure, true});
   return kinds;
 }
 
-bool needs_mass(const Drive& drive) {
-  return (drive.mode != Drive::Mode::fixed && drive.mode != Drive::Mode::velocity) || !drive.window.always();
+bool needs_mass(const AxisCondition& prescribed) {
+  return (prescribed.mode != AxisCondition::Mode::fixed && prescribed.mode != AxisCondition::Mode::velocity) ||
+         !prescribed.window.always();
 }
 
 /// Asperities side by side must leave room for the straight segments that join them.
@@ -72,8 +74,8 @@ Wall read_wall(TableReader table, const Scene& scene) {
   const double finest = *scene.period / SceneLimits::wall_nodes;
   table.optional("spacing", wall.spacing, Range{.low = finest, .high = *scene.period});
   if (table.has("asperities")) wall.asperities = read_asperities(table.optional_table("asperities"), *scene.period);
-  wall.x = read_drive(table, "x", drive_kinds(false), {});
-  wall.y = read_drive(table, "y", drive_kinds(true), {});
+  wall.x = read_axis_condition(table, "x", axis_condition_kinds(false), {});
+  wall.y = read_axis_condition(table, "y", axis_condition_kinds(true), {});
   if (needs_mass(wall.x) || needs_mass(wall.y)) {
     table.required("thickness", wall.thickness, positive);
   } else {

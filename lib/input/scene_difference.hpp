@@ -10,7 +10,7 @@ namespace pliant {
 std::string scene_difference(const std::string& before, const std::string& now);
 
 /// Likewise of a run that starts from the end of another one: the first key that differs and must not. Bodies, shapes
-/// and the discretisation must be the same; loads, drives, laws' constants, contact, time and outputs may differ.
+/// and the discretisation must be the same; loads, motions, laws' constants, contact, time and outputs may differ.
 std::string start_difference(const std::string& before, const std::string& now);
 
 }  // namespace pliant

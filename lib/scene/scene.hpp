@@ -158,16 +158,16 @@ struct Grains {
 };
 
 /// What moves one degree of freedom of a wall or a rigid grain, or what the soft support of an outline follows.
-struct Drive {
+struct AxisCondition {
   enum class Mode { fixed, velocity, force, pressure, free, displacement } mode = Mode::fixed;
   History history;     ///< m/s (rad/s), N/m (N for a moment), m, or Pa: on period x thickness, towards the grains
   double damping = 0;  ///< of a dashpot beside a load: force - damping v, in the load's unit over m/s (rad/s)
-  Window window{};     ///< of drives with a history: free outside
+  Window window{};     ///< of conditions with a history: free outside
 
-  static Drive none() {
-    Drive drive;
-    drive.mode = Mode::free;
-    return drive;
+  static AxisCondition none() {
+    AxisCondition prescribed;
+    prescribed.mode = Mode::free;
+    return prescribed;
   }
 };
 
@@ -189,7 +189,7 @@ struct Wall {
   double spacing = 0;    ///< outline spacing; 0: the finest outline of the grains
   double thickness = 0;  ///< mass = density x period x thickness; m
   std::optional<Asperities> asperities;
-  Drive x, y;           ///< rotation is blocked
+  AxisCondition x, y;   ///< rotation is blocked
   std::string where{};  ///< file, line and column of its table, for messages
 };
 
@@ -201,17 +201,17 @@ struct OutlinePart {
   Vec2 side{0, 0};               ///< side: outward normals less than 45 degrees from this direction
 };
 
-/// What acts on grains from outside: drives of rigid ones, pressures and soft supports on parts of outlines
+/// What acts on grains from outside: motions and loads of rigid ones, pressures and soft supports on parts of outlines
 /// (docs/method.md 5).
 struct BoundaryCondition {
-  enum class Kind { drive, pressure, support } kind = Kind::drive;
-  std::string grains;                         ///< name of a set of grains ...
-  std::optional<int> number;                  ///< ... and the one of them, or all
-  Drive x = Drive::none(), y = x, angle = x;  ///< drive; support (fixed, free, velocity, displacement)
-  OutlinePart part;                           ///< pressure, support
-  Window window;                              ///< pressure, support
-  History pressure;                           ///< Pa, positive: pushes
-  bool following = true;                      ///< on the present outline along its normal; else on the one at the start
+  enum class Kind { axes, pressure, support } kind = Kind::axes;
+  std::string grains;                                         ///< name of a set of grains ...
+  std::optional<int> number;                                  ///< ... and the one of them, or all
+  AxisCondition x = AxisCondition::none(), y = x, angle = x;  ///< axes; support (fixed, free, velocity, displacement)
+  OutlinePart part;                                           ///< pressure, support
+  Window window;                                              ///< pressure, support
+  History pressure;                                           ///< Pa, positive: pushes
+  bool following = true;            ///< on the present outline along its normal; else on the one at the start
   std::optional<Vec2> direction;    ///< not following: unit vector of the traction; nullopt: against the first normal
   std::optional<double> stiffness;  ///< support: Pa/m; nullopt: 8 E/h as in contacts
   double damping = 0;               ///< support: Pa s/m

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "boundary/apply_conditions.hpp"
 #include "bodies/make_batches.hpp"
+#include "boundary/apply_conditions.hpp"
 #include "core/located.hpp"
 #include "geometry/assembly.hpp"
 #include "geometry/mesh.hpp"
@@ -178,9 +178,9 @@ class Builder {
     rigid.body = static_cast<int>(model_.bodies.size());
     rigid.outline = body.outline;
     rigid.driven = true;
-    apply_drive(rigid.dof[0], wall.x, body.mass, 0);
-    apply_drive(rigid.dof[1], wall.y, body.mass, below ? period : -period);
-    apply_drive(rigid.dof[2], Drive{}, body.mass, 0);
+    apply_axis_condition(rigid.dof[0], wall.x, body.mass, 0);
+    apply_axis_condition(rigid.dof[1], wall.y, body.mass, below ? period : -period);
+    apply_axis_condition(rigid.dof[2], AxisCondition{}, body.mass, 0);
     model_.rigid_bodies.push_back(rigid);
     model_.bodies.push_back(std::move(body));
   }

@@ -151,7 +151,7 @@ TEST(BuildModel, Walls) {
   add_grain(scene, "disc", BodyKind::rigid, {1, 1});
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0.5, 0.1), flat_wall("lid", Wall::Solid::above, 2, 0)};
   scene.walls[0].thickness = 0.7;
-  scene.walls[1].y = {Drive::Mode::pressure, {{0}, {5}}};
+  scene.walls[1].y = {AxisCondition::Mode::pressure, {{0}, {5}}};
   const Model model = build_model(scene);
   ASSERT_EQ(model.bodies.size(), 3U);
   const RigidBody& floor = model.rigid_bodies[1];

@@ -24,9 +24,9 @@ BoundaryCondition drives_of(const std::string& grains, int number) {
 
 TEST(RigidGrain, obeys_one_drive_an_axis_and_its_fellow_none) {
   BoundaryCondition condition = drives_of("disc", 1);
-  condition.x = {Drive::Mode::velocity, {{0, 2}, {0, 1}}};
-  condition.y = {Drive::Mode::force, constant(0.3)};
-  condition.angle = {Drive::Mode::force, constant(-0.2)};
+  condition.x = {AxisCondition::Mode::velocity, {{0, 2}, {0, 1}}};
+  condition.y = {AxisCondition::Mode::force, constant(0.3)};
+  condition.angle = {AxisCondition::Mode::force, constant(-0.2)};
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     Scene scene = rigid_disc(2, condition);
     scene.time.integrator = integrator;
@@ -52,7 +52,7 @@ TEST(RigidGrain, obeys_one_drive_an_axis_and_its_fellow_none) {
 
 TEST(RigidGrain, that_is_fixed_stays_whatever_speed_it_was_given) {
   BoundaryCondition condition = drives_of("disc", 0);
-  condition.x.mode = condition.y.mode = condition.angle.mode = Drive::Mode::fixed;
+  condition.x.mode = condition.y.mode = condition.angle.mode = AxisCondition::Mode::fixed;
   Scene scene = rigid_disc(1, condition);
   scene.grains[0].velocity = moving({1, 2}, 3);
   const Model model = build_model(scene);
@@ -66,11 +66,11 @@ TEST(RigidGrain, that_is_fixed_stays_whatever_speed_it_was_given) {
 /// Pushed from 0.5 to 1.25, carried at speed 2 from rest or flight until 1: free before and after.
 TEST(Window, holds_a_drive_from_its_start_to_its_end) {
   BoundaryCondition condition = drives_of("disc", 0);
-  condition.x = {Drive::Mode::velocity, constant(2)};
+  condition.x = {AxisCondition::Mode::velocity, constant(2)};
   condition.x.window.until = 1;
-  condition.y = {Drive::Mode::force, constant(0.4)};
+  condition.y = {AxisCondition::Mode::force, constant(0.4)};
   condition.y.window = {0.5, 1.25};
-  condition.angle = {Drive::Mode::velocity, constant(1)};
+  condition.angle = {AxisCondition::Mode::velocity, constant(1)};
   condition.angle.window.from = 1;
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     Scene scene = rigid_disc(2, condition);
@@ -95,7 +95,7 @@ TEST(Window, of_a_wall_lets_it_go) {
   Scene scene = on_a_floor(2, 4, 0.25, {0, 0});
   scene.shapes = {disc_shape("disc", 2, 20)};
   scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
-  scene.walls[0].y = {Drive::Mode::velocity, constant(0.5)};
+  scene.walls[0].y = {AxisCondition::Mode::velocity, constant(0.5)};
   scene.walls[0].y.window.until = 1;
   scene.gravity = {0, -0.3};
   const Model model = build_model(scene);
@@ -112,8 +112,8 @@ void expect_servo_flight(Integrator integrator, const Vec2& gravity, const std::
   scene.shapes = {disc_shape("disc", 2, 20)};
   scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
   scene.boundary = {drives_of("far", 0)};
-  for (Drive* drive : {&scene.boundary[0].x, &scene.boundary[0].y, &scene.boundary[0].angle}) *drive = Drive{};
-  scene.walls[0].y = {Drive::Mode::pressure, constant(pressure)};
+  for (Drive* drive : {&scene.boundary[0].x, &scene.boundary[0].y, &scene.boundary[0].angle}) *drive = AxisCondition{};
+  scene.walls[0].y = {AxisCondition::Mode::pressure, constant(pressure)};
   scene.walls[0].y.damping = damping;
   scene.gravity = gravity;
   scene.gravity_history = gravity_history;
@@ -142,7 +142,7 @@ TEST(ServoWall, falls_when_its_pressure_ends) {
     Scene scene = on_a_floor(2, 3, 0.25, {0, -0.3});
     scene.shapes = {disc_shape("disc", 2, 20)};
     scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
-    scene.walls[0].y = {Drive::Mode::pressure, constant(0.7)};
+    scene.walls[0].y = {AxisCondition::Mode::pressure, constant(0.7)};
     scene.walls[0].y.window.until = 1;
     scene.time.integrator = integrator;
     const Model model = build_model(scene);
@@ -170,7 +170,7 @@ Pressed pressed_block(double damping, double gravity = 0) {
   scene.grains = {grains("block", "block", BodyKind::compliant, {{1.5, 1.0}})};
   scene.materials[0].viscosity = 0.1;
   scene.walls.push_back(flat_wall("lid", Wall::Solid::above, 2.0, 0.25, 0.5));
-  scene.walls[1].y = {Drive::Mode::pressure, constant(pressure)};
+  scene.walls[1].y = {AxisCondition::Mode::pressure, constant(pressure)};
   scene.walls[1].y.damping = damping;
   const Model model = build_model(scene);
   Simulation simulation(model);

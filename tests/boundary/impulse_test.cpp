@@ -62,9 +62,9 @@ TEST(Impulse, of_pulses_by_force_and_moment) {
     Scene scene = two_boxes(integrator, 3);
     BoundaryCondition drive;
     drive.grains = "hard";
-    drive.x = {Drive::Mode::force, pulse};
-    drive.y = {Drive::Mode::force, constant(0.3), 0, {1.01, 1.013}};
-    drive.angle = {Drive::Mode::force, pulse, 0, {1.02, 1.04}};
+    drive.x = {AxisCondition::Mode::force, pulse};
+    drive.y = {AxisCondition::Mode::force, constant(0.3), 0, {1.01, 1.013}};
+    drive.angle = {AxisCondition::Mode::force, pulse, 0, {1.02, 1.04}};
     scene.boundary = {drive};
     const double mass = 2, inertia = 2 * (4 + 1) / 12.0;
     const Speeds end = speeds_at_end(scene);
@@ -126,7 +126,7 @@ Scene servo_wall(Integrator integrator, double damping) {
   Scene scene = on_a_floor(3, 3, 0.25, {0, 0});
   scene.shapes = {box_shape("box", 2, 1, 0.25)};
   scene.grains = {grains("far", "box", BodyKind::rigid, {{1.5, 50}})};
-  scene.walls[0].y = {Drive::Mode::pressure, pulse, damping, {-1, 1.025}};
+  scene.walls[0].y = {AxisCondition::Mode::pressure, pulse, damping, {-1, 1.025}};
   scene.time.integrator = integrator;
   return scene;
 }
@@ -161,7 +161,7 @@ TEST(Impulse, of_a_support_whose_target_leaps) {
   support.grains = "soft";
   support.stiffness = 0;
   support.damping = 1e-9;
-  support.x = {Drive::Mode::displacement, {{1, 1.001, 2, 2.0001}, {0, 3, 3, 1}}};
+  support.x = {AxisCondition::Mode::displacement, {{1, 1.001, 2, 2.0001}, {0, 3, 3, 1}}};
   scene.boundary = {support};
   EXPECT_NEAR(speeds_at_end(scene).soft.x() * 2 / (1e-9 * 6 * 1), 1, 1e-9 * 6 * 3 * 3 / 2)
       << "EXACT: length 6, way 1; the body goes along by damping x length x way / mass x time, way and time 3 at most";
@@ -173,8 +173,8 @@ TEST(Impulse, of_windows_closes_the_balance) {
   Scene scene = two_boxes(Integrator::verlet, 2);
   BoundaryCondition drive;
   drive.grains = "hard";
-  drive.x = {Drive::Mode::force, constant(0.4), 0, {0.3, 0.9}};
-  drive.y = {Drive::Mode::force, constant(0.7), 0.6, {0.2, 1.7}};
+  drive.x = {AxisCondition::Mode::force, constant(0.4), 0, {0.3, 0.9}};
+  drive.y = {AxisCondition::Mode::force, constant(0.7), 0.6, {0.2, 1.7}};
   scene.boundary = {drive, pressure_on("hard", constant(0.2), false)};
   scene.boundary[1].window = {0.517, 0.7};
   const Model model = build_model(scene);

@@ -26,8 +26,8 @@ TEST(ImposedMotion, follows_the_integral_of_its_history) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     Scene scene = lone_wall(4, Wall::Solid::above);
     const History history{{0.5, 1, 1.7, 3}, {0, 0.4, -1, 0.3}};
-    scene.walls[0].x = {Drive::Mode::velocity, history};
-    scene.walls[0].y = {Drive::Mode::velocity, constant(-0.25)};
+    scene.walls[0].x = {AxisCondition::Mode::velocity, history};
+    scene.walls[0].y = {AxisCondition::Mode::velocity, constant(-0.25)};
     scene.time.integrator = integrator;
     const Model model = build_model(scene);
     Simulation simulation(model);
@@ -50,7 +50,7 @@ TEST(ImposedMotion, follows_the_integral_of_its_history) {
 TEST(Pressure, accelerates_a_wall_by_pressure_times_period_over_mass) {
   for (const Wall::Solid solid : {Wall::Solid::below, Wall::Solid::above}) {
     Scene scene = lone_wall(2, solid);
-    scene.walls[0].y = {Drive::Mode::pressure, constant(0.7)};
+    scene.walls[0].y = {AxisCondition::Mode::pressure, constant(0.7)};
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 2);
@@ -64,7 +64,7 @@ TEST(Pressure, accelerates_a_wall_by_pressure_times_period_over_mass) {
 
 TEST(Force, accelerates_a_wall_and_gives_it_the_impulse_of_a_ramp) {
   Scene scene = lone_wall(2, Wall::Solid::below);
-  scene.walls[0].x = {Drive::Mode::force, {{0, 2}, {0, 3}}};
+  scene.walls[0].x = {AxisCondition::Mode::force, {{0, 2}, {0, 3}}};
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
@@ -171,7 +171,7 @@ TEST(Work, of_a_load_that_ends_is_the_kinetic_energy) {
   for (int i = 1; i <= 40; ++i) {
     const double end = 0.1 + 0.037 * i;
     Scene scene = lone_wall(2, Wall::Solid::below);
-    scene.walls[0].x = {Drive::Mode::force, constant(3)};
+    scene.walls[0].x = {AxisCondition::Mode::force, constant(3)};
     scene.walls[0].x.window.until = end;
     const Model model = build_model(scene);
     Simulation simulation(model);
@@ -184,8 +184,8 @@ TEST(Work, of_a_load_that_ends_is_the_kinetic_energy) {
 
 TEST(Work, of_a_pressure_is_the_kinetic_energy_of_the_wall) {
   Scene scene = lone_wall(2, Wall::Solid::above);
-  scene.walls[0].x = {Drive::Mode::force, {{0, 2}, {1, -2}}};
-  scene.walls[0].y = {Drive::Mode::pressure, constant(0.7)};
+  scene.walls[0].x = {AxisCondition::Mode::force, {{0, 2}, {1, -2}}};
+  scene.walls[0].y = {AxisCondition::Mode::pressure, constant(0.7)};
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
@@ -198,7 +198,7 @@ TEST(Work, of_a_pressure_is_the_kinetic_energy_of_the_wall) {
 
 TEST(Work, of_an_imposed_acceleration_is_the_kinetic_energy_of_the_wall) {
   Scene scene = lone_wall(2, Wall::Solid::above);
-  scene.walls[0].x = {Drive::Mode::velocity, {{0, 1}, {0, 2}}};
+  scene.walls[0].x = {AxisCondition::Mode::velocity, {{0, 1}, {0, 2}}};
   const Model model = build_model(scene);
   Simulation simulation(model);
   advance(simulation, 2);
@@ -214,7 +214,7 @@ TEST(Work, of_an_imposed_motion_is_that_of_the_contact_forces_against_it) {
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("disc", "disc", BodyKind::compliant, {{1.5, 1.01}})};
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.25), flat_wall("plate", Wall::Solid::above, 2.03, 0.25)};
-  scene.walls[1].y = {Drive::Mode::velocity, constant(-0.05)};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, constant(-0.05)};
   scene.gravity = {0, -0.02};
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -238,7 +238,7 @@ double largest_imbalance(double safety) {
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("disc", "disc", BodyKind::compliant, {{1.5, 1.01}})};
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.25), flat_wall("plate", Wall::Solid::above, 2.03, 0.25)};
-  scene.walls[1].y = {Drive::Mode::velocity, {{0, 1}, {0, -0.05}}};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, {{0, 1}, {0, -0.05}}};
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);

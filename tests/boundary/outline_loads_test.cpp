@@ -176,19 +176,19 @@ BoundaryCondition support_of(const std::string& grains, double stiffness, double
   condition.grains = grains;
   condition.stiffness = stiffness;
   condition.damping = damping;
-  condition.x.mode = condition.y.mode = Drive::Mode::fixed;
+  condition.x.mode = condition.y.mode = AxisCondition::Mode::fixed;
   return condition;
 }
 
 TEST(Support, pulls_back_by_stiffness_times_length_along_the_axes_that_it_holds) {
   BoundaryCondition bottom = support_of("square", 5, 0);
   bottom.part = side({0, -1});
-  bottom.x = {Drive::Mode::displacement, constant(0.3)};
+  bottom.x = {AxisCondition::Mode::displacement, constant(0.3)};
   Bench bench(square(bottom));
   EXPECT_LT((total_force(bench) - Vec2(5 * 2 * 0.3, 0)).norm(), 1e-13) << "EXACT";
   EXPECT_NEAR(support_energy(bench.model, bench.state.outlines.position, {0}), 0.5 * 5 * 2 * 0.09, 1e-13) << "EXACT";
-  bottom.x.mode = Drive::Mode::free;
-  bottom.y = {Drive::Mode::velocity, constant(0.2)};
+  bottom.x.mode = AxisCondition::Mode::free;
+  bottom.y = {AxisCondition::Mode::velocity, constant(0.2)};
   Bench later(square(bottom));
   later.state.time = 2;
   later.evaluate_here();
@@ -225,11 +225,11 @@ TEST(Support, lets_a_body_swing_at_the_frequency_of_spring_and_mass) {
 TEST(Support, books_close_when_it_moves_damps_sets_in_and_ends) {
   BoundaryCondition bottom = support_of("square", 5, 0.5);
   bottom.part = side({0, -1});
-  bottom.x = {Drive::Mode::velocity, {{0, 1, 2}, {0, 0.3, 0.3}}};
+  bottom.x = {AxisCondition::Mode::velocity, {{0, 1, 2}, {0, 0.3, 0.3}}};
   bottom.window.until = 3;
   BoundaryCondition top = support_of("square", 2, 0.2);
   top.part = side({0, 1});
-  top.y.mode = Drive::Mode::free;
+  top.y.mode = AxisCondition::Mode::free;
   top.window.from = 4;
   const auto imbalance = [&](double safety) {
     Scene scene = square(bottom);
@@ -266,7 +266,7 @@ TEST(Support, that_ends_while_another_holds_leaves_the_books_closed) {
     BoundaryCondition bottom = support_of("square", 5, 0), top = bottom;
     bottom.part = side({0, -1});
     top.part = side({0, 1});
-    top.y = {Drive::Mode::displacement, {{0, 2}, {0, 0.4}}};
+    top.y = {AxisCondition::Mode::displacement, {{0, 2}, {0, 0.4}}};
     top.window.until = 2;
     Scene scene = square(bottom);
     scene.boundary.push_back(top);

@@ -26,11 +26,11 @@ TEST(LargestPressure, IsThatOfTheWallsUntilTheEnd) {
   scene.time.end = 2;
   EXPECT_EQ(largest_pressure(scene), 0);  // EXACT
   Wall wall;
-  wall.y.mode = Drive::Mode::pressure;
+  wall.y.mode = AxisCondition::Mode::pressure;
   wall.y.history = {{0, 4}, {0, 8}};
   scene.walls.push_back(wall);
   EXPECT_DOUBLE_EQ(largest_pressure(scene), 4);  // EXACT: halfway up the ramp
-  wall.y.mode = Drive::Mode::force;
+  wall.y.mode = AxisCondition::Mode::force;
   wall.y.history = {{0, 1, 3}, {0, -40, 0}};
   scene.walls.push_back(wall);
   EXPECT_DOUBLE_EQ(largest_pressure(scene), 10);  // EXACT: 40 N/m over a period of 4 m, either sign

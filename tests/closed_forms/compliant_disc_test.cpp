@@ -29,7 +29,7 @@ Scene disc_between_plates(int nodes) {
   scene.time.tolerance = 1e-3;
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1 - gap, 0),
                  flat_wall("upper", Wall::Solid::above, 1 + gap, 0)};
-  scene.walls[1].y = {Drive::Mode::velocity, {{0, ramp}, {0, -plate_speed}}};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, {{0, ramp}, {0, -plate_speed}}};
   return scene;
 }
 

@@ -55,7 +55,7 @@ Scene thrown_block(const ContactRule& rule, double slide, double safety) {
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4.04, 0.5 + 1e-4}}, moving({slide, -fall}))};
   BoundaryCondition upright;
   upright.grains = "block";
-  upright.angle = {Drive::Mode::velocity, constant(0)};
+  upright.angle = {AxisCondition::Mode::velocity, constant(0)};
   scene.boundary = {upright};
   scene.contacts = {rule};
   scene.contact.energy_consistent = false;              // forces of the correction after contact have no friction

@@ -165,7 +165,7 @@ double rebound_from(double held_until, double speed_at_2) {
                   grains("right", "block", BodyKind::rigid, {{1.002, 0}})};
   BoundaryCondition held;
   held.grains = "right";
-  held.x = {Drive::Mode::velocity, constant(0)};
+  held.x = {AxisCondition::Mode::velocity, constant(0)};
   held.y = held.x;
   held.x.window.until = held.y.window.until = held_until;
   scene.boundary = {held};
@@ -194,7 +194,7 @@ TEST(Restitution, laws_follow_drives_in_time) {
                   grains("right", "block", BodyKind::rigid, {{1.002, 0}})};
   BoundaryCondition held;
   held.grains = "right";
-  held.x = {Drive::Mode::velocity, constant(0)};
+  held.x = {AxisCondition::Mode::velocity, constant(0)};
   held.y = held.x;
   held.x.window = held.y.window = {1, 2};
   scene.boundary = {held};

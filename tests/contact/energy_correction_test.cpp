@@ -188,13 +188,13 @@ TEST(EnergyCorrection, is_what_bodies_and_contacts_gain) {
 }
 
 /// Spurious energy of a disc that is pressed onto another one, let go and thrown off, over the energy that was stored.
-double gained_by_letting_go(const Drive& push) {
+double gained_by_letting_go(const AxisCondition& push) {
   Scene scene = empty_scene(1000);
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("held", "disc", BodyKind::rigid, {{0, 0}}, {}),
                   grains("pushed", "disc", BodyKind::rigid, {{2.01, 0.3}}, {})};
   BoundaryCondition hold, press;
-  hold.grains = "held", hold.x = hold.y = hold.angle = {Drive::Mode::fixed};
+  hold.grains = "held", hold.x = hold.y = hold.angle = {AxisCondition::Mode::fixed};
   press.grains = "pushed", press.x = push;
   scene.boundary = {hold, press};
   scene.contacts = {frictionless(100)};
@@ -213,8 +213,8 @@ double gained_by_letting_go(const Drive& push) {
 /// EXACT: accelerations jump where an imposed motion or a load ends, and with them what velocity Verlet keeps.
 TEST(EnergyCorrection, counts_loads_that_jump_while_bodies_touch) {
   const Window until_four{.until = 4};
-  EXPECT_LT(gained_by_letting_go({Drive::Mode::velocity, constant(-0.02), 0, until_four}), 1e-11);
-  EXPECT_LT(gained_by_letting_go({Drive::Mode::force, constant(-0.01), 0, until_four}), 1e-11);
+  EXPECT_LT(gained_by_letting_go({AxisCondition::Mode::velocity, constant(-0.02), 0, until_four}), 1e-11);
+  EXPECT_LT(gained_by_letting_go({AxisCondition::Mode::force, constant(-0.01), 0, until_four}), 1e-11);
 }
 
 /// What a contact pair does to each node of a side, however often it shows the node, N/m.

@@ -45,7 +45,7 @@ Scene squeezed_blocks(int copies) {
   scene.grains = {grains("row", "block", BodyKind::compliant, row_of(copies, {0.5, 0.25}, period))};
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, period / 10),
                  flat_wall("top", Wall::Solid::above, 0.5, period / 10)};
-  scene.walls[1].y = {Drive::Mode::velocity, {{0, 20}, {-0.02, -0.02}}};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, {{0, 20}, {-0.02, -0.02}}};
   scene.contacts = {mohr_coulomb(200, 0.2)};
   return scene;
 }
@@ -136,7 +136,7 @@ TEST(OwnImages, soft_corners_pressed_deep_make_no_energy) {
   const auto balance = [](double safety) {
     Scene scene = squeezed_blocks(1);
     scene.contacts = {frictionless(235)};
-    scene.walls[1].y = {Drive::Mode::velocity, {{0, 20, 20.001}, {-0.01, -0.01, 0}}};
+    scene.walls[1].y = {AxisCondition::Mode::velocity, {{0, 20, 20.001}, {-0.01, -0.01, 0}}};
     scene.time.end = 30;
     scene.time.safety = safety;
     const Model model = build_model(scene);

@@ -92,7 +92,7 @@ TEST_P(AllocationOfAll, there_is_none_in_a_step) {
     support.kind = Condition::Kind::support;
     support.grains = "layer";
     support.stiffness = support.damping = 0.01;
-    support.x = {Drive::Mode::velocity, constant(0.01)};
+    support.x = {AxisCondition::Mode::velocity, constant(0.01)};
     scene.boundary = {pressure, support};
     EXPECT_EQ(allocations_of_steps(scene), 0) << "EXACT";
   }

@@ -36,7 +36,7 @@ Scene compression() {
   Scene scene = free_disc(40, 14);
   scene.period = 8;
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1, 0.25), flat_wall("upper", Wall::Solid::above, 1.01, 0.25)};
-  scene.walls[1].y = {Drive::Mode::velocity, {{0, 1, 14}, {0, -0.09, -0.09}}};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, {{0, 1, 14}, {0, -0.09, -0.09}}};
   scene.contacts = {frictionless(automatic_stiffness(24))};
   return scene;
 }

@@ -148,7 +148,7 @@ TEST(Invariance, a_moving_layer_takes_the_same_steps) {
   const auto run = [](double drift) {
     Scene scene = small_third_body(1);
     scene.grains[0].velocity.uniform.x() = drift;
-    for (Wall& wall : scene.walls) wall.x = {Drive::Mode::velocity, {{0}, {drift}}};
+    for (Wall& wall : scene.walls) wall.x = {AxisCondition::Mode::velocity, {{0}, {drift}}};
     const Model model = build_model(scene);
     Simulation simulation(model);
     advance(simulation, 1);

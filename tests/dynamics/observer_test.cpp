@@ -92,8 +92,8 @@ void look_where_candidates_do_not_hold(Integrator integrator) {
                   grains("held", "block", BodyKind::rigid, {{1.14, 0}})};
   BoundaryCondition turned, held;
   turned.grains = "turned", held.grains = "held";
-  turned.x = turned.y = held.x = held.y = held.angle = {Drive::Mode::velocity, constant(0)};
-  turned.angle = {Drive::Mode::velocity, constant(2 * M_PI)};
+  turned.x = turned.y = held.x = held.y = held.angle = {AxisCondition::Mode::velocity, constant(0)};
+  turned.angle = {AxisCondition::Mode::velocity, constant(2 * M_PI)};
   scene.boundary = {turned, held};
   const double duration = 2, time = 0.6;
   const auto refreshes_of_step = [&](double until, const Observer* observer) {

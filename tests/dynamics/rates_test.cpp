@@ -149,10 +149,10 @@ TEST(Rate, of_dashpots_beside_loads) {
   scene.grains = {grains("block", "block", BodyKind::rigid, {{4, 0.505}})};
   BoundaryCondition held;
   held.grains = "block";
-  held.x.mode = held.y.mode = held.angle.mode = Drive::Mode::fixed;
+  held.x.mode = held.y.mode = held.angle.mode = AxisCondition::Mode::fixed;
   scene.boundary = {held};
   scene.walls = {flat_wall("lid", Wall::Solid::above, 1, 0.25, 0.25)};
-  scene.walls[0].y = {Drive::Mode::pressure, constant(0.25), 1};
+  scene.walls[0].y = {AxisCondition::Mode::pressure, constant(0.25), 1};
   scene.contacts = {frictionless(100)};
   expect_swing(scene, 1, 0.005, -2, [](double) { return 1 * 8 / 2.0; });
 }
@@ -202,7 +202,7 @@ TEST(Rate, of_supports_dashpots) {
   support.grains = "disc";
   support.stiffness = 0.5;
   support.damping = 0.3;
-  support.x = {Drive::Mode::displacement, {{0, 1, 3}, {0, 0.2, -0.1}}};
+  support.x = {AxisCondition::Mode::displacement, {{0, 1, 3}, {0, 0.2, -0.1}}};
   support.part = {.kind = OutlinePart::Kind::side, .side = {0, -1}};
   scene.boundary = {support};
   expect_second_order_of(scene);

@@ -240,7 +240,7 @@ Scene let_go() {
                   grains("right", "block", BodyKind::rigid, {{0.998, 0}})};
   BoundaryCondition held;
   held.grains = "right";
-  held.x = held.y = {Drive::Mode::velocity, constant(0)};
+  held.x = held.y = {AxisCondition::Mode::velocity, constant(0)};
   held.x.window.until = held.y.window.until = 0.01;
   scene.boundary = {held};
   scene.contacts[0].restitution = 0.5;

@@ -132,7 +132,7 @@ TEST(StartPoint, takes_the_new_scenes_friction_and_drives) {
   EXPECT_NEAR(rigid(second.state().reduced_momentum, 0)[0], 0.2 - 0.1, 1e-3) << "EXACT";
   EXPECT_LT(second.balance_error(second.energy_balance().energy), 0.01) << "EXACT: energy balance from here on";
   Scene driven = on_a_slope(0.5, 0);
-  driven.walls[0].x = {Drive::Mode::velocity, constant(0.3)};
+  driven.walls[0].x = {AxisCondition::Mode::velocity, constant(0.3)};
   const Model moving_floor = build_model(driven);
   Simulation third(moving_floor, &start);
   EXPECT_EQ(rigid(third.state().reduced_momentum, 1)[0], 0.3) << "EXACT: imposed from the start on";

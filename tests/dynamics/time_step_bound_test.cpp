@@ -96,7 +96,7 @@ Scene mixed_column(const ContactRule& contact) {
                   grains("hard", "disc", BodyKind::rigid, {{2, 0}})};
   scene.walls = {flat_wall("floor", Wall::Solid::below, -0.98, 0.25),
                  flat_wall("lid", Wall::Solid::above, 2.93, 0.25, 0.5)};
-  scene.walls[1].x.mode = scene.walls[1].y.mode = Drive::Mode::pressure;
+  scene.walls[1].x.mode = scene.walls[1].y.mode = AxisCondition::Mode::pressure;
   scene.walls[1].x.history = scene.walls[1].y.history = constant(0);
   scene.contacts = {contact};
   return scene;

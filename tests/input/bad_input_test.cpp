@@ -165,7 +165,7 @@ const std::vector<Bad> bad_walls_and_contacts{
     {"PressureAlongTheWall", "x = { velocity = '10 m/s' }", "x = { pressure = 1 }", "pressure",
      "unknown key 'pressure' ... force, from, until, velocity"},
     {"TwoDrives", "{ velocity = '10 m/s' }", "{ velocity = '10 m/s', force = 1 }", "1 }\ny", "only one of"},
-    {"NoDrive", "{ velocity = '10 m/s' }", "{ }", "{ }", "nothing drives"},
+    {"NoDrive", "{ velocity = '10 m/s' }", "{ }", "{ }", "nothing is prescribed for"},
     {"UnknownDrive", "{ velocity = '10 m/s' }", "'fixd'", "'fixd'", "nearest: fixed"},
     {"DriveIsANumber", "{ velocity = '10 m/s' }", "3.5", "3.5", "\"fixed\", \"free\" or a table"},
     {"DriveUnit", "velocity = '10 m/s'", "velocity = '10 m'", "'10 m'", "wrong unit ... m/s"},

@@ -58,15 +58,15 @@ part = { box = [[0, 0], ["10 um", "2 um"]] }
   ASSERT_EQ(scene.boundary.size(), 4u);
   const BoundaryCondition &drive = scene.boundary[0], &dead = scene.boundary[1], &support = scene.boundary[2],
                           &following = scene.boundary[3];
-  EXPECT_EQ(drive.kind, Kind::drive);
+  EXPECT_EQ(drive.kind, Kind::axes);
   EXPECT_EQ(drive.grains, "stones");
   EXPECT_EQ(drive.number, 1);
-  EXPECT_EQ(drive.x.mode, Drive::Mode::velocity);
+  EXPECT_EQ(drive.x.mode, AxisCondition::Mode::velocity);
   EXPECT_DOUBLE_EQ(drive.x.window.until, 1.5e-6);
   EXPECT_FALSE(drive.x.window.contains(1.5e-6));
   EXPECT_TRUE(drive.x.window.contains(0));
-  EXPECT_EQ(drive.y.mode, Drive::Mode::fixed);
-  EXPECT_EQ(drive.angle.mode, Drive::Mode::force);
+  EXPECT_EQ(drive.y.mode, AxisCondition::Mode::fixed);
+  EXPECT_EQ(drive.angle.mode, AxisCondition::Mode::force);
   EXPECT_DOUBLE_EQ(drive.angle.damping, 2);
   EXPECT_EQ(dead.kind, Kind::pressure);
   EXPECT_FALSE(dead.number);
@@ -75,7 +75,7 @@ part = { box = [[0, 0], ["10 um", "2 um"]] }
   EXPECT_EQ(dead.part.side, Vec2(0, 1));
   EXPECT_DOUBLE_EQ(dead.window.from, 1e-7);
   EXPECT_EQ(support.kind, Kind::support);
-  EXPECT_EQ(support.x.mode, Drive::Mode::displacement);
+  EXPECT_EQ(support.x.mode, AxisCondition::Mode::displacement);
   EXPECT_DOUBLE_EQ(*support.stiffness, 1e15);
   EXPECT_DOUBLE_EQ(support.damping, 1e6);
   EXPECT_NEAR(support.part.first, 7 * std::numbers::pi / 4, 1e-12);

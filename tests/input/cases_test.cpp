@@ -87,15 +87,15 @@ TEST(Cases, UpperWallOfTheThirdBodyIsPressedThenSheared) {
   // EXACT
   const Scene scene = read_scene(cases / "third_body_mini.toml");
   const Wall& upper = scene.walls[1];
-  EXPECT_EQ(upper.y.mode, Drive::Mode::pressure);
+  EXPECT_EQ(upper.y.mode, AxisCondition::Mode::pressure);
   EXPECT_EQ(upper.y.history.at(0), 0);
   EXPECT_NEAR(upper.y.history.at(0.5e-6), 0.5e9, 1e-3);
   EXPECT_EQ(upper.y.history.at(2e-6), 1e9);
-  EXPECT_EQ(upper.x.mode, Drive::Mode::velocity);
+  EXPECT_EQ(upper.x.mode, AxisCondition::Mode::velocity);
   EXPECT_EQ(upper.x.history.at(0.9e-6), 0);
   EXPECT_EQ(upper.x.history.at(1.06e-6), 10);
-  EXPECT_EQ(scene.walls[0].x.mode, Drive::Mode::fixed);
-  EXPECT_EQ(scene.walls[0].y.mode, Drive::Mode::fixed);
+  EXPECT_EQ(scene.walls[0].x.mode, AxisCondition::Mode::fixed);
+  EXPECT_EQ(scene.walls[0].y.mode, AxisCondition::Mode::fixed);
 }
 
 TEST(Cases, PlatesApproachByThirtyPercent) {

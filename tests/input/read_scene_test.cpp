@@ -108,11 +108,11 @@ TEST(ReadScene, Grains) {
 
 TEST(ReadScene, WallsAndContacts) {
   const Scene scene = read_scene(SceneFile(good_scene).path());
-  EXPECT_EQ(scene.walls[0].x.mode, Drive::Mode::fixed);
+  EXPECT_EQ(scene.walls[0].x.mode, AxisCondition::Mode::fixed);
   EXPECT_EQ(scene.walls[0].asperities->count, 10);
   EXPECT_DOUBLE_EQ(scene.walls[0].asperities->half_angles[0], std::numbers::pi / 6);
   EXPECT_EQ(scene.walls[1].x.history.at(1), 10);
-  EXPECT_EQ(scene.walls[1].y.mode, Drive::Mode::pressure);
+  EXPECT_EQ(scene.walls[1].y.mode, AxisCondition::Mode::pressure);
   EXPECT_DOUBLE_EQ(scene.walls[1].y.history.at(0.5e-6), 0.5e9);
   EXPECT_EQ(scene.contacts[0].strength, 200e6);
   EXPECT_FALSE(scene.contacts[0].stiffness);

@@ -35,17 +35,17 @@ inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule&
     scene.grains.push_back(grains(name, "disc", rigid ? BodyKind::rigid : BodyKind::compliant, {centre}));
     BoundaryCondition push;
     push.grains = name;
-    push.kind = rigid ? BoundaryCondition::Kind::drive : BoundaryCondition::Kind::support;
-    if (rigid) push.angle.mode = Drive::Mode::fixed;
+    push.kind = rigid ? BoundaryCondition::Kind::axes : BoundaryCondition::Kind::support;
+    if (rigid) push.angle.mode = AxisCondition::Mode::fixed;
     if (!is_outer(centre, rings)) {
-      if (!rigid) push.x.mode = push.y.mode = Drive::Mode::fixed, push.stiffness = 0.3;
+      if (!rigid) push.x.mode = push.y.mode = AxisCondition::Mode::fixed, push.stiffness = 0.3;
       scene.boundary.push_back(push);
       continue;
     }
     const Vec2 inward = -share * centre;
     Drive* drives[2] = {&push.x, &push.y};
     for (int c = 0; c < 2; ++c) {
-      drives[c]->mode = rigid ? Drive::Mode::velocity : Drive::Mode::displacement;
+      drives[c]->mode = rigid ? AxisCondition::Mode::velocity : AxisCondition::Mode::displacement;
       drives[c]->history = rigid ? History{{0, ramp, ramp + 0.001}, {inward[c] / ramp, inward[c] / ramp, 0}}
                                  : History{{0, ramp}, {0, inward[c]}};
     }

@@ -18,7 +18,7 @@ using reference::EnergyBalance;
 using reference::SolverOptions;
 using reference::Vector;
 using Kind = BoundaryCondition::Kind;
-using Mode = Drive::Mode;
+using Mode = AxisCondition::Mode;
 
 /// What came out at the end of a scene.
 struct Outcome {
@@ -67,7 +67,7 @@ void expect_agreement(const Scene& scene, int steps, double safety, double most_
 
 History ramp(double first, double last, double until) { return {{0, until}, {first, last}}; }
 
-Drive drive(Mode mode, const History& history, double damping = 0) { return {mode, history, damping, {}}; }
+AxisCondition drive(Mode mode, const History& history, double damping = 0) { return {mode, history, damping, {}}; }
 
 BoundaryCondition pressure_on(int number, const History& history, bool following, const OutlinePart& part) {
   BoundaryCondition condition;
@@ -80,8 +80,8 @@ BoundaryCondition pressure_on(int number, const History& history, bool following
   return condition;
 }
 
-BoundaryCondition support_of(const std::string& grains, double stiffness, double damping, const Drive& x,
-                             const Drive& y) {
+BoundaryCondition support_of(const std::string& grains, double stiffness, double damping, const AxisCondition& x,
+                             const AxisCondition& y) {
   BoundaryCondition condition;
   condition.kind = Kind::support;
   condition.grains = grains;
@@ -119,7 +119,7 @@ TEST(ReferenceLoads, supports_act_as_in_the_engine) {
   Scene scene = discs(2, 1);
   scene.boundary = {support_of("discs", 1.5, 0.4, drive(Mode::velocity, ramp(0.1, 0.4, 1)),
                                drive(Mode::displacement, ramp(0, 0.2, 2))),
-                    support_of("discs", 0.7, 0.2, Drive::none(), Drive{})};
+                    support_of("discs", 0.7, 0.2, AxisCondition::none(), AxisCondition{})};
   scene.boundary[0].part = {.kind = OutlinePart::Kind::side, .side = {0, 1}};
   scene.boundary[1].part = {.kind = OutlinePart::Kind::side, .side = {1, 0}};
   scene.boundary[1].number = 1;
@@ -129,9 +129,10 @@ TEST(ReferenceLoads, supports_act_as_in_the_engine) {
 /// All that sets in and ends during the run, one of the supports as stiff as contacts are by themselves.
 TEST(ReferenceLoads, windows_open_and_close_as_in_the_engine) {
   Scene scene = discs(2, 1);
-  const Drive along = drive(Mode::velocity, ramp(0.1, 0.4, 1));
-  scene.boundary = {support_of("discs", 1.5, 0.4, along, Drive{}), support_of("discs", 1, 0, Drive::none(), along),
-                    pressure_on(1, constant(0.2), true, {}), BoundaryCondition{}};
+  const AxisCondition along = drive(Mode::velocity, ramp(0.1, 0.4, 1));
+  scene.boundary = {support_of("discs", 1.5, 0.4, along, AxisCondition{}),
+                    support_of("discs", 1, 0, AxisCondition::none(), along), pressure_on(1, constant(0.2), true, {}),
+                    BoundaryCondition{}};
   scene.boundary[1].stiffness.reset();
   scene.boundary[1].part = {.kind = OutlinePart::Kind::side, .side = {-1, 0}};
   scene.boundary[0].window = {0.3, 0.7}, scene.boundary[1].window = {0.2, 1e9}, scene.boundary[2].window = {-1, 0.5};
@@ -201,11 +202,11 @@ TEST(ReferenceLoads, drives_and_walls_act_as_in_the_engine) {
   scene.boundary.push_back(condition);
   condition.grains = "led";
   condition.x = drive(Mode::velocity, ramp(0.2, -0.3, 1));
-  condition.y = Drive::none();
+  condition.y = AxisCondition::none();
   condition.angle = drive(Mode::velocity, ramp(0.3, 0.5, 1));
   scene.boundary.push_back(condition);
   condition.grains = "held";
-  condition.x = condition.angle = Drive{};
+  condition.x = condition.angle = AxisCondition{};
   scene.boundary.push_back(condition);
   scene.walls = {flat_wall("lower", Wall::Solid::below, -5, 0.5), flat_wall("upper", Wall::Solid::above, 5, 0.5)};
   scene.walls[0].x = drive(Mode::force, ramp(3, 5, 1), 2);
@@ -222,8 +223,8 @@ TEST(ReferenceLoads, drives_and_walls_act_as_in_the_engine) {
 TEST(ReferenceLoads, targets_that_move_their_dashpots_work) {
   constexpr double speed = 0.3;
   Scene scene = free_disc(30, 4);
-  const Drive along = drive(Mode::velocity, constant(speed));
-  scene.boundary = {support_of("disc", 0.05, 0.2, along, Drive::none())};
+  const AxisCondition along = drive(Mode::velocity, constant(speed));
+  scene.boundary = {support_of("disc", 0.05, 0.2, along, AxisCondition::none())};
   double momentum = 0, missing[2] = {};
   for (const int halved : {0, 1}) {
     ReferenceRun run(scene, {});

@@ -95,7 +95,7 @@ Scene between_plates(double angle) {
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1.001, 0.2),
                  flat_wall("upper", Wall::Solid::above, 1.001, 0.2)};
   for (const bool upper : {false, true}) {
-    scene.walls[upper].y.mode = Drive::Mode::velocity;
+    scene.walls[upper].y.mode = AxisCondition::Mode::velocity;
     scene.walls[upper].y.history = constant(upper ? -0.0101 : 0.0101);
   }
   scene.contacts = {frictionless(300)};

@@ -17,7 +17,7 @@ BoundaryCondition dragged(double speed, double damping) {
   support.stiffness = 5;
   support.damping = damping;
   support.part = {.kind = OutlinePart::Kind::side, .side = {0, -1}};
-  support.x.mode = support.y.mode = Drive::Mode::velocity;
+  support.x.mode = support.y.mode = AxisCondition::Mode::velocity;
   support.x.history = {{0, 0.5}, {0, speed}}, support.y.history = constant(0.0);
   return support;
 }

@@ -37,7 +37,7 @@ Scene everything() {
   support.grains = "layer";
   support.stiffness = 3;
   support.damping = 0.5;
-  support.x.mode = Drive::Mode::velocity;
+  support.x.mode = AxisCondition::Mode::velocity;
   support.x.history = {{0}, {0.1}};
   support.part = {.kind = OutlinePart::Kind::side, .side = {0, 1}};
   // On compliant grains only.

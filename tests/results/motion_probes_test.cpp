@@ -112,7 +112,7 @@ TEST(MotionProbes, a_node_must_be_there) {
 Scene loaded_layer() {
   Scene scene = small_third_body(1);
   scene.gravity = {0, -0.01};
-  scene.walls[1].x = {Drive::Mode::velocity, {{0, 2}, {0, 0.1}}};
+  scene.walls[1].x = {AxisCondition::Mode::velocity, {{0, 2}, {0, 0.1}}};
   return scene;
 }
 

@@ -97,7 +97,7 @@ Scene squeezed_pair() {
   scene.grains = {grains("soft", "disc", BodyKind::compliant, {{2, 0}}),
                   grains("hard", "disc", BodyKind::rigid, {{2.1, 2.01}})};
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1.01, 0.2), flat_wall("upper", Wall::Solid::above, 3.02, 0.2)};
-  scene.walls[1].y = {Drive::Mode::velocity, {{0}, {-0.05}}};
+  scene.walls[1].y = {AxisCondition::Mode::velocity, {{0}, {-0.05}}};
   scene.contacts = {mohr_coulomb(100, 0.3)};
   return scene;
 }

@@ -169,7 +169,7 @@ inline Wall flat_wall(const std::string& name, Wall::Solid solid, double level, 
 /// It may move in x and y, without load.
 inline Wall free_wall(const std::string& name, Wall::Solid solid, double level, double spacing) {
   Wall wall = flat_wall(name, solid, level, spacing);
-  wall.x.mode = wall.y.mode = Drive::Mode::free;
+  wall.x.mode = wall.y.mode = AxisCondition::Mode::free;
   return wall;
 }
 
@@ -298,8 +298,8 @@ inline Scene small_third_body(double end) {
   scene.grains = {layer};
   scene.walls = {flat_wall("lower", Wall::Solid::below, -1.02, 0.25),
                  flat_wall("upper", Wall::Solid::above, 7.05, 0.25)};
-  scene.walls[1].x = {Drive::Mode::velocity, {{0, 1}, {0, 0.1}}};
-  scene.walls[1].y = {Drive::Mode::pressure, {{0, 2}, {0, 0.1}}};
+  scene.walls[1].x = {AxisCondition::Mode::velocity, {{0, 1}, {0, 0.1}}};
+  scene.walls[1].y = {AxisCondition::Mode::pressure, {{0, 2}, {0, 0.1}}};
   scene.contacts = {contact_rule(ContactLawKind::cohesive, 0)};
   scene.contacts[0].stiffness.reset();
   scene.contacts[0].strength = 0.1;

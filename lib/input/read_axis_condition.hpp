@@ -8,15 +8,15 @@
 namespace pliant {
 
 /// A history that can move an axis.
-struct DriveKind {
+struct AxisConditionKind {
   std::string key;
-  Drive::Mode mode;
+  AxisCondition::Mode mode;
   bool damped = false;  ///< may have a dashpot beside it
 };
 
 /// "fixed", "free", or a table with one of the histories, its dashpot and its times; `otherwise` without the key.
-Drive read_drive(TableReader& table, const std::string& axis, const std::vector<DriveKind>& kinds,
-                 const Drive& otherwise);
+AxisCondition read_axis_condition(TableReader& table, const std::string& axis, const std::vector<AxisConditionKind>& kinds,
+                 const AxisCondition& otherwise);
 
 /// The keys `from` and `until`.
 Window read_window(TableReader& table);
