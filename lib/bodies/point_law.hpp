@@ -12,7 +12,7 @@ struct BatchMotion {
   const Lanes* position = nullptr;  ///< [slots x 2]
   const Lanes* velocity = nullptr;  ///< likewise; null: no viscosity
   const Lanes* memory = nullptr;    ///< [variables x points], if the law has internal variables
-  double elapsed = 0;               ///< time since these, s
+  double elapsed = 0;               ///< time since `memory`, s; 0: they are held
   Lanes* new_memory = nullptr;      ///< likewise, after the motion; null: not needed
   bool elastic = true;              ///< false: only viscosity counts
   // Positions and forces of the next batch, prefetched meanwhile (core/prefetch.hpp), and the number of Lanes of each;
@@ -45,7 +45,7 @@ Record<Law> load_record(const Batch& batch, const BatchMotion& motion, int point
   if constexpr (has_internal_variables<Law>)
     for (int k = 0; k < static_cast<int>(record.size()); ++k)
       record[k] =
-          motion.memory ? motion.memory[k * batch.points + point] : broadcast(Law::internal_variables[k].at_first);
+          motion.memory ? motion.memory[k * batch.points + point] : broadcast(Law::internal_variables[k].initial);
   return record;
 }
 template <class Law>

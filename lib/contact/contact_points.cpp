@@ -30,7 +30,7 @@ std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const Conta
     Record<Law> now;
     const Contact c = answer(law, view.window, p, touching, history, pass.record + i, now);
     const auto damage_of = [](const Record<Law>& record, int lane) {
-      if constexpr (constexpr int k = index_of_remembered<Law>("damage"); k >= 0) return record[k][lane];
+      if constexpr (constexpr int k = index_of_internal_variable<Law>("damage"); k >= 0) return record[k][lane];
       return none;
     };
     for (int lane = 0; lane < lane_count; ++lane) {

@@ -30,7 +30,7 @@ void forget(Lanes* to) {
   to[ContactHistory::slip] = Lanes{};
   if constexpr (has_internal_variables<Law>)
     for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
-      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::internal_variables[k].at_first);
+      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::internal_variables[k].initial);
 }
 
 /// Rate of the gaps of nodes in contact, m/s: of the motion on which forces on the slave and both segment nodes do

@@ -22,8 +22,7 @@ void forget_all(const ContactPair& contact_pair, int side, ContactHistory& histo
   const std::span<const InternalVariable> internal_variables = internal_variables_of(contact_pair.law);
   for (int record = begin; record < begin + count; record += lane_count)
     for (std::size_t k = 0; k < internal_variables.size(); ++k)
-      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] =
-          broadcast(internal_variables[k].at_first);
+      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(internal_variables[k].initial);
 }
 
 /// Transfers the records of one side's nodes from another contact pair of the same bodies.

@@ -14,7 +14,7 @@ namespace pliant {
 /// record and no cost.
 struct InternalVariable {
   const char* name;
-  double at_first;  ///< initial value
+  double initial;  ///< value at the start
 };
 
 template <class Law>
@@ -31,7 +31,7 @@ using Record = std::array<T, internal_variable_count<Law>>;
 
 /// Index in the record of the variable with this name; -1: the law has none.
 template <class Law>
-constexpr int index_of_remembered(std::string_view name) {
+constexpr int index_of_internal_variable(std::string_view name) {
   if constexpr (has_internal_variables<Law>)
     for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
       if (Law::internal_variables[k].name == name) return static_cast<int>(k);

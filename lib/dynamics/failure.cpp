@@ -137,7 +137,7 @@ template <class Tried>
 std::optional<Failure> found(const Evaluation& evaluation, const Tried& tried, const Forces& forces) {
   if (!(evaluation.least_jacobian > 0)) return inversion(forces.model(), tried.position);
   if (std::optional<Failure> nan = number_that_is_none(forces.model(), tried.position, tried.force)) return nan;
-  if (!evaluation.valid) return lost_contact(forces, tried.outlines);
+  if (evaluation.contact_lost) return lost_contact(forces, tried.outlines);
   return {};
 }
 
@@ -146,7 +146,9 @@ std::optional<Failure> found(const Evaluation& evaluation, const Tried& tried, c
 void check_time_step(const FailedStep& step, const State& accepted, const Forces& forces) {
   if (step.next_dt >= least_share * step.largest_dt) return;
   Failure failure = found(step.report.evaluation, step.trial, forces).value_or(Failure{});
-  if (failure.words.empty())
+  if (failure.words.empty() && !step.report.evaluation.valid)
+    failure.words = "bodies move further than the contact skin in the shortest step; look at their velocities";
+  else if (failure.words.empty())
     failure.words = fmt::format(
         "the motion cannot be followed: the error estimate is still {:.3g}; look at the frames before, and at loads, "
         "initial overlaps and stiffness",

@@ -74,7 +74,8 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
-  result.valid = result.least_jacobian > 0 && result.contact.deepest <= rejection_depth;
+  result.contact_lost = !(result.contact.deepest <= rejection_depth);
+  result.valid = result.least_jacobian > 0 && !result.contact_lost;
   return result;
 }
 

@@ -15,8 +15,9 @@ namespace pliant {
 /// Sums and checks of one force evaluation.
 struct Evaluation {
   PairTotals contact;
-  double damping_power = 0;  ///< power of viscosity and of the dashpots of contacts and supports, W/m
+  double damping_power = 0;  ///< power of viscosity, Maxwell branches and the dashpots of contacts and supports, W/m
   double least_jacobian = 1e300;
+  bool contact_lost = false;  ///< some penetration is beyond what is allowed
   bool valid = true;  ///< false: the trial must be rejected, for J <= 0, deep penetration, or moves beyond the skin
 };
 
@@ -36,7 +37,8 @@ class Forces {
   /// Result of the check of the contact candidates.
   struct ListCheck {
     bool rebuilt = false;
-    bool valid = true;  ///< false for a trial that exceeds the skin in a single step
+    bool contact_lost = false;  ///< some penetration is beyond what is allowed
+    bool valid = true;          ///< false for a trial that exceeds the skin in a single step
   };
   /// Makes sure that the candidates are valid for the outlines of a trial that ends at `time`. If they are not, they
   /// are rebuilt at the accepted state. Its history is stored in a new order and keeps its records, so that a rejected
@@ -87,7 +89,8 @@ class Forces {
   ContactSystem contact_;
   OutlineField outline_force_;          ///< sum of contact forces and loads on outlines; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
-  std::vector<double> damping_power_;   ///< of materials, as least_jacobian_, W/m; empty without viscosity
+  std::vector<double>
+      damping_power_;  ///< of materials, as least_jacobian_, W/m; empty without rates and internal variables
   std::vector<std::vector<StressColumns>> stresses_;  ///< [nodewise bodies][points]
   bool warned_deep_ = false;
   PhaseTimes phases_;

@@ -14,7 +14,7 @@ Memory initial_memory(const Model& model) {
       if constexpr (has_internal_variables<Law>)
         for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
           std::fill_n(&memory.material[batch.memory + k * static_cast<std::size_t>(batch.points)], batch.points,
-                      broadcast(Law::internal_variables[k].at_first));
+                      broadcast(Law::internal_variables[k].initial));
     });
   return memory;
 }

@@ -21,7 +21,7 @@
 namespace pliant {
 namespace {
 
-/// Power iterations approach w_b^2 from below.
+/// Factor on w_b^2, which power iterations approach from below.
 constexpr double internal_margin = 1.05;
 constexpr int start_iterations = 60;
 /// Finite-difference step of the internal forces over the nodal distance.

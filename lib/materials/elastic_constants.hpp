@@ -17,7 +17,7 @@ inline LameConstants<double> lame_constants(const Material& material) {
   return lame_constants(material.young, material.poisson);
 }
 
-/// Common members of laws with only these two constants: such a Law derives from it (materials/respond.hpp).
+/// Base of laws whose only constants are these two: `of`, `weighted` and `small_strains` (materials/respond.hpp).
 template <template <class> class Law, class T>
 struct LameLaw : LameConstants<T> {
   static Law<T> of(const Material& material) { return {{lame_constants(material)}}; }

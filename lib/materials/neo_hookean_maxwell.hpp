@@ -8,7 +8,7 @@ namespace pliant {
 
 /// Neo-Hookean solid with one Maxwell branch in parallel, for any strain: linear evolution of a viscous strain after
 /// Lubliner (1985, Mech. Res. Commun. 12, 93-99). In the branch, with C = F^T F and the inverse G of its viscous
-/// strain,
+/// right Cauchy-Green tensor,
 ///
 ///     psi = m/2 (tr(C G) - 3 - ln det(C G)),   S = m H,   H = G - C^-1,   dG/dt = -H / t,
 ///
@@ -20,11 +20,11 @@ struct NeoHookeanMaxwell {
   T mu, lambda;                                 ///< of the equilibrium part, Pa
   T branch;                                     ///< m, Pa
   T relaxation_time;                            ///< t, s
-  T decay = T{} + 1.0, mean_decay = T{} + 1.0;  ///< of the non-equilibrium stress over the step: at its end, mean
+  T decay = T{} + 1.0, mean_decay = T{} + 1.0;  ///< exp(-dt/t), and its mean over the step; 1 if held
 
   static constexpr InternalVariable internal_variables[] = {{"overstrain_xx", 0},     {"overstrain_xy", 0},
-                                                            {"overstrain_yy", 0},     {"inverse_strain_xx", 1},
-                                                            {"inverse_strain_xy", 0}, {"inverse_strain_yy", 1}};
+                                                            {"overstrain_yy", 0},     {"inverse_metric_xx", 1},
+                                                            {"inverse_metric_xy", 0}, {"inverse_metric_yy", 1}};
   using Record = std::array<T, 6>;  ///< H, and the C^-1 at the same time
 
   static NeoHookeanMaxwell of(const Material& material) {

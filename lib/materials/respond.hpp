@@ -13,20 +13,21 @@ struct Response {
   T power{};    ///< dissipated per reference volume, W/m3; of dissipative laws only
 };
 
-/// A law is a struct of its constants, of one material (T: double) or of eight in lanes, those in Pa first. It has
+/// A law is a struct of its constants, all of type T: of one material (double) or of eight in lanes. It has
 ///
 ///     Response<T> respond(F) const;            or respond(F, old, now) with internal variables
 ///                                              (core/internal_variables.hpp),
 ///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
 ///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
-///     Law weighted(w) const;                   of w times as much material: with its constants in Pa times w, to which
-///                                              stresses, energies and powers are proportional
+///     Law weighted(w) const;                   of w >= 0 times as much material: stresses, energies and powers times w.
+///                                              Padding points have w = 0: respond must not divide by such constants
 ///     LameConstants<T> small_strains() const;  instantaneous, before relaxation
 ///     static Law of(const Material&);          of one material
 ///
 /// A law of the two Lame constants alone inherits the last three (LameLaw in elastic_constants.hpp). A law with
-/// internal variables also has Law over(elapsed), its update over a time increment, s; it dissipates.
+/// internal variables also has Law over(dt), the law for a time increment, s. A law as constructed, and over(0), hold
+/// the internal variables. All laws with internal variables count as dissipative (`dissipates`).
 template <class Law, class T>
 Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
                     Record<Law, T>& now) {
@@ -38,7 +39,7 @@ Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, c
     return law.respond(F);
 }
 
-/// Energy stored instantaneously at F, from these internal variables.
+/// Stored energy at F with internal variables held since `old`, J/m3.
 template <class Law, class T>
 T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
   if constexpr (has_internal_variables<Law>) {
@@ -59,7 +60,7 @@ Law over(const Law& law, double elapsed) {
 }
 
 template <class Law>
-constexpr bool has_rate = requires { Law::has_rate; };
+constexpr bool has_rate = requires { requires Law::has_rate; };
 template <class Law>
 constexpr bool dissipates = has_rate<Law> || has_internal_variables<Law>;
 

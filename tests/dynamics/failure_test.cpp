@@ -130,7 +130,7 @@ TEST(Failure, initial_overlap_is_named) {
   scene.grains[0].packing.positions = {{4, 0.9}};
   Bench bench(scene);
   Evaluation lost;
-  lost.valid = false;
+  lost.contact_lost = true, lost.valid = false;
   expect_words(failure_of([&] { check_start(lost, bench.state, bench.forces); }),
                {"contact between body", "'disc'", "'floor'", "penetration", "initial overlaps", "at the start"});
 }
@@ -146,7 +146,7 @@ TEST(Failure, squeezed_segments_are_told) {
     for (int k = bench.model.outline_offset[0]; k < bench.model.outline_offset[1]; ++k)
       bench.state.outlines.position.x[k] *= length;
     Evaluation lost;
-    lost.valid = false;
+    lost.contact_lost = true, lost.valid = false;
     return failure_of([&] { check_start(lost, bench.state, bench.forces); });
   };
   expect_words(message(0.45), {"squeezed to 0.45", "more nodes"});
