@@ -9,10 +9,10 @@ import numpy as np
 
 RADIUS = 50.0  # of the arc
 YOUNG, POISSON = 2.8, 0.4
-STIFF = YOUNG / (1 - POISSON**2)  # of plane strain
+STIFF = YOUNG / (1 - POISSON**2)  # plane strain
 NODES = {50: 450, 70: 850, 100: 1500, 140: 2900, 200: 5200}  # by segments of the arc
-# Of the finite block's face, over the load: cattaneo_mindlin/block_curvature.py, own runs of dolfinx 0.5.2, biquadratic
-# squares, error 0.001.
+# Curvature of the finite block's face per load: cattaneo_mindlin/block_curvature.py, own runs of dolfinx 0.5.2,
+# biquadratic squares, error 0.001.
 ACROSS = -0.170  # 1/(Pa m2)
 
 
@@ -23,14 +23,14 @@ def block(segments: int) -> list[list[float]]:
 
 
 def top_above_centroid(points: list[list[float]]) -> float:
-    """Of a polygon whose top is at y = 0.5."""
+    """Distance from the centroid to the top of a polygon whose top is at y = 0.5."""
     (x, y), (u, v) = np.transpose(points), np.roll(points, -1, axis=0).T
     cross = x * v - y * u
     return float(0.5 - ((y + v) * cross).sum() / (3 * cross.sum()))
 
 
 def levels(heights: list[float], rest: float, rise: float) -> list[list[float]]:
-    """Smooth rises from each level to the next, one a rest. [[time, height], ...]."""
+    """Smooth rises from each level to the next, one per state of rest. [[time, height], ...]."""
     share = np.linspace(0, 1, 13)
     table, before = [[0.0, 0.0]], 0.0
     for i, level in enumerate(heights):

@@ -8,7 +8,7 @@ import numpy as np
 
 from verification import Case, Label, Run, largest_difference
 
-# The engine's first steps are short and grow by 1.15: by then they have reached the one asked for, in units of it.
+# In units of the requested step: the time after which the engine's short first steps, growing by 1.15, have reached it.
 START = 20
 
 
@@ -26,7 +26,7 @@ class Study:
 
     engine: dict[float, Run]
     reference: dict[float, Run]
-    steps: list[float]  # those whose error counts
+    steps: list[float]  # those evaluated for errors
     finest: float
     times: np.ndarray
 
@@ -67,7 +67,7 @@ class Study:
 
 def run_study(case: Case, name: str, steps: list[float], finest: float, times: np.ndarray, template: str = "scene.toml",
               **values: object) -> Study:
-    """The scene's @dt@ is the period of a probe, at which both solvers end their steps: so it is their step."""
+    """The scene's @dt@ is the period of a probe; both solvers end steps at outputs, so it is their step."""
     engine, reference = {}, {}
     for dt in [*steps, finest]:
         scene = case.scene(template, dt=dt, **values)
@@ -79,12 +79,12 @@ def run_study(case: Case, name: str, steps: list[float], finest: float, times: n
 
 def check_differences(case: Case, name: str, study: Study, quantity: Quantity, order: float, tolerance: float,
                       source: str) -> None:
-    """That the solvers converge to each other: the order, and that the difference has not stopped to fall."""
+    """Check that the solvers converge to each other: the order, and the decrease of the last difference."""
     errors = study.all_differences(quantity)
     case.check_rate(f"{name}: {quantity.name}, engine - reference", study.all_steps(), errors, order, tolerance, source)
     ratio = (study.steps[-1] / study.finest) ** 0.6
     case.check(Label.INDEPENDENT, f"{name}: {quantity.name}, difference at the finest step", errors[-1], 0,
-               errors[-2] / ratio, "0.6 of the first order from the step before: nothing stays")
+               errors[-2] / ratio, "0.6 of first order from the step before: the solvers have no residual difference")
 
 
 def check_same_motion(case: Case, name: str, study: Study, quantity: Quantity) -> None:
@@ -95,7 +95,7 @@ def check_same_motion(case: Case, name: str, study: Study, quantity: Quantity) -
 
 
 def check_steps(run: Run, dt: float) -> None:
-    """The engine must not have taken shorter steps for its stability or its error, but for the start's short ones."""
+    """Except for the short first steps, stability and error control must not have reduced the engine's steps."""
     later = run.steps("dt")[run.steps("time") > START * dt]
     if len(later) == 0 or not np.allclose(later, dt, rtol=1e-6):
         raise RuntimeError(f"{run.folder}: steps of {later.min(initial=np.inf):g} s, not {dt:g} s")

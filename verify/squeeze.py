@@ -1,4 +1,4 @@
-"""A disc between two frictionless plates by the engine and the reference solver, for the cases plates and locking.
+"""A disc between two frictionless plates in the engine and the reference solver, for the cases plates and locking.
 
 Units mu = R = rho = 1. The approach is that of the plates over the diameter, counted from the true circle.
 """
@@ -14,21 +14,20 @@ from verification import Case, Run
 
 SCENE = "../plates/scene.toml"
 METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
-OUTLINE = {168: 48, 340: 68, 700: 100, 1400: 140}  # nodes on the outline: multiples of four, so both poles are alike
+OUTLINE = {168: 48, 340: 68, 700: 100, 1400: 140}  # outline nodes: multiples of four, so both poles are equal
 GAP = 0.01  # of either plate at the start
-PAUSE, RAMP = 8.0, 2.5  # s from one approach to the next; of them in motion
+PAUSE, RAMP = 8.0, 2.5  # s between approaches; s of motion in each
 DAMPING = 3.0  # 1/s, of the mass
-# Of what is compared on the same nodes, at full rest: the slowest motion is that aside on the springs at the poles,
-# w = 0.7. A damping of twice that takes it out fastest, by exp(-0.7 x 29), with damping over w times its kinetic energy
-# stored.
+# For comparisons on the same nodes, at full rest. The slowest motion is sideways on the springs at the poles, w = 0.7.
+# A damping of twice w removes it fastest, by exp(-0.7 x 29). Its stored energy is damping over w times the kinetic one.
 LONG_PAUSE, LOW_DAMPING, STORED = 32.0, 1.5, 2.0
-NEWTON = 1e-9  # of forces of the reference: 1e-10 of what cancels in a node, of which some ten are in touch
+NEWTON = 1e-9  # of forces of the reference: 1e-10 of the forces that cancel at each of some ten nodes in contact
 HOLD = 6.0  # springs at the poles, mu / R, over a length of 0.14: five hundred times softer than contact
 
 
 @dataclass(frozen=True)
 class Squeeze:
-    """One run: a disc of so many nodes with a corner or, turned by half a segment, a facet at each pole."""
+    """One run: a disc with a corner or, turned by half a segment, a facet at each pole."""
 
     approaches: tuple[float, ...]
     method: str = "mls"
@@ -49,15 +48,16 @@ class Squeeze:
     def scene(self, case: Case) -> str:
         up = speeds([-GAP, *self.approaches], self.pause, RAMP)
         outline = OUTLINE[self.nodes]
-        quadrature = "segments" if self.method == "t3" else "nodes"  # at nodes the light ones of t3 rattle
-        return case.scene(SCENE, method=self.method, quadrature=quadrature, nodes=self.nodes, outline=outline, hold=HOLD, rest=self.pause,
-                          damping=self.damping, angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
+        quadrature = "segments" if self.method == "t3" else "nodes"  # with contact at nodes, light nodes of t3 rattle
+        return case.scene(SCENE, method=self.method, quadrature=quadrature, nodes=self.nodes, outline=outline,
+                          hold=HOLD, rest=self.pause, damping=self.damping,
+                          angle=np.pi / outline if self.facet else 0.0, end=self.pause * len(self.approaches),
                           young=2 * (1 + self.poisson), poisson=self.poisson, stiffness=self.stiffness,
                           up=up, down=[[t, -v] for t, v in up])
 
 
 class Rests:
-    """What a run shows at the end of each pause, [approaches] each: force on a plate, energies, horizontal diameter."""
+    """Results at the end of each pause, [approaches] each: force on a plate, energies, horizontal diameter."""
 
     def __init__(self, squeeze: Squeeze, run: Run) -> None:
         at = squeeze.pause * np.arange(1, len(squeeze.approaches) + 1)
@@ -70,16 +70,16 @@ class Rests:
         self.gap = 2 * run.at("plate.position_y", at)
 
     def unrest(self) -> np.ndarray:
-        """How far forces at full rest may be from those without any motion, relative."""
+        """Relative bound of the effect of residual motion on forces at full rest."""
         return force_of_motion(self.force, self.gap, self.kinetic, STORED) / self.force
 
 
 def force_of_motion(force: np.ndarray, gap: np.ndarray, kinetic: np.ndarray, stored: float) -> np.ndarray:
-    """How far a force on plates may be from that at rest when a kinetic energy is left.
+    """Bound of the difference between a force on plates and that at rest, for a residual kinetic energy.
 
     A motion x that decays slowly with damping c of the mass, x' = -s x, has c/s times its kinetic energy E stored as
-    x.K x / 2, `stored` times in all. It changes the force by g.K x, g the motion of closing the gap, and of the
-    positive stiffness K Cauchy and Schwarz say (g.K x)^2 <= g.K g x.K x: at most dF/dgap times 2 stored E.
+    x.K x / 2; `stored` is this ratio. It changes the force by g.K x, with g the motion of closing the gap. For the
+    positive stiffness K, Cauchy and Schwarz give (g.K x)^2 <= g.K g x.K x: at most dF/dgap times 2 stored E.
     """
     return np.sqrt(2 * stored * kinetic * np.abs(np.gradient(force, gap)))
 
@@ -89,14 +89,13 @@ def by_engine(case: Case, squeeze: Squeeze) -> Rests:
 
 
 def by_reference(case: Case, squeeze: Squeeze) -> Rests:
-    """Statics, eight load steps an approach."""
+    """Statics, with eight load steps per approach."""
     run = case.reference(squeeze.name() + "_reference", squeeze.scene(case), "--static", "--dt", repr(PAUSE / 8))
     return Rests(squeeze, run)
 
 
 def worst_over_reference(case: Case, squeeze: Squeeze, reference: dict[float, float]) -> tuple[float, float]:
-    """Ratio of the engine's forces at full rest to the reference's, by approach, that is furthest from 1, and how far it may
-    be."""
+    """The worst ratio of the engine's forces at full rest to the reference's, by approach, and its tolerance."""
     rests = by_engine(case, squeeze.at_full_rest())
     ratio = rests.force / [reference[approach] for approach in squeeze.approaches]
     allowed = rests.unrest() + NEWTON
@@ -105,14 +104,14 @@ def worst_over_reference(case: Case, squeeze: Squeeze, reference: dict[float, fl
 
 
 def both_ways(case: Case, squeeze: Squeeze) -> list[Rests]:
-    """With corners and with facets at the poles: nodes come into touch at other approaches, errors alternate."""
+    """With corners and with facets at the poles: nodes come into contact at other approaches, so errors alternate."""
     return [by_engine(case, replace(squeeze, facet=facet)) for facet in (False, True)]
 
 
 def to_zero_spacing(nodes: list[int], values: list[np.ndarray]) -> np.ndarray:
-    """A straight line in the square of the outline's node distance, at zero. [sizes] of [approaches].
+    """A straight line in the square of the outline's node spacing, at zero. [sizes] of [approaches].
 
-    Least squares, weighted as for errors that grow with that square, as the saw tooth of the contact's edges does.
+    Least squares with weights for errors proportional to that square, like the saw tooth of the contact edges.
     """
     squares = np.array([OUTLINE[count] ** -2.0 for count in nodes])
     return np.polyfit(squares, np.array(values), 1, w=1 / squares)[1]

@@ -17,25 +17,25 @@ CASE = Case(__file__)
 RESTITUTION = {"elastic": 1.0, "lively": 0.9, "fair": 0.6, "dull": 0.3}
 DAMPED = ["lively", "fair", "dull"]
 STIFFNESS, MASS, HALF = 1e5, 0.5, 0.25
-LENGTH = 1.0  # in touch: the block's face
+LENGTH = 1.0  # of contact: the block's face
 FREQUENCY = float(np.sqrt(STIFFNESS * LENGTH / MASS))  # w, of the block on its contact
 SAFETIES = [0.2, 0.1, 0.05]
-# Where in its step a block touches is chance: over twelve starts, 2e-3 apart, logarithms of the balance error have
-# standard deviations of 0.23 to 0.40 at these safeties, 0.3 in the mean. Three times that of a slope through means of
-# three.
+# The time of first touch within a step is random: over twelve starts, 2e-3 apart, logarithms of the balance error have
+# standard deviations of 0.23 to 0.40 at these safeties, 0.3 in the mean. The tolerance is three times that of a slope
+# through means of three.
 STARTS = [0, 2e-3, 4e-3]
 SLOPE_SCATTER = float(3 * np.sqrt(2) * 0.3 / np.sqrt(len(STARTS)) / np.log(SAFETIES[0] / SAFETIES[-1]))
-CLEAR = 0.03  # higher blocks touch in no two samples
+CLEAR = 0.03  # blocks above this height do not touch in two consecutive samples
 LEAST = 0.05  # heights compared
-FIRST_OVER = 1.9  # all met the floor once, at sqrt(2); the dullest flies for 2 x 0.3 sqrt(2) = 0.85 then
+FIRST_OVER = 1.9  # all blocks hit the floor once, at sqrt(2); the dullest then flies for 2 x 0.3 sqrt(2) = 0.85
 
 
 def restitution_of(z: float | np.ndarray, pull: bool) -> float | np.ndarray:
-    """Speed after over before, without gravity, of x'' = -(w^2 x + 2 z w x'), x depth, started with x = 0; z < 1.
+    """Ratio of the speeds after and before, without gravity, for x'' = -(w^2 x + 2 z w x'), x depth, x(0) = 0; z < 1.
 
-    Pulling until x = 0: half a period, exp(-pi z / sqrt(1 - z^2)). Not pulling: the force vanishes earlier, at
-    tan(w_d t) = -2 z w_d / (w (1 - 2 z^2)), with z = cos(alpha) w_d t = 2 alpha, where x' = -exp(-z w t) of the speed
-    at the start: exp(-2 z acos(z) / sqrt(1 - z^2)).
+    With pull, contact ends at x = 0 after half a period: exp(-pi z / sqrt(1 - z^2)). Without pull, the force vanishes
+    earlier, at tan(w_d t) = -2 z w_d / (w (1 - 2 z^2)); with z = cos(alpha), w_d t = 2 alpha. There x' is -exp(-z w t)
+    times the initial speed: exp(-2 z acos(z) / sqrt(1 - z^2)).
     """
     return np.exp(-(np.pi if pull else 2 * np.arccos(z)) * z / np.sqrt(1 - z * z))
 
@@ -45,12 +45,13 @@ def damping_ratio(e: float, pull: bool) -> float:
 
 
 def floor_force(depth: float, rate: float, z: float, pull: bool) -> float:
-    """Of the floor on a block of this depth and its rate, N/m.
+    """Force of the floor on a block at this depth and rate, N/m.
 
-    The block has its face in the floor, L long and d deep, and two flanks, d long and from 0 to d deep. The floor has L
-    in the block: the d of it beside the flanks are pressed sideways, by their distance to them, and have no rate, the
-    rest is d deep. Each pass counts half: L - d are d deep and d from 0 to d, which two Gauss points of a segment stand
-    for. All that touches is L + d long and shares the dashpot, 2 z sqrt(kn m / (L + d)) a unit length.
+    The block's face, of length L, lies at the depth d in the floor. Its two flanks have length d and depths from 0 to
+    d. The floor lies in the block over the length L. The part d beside the flanks is pressed sideways, by the distance
+    to them, and has no rate; the rest is d deep. Each pass counts half: L - d is d deep, and d has depths from 0 to d,
+    integrated by two Gauss points of a segment. The contact length is L + d; the dashpot is 2 z sqrt(kn m / (L + d))
+    per unit length.
     """
     gauss = 1 / 2 - 1 / np.sqrt(12)
     depths = depth * np.array([1, gauss, 1 - gauss])
@@ -66,12 +67,12 @@ def dashpot(depth: float, z: float) -> float:
 
 @cache
 def impact(height: float, z: float, pull: bool) -> tuple[float, float]:
-    """Height of the flight after an impact from a height, and its depth: m x'' = m g - floor_force(x, x'), g = 1."""
+    """Rebound height and largest depth of an impact from a height: m x'' = m g - floor_force(x, x'), g = 1."""
     def motion(_: float, state: np.ndarray) -> list[float]:
         return [state[1], 1 - floor_force(*state, z, pull) / MASS]
 
     def left(_: float, state: np.ndarray) -> float:
-        """What falls to 0 at the end: the depth, or the pressure of the face, after that of the flanks."""
+        """The quantity that vanishes at the end: the depth, or the pressure of the face (flanks unload earlier)."""
         return state[0] if pull else STIFFNESS * state[0] + dashpot(state[0], z) * state[1]
 
     def deepest(_: float, state: np.ndarray) -> float:
@@ -86,7 +87,7 @@ def impact(height: float, z: float, pull: bool) -> tuple[float, float]:
 
 @cache
 def heights(name: str, pull: bool) -> list[float]:
-    """After each impact, from height 1, down to LEAST."""
+    """Heights after each impact, from height 1 down to LEAST."""
     z, found = damping_ratio(RESTITUTION[name], pull), [1.0]
     while len(found) < 4 and (next_one := impact(found[-1], z, pull)[0]) > LEAST:
         found.append(next_one)
@@ -101,9 +102,9 @@ def run(pull: bool, safety: float, raised: float = 0) -> Run:
 
 
 def measured(name: str, pull: bool, safety: float) -> list[float]:
-    """Heights of the flights: y + v^2 / 2 of a sample in each.
+    """Heights of the flights: y + v^2 / 2 of one sample in each.
 
-    Speeds grow from one sample to the next in impacts alone.
+    Velocities increase between samples only in impacts.
     """
     of = run(pull, safety)
     height, speed = of.probe(f"{name}.position_y") - HALF, of.probe(f"{name}_motion.velocity_y")
@@ -114,18 +115,18 @@ def measured(name: str, pull: bool, safety: float) -> list[float]:
 
 @cache
 def step(pull: bool, safety: float) -> float:
-    """w dt: nearly all steps are of the largest length."""
+    """w dt: nearly all steps have the largest size."""
     return FREQUENCY * float(np.median(run(pull, safety).steps("dt")))
 
 
 def bound(name: str, pull: bool, safety: float, impacts: int) -> float:
-    """Relative, on a height after some impacts.
+    """Relative error bound of the height after some impacts.
 
-    The dashpot's force jumps by 2 z w v at the touch, somewhere within a step, and when it pulls also at the end; what
-    it acts for is known there to the change of the rate in a step, 2 z w dt of it: (2 z w dt)^2 of the speed a jump.
-    In between it sees a rate that is off by dt^2 / 2 of its second derivative, at most (1 + 4 z^2) w^2 of it, for
-    2 z w v times pi / w. The spring's part is (w dt)^2 / 2 of the energy (tests/closed_forms/bounce_test.cpp).
-    Flanks have x / L of each, 0.3 % at most.
+    The dashpot's force jumps by 2 z w v at first touch, at any time within a step, and with pull also at the end. The
+    impulse there is uncertain by the change of the rate in a step, a share 2 z w dt: (2 z w dt)^2 of the speed per
+    jump. In between, the rate is off by dt^2 / 2 times its second derivative, at most (1 + 4 z^2) w^2 of it, for
+    2 z w v times pi / w. The spring contributes (w dt)^2 / 2 of the energy (tests/closed_forms/bounce_test.cpp).
+    Flanks contribute x / L of each, 0.3 % at most.
     """
     z, jumps = damping_ratio(RESTITUTION[name], pull), 2 if pull else 1
     speed = jumps * (2 * z)**2 + np.pi * z * (1 + 4 * z * z)
@@ -134,7 +135,7 @@ def bound(name: str, pull: bool, safety: float, impacts: int) -> float:
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
 def test_end_rules(pull: bool) -> None:
-    """Of the closed forms, without gravity: x'' = -(x + 2 z x') integrated until the force, or depth, vanishes."""
+    """Closed forms without gravity against x'' = -(x + 2 z x'), integrated until the force or the depth vanishes."""
     for z in (0.1, 0.5):
         def force(_: float, state: np.ndarray) -> float:
             return state[0] + 2 * z * state[1]
@@ -146,7 +147,7 @@ def test_end_rules(pull: bool) -> None:
         after = solve_ivp(lambda t, state: [state[1], -force(t, state)], [0, 10], [0, 1], events=end, rtol=1e-12,
                           atol=1e-14).y[1, -1]
         CASE.check(Label.EXACT, f"restitution of z = {z}, {'may' if pull else 'may not'} pull",
-                   -after / restitution_of(z, pull), 1, 1e-9, "the impact integrated, to 1e-12 a step")
+                   -after / restitution_of(z, pull), 1, 1e-9, "impact integrated numerically, to 1e-12 per step")
 
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
@@ -159,14 +160,14 @@ def test_heights(name: str, pull: bool) -> None:
         tolerance = bound(name, pull, finest, k)
         CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over the impact's with weight", height / expected, 1,
                    tolerance,
-                   "equation of motion of face, flanks and weight; touch and end within a step")
+                   "equation of motion with face, flanks and weight; first touch and end lie within a step")
         CASE.check(Label.EXACT, f"e = {e}, {rule}: height {k} over e^{2 * k} h", height / e**(2 * k), 1,
-                   tolerance + abs(expected / e**(2 * k) - 1), "instant impact; its error, flanks and weight during it")
+                   tolerance + abs(expected / e**(2 * k) - 1), "instant impact; integration error, flanks and weight")
 
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
 def test_depth(pull: bool) -> None:
-    """Each rule has its own damping ratio for the same restitution: the depth tells them apart."""
+    """Each rule has its own damping ratio for the same restitution, so the depth distinguishes them."""
     finest, rule, period = SAFETIES[-1], "may pull" if pull else "may not pull", 5e-5
     scene = CASE.scene(pull=str(pull).lower(), safety=finest, stiffness=STIFFNESS, end=1.5, period=period, top=1 + HALF)
     of = CASE.engine(f"depth_{'pull' if pull else 'no_pull'}", scene)
@@ -177,23 +178,23 @@ def test_depth(pull: bool) -> None:
         tolerance = bound(name, pull, finest, 1) / 2 + (FREQUENCY * period)**2 / 8  # as a speed
         CASE.check(Label.EXACT, f"e = {RESTITUTION[name]}, {rule}: depth ({other / exact:.3f} by the other rule)",
                    deepest / exact, 1,
-                   tolerance, "equation of motion; touch within a step, samples")
+                   tolerance, "equation of motion; first touch within a step, sampling period")
 
 
 @pytest.mark.parametrize("pull", [False, True], ids=["no pull", "pull"])
 def test_dissipation(pull: bool) -> None:
-    """Weight times lost heights of all blocks."""
+    """The dissipated energy is the weight times the heights lost by all blocks."""
     rule = "may pull" if pull else "may not pull"
     error = [np.sqrt(np.mean([run(pull, safety, raised).balance_error**2 for raised in STARTS])) for safety in SAFETIES]
     CASE.check_rate(f"{rule}: balance of energy, rms of three starts", SAFETIES, error, 2, SLOPE_SCATTER,
-                    "second order; where in its step a block touches varies the error of each impact")
+                    "second order; the time of first touch within the step scatters the error of each impact")
     of = run(pull, SAFETIES[-1])
     lost = MASS * sum(1 - heights(name, pull)[0] for name in DAMPED)
     first = of.at("energy.dissipated", np.array([FIRST_OVER]))[0]
-    # What is lost is more than the heights that are left.
+    # The energy lost exceeds the remaining one.
     tolerance = max(bound(name, pull, SAFETIES[-1], 1) for name in DAMPED) + of.balance_error
     CASE.check(Label.EXACT, f"{rule}: dissipated in the first impacts", first / lost, 1, tolerance,
-               "weight times heights lost, of the equation of motion; as heights, and the energy balance")
+               "weight times heights lost, by the equation of motion; error bound of heights plus energy balance error")
 
 
 def test_picture() -> None:

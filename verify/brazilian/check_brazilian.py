@@ -14,40 +14,40 @@ from verification import FULL, Case, Label, Run
 CASE = Case(__file__)
 
 HALF_ANGLE = np.radians(15)
-PRESSURE = 1e-6  # of mu: a Cauchy stress differs from that of linear elasticity by its strains
+PRESSURE = 1e-6  # of mu: Cauchy stress and that of linear elasticity differ by the order of the strains
 POISSON = 0.4
-END = 25.0  # s; motion decays by exp(-1.5 t) from the end of loading at 5 s on: by 1e-13
+END = 25.0  # s; motion decays as exp(-1.5 t) after the end of loading at 5 s: to 1e-13
 # Outline nodes by nodes; the arcs are whole segments.
 SIZES = {378: 72, 672: 96, 1512: 144, 2688: 192} | ({6048: 288, 10752: 384} if FULL else {})
 METHODS = ["mls", "t3", "es-t3", "mls-gauss"]
 LOG_SPACINGS = np.log([1 / count for count in SIZES.values()])
-WIDTH = float(np.sqrt(((LOG_SPACINGS - LOG_SPACINGS.mean())**2).sum()))  # a slope scatters by errors' scatter over it
-# Of stresses inside, where nodes lie on a hexagonal lattice. Gradients averaged over neighbours: h^2 of the lattice and
-# of the arcs' ends, wrong by O(1) in an area of h^2, and h^(5/2) of the band along the outline whose cells, 1/h of
-# them, are wrong by O(h) in areas of h^2 independently of each other. That arrives in some ten waves around the disc,
-# whose sum of squares scatters by sqrt(2/10), errors by half of that.
+WIDTH = float(np.sqrt(((LOG_SPACINGS - LOG_SPACINGS.mean())**2).sum()))  # slope scatter = scatter of errors over it
+# Orders of stresses inside, where nodes lie on a hexagonal lattice. For gradients averaged over neighbours, the lattice
+# contributes h^2. So do the arcs' ends, wrong by O(1) in an area of h^2. The band along the outline contributes
+# h^(5/2): its 1/h cells have independent errors O(h) in areas of h^2. These reach the middle as some ten waves around
+# the disc. The sum of ten squares scatters by sqrt(2/10), and errors by half of that.
 SCATTER = np.sqrt(2 / 10) / 2 / WIDTH  # of a slope
 AVERAGED = ((2 + 2.5) / 2, (2.5 - 2) / 2 + SCATTER)
-# What fails the patch test adds its own error, in the middle of a disc of order 3/2: see verify/patch. The lattice: 2.
+# A method that fails the patch test adds an error of order 3/2 in the middle of a disc (verify/patch). The lattice has
+# order 2.
 INCONSISTENT = ((1.5 + 2) / 2, (2 - 1.5) / 2 + SCATTER)
-# Linear triangles: h, next to which h^2 of the lattice, that of the averaged methods, is 8 % on the coarsest mesh.
+# Linear triangles: order 1. The h^2 term of the lattice, as in the averaged methods, is 8 % on the coarsest mesh.
 LINEAR = (1, float(np.log(1.08) / (LOG_SPACINGS[0] - LOG_SPACINGS[-1])))
 ORDERS = {"mls": AVERAGED, "t3": LINEAR, "es-t3": AVERAGED, "mls-gauss": INCONSISTENT}
-# Of the whole disc: four ends of arcs, each of which a mesh makes wrong by half more or less, in square.
+# Whole disc: the squared error at each of the four arc ends scatters by half with the mesh.
 ENDS = 2 * 0.5 / 2 / np.sqrt(4) / WIDTH
 CENTRE = 2 * PRESSURE / np.pi * np.array([np.sin(2 * HALF_ANGLE) - HALF_ANGLE, -np.sin(2 * HALF_ANGLE) - HALF_ANGLE])
 
 
 def exact(places: np.ndarray) -> np.ndarray:
-    """[places x 3] xx, yy, xy by Fourier's series, summed. With t from the y axis, the load is 2 a/pi and a_n cos(n t)
-    for even n,
-    a_n = 4 sin(n a)/(n pi). Airy's functions r^n cos(n t) and r^(n+2) cos(n t) without shear at r = 1 give
-    -a_n/2 (n r^(n-2) - (n-2) r^n) cos(n t) radially, a_n/2 (n r^(n-2) - (n+2) r^n) cos(n t) around, a_n/2 n (r^(n-2) -
-    r^n) sin(n t) as shear."""
+    """[places x 3] xx, yy, xy by the summed Fourier series. With t from the y axis, the load is 2 a/pi plus
+    a_n cos(n t) for even n, a_n = 4 sin(n a)/(n pi). Airy functions r^n cos(n t) and r^(n+2) cos(n t) without shear at
+    r = 1 give the radial stress -a_n/2 (n r^(n-2) - (n-2) r^n) cos(n t), the hoop stress
+    a_n/2 (n r^(n-2) - (n+2) r^n) cos(n t) and the shear stress a_n/2 n (r^(n-2) - r^n) sin(n t)."""
     r, t = np.hypot(*places.T), np.arctan2(places[:, 0], places[:, 1])
     ahead, behind = ((r * np.exp(1j * (t + angle))) ** 2 for angle in (HALF_ANGLE, -HALF_ANGLE))
-    even = ahead / (1 - ahead) - behind / (1 - behind)  # sum of r^n sin(n a) e^(i n t), but for a factor 2 i
-    logarithm = 0.25 * np.imag(np.log(1 - behind) - np.log(1 - ahead))  # the same over n
+    even = ahead / (1 - ahead) - behind / (1 - behind)  # sum of r^n sin(n a) e^(i n t), times 2 i
+    logarithm = 0.25 * np.imag(np.log(1 - behind) - np.log(1 - ahead))  # the same sum with terms divided by n
     mean = -2 * HALF_ANGLE / np.pi - 4 / np.pi * logarithm
     difference = 2 / np.pi * (1 / r**2 - 1) * 0.5 * np.imag(even)
     shear = -2 / np.pi * (1 / r**2 - 1) * 0.5 * np.real(even)
@@ -78,7 +78,7 @@ def engine() -> dict[str, dict[int, Stresses]]:
 
 
 def error(stresses: Stresses, reach: float) -> float:
-    """Within a share of the radius, over the magnitude of the exact stress at the centre."""
+    """Rms error within a share of the radius, over the magnitude of the exact stress at the centre."""
     inside = np.hypot(*stresses.centres.T) < reach
     return stresses.rms(stresses.values - exact(stresses.centres), inside) / np.linalg.norm(CENTRE)
 
@@ -88,7 +88,7 @@ def spacings() -> list[float]:
 
 
 def test_exact_solution() -> None:
-    """The sums, Hondros' closed form along the loaded diameter and that of the centre are one."""
+    """The summed series, Hondros' closed form along the loaded diameter and the value at the centre agree."""
     r = np.linspace(0.01, 0.99, 99)
     series = exact(np.stack([np.zeros_like(r), r], axis=1))
     CASE.check(Label.EXACT, "summed series against Hondros", np.abs(series[:, :2] - hondros(r)).max() / PRESSURE, 0,
@@ -100,7 +100,7 @@ def test_exact_solution() -> None:
 
 
 def spacings_inside(engine: dict[str, dict[int, Stresses]]) -> list[float]:
-    """Roots of the mean triangle within half the radius: in coarse meshes it is larger there than along the outline."""
+    """Root of the mean triangle area within half the radius; in coarse meshes it exceeds that along the outline."""
     def mean_area(stresses: Stresses) -> float:
         return float(stresses.areas[np.hypot(*stresses.centres.T) < 0.5].mean())
 
@@ -112,12 +112,12 @@ def test_stresses_converge_inside(engine: dict[str, dict[int, Stresses]], method
     errors = [error(engine[method][nodes], 0.5) for nodes in SIZES]
     order, tolerance = ORDERS[method]
     CASE.check_rate(f"{method}: stress within half the radius", spacings_inside(engine), errors, order, tolerance,
-                    "first order of linear triangles, with 8 % of second; averaged gradients: 2 of the lattice (what "
-                    "fails the patch test: 3/2), 5/2 of the outline's band, scatter of ten waves")
+                    "linear triangles: first order plus 8 % of second; averaged gradients: 2 from the lattice (3/2 if "
+                    "the patch test fails), 5/2 from the band along the outline, scatter of ten waves")
     whole = [error(engine[method][nodes], 2) for nodes in SIZES]
     CASE.check_rate(f"{method}: stress in the whole disc", spacings(), whole, 1, ENDS,
-                    "stresses wrong by O(1) in an area of h^2 where the arcs end; first order of linear triangles; "
-                    "twice the scatter of four ends")
+                    "stresses wrong by O(1) in an area of h^2 at the arc ends; first order of linear triangles; "
+                    "twice the scatter of four arc ends")
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -131,7 +131,7 @@ def test_stress_at_the_centre(engine: dict[str, dict[int, Stresses]], method: st
     off = np.linalg.norm((mean - expected)[:2]) / np.linalg.norm(CENTRE)
     scatter = error(stresses, 0.5) / np.sqrt(core.sum())
     CASE.check(Label.EXACT, f"{method}: stress at the centre, error", off, 0, (2 * np.pi / SIZES[nodes]) ** 2 + scatter,
-               "Hondros, mean over a tenth of the radius; h^2 of the outline and the cells' scatter over the root of "
+               "Hondros, mean over a tenth of the radius; h^2 of the outline plus the cells' scatter over the root of "
                "their number")
     ratio = stresses.across / (POISSON * stresses.values[:, :2].sum(axis=1))
     CASE.check(Label.EXACT, f"{method}: zz over nu (xx + yy)", np.abs(ratio[core] - 1).max(), 0, 1e-6,
@@ -143,7 +143,7 @@ def test_both_solvers(engine: dict[str, dict[int, Stresses]], method: str) -> No
     run = CASE.reference(f"reference_{method}", scene(method, 672), "--static", "--dt", repr(END))
     energies = [float(r.probe("energy.strain")[-1]) for r in (Run(CASE.out / f"engine_{method}_672"), run)]
     CASE.check(Label.INDEPENDENT, f"{method}: strain energy, engine over reference", energies[0] / energies[1], 1, 1e-8,
-               "motion decays by 1e-13; displacements of 1e-6 are differences of places near 1, rounded to 1e-16: "
+               "motion decays to 1e-13; displacements of 1e-6 are differences of positions near 1, rounded to 1e-16: "
                "1e-10")
 
 

@@ -1,10 +1,9 @@
-"""How much the finite block bends its loaded face: /usr/bin/python3 verify/cattaneo_mindlin/block_curvature.py.
+"""Curvature of a finite block's loaded face: /usr/bin/python3 verify/cattaneo_mindlin/block_curvature.py.
 
 A block of 2 x 1, held at the bottom, is loaded on the middle of its top by q(x) = 2 Q/(pi a) sqrt(1 - x^2/a^2), Q = 1,
 across or along the face. The half-plane's face would move by const - 2 Q x^2/(pi E' a^2) under the load,
-E' = E/(1 - nu^2), in either direction. Prints what the block's x^2 coefficient adds to that, over Q, 1/(Pa m2),
-with its
-sign turned, for E = 2.8 and nu = 0.4. For dolfinx 0.5.2.
+E' = E/(1 - nu^2), in either direction. Prints the difference of the block's x^2 coefficient from that, over Q, with
+its sign reversed, 1/(Pa m2), for E = 2.8 and nu = 0.4. For dolfinx 0.5.2.
 """
 
 from __future__ import annotations
@@ -25,8 +24,8 @@ def stress(u: ufl.core.expr.Expr) -> ufl.core.expr.Expr:
 
 
 def face_displacement(cells: int, half_width: float, direction: int) -> tuple[np.ndarray, np.ndarray]:
-    """[nodes] x and displacement in the load's direction along the face, by biquadratic squares, 2 x `cells` of them
-    along it."""
+    """[nodes] x and displacement in the load's direction along the face, with 2 x `cells` biquadratic squares along
+    it."""
     corners = [np.array([-1.0, -1.0]), np.array([1.0, 0.0])]
     domain = mesh.create_rectangle(MPI.COMM_WORLD, corners, [2 * cells, cells], mesh.CellType.quadrilateral)
     space = fem.VectorFunctionSpace(domain, ("Lagrange", 2))

@@ -18,23 +18,23 @@ CASE = Case(__file__)
 
 FRICTION = 0.3
 APPROACH = 0.0024
-SHEARS = [0.0, 4e-4, 9e-4, 1.3e-3]  # displacements, one a rest
+SHEARS = [0.0, 4e-4, 9e-4, 1.3e-3]  # displacements, one per state of rest
 PRESSED = 1
-SLIDES = 0.98  # of friction x pressure: the way to rest overshoots and comes back by up to 1 %
-LEVELS = [2, 3, 4]  # frames and rows of probes at the ends of the rests with shear
-STUCK_BY_MOMENT = LEVELS[:2]  # by the last one what overshot counts as much as what sticks
-SYMMETRY = 1e-6  # frames are in single precision, 6e-8, over friction: what remains of motion is symmetric too
-REST, RISE = 20.0, 8.0  # s from one to the next; s of them in motion
+SLIDES = 0.98  # of friction x pressure: the relaxation overshoots and returns by up to 1 %
+LEVELS = [2, 3, 4]  # frames and rows of probes at the states of rest with shear
+STUCK_BY_MOMENT = LEVELS[:2]  # at the last level overshot nodes weigh as much as those that stick
+SYMMETRY = 1e-6  # frames are in single precision, 6e-8, over friction; residual motion is symmetric too
+REST, RISE = 20.0, 8.0  # s between states of rest; s of motion in each
 SEGMENTS = [50, 70, 100, 140, *([200] if FULL else [])]  # of the curved face
-ALONG = -0.248  # 1/(Pa m2), of the finite block's face, over the load: as ACROSS
+ALONG = -0.248  # 1/(Pa m2), of the finite block's face, per load: as ACROSS
 
 
 @dataclass
 class Theory:
-    """Of the load P and the shear force Q < friction P, both N/m. Faces bend by 2 P/(pi E' a^2) + ACROSS P under a load
-    spread as Hertz's, along
-    themselves by ALONG Q instead; both together by 1/R, where they stick by nothing. Half-planes: ACROSS = ALONG = 0, c
-    = a sqrt(1 - Q/(friction P))."""
+    """Contact under the load P and the shear force Q < friction P, both N/m. Under Hertz's distribution a face's
+    curvature is 2 P/(pi E' a^2) + ACROSS P; along the face ALONG Q replaces the second term. The sum over both faces is
+    1/R where they touch, and zero along the face where they stick. Half-planes: ACROSS = ALONG = 0 and
+    c = a sqrt(1 - Q/(friction P))."""
 
     pressed: float
     sheared: float
@@ -76,7 +76,7 @@ def theory(run: Run, level: int) -> Theory:
 
 
 def tractions(run: Run, level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """[nodes] x, pressure and shear along the lower face, where it may be in touch."""
+    """[nodes] x, pressure and shear along the part of the lower face that may be in contact."""
     places, pressure = along_outline(run, 0, "contact_pressure", level)
     shear = along_outline(run, 0, "contact_shear", level)[1]
     face = np.flatnonzero((np.abs(places[:, 0]) < 0.5) & (places[:, 1] > -0.1))
@@ -85,7 +85,7 @@ def tractions(run: Run, level: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 def errors(run: Run, level: int) -> tuple[float, float]:
-    """Rms over the contact of pressure, over its largest, and of shear, over friction times that."""
+    """Rms errors over the contact: of pressure over its largest, and of shear over friction times that."""
     expected = theory(run, level)
     x, pressure, shear = tractions(run, level)
     kept = expected.shear(x) if level > PRESSED else np.zeros_like(x)
@@ -96,22 +96,22 @@ def errors(run: Run, level: int) -> tuple[float, float]:
 
 
 def stuck_half_width(run: Run, level: int) -> float:
-    """Half the way between the first sliding nodes on either side of the middle, those and the last sticking ones
-    sharing their distance."""
+    """Half the distance between the first sliding nodes on either side of the middle. The edge lies midway between them
+    and the last sticking nodes."""
     x, pressure, shear = tractions(run, level)
     slides = x[(shear > SLIDES * FRICTION * pressure) & (pressure > 0)]
     return float((slides[slides > 0].min() - slides[slides < 0].max() - (x[1] - x[0])) / 2)
 
 
 def contact_half_width(run: Run, level: int) -> float:
-    """From the second moment of the pressure, P a^2 / 4 of Hertz's."""
+    """From the second moment of the pressure, P a^2 / 4 for Hertz."""
     x, pressure, _ = tractions(run, level)
     return float(2 * np.sqrt((x**2 * pressure).sum() / pressure.sum()))
 
 
 def stuck_share(run: Run, level: int) -> float:
-    """Half width of stick over that of contact from second moments: shear is friction x pressure less Hertz's
-    distribution of friction P - Q over the part that sticks."""
+    """Ratio of stick to contact half width from second moments. Shear is friction x pressure less Hertz's distribution
+    of friction P - Q over the part that sticks."""
     x, pressure, shear = tractions(run, level)
     kept = FRICTION * pressure - shear
     return float(np.sqrt((x**2 * kept).sum() / kept.sum() * pressure.sum() / (x**2 * pressure).sum()))
@@ -129,22 +129,22 @@ def test_edge_of_stick(runs: dict[int, Run], level: int) -> None:
     CASE.check(Label.INDEPENDENT, f"Q = {share:.2f} friction P: half width of stick over that of contact",
                stuck_half_width(run, level) / expected.half_width, expected.stuck / expected.half_width,
                2 / SEGMENTS[-1] / expected.half_width,
-               "Cattaneo and Mindlin, the blocks' finite size by dolfinx (1 to 3 %); a spacing")
+               "Cattaneo and Mindlin, finite blocks by dolfinx (1 to 3 %); one spacing")
 
 
 @pytest.mark.parametrize("level", [PRESSED, *LEVELS])
 def test_half_width_of_contact(runs: dict[int, Run], level: int) -> None:
-    """Tells finite blocks from half-planes, which are wider in touch by 2.6 %."""
+    """Distinguishes finite blocks from half-planes, whose contact is wider by 2.6 %."""
     shares = {n: contact_half_width(runs[n], level) / theory(runs[n], level).half_width for n in (70, 140)}
     CASE.check(Label.INDEPENDENT, f"level {level - 1}: half width of contact over Hertz's, finite blocks", shares[140],
                1, abs(shares[140] - shares[70]),
-               "finite size by dolfinx; what half the spacing changes: at least as much as the error left, first order "
-               "of the penalty, second of the mesh")
+               "finite blocks by dolfinx; change by half the spacing, at least the remaining error: first order of "
+               "the penalty, second of the mesh")
 
 
 @pytest.mark.parametrize("level", STUCK_BY_MOMENT)
 def test_half_width_of_stick(runs: dict[int, Run], level: int) -> None:
-    """Tells finite blocks from half-planes, by which 0.008 and 0.014 less would stick."""
+    """Distinguishes finite blocks from half-planes, for which 0.008 and 0.014 less would stick."""
     run, n = runs[140], 140
     expected = theory(run, level)
     kept = 1 - expected.sheared / (FRICTION * expected.pressed)
@@ -152,13 +152,13 @@ def test_half_width_of_stick(runs: dict[int, Run], level: int) -> None:
     noise = errors(run, PRESSED)[1] * 8 / np.pi * np.sqrt(2 / 5 * 2 / n / expected.half_width)
     CASE.check(Label.INDEPENDENT, f"level {level - 1}: half width of stick over that of contact, by second moments",
                stuck_share(run, level), share, noise / kept / (2 * share),
-               "finite size by dolfinx; what nodes' errors, of the size of shear under pressure alone and independent, "
-               "bring into the second moment of shear, over that of what sticks")
+               "finite blocks by dolfinx; effect on the second moment of shear of independent nodal errors, as large "
+               "as the shear under pressure alone, over the moment of the part that sticks")
 
 
 @pytest.mark.parametrize("level", [PRESSED, *LEVELS])
 def test_point_symmetry(runs: dict[int, Run], level: int) -> None:
-    """The blocks are one, turned by 180 degrees, and moved alike: each node feels what its image does."""
+    """Blocks and loading are point-symmetric, so each node and its image carry equal tractions."""
     run = runs[140]
     peak = theory(run, level).pressure(np.zeros(1))[0]
     for name, limit in (("contact_pressure", 1.0), ("contact_shear", FRICTION)):
@@ -175,16 +175,16 @@ def test_tractions(runs: dict[int, Run], level: int) -> None:
     run = runs[SEGMENTS[-1]]
     name = f"level {level - 1}"
     CASE.check_rate(f"{name}: rms error of the pressure", spacings(), [v[0] for v in values], 2, 0.6,
-                    "second order of the mesh; first of the penalty, 2 % at first; 0.6 for where nodes lie to the "
-                    "edges")
+                    "second order of the mesh; first of the penalty, 2 % at first; 0.6 for the position of nodes "
+                    "relative to the edges")
     CASE.check(Label.INDEPENDENT, f"{name}: rms error of the shear over friction x largest pressure", values[-1][1], 0,
                errors(run, PRESSED)[1] + kink(theory(run, level)),
-               "Cattaneo and Mindlin, finite size by dolfinx; what pressure alone leaves, and the slope's jump at the "
-               "edge of stick within a spacing")
+               "Cattaneo and Mindlin, finite blocks by dolfinx; error under pressure alone, plus the slope's jump at "
+               "the edge of stick within a spacing")
 
 
 def kink(expected: Theory) -> float:
-    """Rms of a shear that is off by half its change over a spacing, at the two spacings at the edges of stick, where it
+    """Rms of an error of half the change of shear per spacing, in the two spacings at the edges of stick, where shear
     is steepest."""
     h = 2 / SEGMENTS[-1]
     edge = expected.shear(np.array([expected.stuck, expected.stuck - h])) / FRICTION
@@ -192,23 +192,23 @@ def kink(expected: Theory) -> float:
 
 
 def test_pressure_alone_hardly_shears(runs: dict[int, Run]) -> None:
-    """Faces that move alike feel no shear; meshes without mirror symmetry do not move quite alike, and friction keeps
-    the difference, from node to node."""
+    """Faces with equal displacements carry no shear. Meshes without mirror symmetry displace slightly differently, and
+    friction retains the difference from node to node."""
     run = runs[SEGMENTS[-1]]
     noise, expected = errors(run, PRESSED)[1], theory(run, PRESSED)
     share = 2 / SEGMENTS[-1] / expected.half_width
     CASE.check(Label.EXACT, "pressed only: rms shear over friction x largest pressure", noise, 0, share,
-               "symmetry; strains of the two meshes differ by h times their gradient, p/a")
+               "symmetry; strains of the two meshes differ by h times the strain gradient, p/a")
     CASE.check(Label.EXACT, "pressed only: shear force over friction P",
                expected.sheared / (FRICTION * expected.pressed), 0, noise * 2 / np.pi * np.sqrt(2 * share),
-               "symmetry; the nodes' shear, of the rms above and independent, summed")
+               "symmetry; sum of independent nodal shears with the rms above")
 
 
 def test_nodes_do_not_knock() -> None:
-    """On stiff contacts that meet node on node, with nothing to damp them, steps would feed orbits of some steps."""
+    """On stiff undamped node-on-node contacts, time stepping could feed orbits with periods of a few steps."""
     stiff = CASE.engine("stiff", scene(50, stiffer=4, damping=0))
     CASE.check(Label.EXACT, "kn four times automatic, no damping: balance of energy", stiff.balance_error, 0, 1e-2,
-               "energy is conserved: to 1 % by promise")
+               "energy conservation, specified to 1 %")
 
 
 def test_forces_of_both_solvers(runs: dict[int, Run]) -> None:
@@ -216,13 +216,13 @@ def test_forces_of_both_solvers(runs: dict[int, Run]) -> None:
     for level in LEVELS:
         a, b = theory(runs[50], level), theory(reference, level)
         CASE.check(Label.INDEPENDENT, f"level {level - 1}: load, engine over reference", a.pressed / b.pressed, 1, 1e-5,
-                   "nodes at the edge remember where they touched first, to a step of statics: second order in their "
+                   "nodes at the edge store their first contact point, resolved to a load step: second order in their "
                    "share of the load")
         limit = FRICTION * b.pressed
         CASE.check(Label.INDEPENDENT, f"level {level - 1}: shear force over friction P, engine less reference",
                    (a.sheared - b.sheared) / limit, 0,
                    errors(runs[50], PRESSED)[1] * 2 / 50 / b.half_width,
-                   "as they, to first order: what pressure alone leaves of shear, on a spacing of the half width")
+                   "the same, to first order: shear error under pressure alone, on one spacing of the half width")
 
 
 def draw_tractions(axes: Axes, run: Run, level: int) -> None:

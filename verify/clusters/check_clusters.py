@@ -14,25 +14,25 @@ from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__, cost=2)
 NODES = 168 if FULL else 60
-RAMP = 320.0 if FULL else 80.0  # s, of the push; twice as long a rest follows in the engine
+RAMP = 320.0 if FULL else 80.0  # s, of the push; in the engine a rest of twice that time follows
 FASTER = [RAMP / 4, RAMP / 2]
-STEPS = 48  # of the statics; all even: each ends a step where the push is fastest
+STEPS = 48  # of the statics; all numbers are even, so that a step ends where the push is fastest
 FEWER = [6, 12, 24]
 DIAMETER = 2.0
 CLUSTERS = {"7 compliant": (1, False), "7 mixed": (1, True)}
 if FULL:
     CLUSTERS |= {"19 compliant": (2, False), "19 mixed": (2, True)}
-# Slip is the sum of length times d(xi). Two ways to one end differ by the area between them: what facets stretch by,
-# 0.01 to 0.1, times the engine's lag on the way, some 1e-3 R, and half a load step. Twice the time halves the one,
-# twice the steps the other.
+# Slip is the sum of length times d(xi). Two paths to one end point differ by the area between them: the facets'
+# stretch, 0.01 to 0.1, times the engine's lag, some 1e-3 R, plus half a load step. Doubling the time halves the lag;
+# doubling the steps halves the load step.
 FORCES = 1e-4
-SOURCE = ("slip depends on the way: stretch of facets times lag of the engine and half a load step, 1e-4 R of slip "
-          "at most; asked of positions is 1e-6, of forces 1e-4")
+SOURCE = ("slip depends on the path: stretch of facets times lag of the engine plus half a load step, 1e-4 R of slip "
+          "at most; tolerance of positions 1e-6, of forces 1e-4")
 
 
 @dataclass
 class Rest:
-    """What a run ends with."""
+    """Final state of a run."""
 
     displacement: np.ndarray  # [points x 2] of all grains' nodes
     centre: np.ndarray  # [grains x 2]
@@ -50,7 +50,7 @@ class Rest:
                    last_pair(run, names), outline)
 
     def difference(self, other: Rest) -> tuple[float, float, float]:
-        """Of all positions and of centres, over the diameter; of forces, over the largest."""
+        """Differences of all positions and of centres, over the diameter; of forces, over the largest."""
         return (largest(self.displacement - other.displacement) / DIAMETER,
                 largest(self.centre - other.centre) / DIAMETER,
                 largest(self.force - other.force) / largest(other.force))
@@ -88,7 +88,7 @@ def solve(name: str) -> Result:
               for ramp in [*(FASTER if few else []), RAMP]}
     reference = {}
     for steps in [*(FEWER if few else []), STEPS]:
-        # Its rest is over when the push is.
+        # Statics need no rest after the push.
         run = CASE.reference(f"{folder}_{steps}", scene_of(grains, RAMP), "--static", "--dt", f"{RAMP / steps} s",
                              "--until", f"{RAMP} s")
         reference[steps] = Rest.of(run, grains)
@@ -111,12 +111,12 @@ def test_both_solvers_come_to_rest_alike(results: dict[str, Result], name: str) 
     CASE.check(Label.INDEPENDENT, f"{name}: forces over the largest", forces, 0, FORCES, SOURCE)
     kinetic, strain = (result.run.probe(f"energy.{part}")[-1] for part in ("kinetic", "strain"))
     CASE.check(Label.EXACT, f"{name}: kinetic over strain energy", kinetic / strain, 0, 1e-12,
-               "rest: then forces of damping, 2 m v, are below some 1e-6 of the others")
+               "state of rest: damping forces, 2 m v, are then below some 1e-6 of the others")
 
 
 @pytest.mark.parametrize("name", CLUSTERS)
 def test_forces_balance(results: dict[str, Result], name: str) -> None:
-    """Of contacts, on all grains together, and on each that nothing else holds."""
+    """Contact forces balance on all grains together, and on each grain without other loads."""
     result = results[name]
     for solver, rest in (("engine", result.engine), ("reference", result.reference[STEPS])):
         owner = np.repeat(np.arange(len(result.grains)), [SIDES[NODES][g.sort] for g in result.grains])
@@ -124,19 +124,19 @@ def test_forces_balance(results: dict[str, Result], name: str) -> None:
         inner = [sums[i] for i, grain in enumerate(result.grains) if not grain.outer]
         worst = max(largest(np.array(inner)), largest(sums.sum(axis=0))) / largest(rest.force)
         CASE.check(Label.EXACT, f"{name}, {solver}: balance of forces", worst, 0, 1e-8,
-                   "Newton's 1e-10 of what cancels in a node, of some ten in touch; the engine's rest")
+                   "Newton's 1e-10 of the forces that cancel at a node, some ten nodes in contact; the engine's rest")
 
 
 def check_premise(result: Result) -> None:
-    """Ends of facets stay inside the longer ones: around a corner a bond's force turns at once, and there may be two
-    equilibria. At 1 an end is over a corner, 0.04 before that beyond the bisector there, 8e-3 deep."""
+    """Facet ends stay inside the longer facets. Around a corner a bond's force turns abruptly, and two equilibria may
+    exist. At 1 an end lies over a corner; at 0.96 it passes the bisector there, 8e-3 deep."""
     for rest in (result.engine, result.reference[STEPS]):
         if (share := used_up(rest, result.grains)) > 0.96:
             raise RuntimeError(f"facets' ends have gone {share:.2f} of the way to the corners opposite: another case")
 
 
 def used_up(rest: Rest, grains: list[Grain]) -> float:
-    """How much of the way from where the ends of facets were to the ends of those that they are glued to, at most."""
+    """Largest share that facet ends have travelled of the initial distance to the ends of the opposite facets."""
     sides = [SIDES[NODES][grain.sort] for grain in grains]
     outlines = np.split(rest.outline, np.cumsum(sides)[:-1])
     shares = []
@@ -151,9 +151,9 @@ def used_up(rest: Rest, grains: list[Grain]) -> float:
 
 @pytest.mark.parametrize("name", ["7 compliant", "7 mixed"])
 def test_slower_pushes_converge(results: dict[str, Result], name: str) -> None:
-    """To the limit of small load steps."""
+    """The engine's positions converge to the limit of small load steps."""
     CASE.check_rate(f"{name}: positions over the speed of the push", *lags(results[name]), 1, 0.1,
-                    "lag in proportion to speed; its share of the push and the limit's error add 0.05")
+                    "lag is proportional to speed; its share of the push and the limit's error add 0.05")
 
 
 def lags(result: Result) -> tuple[list[float], list[float]]:
@@ -166,11 +166,11 @@ def lags(result: Result) -> tuple[list[float], list[float]]:
 @pytest.mark.parametrize("name", ["7 compliant", "7 mixed"])
 def test_load_steps_converge(results: dict[str, Result], name: str) -> None:
     CASE.check_rate(f"{name}: forces of the reference over load steps", *refinements(results[name]), 1, 0.15,
-                    "backward sums of slip: first order; a tenth of the second at five steps")
+                    "backward sums of slip: first order, with a tenth of the second at five steps")
 
 
 def refinements(result: Result) -> tuple[list[float], list[float]]:
-    """Load steps, and by how much forces of the reference change when they are halved, over the largest."""
+    """Load steps, and changes of the reference's forces when they are halved, over the largest."""
     counts = sorted(result.reference)
     forces = [result.reference[count].force for count in counts]
     changes = [largest(a - b) / largest(result.engine.force) for a, b in zip(forces, forces[1:])]

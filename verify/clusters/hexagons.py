@@ -8,8 +8,8 @@ import numpy as np
 
 from histories import speeds
 
-# Outline nodes of the three sorts, multiples of six: every sort has a facet towards each neighbour. A facet's half is
-# tan(pi / sides) long; halves differ by 0.027 and 0.045, and by 0.017 and 0.030: twice the slip, some 0.008.
+# Outline nodes of the three sorts are multiples of six, so every sort has a facet towards each neighbour. Half a facet
+# has the length tan(pi / sides). Halves differ by 0.027 and 0.045, and by 0.017 and 0.030: twice the slip, some 0.008.
 SIDES = {60: (18, 24, 30), 168: (30, 42, 54)}
 # Displacement gradient of the outermost ring's centres: facets are pressed and sheared alike.
 PUSH = np.array([[-0.03, 0.02], [0.005, -0.02]])
@@ -27,7 +27,7 @@ class Grain:
 
 
 def cluster(rings: int, mixed: bool) -> list[Grain]:
-    """1 + 3 rings (rings + 1) grains; neighbours are of different sorts. `mixed`: those of one sort are rigid."""
+    """1 + 3 rings (rings + 1) grains; neighbours are of different sorts. `mixed`: grains of one sort are rigid."""
     grains = []
     for i in range(-rings, rings + 1):
         for j in range(-rings, rings + 1):
@@ -58,7 +58,7 @@ def facing(sides: int, direction: int) -> list[int]:
 
 
 def diameter(sides: int) -> float:
-    """Of the disc whose equal-area polygon has its facets at the distance 1 from the centre."""
+    """Diameter of the disc whose equal-area polygon has its facets at the distance 1 from the centre."""
     corner = 1 / np.cos(np.pi / sides)
     return float(2 * corner * np.sqrt(sides * np.sin(2 * np.pi / sides) / (2 * np.pi)))
 
@@ -77,7 +77,7 @@ def grain_tables(grains: list[Grain], nodes: int, ramp: float) -> str:
 
 
 def grain_table(grain: Grain, nodes: int) -> str:
-    """Turned so that a facet looks along x."""
+    """Table of a grain, turned so that a facet faces along x."""
     body, material = ("rigid", "hard") if grain.rigid else ("compliant", "soft")
     return f"""[[grains]]
 name = "{grain.name}"
@@ -90,7 +90,7 @@ packing = {{ kind = "positions", positions = [[{grain.centre[0]!r}, {grain.centr
 
 
 def push(grain: Grain, ramp: float) -> str:
-    """Of the outer half of a compliant grain, or of a rigid one as a whole, which may turn."""
+    """Prescribed motion of the outer half of a compliant grain, or of a whole rigid one, which may turn."""
     outward = float(np.arctan2(grain.centre[1], grain.centre[0]))
     x, y = (f"{{ velocity = {speeds([0.0, float(part)], ramp, ramp)} }}" for part in PUSH @ grain.centre)
     part = "" if grain.rigid else f"part = {{ angles = [{outward - 1.6!r}, {outward + 1.6!r}] }}\nstiffness = 1\n"

@@ -24,19 +24,19 @@ DISCS, NODES, OUTLINE = (256, 100, 48) if FULL else (64, 60, 32)
 LARGE = 1.4  # diameter; the small one is 1
 LAWS = {"frictionless": '"frictionless"', "friction 0.3": '"mohr-coulomb"\nfriction = 0.3'}
 AREA = DISCS / 2 * math.pi / 4 * (1 + LARGE**2)
-# Areas of the start over that of the box: they grow beyond 1 as the discs are compressed.
+# Initial disc areas over the box area: the ratio exceeds 1 as the discs are compressed.
 START, CLOSING = 0.76, [0.82, 0.84, 0.86, 0.88, 0.9, 0.93, 0.96, 0.99, 1.02, 1.06, 1.1, 1.14]
-PAUSE, RAMP = 60.0, 30.0  # s from one to the next; s of them in motion
+PAUSE, RAMP = 60.0, 30.0  # s between stages; s of wall motion in each
 STIFFNESS = 80.0  # about automatic, 8 E/h
-CLEARANCE = 0.02  # of a wall's end from the next wall
+CLEARANCE = 0.02  # between a wall's end and the next wall
 DENSE = 0.98
 POSITION = 1e-6  # rounding of frames' positions (verify/jamming)
 JAMMED = 4  # contacts of a frictionless disc at jamming
 JAMS_AT = 0.842  # O'Hern et al. 2003
-OPEN = slice(None, 10)  # stages before tips of three bodies meet at the walls: there the engine asks what opposes
-SOLID = slice(5, None)  # stages beyond rearrangements: the pressure's work is stored
-BEARING = slice(3, None)  # stages in which each disc has its neighbours
-SQUARES, SAMPLES = 3, 400  # of the bootstrap: across the box
+OPEN = slice(None, 10)  # stages before tips of three bodies meet at the walls, where the engine tests for opposition
+SOLID = slice(5, None)  # stages without rearrangements: the pressure's work is stored
+BEARING = slice(3, None)  # stages with permanent neighbours
+SQUARES, SAMPLES = 3, 400  # of the bootstrap; squares across the box
 
 
 def half_width(share: float) -> float:
@@ -44,7 +44,7 @@ def half_width(share: float) -> float:
 
 
 def scene(law: str) -> str:
-    """That of jamming: a pinwheel of walls."""
+    """The scene of jamming, with a pinwheel of walls."""
     half = half_width(START)
     closing = speeds([-half_width(share) for share in (START, *CLOSING)], PAUSE, RAMP)
     length = 2 * half + 2
@@ -73,32 +73,32 @@ def columns(law: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 @pytest.mark.parametrize("law", LAWS)
 def test_dense_and_at_rest(law: str) -> None:
     run, stages = compacted(law)
-    CASE.check(Label.EXACT, f"{law}: solid fraction of {DENSE} is reached", float(stages[-1].solid_fraction >= DENSE), 1,
-               0, "overlaps counted once")
+    CASE.check(Label.EXACT, f"{law}: solid fraction of {DENSE} is reached", float(stages[-1].solid_fraction >= DENSE),
+               1, 0, "overlaps are counted once")
     CASE.check(Label.EXACT, f"{law}: kinetic over stored energy, last stages", max(s.kinetic for s in stages[SOLID]), 0,
-               1e-3, "a pressure of motion of a thousandth of the pressure")
-    CASE.check(Label.EXACT, f"{law}: balance of energy", run.balance_error, 0, 1e-2, "promised")
+               1e-3, "the kinetic contribution is a thousandth of the pressure")
+    CASE.check(Label.EXACT, f"{law}: balance of energy", run.balance_error, 0, 1e-2, "specified")
 
 
 def test_outlines_alone_give_the_same_forces() -> None:
-    """A second search for contacts, from which the overlaps come that the solid fraction is rid of."""
+    """A second contact search, which also gives the overlaps subtracted from the solid fraction."""
     run, stages = compacted("frictionless")
     found = np.array([walls_of(stage) for stage in stages])[OPEN]
     engine = np.abs(np.stack([run.probe(name)[1:] for name in FORCES], axis=1))[OPEN]
     in_touch = 4 * half_width(START)  # length of a wall, from either side
     CASE.check(Label.EXACT, "forces on walls while pores are open, by outlines less engine, over the largest",
                np.abs(found - engine).max() / engine.max(), 0, 0.5 * STIFFNESS * in_touch * POSITION / engine.max(),
-               "penalty law; rounding of all outlines at a wall")
+               "penalty law; rounding of all outline positions at a wall")
 
 
 def walls_of(stage: Stage) -> np.ndarray:
-    """[4] forces, outwards, as FORCES has them."""
+    """[4] outward forces, in the order of FORCES."""
     bottom, right, top, left = stage.network.resultants()[-4:]
     return np.array([-bottom[1], right[0], top[1], -left[0]])
 
 
 def test_pressure_is_the_derivative_of_the_energy() -> None:
-    """What is stored beyond rearrangements is the work of the pressure on the box, but for what damping took."""
+    """Without rearrangements, the stored energy is the work of the pressure on the box less the damping loss."""
     run, stages = compacted("frictionless")
     stored = (run.probe("energy.strain") + run.probe("energy.contact"))[1:][SOLID]
     lost = run.probe("energy.dissipated")[1:][SOLID]
@@ -108,7 +108,7 @@ def test_pressure_is_the_derivative_of_the_energy() -> None:
     fitted = smooth(-box[-1]) - smooth(-box[0])
     CASE.check(Label.EXACT, "stored energy over work of the pressure, the denser half of the stages",
                (stored[-1] - stored[0]) / fitted, 1, (lost[-1] - lost[0] + abs(work - fitted)) / fitted,
-               "dU = -P dA; what damping took, and a fourth-order curve through the pressures less straight lines")
+               "dU = -P dA; damping loss plus difference of fourth-order and piecewise linear curves of the pressure")
 
 
 def square_root(fraction: np.ndarray, factor: float, jammed: float) -> np.ndarray:
@@ -120,32 +120,32 @@ def logarithm(fraction: np.ndarray, factor: float, densest: float) -> np.ndarray
 
 
 def drawn() -> np.ndarray:
-    """[squares x samples] how often each counts, of squares of the box drawn anew."""
+    """[squares x samples] counts of each square of the box in bootstrap samples."""
     return np.random.default_rng(1).multinomial(SQUARES**2, np.full(SQUARES**2, SQUARES**-2), SAMPLES).T
 
 
 def test_coordination_grows_with_a_square_root() -> None:
-    """From the isostatic one on; what is left of two free numbers is no more than what so few discs scatter by."""
+    """From the isostatic value on; the residual of a two-parameter fit is within the sample's standard error."""
     fraction, _, coordination = (column[BEARING] for column in columns("frictionless"))
     fitted = curve_fit(square_root, fraction, coordination, [5.0, 0.84])[0]
     scatter = np.mean([s.drawn_anew(SQUARES, drawn()).std() for s in compacted("frictionless")[1][BEARING]])
     CASE.check(Label.INDEPENDENT, "frictionless: Z less 4 + factor x root of the excess, rms over stages",
                np.sqrt(np.mean((square_root(fraction, *fitted) - coordination) ** 2)), 0, scatter,
-               "Cardenas-Barrantes et al. 2020, 2021: as the square root; standard error of the discs, by bootstrap")
+               "Cardenas-Barrantes et al. 2020, 2021: square root; standard error of the discs, by bootstrap")
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_pressure_grows_as_a_logarithm(law: str) -> None:
-    """Towards a largest solid fraction, where no pores are left: between the densest packing there is and 1."""
+    """The limiting solid fraction, without pores, lies between the densest packing reached and 1."""
     fraction, pressure, _ = columns(law)
     densest = fit_of_pressure(law)[1]
     CASE.check(Label.INDEPENDENT, f"{law}: solid fraction where the pressure diverges", densest, (1 + fraction[-1]) / 2,
-               (1 - fraction[-1]) / 2, "Cantor et al. 2020, Cardenas-Barrantes et al. 2020: the logarithm's divergence, "
-               "beyond what is reached and no more than without pores")
+               (1 - fraction[-1]) / 2, "Cantor et al. 2020, Cardenas-Barrantes et al. 2020: the logarithm diverges "
+               "between the largest value reached and 1, the value without pores")
 
 
 def fit_of_pressure(law: str) -> np.ndarray:
-    """Factor over E and the solid fraction of divergence."""
+    """Factor over E, and the solid fraction at which the pressure diverges."""
     fraction, pressure, _ = columns(law)
     return curve_fit(logarithm, fraction[1:], pressure[1:], [0.1, 1.0],
                      bounds=([0, fraction[-1] + 1e-4], [np.inf, np.inf]))[0]

@@ -1,4 +1,4 @@
-"""A packing of soft discs between four walls at rest, from the outlines of a frame and the forces on the walls."""
+"""A packing of soft discs at rest between four walls, from the outlines of a frame and the forces on the walls."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Stage:
     """Lengths in small diameters, pressures in E."""
 
     box: float  # area between the walls
-    solid_fraction: float  # off the walls, of the discs as they are; what lies in two of them counts once
-    overlap: float  # share of their area that does: of a penalty the sum of normal forces over stiffness
+    solid_fraction: float  # away from the walls, of the deformed discs; overlaps count once
+    overlap: float  # share of overlaps in their area: with a penalty, the sum of normal forces over stiffness
     pressure: float  # of the walls
     network: Network  # all contacts, their normal forces
     centres: np.ndarray  # [discs x 2]
-    counted: np.ndarray  # [discs] whether off the walls and no rattler
-    counts: np.ndarray  # [discs] contacts, of what is left without rattlers
+    counted: np.ndarray  # [discs] whether away from the walls and no rattler
+    counts: np.ndarray  # [discs] contacts in the network without rattlers
     kinetic: float  # over stored energy
 
     @property
@@ -33,7 +33,7 @@ class Stage:
         return float(self.counts[self.counted].mean()) if self.counted.any() else 0.0
 
     def drawn_anew(self, across: int, weights: np.ndarray) -> np.ndarray:
-        """[samples] coordination where squares of the box count `weights` [squares x samples] times each."""
+        """[samples] coordination with each square of the box counted `weights` [squares x samples] times."""
         half = np.sqrt(self.box) / 2
         column, row = ((self.centres[self.counted] / half + 1) / 2 * across).astype(int).T
         square, counts = row * across + column, self.counts[self.counted]
@@ -42,7 +42,7 @@ class Stage:
 
 
 def read_stages(run: Run, discs: int, stiffness: float, margin: float) -> list[Stage]:
-    """Of all rests. Discs within the margin from a wall are not counted."""
+    """Stages at all states of rest. Discs within the margin from a wall are not counted."""
     frames = frames_of(run)
     grid = frames.grids["outlines"]
     every = [Outlines.of(frames.positions("outlines", i), grid.cells, grid.body) for i in range(len(frames.times))]

@@ -1,4 +1,4 @@
-"""Coulomb friction through stick, slip and back: a driven block against closed forms, a pulled one by both solvers."""
+"""Coulomb friction with stick, slip and reversal: a driven block against closed forms, a pulled one in both solvers."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from verification import Case, Label, Run
 CASE = Case(__file__)
 
 WEIGHT, FRICTION, STIFFNESS = 1.0, 0.3, 1000.0
-SETTLED = 1.0  # s, when the drive sets in
-LENGTH = 1.05  # in touch at nodes: (1.1 of the block + 1 of the floor)/2
+SETTLED = 1.0  # s, start of the drive
+LENGTH = 1.05  # contact length at nodes: (1.1 of the block + 1 of the floor)/2
 RESIDUE = np.exp(-30 * SETTLED)  # of the first oscillation: damping 60 /s, frequency 32.4 /s, so it decays by 30 /s
 ROUNDING = 1e-9  # positions near 1 with 2e-16 of rounding, stiffness 1000, forces of 0.3; Newton stops at 1e-10
 
@@ -30,7 +30,7 @@ FORCE = Quantity("force on the floor", ["force.force_x"])
 
 
 def friction_force(x: np.ndarray) -> np.ndarray:
-    """On the floor: a spring that slips at friction times weight, moved through x (the play operator)."""
+    """Force on the floor of a spring that slips at friction times weight, displaced by x (the play operator)."""
     limit, force = FRICTION * WEIGHT, np.zeros_like(x)
     for i in range(1, len(x)):
         force[i] = np.clip(force[i - 1] + STIFFNESS * LENGTH * (x[i] - x[i - 1]), -limit, limit)
@@ -38,7 +38,7 @@ def friction_force(x: np.ndarray) -> np.ndarray:
 
 
 def friction_work(x: np.ndarray, force: np.ndarray) -> float:
-    """Of a step's mean force along what its spring did not follow, as the energy balance asks for."""
+    """Sum of each step's mean force times its slip, as required by the energy balance."""
     slipped = np.diff(x) - np.diff(force) / (STIFFNESS * LENGTH)
     return float((0.5 * (force[1:] + force[:-1]) * slipped).sum())
 
@@ -58,14 +58,14 @@ def test_driven_block_follows_the_closed_form(driven: dict[str, Run], solver: st
     expected = friction_force(x)
     error = np.abs(force - expected).max() / (FRICTION * WEIGHT)
     CASE.check(Label.EXACT, f"driven, {solver}: friction force", error, 0, RESIDUE + ROUNDING,
-               "play operator; what is left of the first oscillation, and rounding")
+               "play operator; residue of the first oscillation plus rounding")
     CASE.check(Label.EXACT, f"driven, {solver}: slip force over weight", force.max() / WEIGHT, FRICTION,
                RESIDUE + ROUNDING, "Coulomb")
     lost = run.probe("energy.dissipated")[-1] - run.at("energy.dissipated", np.array([SETTLED]))[0]
     damped = run.probe("works.dissipated_by_damping")
     damped = damped[-1] - run.at("works.dissipated_by_damping", np.array([SETTLED]))[0]
     CASE.check(Label.EXACT, f"driven, {solver}: friction work", (lost - damped) / friction_work(x, expected), 1,
-               RESIDUE + ROUNDING, "mean friction force times slipped way, step by step")
+               RESIDUE + ROUNDING, "mean friction force times sliding distance, summed over steps")
 
 
 def study_of(quadrature: str) -> Study:
@@ -85,18 +85,18 @@ def pulled() -> Callable[[str], Study]:
 @pytest.mark.parametrize("quantity", [POSITIONS, DISSIPATION, FORCE], ids=lambda q: q.name)
 def test_pulled_block_converges(pulled: Callable[[str], Study], quantity: Quantity, quadrature: str) -> None:
     check_differences(CASE, title_of(quadrature), pulled(quadrature), quantity, 1.5, 0.8,
-                      "stick and slip begin within steps: between first and second order; 0.3 for their scatter")
+                      "stick and slip begin within steps: between first and second order; 0.3 for scatter")
 
 
 @pytest.mark.parametrize("quadrature", QUADRATURES)
 def test_pulled_block_slips_at_the_friction_angle(pulled: Callable[[str], Study], quadrature: str) -> None:
-    """Over the time of slip in one direction. Normals of the deformed block turn by some 1e-4 of their own."""
+    """Mean friction factor during slip in one direction. Normals of the deformed block turn by some 1e-4."""
     for name, run in pulled(quadrature).finest_runs().items():
         times = run.times("force.force_x")
         slips = (times > 4.0) & (times < 5.5)
         ratio = np.abs(run.probe("force.force_x")[slips] / run.probe("force.force_y")[slips])
         CASE.check(Label.EXACT, f"{title_of(quadrature)}, {name}: friction factor in slip", ratio.mean(), FRICTION, 1e-3 * FRICTION,
-                   "Coulomb; normals turn by a slope of the face of 1e-3 at most")
+                   "Coulomb; normals turn by the face's slope, 1e-3 at most")
 
 
 def test_picture(driven: dict[str, Run], pulled: Callable[[str], Study]) -> None:

@@ -12,7 +12,7 @@ CASE = Case(__file__, fast=True)
 
 STEPS = [0.02, 0.01, 0.005, 0.0025]
 END = 1.6
-FLIGHTS = {"hard": (1.5, 0.3), "soft": (0.8, -0.3)}  # mass damping, 1/s, and the speed along x at the start
+FLIGHTS = {"hard": (1.5, 0.3), "soft": (0.8, -0.3)}  # mass damping, 1/s, and the initial velocity along x
 
 VISCOSITY, MU, PULL = 4.0, 1.0, 1e-4
 REFERENCE_STEP = 0.01
@@ -29,7 +29,7 @@ def flights() -> dict[str, dict[float, Run]]:
 
 
 def flight_errors(runs: dict[float, Run], body: str) -> list[float]:
-    """Of the way flown at all times: v (1 - exp(-c t)) / c, over its largest."""
+    """Errors of the distance at all times, v (1 - exp(-c t)) / c, over its largest value."""
     damping, speed = FLIGHTS[body]
     errors = []
     for run in runs.values():
@@ -42,22 +42,22 @@ def flight_errors(runs: dict[float, Run], body: str) -> list[float]:
 @pytest.mark.parametrize("body", FLIGHTS)
 def test_flights_slow_down(flights: dict[str, dict[float, Run]], body: str) -> None:
     CASE.check(Label.EXACT, f"mass damping, {body}: way, engine", max(flight_errors(flights["engine"], body)), 0, 1e-10,
-               "the engine takes mass damping by its exponential; rounding of some hundred steps and of the digits written")
+               "the engine integrates mass damping by its exponential; rounding of some hundred steps and of output")
     CASE.check_rate(f"mass damping, {body}: way, reference", STEPS, flight_errors(flights["reference"], body), 2, 0.15,
-                    "Newmark: second order, the next order takes a tenth")
+                    "Newmark: second order, with a tenth of the next order")
 
 
 def test_what_flights_lose_is_booked(flights: dict[str, dict[float, Run]]) -> None:
-    """Kinetic energy lost is energy dissipated, at any time."""
+    """The lost kinetic energy equals the dissipated energy at any time."""
     mass = flights["engine"][STEPS[0]].probe("energy.kinetic")[0] / (0.5 * 0.3**2 + 0.5 * (0.3**2 + 0.1**2))
     speeds = {"hard": 0.3**2, "soft": 0.3**2 + 0.1**2}
     expected = sum(0.5 * mass * speeds[body] * (1 - np.exp(-2 * FLIGHTS[body][0] * END)) for body in FLIGHTS)
     for name, runs in flights.items():
         errors = [abs(run.probe("energy.dissipated")[-1] / expected - 1) for run in runs.values()]
-        share = STEPS[-1] * FLIGHTS["hard"][0]  # of the speed that a step takes
+        share = STEPS[-1] * FLIGHTS["hard"][0]  # of the speed lost per step
         CASE.check(Label.EXACT, f"mass damping: dissipated energy, {name}", errors[-1], 0,
                    1e-10 if name == "engine" else share**2 / 6,
-                   "rounding; of the reference second order: the trapezoidal rule of the power exp(-2 c t) is off by "
+                   "rounding; in the reference second order: the trapezoidal rule of the power exp(-2 c t) errs by "
                    "(2 c dt)^2/12 of it, and the exponent by (c dt)^2/12")
 
 
@@ -69,7 +69,8 @@ def creep() -> dict[str, Run]:
 
 
 def way_of_centre(t: np.ndarray) -> np.ndarray:
-    """rho u_tt = 2 mu u_xx + 2 viscosity u_xxt on a bar of length 1, held at x = 0, pulled by PULL at x = 1: the mean of u, by modes."""
+    """Mean of u by modes: rho u_tt = 2 mu u_xx + 2 viscosity u_xxt on a bar of length 1, held at x = 0, with the
+    traction PULL at x = 1."""
     k = (np.arange(400)[:, None] + 0.5) * np.pi
     rate, square = VISCOSITY * k**2, 2 * MU * k**2
     root = np.sqrt((rate**2 - square).astype(complex))
@@ -88,8 +89,8 @@ def test_creep(creep: dict[str, Run]) -> None:
     late = {"engine": creep["engine"].steps("dt").max()**2, "reference": REFERENCE_STEP**2}
     for name, run in creep.items():
         CASE.check(Label.EXACT, f"viscosity: creep, {name}", creep_error(run), 0, 0.002 + late[name],
-                   "Kelvin-Voigt bar, by modes; both are of second order; the support yields by 2e-4 of the bar's "
-                   "stretch, the rest is for the mesh in the first second's diffusion")
+                   "Kelvin-Voigt bar, by modes; both solvers are of second order; the support's compliance is 2e-4 of "
+                   "the bar's, and the rest is mesh error during the diffusion in the first second")
 
 
 def test_what_creep_loses_is_booked(creep: dict[str, Run]) -> None:
@@ -97,8 +98,8 @@ def test_what_creep_loses_is_booked(creep: dict[str, Run]) -> None:
     allowed = {"engine": 0.5 * creep["engine"].steps("dt").max() * rate, "reference": (REFERENCE_STEP * rate)**2 / 12}
     for name, run in creep.items():
         CASE.check(Label.EXACT, f"viscosity: balance of energy, {name}", run.balance_error, 0, allowed[name],
-                   "a twelfth of (rate x step)^2, rate mu/viscosity; in the engine, whose steps begin amid the diffusion of the "
-                   "first second, a bound of first order: rate x step / 2")
+                   "a twelfth of (rate x step)^2, rate mu/viscosity; in the engine, whose steps begin during the "
+                   "diffusion of the first second, the first-order bound rate x step / 2")
 
 
 @pytest.fixture(scope="module")
@@ -119,7 +120,8 @@ def test_a_towed_square_comes_along(towed: dict[str, Run]) -> None:
         t = run.times("square.position_x")
         error = np.abs(run.probe("square.position_x") - SPEED * t - lag(t)).max() / np.abs(lag(t)).max()
         CASE.check(Label.EXACT, f"support: lag behind the far end, {name}", error, 0, STIFFNESS * LENGTH / YOUNG,
-                   "the square yields by k L / E of its side, and so the lag, at most; steps of 10 ms err by less")
+                   "the square deforms by k L / E of its side at most, and so does the lag; errors of 10 ms steps are "
+                   "smaller")
 
 
 def test_picture(flights: dict[str, dict[float, Run]], creep: dict[str, Run], towed: dict[str, Run]) -> None:

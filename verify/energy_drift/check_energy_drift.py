@@ -1,4 +1,4 @@
-"""Energy over a hundred periods of free oscillation and in a bounce: Newmark, what HHT takes out, the engine."""
+"""Energy over a hundred periods of free oscillation and in a bounce: Newmark, HHT dissipation, the engine."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ ALPHAS = [0.0, -0.1, -0.3]
 STEPS = [0.04, 0.02, 0.01]
 LONG_STEP = 0.04
 PERIOD = 2.7  # of the oval mode, with lumped mass
-RATE = 0.3  # of the strains at the start, 1/s
+RATE = 0.3  # initial strain rate, 1/s
 SMALL = [1e-3, 5e-4, 2.5e-4]  # rates
 LARGE_STEP, LARGE_STEPS = 0.2, 270  # twenty periods
 FRAMES = '\n[frames]\nperiod = 1\nfields = ["displacement"]\n'
@@ -56,7 +56,7 @@ def free() -> dict[str, Run]:
 
 @pytest.fixture(scope="module")
 def swings() -> dict[float, dict[str, Run]]:
-    """The first ten of them."""
+    """The first ten periods."""
     return {dt: runs_of(f"free_{dt:g}", scene_of(dt, 10 * PERIOD), dt, ALPHAS[:1]) for dt in STEPS}
 
 
@@ -67,33 +67,33 @@ def bounce() -> dict[float, dict[str, Run]]:
 
 @pytest.mark.parametrize("name", ["engine", "Newmark"])
 def test_free_oscillation_keeps_its_energy(free: dict[str, Run], name: str) -> None:
-    """Errors swing but do not grow: mean of the last tenth against that of the first."""
+    """Errors oscillate but do not grow: mean of the last tenth against that of the first."""
     values = error(free[name])
     tenth = len(values) // 10
     drift = values[-tenth:].mean() - values[:tenth].mean()
     CASE.check(Label.EXACT, f"free, {name}: drift over 100 periods over the swings", drift / np.abs(values).max(), 0,
-               0.5, "swings do not add up: a drift of half of them would be seen")
-    CASE.check(Label.EXACT, f"free, {name}: largest error", np.abs(values).max(), 0, 0.01, "promised: 1 %")
+               0.5, "oscillations do not accumulate: a drift of half their amplitude would be seen")
+    CASE.check(Label.EXACT, f"free, {name}: largest error", np.abs(values).max(), 0, 0.01, "specified: 1 %")
 
 
 @pytest.mark.parametrize("name", ["engine", "Newmark"])
 def test_swings_of_the_energy(swings: dict[float, dict[str, Run]], name: str) -> None:
     swing = [float(error(runs[name]).std()) for runs in swings.values()]
     CASE.check_rate(f"free, {name}: rms of the swings in ten periods", STEPS, swing, 2, 0.25,
-                    "second order; a tenth of ten periods is one, for slow swings that have not come around")
+                    "second order; a tenth, one of ten periods, for incomplete slow oscillations")
 
 
 @dataclass
 class Damped:
-    """What HHT's method leaves of the energy of a swing, over that of the start."""
+    """Remaining energy of an oscillation with HHT, over the initial one."""
 
     times: np.ndarray
-    found: dict[float, np.ndarray]  # by rate of the start, 1/s
+    found: dict[float, np.ndarray]  # by initial strain rate, 1/s
     expected: np.ndarray
 
     @property
     def losses(self) -> list[float]:
-        """In the end, over the expected one."""
+        """Final losses over the expected one."""
         return [float((1 - found[-1]) / (1 - self.expected[-1])) for found in self.found.values()]
 
 
@@ -105,7 +105,7 @@ def damped() -> dict[float, Damped]:
 
 
 def small_motions() -> tuple[np.ndarray, np.ndarray]:
-    """Of a swing of rate 1."""
+    """Modes and modal velocities of an oscillation of rate 1."""
     run = CASE.engine("small", scene_of(LONG_STEP, LONG_STEP, SMALL[0]) + FRAMES)
     command = [str(ENGINE), "modes", str(CASE.out / "small.toml"), "--count", "1", "--matrices", str(CASE.out / "matrices")]
     subprocess.run(command, capture_output=True, check=True, stdin=subprocess.DEVNULL)
@@ -122,20 +122,20 @@ def damped_by(alpha: float, squares: np.ndarray, speeds: np.ndarray) -> Damped:
 
 @pytest.mark.parametrize("alpha", ALPHAS[1:])
 def test_hht_takes_out_what_its_recurrence_says(damped: dict[float, Damped], alpha: float) -> None:
-    """Of small motions, each of which it damps by the step over its period."""
+    """HHT damps each small mode as a function of step over period."""
     losses = np.array(damped[alpha].losses)
     before, limit = 2 * losses[1:] - losses[:-1]
     CASE.check(Label.EXACT, f"small swings, HHT {alpha:g}: loss over that of the recurrence on the disc's own modes",
                limit, 1, abs(limit - before) + 2 * SINGLE,
-               "to no rate, from two: the first order of what is not linear is gone, of the second a third of what "
-               "half the rates change is left; nodes in single precision")
+               "extrapolation to zero rate removes the first nonlinear order; of the second, a third of the change by "
+               "halving the rates remains; nodes in single precision")
 
 
 @pytest.mark.parametrize("name", ["engine", "Newmark"])
 def test_bounce_loses_little(bounce: dict[float, dict[str, Run]], name: str) -> None:
     errors = [float(np.abs(error(bounce[dt][name])).max()) for dt in STEPS]
     CASE.check_rate(f"bounce, {name}: largest error", STEPS, errors, 2, 0.5,
-                    "second order; kinks of the contact scatter it")
+                    "second order; scatter by kinks of the contact force")
 
 
 def test_picture(free: dict[str, Run], damped: dict[float, Damped], bounce: dict[float, dict[str, Run]]) -> None:

@@ -1,4 +1,4 @@
-"""What HHT's method makes of small motions: its recurrence, mode by mode, on matrices of `pliant modes`."""
+"""Small motions under HHT: its recurrence, mode by mode, on matrices of `pliant modes`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scipy.linalg import eigh
 
 
 def modes_of(folder: Path, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """w^2 and what part each mode has in a velocity [2 nodes]; modes have the mass 1."""
+    """w^2 and the modal components of a velocity [2 nodes]; modes have the mass 1."""
     stiffness = mmread(folder / "disc_stiffness.mtx").toarray()
     mass = np.kron(np.diag(1 / mmread(folder / "disc_inverse_mass.mtx").diagonal()), np.eye(2))
     squares, modes = eigh(stiffness, mass)
@@ -18,8 +18,8 @@ def modes_of(folder: Path, velocity: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def energies(squares: np.ndarray, speeds: np.ndarray, alpha: float, dt: float, steps: int) -> np.ndarray:
-    """[steps + 1] of all modes together, from no displacement. a + (1 + alpha) w^2 u - alpha w^2 u_before = 0 with Newmark's
-    beta = (1 - alpha)^2 / 4 and gamma = 1/2 - alpha (Hilber, Hughes and Taylor 1977)."""
+    """[steps + 1] energies of all modes together, from zero displacement: a + (1 + alpha) w^2 u - alpha w^2 u_before
+    = 0 with Newmark's beta = (1 - alpha)^2 / 4 and gamma = 1/2 - alpha (Hilber, Hughes and Taylor 1977)."""
     beta, gamma = (1 - alpha)**2 / 4, 0.5 - alpha
     u, v, a = np.zeros_like(speeds), speeds.copy(), np.zeros_like(speeds)
     found = [0.5 * (v**2).sum()]

@@ -15,19 +15,20 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__)
 
-# Of driven.toml. Bonds are of nodes: of the block's eleven on its face and the bench's ten below, 0.1 each, half of it a pass.
+# Values of driven.toml. Bonds act at nodes: eleven on the block's face and ten of the bench below, 0.1 each, half of it
+# per pass.
 STRENGTH, STIFFNESS, RANGE, THRESHOLD, RATE_OF_WEAR = 1.0, 1000.0, 0.01, 0.3, 0.4
 CRITICAL = STRENGTH / STIFFNESS
 LENGTH = 1.05
-# Out and back twice, to 0.8 and to 0.9 of the critical opening, then off: corners of the velocity, m/s.
+# Twice out and back, to 0.8 and to 0.9 of the critical opening, then torn off: corners of the velocity, m/s.
 WEARING = [(0, 0), (0.1, 0.002), (0.4, 0.002), (0.6, -0.002), (0.9, -0.002), (1.0, 0), (1.1, 0.00225), (1.4, 0.00225),
            (1.6, -0.00225), (1.9, -0.00225)]
 TEARING = [(2.0, 0), (2.1, 0.02), (2.7, 0.02)]
 DRIVEN_STEPS = [0.01, 0.005, 0.0025, 0.00125]
 
 WEAR_ORDER = 0.05
-WEAR_SOURCE = ("a step's wear counts the damage at its start: first order; a step is 2 % of the critical opening at "
-               "the coarsest, the next order's share")
+WEAR_SOURCE = ("a step's wear uses the damage at its start: first order; the coarsest step is 2 % of the critical "
+               "opening, the share of the next order")
 
 STEPS = [0.02, 0.01, 0.005]
 FINEST = 0.0025
@@ -39,7 +40,7 @@ DISSIPATION = Quantity("work of damage", ["works.dissipated_by_contact"])
 
 @dataclass(eq=False)
 class Drive:
-    """How the block moves, and the bond's ratio of strengths, tension over shear."""
+    """Motion of the block, and the bond's ratio of strengths, tension over shear."""
 
     name: str
     ratio: float
@@ -65,7 +66,7 @@ def table(corners: list[tuple[float, float]]) -> str:
 
 
 def aslant(ratio: float) -> Drive:
-    """Worn by shear alone, twice the way for twice the ratio; torn off by 0.8 of tension and 0.6 of shear."""
+    """Worn by shear alone, with displacements proportional to the ratio; torn off by 0.8 of tension, 0.6 of shear."""
     up, along = ([(t, share * v) for t, v in TEARING] for share in (0.8, 0.6 * ratio))
     return Drive(f"ratio {ratio:g}, worn by shear, torn aslant", ratio, [(0.0, 0.0), *up],
                  [*((t, ratio * v) for t, v in WEARING), *along], 0.5 * ratio)
@@ -83,28 +84,28 @@ def way_at(corners: list[tuple[float, float]], times: np.ndarray) -> np.ndarray:
 
 
 def opened(opening: np.ndarray) -> np.ndarray:
-    """Damage that an opening brings at once."""
+    """Immediate damage of an opening."""
     return RANGE / (RANGE - CRITICAL) * (1 - CRITICAL / np.maximum(opening, CRITICAL))
 
 
 @dataclass
 class Law:
-    """The bond's tractions along a way, N/m, both as they hold it back."""
+    """The bond's resisting tractions along a path, N/m."""
 
     pull: np.ndarray
     shear: np.ndarray
-    tears: np.ndarray  # where the damage is that of the opening
+    tears: np.ndarray  # whether the damage is that of the opening
 
 
 def worn(rate: float, stiffness: float, before: float, after: float, ratio: float) -> float:
-    """Of an intact bond: rate (p - threshold)+ / (strength - threshold) dp as p = stiffness x way grows, p counting
-    `ratio` times against the limits of tension."""
+    """Wear of an intact bond: rate (p - threshold)+ / (strength - threshold) dp as p = stiffness x displacement grows.
+    The limits of tension apply to `ratio` times p."""
     load, step = ratio * stiffness * 0.5 * (before + after), stiffness * max(after - before, 0.0)
     return rate * max(load - THRESHOLD, 0.0) / (STRENGTH - THRESHOLD) * step
 
 
 def integrate(drive: Drive, gap: np.ndarray, slip: np.ndarray) -> Law:
-    """In fine steps, by the midpoint rule: p, and so dp, of a bond with damage D is 1 - D of an intact one's."""
+    """Fine steps by the midpoint rule; p and dp of a bond with damage D are 1 - D times those of an intact bond."""
     shear_stiffness = STIFFNESS / drive.ratio**2
     by_opening = opened(np.hypot(gap, slip / drive.ratio))
     damage, now = np.zeros_like(gap), 0.0
@@ -141,7 +142,7 @@ def driven_runs(drive: Drive) -> dict[str, dict[float, Run]]:
 
 
 def force_error(drive: Drive, run: Run) -> np.ndarray:
-    """[times] over the strength, that of shear for shear."""
+    """[times] force error over the strength; the shear force is scaled by the strength in shear."""
     times, law = run.times("force.force_y"), law_of(drive)
     off_y = run.probe("force.force_y") + np.interp(times, FINE, law.pull)
     off_x = run.probe("force.force_x") + np.interp(times, FINE, law.shear)
@@ -151,7 +152,7 @@ def force_error(drive: Drive, run: Run) -> np.ndarray:
 @pytest.mark.parametrize("solver", ["engine", "reference"])
 @pytest.mark.parametrize("drive", DRIVES, ids=str)
 def test_driven_bond_follows_the_law(drive: Drive, solver: str) -> None:
-    """Wear in steps is of first order; the way itself is exact."""
+    """Wear is integrated with first order; the prescribed displacements are exact."""
     errors, name = [], f"driven, {drive}, {solver}"
     for dt, run in driven_runs(drive)[solver].items():
         gap, slip = drive.ways(run.times("block.position_y"))
@@ -164,23 +165,23 @@ def test_driven_bond_follows_the_law(drive: Drive, solver: str) -> None:
     wears = [float(error[~tears].max()) for error in errors]
     CASE.check_rate(f"{name}: force while it wears", DRIVEN_STEPS, wears, 1, WEAR_ORDER, WEAR_SOURCE)
     CASE.check(Label.INDEPENDENT, f"{name}: force while it wears, finest step", wears[-1], 0, wears[-2] / 1.7,
-               "half of that at twice the step: nothing stays")
+               "half of the error at twice the step: no residual")
     CASE.check(Label.EXACT, f"{name}: force while it tears, finest step", errors[-1][tears].max(), 0, 1e-9,
-               "the damage of the opening, whatever was worn before; rounding of ways")
+               "damage of the opening, independent of earlier wear; rounding of displacements")
 
 
 @pytest.mark.parametrize("solver", ["engine", "reference"])
 @pytest.mark.parametrize("drive", DRIVES, ids=str)
 def test_work_of_the_driven_bond(drive: Drive, solver: str) -> None:
-    """All of it is dissipated: the integral of the tractions over the way."""
+    """The integral of the tractions over the displacements is dissipated entirely."""
     work = sum(float((0.5 * (force[1:] + force[:-1]) * np.diff(way)).sum())
                for force, way in zip((law_of(drive).pull, law_of(drive).shear), drive.ways(FINE)))
     errors = [abs(run.probe("energy.dissipated")[-1] / work - 1) for run in driven_runs(drive)[solver].values()]
     name = f"driven, {drive}, {solver}: work to tear the bond off"
     CASE.check_rate(name, DRIVEN_STEPS, errors, 1.5, 0.6,
-                    "wear is of first order, sums over the way of second: between them, 0.1 for scatter")
+                    "wear is of first order, work sums of second: between them, 0.1 for scatter")
     CASE.check(Label.INDEPENDENT, f"{name}, finest step", 1 + errors[-1], 1, errors[-2],
-               "no more than at twice the step: nothing stays")
+               "at most the error at twice the step: no residual")
 
 
 @pytest.mark.parametrize("drive", DRIVES, ids=str)
@@ -191,7 +192,7 @@ def test_driven_solvers_agree(drive: Drive) -> None:
                    for axis in "xy"]
     CASE.check(Label.INDEPENDENT, f"driven, {drive}: engine - reference, force",
                np.abs(differences).max() / (STRENGTH * LENGTH), 0, 1e-9,
-               "same steps but for the engine's first ones, when nothing wears; rounding of ways")
+               "same steps, except for the engine's first ones without wear; rounding of displacements")
 
 
 @pytest.fixture(scope="module")
@@ -202,8 +203,8 @@ def pulled() -> Study:
 @pytest.mark.parametrize("quantity", [POSITIONS, FORCE, DISSIPATION], ids=lambda q: q.name)
 def test_pulled_bond_converges(pulled: Study, quantity: Quantity) -> None:
     check_differences(CASE, "pulled", pulled, quantity, 2, 1.2,
-                      "between the first order of wear, in which solvers may differ, and the third, which coarse steps "
-                      "show of the rest; 0.2 for their scatter")
+                      "between the first order of wear, in which solvers may differ, and the apparent third order of "
+                      "the rest at coarse steps; 0.2 for scatter")
 
 
 def draw_driven(axes: Axes) -> None:

@@ -17,12 +17,13 @@ CASE = Case(__file__)
 PROGRAM = Path(os.environ.get("PLIANT_AGREEMENT", ENGINE.parent / "pliant_agreement"))
 TOLERANCE = 1e-11
 SOURCE = "rounding: sums of up to 1e3 terms of both signs, conditioning of moment matrices of up to 1e3"
-FIGURES = 35 + 1 + 7 + 1 + 15 + 16 + 1  # of discretisations, of distances, of internal forces, of stresses, of contact, of integrated contact
+# Of discretisations, of distances, of internal forces, of stresses, of contact, of integrated contact.
+FIGURES = 35 + 1 + 7 + 1 + 15 + 16 + 1
 
 
 @pytest.fixture(scope="module")
 def agreement() -> dict:
-    """gtest's report: each test has its largest differences by name, relative to the largest value of their kind."""
+    """Report of gtest: each test gives its largest differences by name, relative to the largest value of their kind."""
     file = CASE.out / "agreement.json"
     result = subprocess.run([str(PROGRAM), f"--gtest_output=json:{file}"], capture_output=True, text=True, timeout=LONGEST_RUN)
     if result.returncode not in (0, 1):
@@ -41,11 +42,14 @@ def test_engine_and_reference_agree(agreement: dict, figures: dict[str, float]) 
     for name, value in figures.items():
         try:
             CASE.check(Label.INDEPENDENT, name, value, 0, TOLERANCE, SOURCE)
-        except AssertionError as error:  # all of them are written down
+        except AssertionError as error:  # all failures are recorded
             red.append(str(error))
     assert not red, red[0]
-    CASE.check(Label.EXACT, "number of figures", len(figures), FIGURES, 0, "7 methods x (5 tables + forces), distances, stresses, 12 sets of laws, 2 more shapes, own images; integrated: 5 laws of outlines, crowds and own images, a notch, short edges")
-    CASE.check(Label.INDEPENDENT, "tests that failed", agreement["failures"], 0, 0, "what has no figure of its own: energies, numbers of contacts")
+    CASE.check(Label.EXACT, "number of figures", len(figures), FIGURES, 0,
+               "7 methods x (5 tables + forces), distances, stresses, 12 sets of laws, 2 more shapes, own images; "
+               "integrated: 5 laws of outlines, crowds and own images, a notch, short edges")
+    CASE.check(Label.INDEPENDENT, "tests that failed", agreement["failures"], 0, 0,
+               "quantities without a figure: energies, numbers of contacts")
 
 
 def test_picture(figures: dict[str, float]) -> None:

@@ -1,4 +1,4 @@
-"""Scenes that are hard on contact, on large strains or on the time step: each keeps its bounds at the defaults."""
+"""Scenes that are hard on contact, on large strains or on the time step: each meets its bounds with the defaults."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from verification import FULL, Case, Label, Run
 CASE = Case(__file__, cost=3)
 
 METHODS = ["mls", "mls-gauss", "es-t3"]
-SAMPLES = 40  # of a run
+SAMPLES = 40  # per run
 ENERGY, DEPTH, MOMENTUM = 0.01, 0.25, 1e-12
 
 
 @dataclass
 class Hard:
-    """A scene and its bounds, where they are others than the usual ones."""
+    """A scene, and its bounds where they differ from the defaults."""
 
     name: str
-    end: float = 0  # s, where the scene leaves it open
+    end: float = 0  # s, if the scene does not set it
     energy: float = ENERGY  # of the largest energy of the run
     depth: float = DEPTH  # of the shortest segment
     momentum: float = MOMENTUM  # of the largest forces
-    source: str = "promised"
+    source: str = "specified"
 
 
-# 1e6 steps with --full, 2e5 else.
+# 1e6 steps with --full, 2e5 otherwise.
 REST = 47_000.0 if FULL else 9_400.0
 
 CASES = [
@@ -44,18 +44,18 @@ CASES = [
     Hard("stiffness_ratio"),
     Hard("fast_impact"),
     Hard("squeezed_flat"),
-    Hard("deep_overlap", depth=0.8, source="it begins so deep"),
+    Hard("deep_overlap", depth=0.8, source="initial depth"),
     Hard("gear"),
     Hard("around_and_around"),
     Hard("torn_cluster"),
     Hard("at_rest", end=REST),
-    # Verlet keeps K + U - dt^2 sum F^2 / (8 m), of a mode (1 - w^2 dt^2 / 4) of its energy: nothing of the fastest.
-    Hard("at_the_limit", energy=0.05, source="at the limit the fastest mode's energy is not kept, of twenty that a "
-                                             "bounce rouses"),
-    Hard("faster_impact", depth=0.5, source="p = rho c v of a plane wave is 0.13 of a segment on kn = 8 E/h; twice "
-                                            "that while a wave is thrown back, twice where it runs to the pole"),
+    # Verlet conserves K + U - dt^2 sum F^2 / (8 m): (1 - w^2 dt^2 / 4) of a mode's energy, nothing of the fastest.
+    Hard("at_the_limit", energy=0.05, source="at the limit the energy of the fastest mode is not conserved, one of "
+                                             "twenty excited by a bounce"),
+    Hard("faster_impact", depth=0.5, source="p = rho c v of a plane wave is 0.13 of a segment on kn = 8 E/h; doubled "
+                                            "on reflection, and doubled where the wave focuses at the pole"),
     Hard("wedge"),
-    Hard("needle", depth=1.0, source="one node carries all: contact is not lost"),
+    Hard("needle", depth=1.0, source="one node carries all load: contact is not lost"),
     Hard("extrusion"),
     Hard("hooks"),
     Hard("fast_spin"),
@@ -80,7 +80,7 @@ def with_quadrature(text: str, quadrature: str) -> str:
 
 
 def scene(hard: Hard, method: str) -> str:
-    """With what tells whether bounds are kept."""
+    """The scene with probes and frames for the bounds."""
     text = CASE.scene(f"{hard.name}.toml", method=method, **({"end": hard.end} if hard.end else {}))
     period = ends_at(text) / SAMPLES
     probes = "".join(f'\n[[probes]]\nname = "{quantity}"\nquantity = "{quantity}"\n{options}period = {period!r}\n'
@@ -96,7 +96,7 @@ def engine(name: str, method: str, quadrature: str = "auto") -> Run:
 
 
 def energy_error(run: Run) -> float:
-    """Largest, of the largest energy of the run."""
+    """Largest energy error over the largest energy of the run."""
     held = sum(run.probe(f"energy.{part}") for part in ("kinetic", "strain", "contact", "boundary"))
     lost, work = run.probe("energy.dissipated"), run.probe("energy.external_work")
     gained = held + lost - work - held[0]
@@ -125,7 +125,7 @@ def test_bounds(hard: Hard, method: str, quadrature: str) -> None:
     CASE.check(Label.EXACT, f"{name}: no element turned inside out", float(least > 0), 1, 0, "J > 0, and no NaN")
 
 
-# ---- against the reference solver, where motions are no chaos
+# ---- against the reference solver, where motions are not chaotic
 
 REFERENCE = [("mass_ratio", 0.04, "nodes"), ("nearly_incompressible", 0.04, "nodes"), ("wedge", 0.1, "nodes"), ("hooks", 0.1, "nodes"),
              ("wedge", 0.1, "segments"), ("hooks", 0.1, "segments")]
@@ -133,7 +133,7 @@ REFERENCE = [("mass_ratio", 0.04, "nodes"), ("nearly_incompressible", 0.04, "nod
 
 @pytest.mark.parametrize("name, dt, quadrature", REFERENCE)
 def test_reference(name: str, dt: float, quadrature: str) -> None:
-    """Energies over time; of both solvers a run and one in half the steps."""
+    """Energies over time; both solvers run with one step and with half of it."""
     hard = next(h for h in CASES if h.name == name)
     text = with_quadrature(scene(hard, "mls"), quadrature).split("\n[frames]")[0]
     short = CASE.engine(f"{name}_{quadrature}_short", text.replace("\nend = ", "\nsafety = 0.4\nend = ", 1))
@@ -145,10 +145,10 @@ def test_reference(name: str, dt: float, quadrature: str) -> None:
         a, b, c, d = (run.probe(f"energy.{part}") for run in (long, short, rough, fine))
         CASE.check(Label.INDEPENDENT, f"{shown}: {part} energy, engine less reference over the largest",
                    np.abs(b - d).max() / size, 0, (np.abs(a - b).max() + np.abs(c - d).max()) / size,
-                   "what halving the step changes in either: of order one at least, so no less than what is left")
+                   "change by halving the step in either: at least first order, so it bounds the remaining error")
 
 
-# ---- what the default survives: a soft disc hit by another
+# ---- limits of the default settings: a disc hits a soft disc
 
 SPEEDS = [0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 2.4]  # over the soft disc's S waves; P waves run at 2.45
 USUAL = 0.8
@@ -158,7 +158,7 @@ SAFETIES = [0.4, 0.8, 1.0]
 
 @cache
 def impact(speed: float, ratio: float, safety: float) -> float:
-    """Error of the energy; infinite where the run ends before its time."""
+    """Energy error; infinite if the run stops early."""
     end = 0.2 / speed + 4
     text = CASE.scene("impact.toml", speed=-speed, young=2.8 * ratio, safety=safety, end=end, period=end / SAMPLES)
     try:
@@ -171,7 +171,7 @@ def test_map_of_impacts() -> None:
     for safety in (0.4, 0.8):
         worst = max(impact(speed, ratio, safety) for speed in SPEEDS for ratio in RATIOS if speed <= USUAL)
         CASE.check(Label.EXACT, f"impacts at safety {safety:g}: energy, worst of speeds up to {USUAL:g} and ratios of stiffness",
-                   worst, 0, ENERGY, "promised")
+                   worst, 0, ENERGY, "specified")
 
 
 def test_picture() -> None:

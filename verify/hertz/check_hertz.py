@@ -17,9 +17,9 @@ from verification import FULL, Case, Label, Run
 CASE = Case(__file__)
 
 SEGMENTS = [50, 70, 100, 140, *([200] if FULL else [])]  # of the arc
-APPROACHES = [0.0008, 0.0009, 0.001, 0.0011, 0.0012]  # edges of the contact lie differently to the nodes in each
-REST, RISE = 12.0, 5.0  # s from one to the next; s of them in motion
-MIDDLE = 2.0  # of the block, where the flat has a node
+APPROACHES = [0.0008, 0.0009, 0.001, 0.0011, 0.0012]  # each has contact edges at other positions between the nodes
+REST, RISE = 12.0, 5.0  # s between states of rest; s of motion in each
+MIDDLE = 2.0  # x of the block's middle, where the flat has a node
 ELEMENTS = 600  # of the solution on springs: 3e-6 of the peak
 FIRST, MIDDLING, FINEST = SEGMENTS[0], 100, SEGMENTS[-1]
 
@@ -31,7 +31,7 @@ def automatic(segments: int) -> float:
 
 @dataclass
 class Pressed:
-    """A rest: load, N/m, and pressures along the face, Pa."""
+    """A state of rest: load, N/m, and pressures along the face, Pa."""
 
     load: float
     x: np.ndarray
@@ -52,18 +52,18 @@ class Pressed:
         return np.interp(self.x, *pressure_on_springs(self.load, self.stiffness, ELEMENTS))
 
     def peak_error(self, expected: np.ndarray) -> float:
-        """Of the profile's height in the middle half, by least squares: a single node's is noise."""
+        """Error of the profile's height in the middle half, by least squares, as single nodes are noisy."""
         middle = np.abs(self.x) < 0.5 * half_width(self.load)
         return float(self.pressure[middle] @ expected[middle] / (expected[middle] @ expected[middle]) - 1)
 
     def profile_error(self, expected: np.ndarray) -> float:
-        """Root of the integral of the square over the contact, over its width and the peak."""
+        """L2 error over the contact, relative to the peak."""
         share = (self.x[1] - self.x[0]) / (2 * half_width(self.load))
         return float(np.sqrt(((self.pressure - expected) ** 2).sum() * share)) / self.peak
 
 
 def scene(segments: int, stiffness: float, beside: float, approaches: list[float]) -> str:
-    """The flat has a node for each of the block's, `beside` it by a share of their distance."""
+    """The flat has one node for each of the block's, offset by the share `beside` of their spacing."""
     points, spacing = block(segments), 2 / segments
     return CASE.scene(points=points, nodes=NODES[segments], outline=3 * segments, centre=top_above_centroid(points),
                       left=MIDDLE + beside * spacing, spacing=spacing, stiffness=float(stiffness), method="es-t3",
@@ -72,7 +72,7 @@ def scene(segments: int, stiffness: float, beside: float, approaches: list[float
 
 @cache
 def pressed(segments: int, stiffness: float, beside: float = 0.25) -> list[Pressed]:
-    """At all approaches."""
+    """States of rest at all approaches."""
     run = CASE.engine(f"engine_{segments}_{stiffness:g}_{beside:g}", scene(segments, stiffness, beside, APPROACHES))
     return rests(run, segments, stiffness, beside)
 
@@ -99,7 +99,7 @@ def spacings() -> list[float]:
 
 
 def errors_of(what: str, expected: str, segments: int) -> list[float]:
-    """"peak" or "profile", less "hertz" or "on_springs", of each rest."""
+    """Error of "peak" or "profile" against "hertz" or "on_springs", for each state of rest."""
     return [getattr(rest, f"{what}_error")(getattr(rest, expected)) for rest in pressed(segments, automatic(segments))]
 
 
@@ -108,20 +108,20 @@ def mesh_errors(what: str) -> list[float]:
 
 
 def test_solution_on_springs() -> None:
-    """Own numbers against Hertz's without springs."""
+    """The numerical solution without springs against Hertz."""
     load = pressed(FINEST, automatic(FINEST))[-1].load
     errors = []
     for elements in (ELEMENTS // 2, ELEMENTS, 2 * ELEMENTS):
         x, pressure = pressure_on_springs(load, 1e12, elements)
         errors.append(abs(pressure.max() * np.pi * half_width(load) / (2 * load) - 1))
     CASE.check_rate("solution without springs: error of the peak over elements", [2.0, 1.0, 0.5], errors, 2, 0.2,
-                    "middle of smooth pressures: second order; elements at the edge, of first order, lie differently")
+                    "middle of smooth pressures: second order; scatter by the position of first-order edge elements")
     CASE.check(Label.EXACT, f"solution without springs: peak over Hertz's - 1, {ELEMENTS} elements", errors[1], 0,
-               errors[0], "Hertz; that of half as many elements")
+               errors[0], "Hertz; error of half as many elements")
 
 
 def scatter_of_slope() -> float:
-    """Two standard errors, of profiles whose errors scatter from rest to rest as they do."""
+    """Two standard errors of the slope, from the scatter of profile errors between states of rest."""
     scatter = np.mean([np.std(np.log(errors_of("profile", "on_springs", n)), ddof=1) for n in SEGMENTS])
     logarithms = np.log(spacings())
     return float(2 * scatter / np.sqrt(len(APPROACHES)) / np.sqrt(((logarithms - logarithms.mean()) ** 2).sum()))
@@ -129,37 +129,38 @@ def scatter_of_slope() -> float:
 
 def test_profile() -> None:
     CASE.check_rate("profile: L2 error, penalty's share known", spacings(), mesh_errors("profile"), 1,
-                    scatter_of_slope(), "at an edge all is alike but for h: pressures of the size of the root of h/a are "
-                    "off at a few nodes, a share h/a; two standard errors by the rests' scatter")
+                    scatter_of_slope(), "self-similar in h at an edge: errors of the root of h/a at a few nodes, on a "
+                    "share h/a; two standard errors by the scatter of the states of rest")
 
 
 def test_peak() -> None:
     found = [over_rests(errors_of("peak", "hertz", n)) for n in SEGMENTS]
     CASE.check_rate("peak: error against Hertz, automatic stiffness", spacings(), found, 1.5, 0.5,
-                    "second order of mesh and polygon, first of the penalty 8 E/h: in between")
+                    "second order of mesh and polygon, first of the penalty 8 E/h: between them")
     errors, rest = errors_of("peak", "on_springs", FINEST), pressed(FINEST, automatic(FINEST))[-1]
     CASE.check(Label.INDEPENDENT, f"peak over Hertz's with the penalty's share - 1, {FINEST} segments, rms",
                over_rests(errors), 0, mesh_errors("peak")[0] * (FIRST / FINEST) ** 2 + finite_size(rest),
-               f"half-plane on springs; error of {FIRST} segments, second order; the block's finite size by dolfinx")
+               f"half-plane on springs; error of {FIRST} segments scaled by h^2, plus dolfinx's error of finite size")
 
 
 def finite_size(rest: Pressed) -> float:
-    """What the error of ACROSS, 0.001, changes of the half width and so of the peak."""
+    """Effect of the error of ACROSS, 0.001, on the half width and thus on the peak."""
     return RADIUS * 0.001 * rest.load
 
 
 def test_share_of_the_penalty() -> None:
-    """Half the stiffness on one mesh: what changes is the penalty's."""
+    """Half the stiffness on one mesh: only the penalty's share changes."""
     stiff, soft = (pressed(MIDDLING, automatic(MIDDLING) / by) for by in (1, 2))
     found, expected = ([peak_change(a, b, with_springs) for a, b in zip(stiff, soft)] for with_springs in (False, True))
     share = 2 / MIDDLING / half_width(stiff[0].load)
     CASE.check(Label.INDEPENDENT, f"peak: change by half the stiffness over that on springs, {MIDDLING} segments",
                np.mean(found) / np.mean(expected), 1, share,
-               "half-plane on springs; both of order h/a, the next terms a share h/a of them")
+               "half-plane on springs; both of order h/a, next terms a share h/a of them")
 
 
 def peak_change(stiff: Pressed, soft: Pressed, with_springs: bool) -> float:
-    """Of the height over Hertz's of the same load; as the springs say, on the same nodes."""
+    """Change of the height over Hertz's at the same load; with `with_springs`, of the solution on springs at the same
+    nodes."""
     heights = []
     for rest in (stiff, soft):
         profile = Pressed(rest.load, rest.x, rest.on_springs, rest.stiffness) if with_springs else rest
@@ -168,12 +169,12 @@ def peak_change(stiff: Pressed, soft: Pressed, with_springs: bool) -> float:
 
 
 def test_share_of_the_polygon() -> None:
-    """Nodes of the flat opposite the block's, whose corners lie on the arc, and opposite the middles of facets."""
+    """The flat's nodes lie opposite the block's, which are on the arc, or opposite the middles of facets."""
     corners, middles = (errors_of_peak(beside) for beside in (0.0, 0.5))
     most = (2 / MIDDLING / half_width(pressed(MIDDLING, automatic(MIDDLING))[0].load)) ** 2 / 12
     CASE.check(Label.EXACT, f"peak: facets less corners opposite the flat's nodes, {MIDDLING} segments, largest",
-               np.abs(middles - corners).max(), 0, most, "facets lie h^2/(12 R) inside in the mean, of a^2/(2 R) twice "
-               "as much; half of it by one of two passes")
+               np.abs(middles - corners).max(), 0, most, "facets lie h^2/(12 R) inside in the mean, relative to "
+               "a^2/(2 R) twice that share; half of it in one of two passes")
 
 
 def errors_of_peak(beside: float) -> np.ndarray:
@@ -216,7 +217,7 @@ def draw_errors(axes: Axes) -> None:
 
 
 def draw_shares(axes: Axes) -> None:
-    """Of Hertz's peak, by the load's half width."""
+    """Peak over Hertz's, over the half width."""
     for segments, colour in zip(SEGMENTS, COLOURS):
         rests_there = pressed(segments, automatic(segments))
         a = [half_width(rest.load) * segments / 2 for rest in rests_there]

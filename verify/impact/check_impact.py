@@ -15,7 +15,7 @@ CASE = Case(__file__)
 
 END, PERIOD, FRAMES = 4.5, 0.02, 0.5
 TIMES = PERIOD * np.arange(round(END / PERIOD) + 1)
-STIFFNESS, START = 1000.0, 1.002  # of the scene: penalty, height of the centre
+STIFFNESS, START = 1000.0, 1.002  # penalty and initial height of the centre in the scene
 SPEEDS = [0.1, 0.2, 0.3]
 SPEED = 0.2  # of the studies
 NODES = [168, 340, 700, 1400] + ([2800] if FULL else [])
@@ -25,8 +25,8 @@ SAFETY = 0.8
 RINGS = (9, 12)
 SMOOTH = 5  # periods over which momentum is differenced for the force
 
-OWN = ("finite elements with the same penalty: their two meshes apart (order 3 or more), and the engine's error by its "
-       "own: 700 and 1400 nodes apart, second order")
+OWN = ("finite elements with the same penalty: difference of their two meshes (order 3 or more), plus that of the "
+       "engine's 700 and 1400 nodes (second order)")
 
 
 def engine_run(variant: tuple[str, str], nodes: int, speed: float, safety: float = SAFETY) -> Run:
@@ -40,24 +40,24 @@ def scene(variant: tuple[str, str], nodes: int, speed: float, safety: float = SA
 
 
 def velocity(run: Run) -> np.ndarray:
-    """Of the centre of mass at TIMES: the impulse so far over the mass, free of the force's chatter."""
+    """Velocity of the centre of mass at TIMES: the impulse so far over the mass, without the force's chatter."""
     return run.at("disc.velocity_y", TIMES)
 
 
 def contact_time(velocities: np.ndarray) -> float:
-    """From a hundredth of the momentum's change to all but a hundredth, s."""
+    """Time from 0.01 to 0.99 of the momentum's change, s."""
     share = (velocities - velocities[0]) / (velocities[-1] - velocities[0])
     begin, end = (int(np.argmax(share > limit)) for limit in (0.01, 0.99))
     return float(crossing(share, end, 0.99) - crossing(share, begin, 0.01))
 
 
 def crossing(share: np.ndarray, index: int, limit: float) -> float:
-    """When it passes the limit, between index - 1 and index."""
+    """Time at which the share crosses the limit, between index - 1 and index."""
     return TIMES[index - 1] + PERIOD * (limit - share[index - 1]) / (share[index] - share[index - 1])
 
 
 def time_error(velocities: np.ndarray, error: float) -> float:
-    """Of contact_time for an error of the velocity: over the slopes where it begins and ends."""
+    """Error of contact_time from a velocity error, which is divided by the slopes at begin and end."""
     share = (velocities - velocities[0]) / (velocities[-1] - velocities[0])
     slopes = np.gradient(velocities, PERIOD)
     return float(sum(error / slopes[int(np.argmax(share > limit))] for limit in (0.01, 0.99)))
@@ -91,17 +91,17 @@ def test_impact(runs: dict, elements: dict, variant: tuple[str, str], speed: flo
                time_error(expected, error), OWN)
     balance = np.abs(runs[variant, speed][1400].probe("energy.balance_error"))
     CASE.check(Label.EXACT, f"{name}: balance of energy, after", balance[-1], 0, 1e-3,
-               "energy is conserved; the default safety keeps a bounce to 0.1 % (docs/notes/impacts.md)")
+               "energy conservation; the default safety keeps the error of a bounce to 0.1 % (docs/notes/impacts.md)")
     CASE.check(Label.EXACT, f"{name}: balance of energy, on the way", balance.max(), 0, 1e-2,
-               "promised: 1 %; what Verlet keeps differs from it by dt^2 sum m a^2 / 8, and corrections are under way")
+               "specified: 1 %; Verlet's conserved energy differs by dt^2 sum m a^2 / 8; corrections are incomplete")
 
 
 @pytest.mark.parametrize("variant", VARIANTS, ids="-".join)
 def test_converges(runs: dict, elements: dict, variant: tuple[str, str]) -> None:
     CASE.check_rate(f"{' '.join(variant)}: momentum's history", [spacing(n) for n in NODES],
                     differences(runs[variant, SPEED], elements), 2, 0.5,
-                    "second order of space and of the polygon's poles; nodes that touch in turn scatter each error by "
-                    "a third")
+                    "second order in space and of the polygon's poles; successive first contacts of nodes scatter each "
+                    "error by a third")
 
 
 def spacing(nodes: int) -> float:
@@ -109,7 +109,7 @@ def spacing(nodes: int) -> float:
 
 
 def differences(found: dict[int, Run], elements: dict) -> list[float]:
-    """From finite elements, root mean square over the speed before."""
+    """Rms difference from finite elements, over the initial speed."""
     return [float(np.sqrt(np.mean((velocity(found[n]) - elements[SPEED][1])**2)) / SPEED) for n in NODES]
 
 
@@ -123,30 +123,30 @@ def references() -> list[np.ndarray]:
 
 
 def test_reference(runs: dict, references: list[np.ndarray]) -> None:
-    """The same nodes, so only steps in time tell them apart."""
+    """With the same nodes, the solvers differ only in time integration."""
     long, short = velocity(runs[VARIANTS[0], SPEED][NODES[0]]), velocity(engine_run(VARIANTS[0], NODES[0], SPEED,
                                                                                   SAFETY / 2))
     error = np.abs(references[1] - references[0]).max() + np.abs(long - short).max()
     CASE.check(Label.INDEPENDENT, f"mls lumped, {NODES[0]} nodes: momentum's history, engine - reference",
                np.abs(short - references[1]).max() / SPEED, 0, error / SPEED,
-               "what halving the step changes in either: more than the error left from the first order on")
+               "change by halving the step in either, which exceeds the remaining error from first order on")
 
 
 def wall_overlaps(outline: np.ndarray, wall: np.ndarray) -> np.ndarray:
-    """[wall nodes] upward part of the depth in the outline [nodes x 2] of a disc, along its nearest side's normal."""
+    """[wall nodes] vertical component of the depth in a disc's outline [nodes x 2], along its nearest side's normal."""
     sides = np.roll(outline, -1, axis=0) - outline
     lengths = np.hypot(*sides.T)
     from_corner = wall[:, None] - outline
     along = (from_corner * sides).sum(axis=2) / lengths**2
     depth = (sides[:, 0] * from_corner[:, :, 1] - sides[:, 1] * from_corner[:, :, 0]) / lengths
-    depth[(along < 0) | (along >= 1) | (depth < 0) | (depth > lengths / 2)] = np.inf  # of the far side
+    depth[(along < 0) | (along >= 1) | (depth < 0) | (depth > lengths / 2)] = np.inf  # belongs to the far side
     nearest = depth.argmin(axis=1)
     deep = depth[np.arange(len(wall)), nearest]
     return np.where(np.isfinite(deep), deep * sides[nearest, 0] / lengths[nearest], 0)
 
 
 def overlap(run: Run, frame: int) -> float:
-    """Depths in the wall and of the wall, weighted by the lengths of nodes at the start; mean of both passes, m2."""
+    """Depths in the wall and of the wall, weighted by the nodes' initial lengths; mean of both passes, m2."""
     frames = frames_of(run)
     of_disc = frames.grids["outlines"].point_body == 0
     start, now = (frames.positions("outlines", i)[:, :2].astype(float) for i in (0, frame))
@@ -158,17 +158,17 @@ def overlap(run: Run, frame: int) -> float:
 
 @pytest.mark.parametrize("solver", ["engine", "reference"])
 def test_force_of_the_overlap(references: list[np.ndarray], solver: str) -> None:
-    """The motion hardly feels the contact stiffness: depths are a thousandth of the disc's squeeze. They show it, where
-    contacts correct nothing."""
+    """The motion is insensitive to the contact stiffness, as depths are a thousandth of the disc's squeeze. Depths show
+    it when the energy correction of contacts is off."""
     run = (CASE.engine("law_alone", scene(VARIANTS[0], 340, SPEED, corrects=False)) if solver == "engine" else
            Run(CASE.out / f"reference_{STEPS[1]:g}"))
-    times = FRAMES * np.arange(1, 7)  # in touch
+    times = FRAMES * np.arange(1, 7)  # during contact
     forces = -run.at("wall.force_y", times)
     areas = np.array([overlap(run, 1 + i) for i in range(len(times))])
     off = np.abs(forces / (STIFFNESS * areas) - 1).max()
     CASE.check(Label.EXACT, f"{solver}, in touch: force over stiffness x overlap, largest error", off, 0, 2e-5,
-               "p = kn x depth, half in each pass; x near 3 in frames' single precision, 1.2e-7, on slopes of 0.05 "
-               "over depths of 4e-4")
+               "p = kn x depth, half in each pass; frames round x near 3 to 1.2e-7, on slopes of 0.05 over depths of "
+               "4e-4")
 
 
 def test_picture(runs: dict, elements: dict, references: list[np.ndarray]) -> None:
@@ -187,7 +187,7 @@ def test_picture(runs: dict, elements: dict, references: list[np.ndarray]) -> No
 
 
 def force(velocities: np.ndarray) -> np.ndarray:
-    """Mean over SMOOTH periods, over mu R."""
+    """Mean force over SMOOTH periods, over mu R."""
     return np.pi * (velocities[SMOOTH:] - velocities[:-SMOOTH]) / (SMOOTH * PERIOD)
 
 

@@ -1,4 +1,4 @@
-"""400 frictionless compliant discs between four walls: solid fraction and coordination where they jam, and above."""
+"""400 frictionless compliant discs between four walls: solid fraction and coordination at jamming and above."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ CASE = Case(__file__, cost=4)
 
 LARGE = 1.4  # diameter; the small one is 1
 AREA = DISCS / 2 * math.pi / 4 * (1 + LARGE**2)
-START = 0.78  # solid fraction between the walls, less than in the middle as grains leave gaps beside them
+START = 0.78  # solid fraction between the walls; lower than in the middle because of gaps at the walls
 CLOSING = [0.81, 0.825, 0.84, 0.86, 0.88]
 OPENING = [0.87, 0.86, 0.85, 0.845, 0.84, 0.835, 0.83, 0.825, 0.82]
-PAUSE = 300.0  # from one fraction to the next, in units of diameter over the speed sqrt(E/density)
-RAMP = 150.0  # of it in motion
-CLEARANCE = 0.02  # of a wall's end from the next wall
+PAUSE = 300.0  # between fractions, in units of diameter over the speed sqrt(E/density)
+RAMP = 150.0  # wall motion within it
+CLEARANCE = 0.02  # between a wall's end and the next wall
 STIFFNESS = 10.0
 CORE = 8.0  # half width of a fixed box, within the region at all times
 SEEDS = [1, 2, 3] if FULL else [1]
@@ -36,18 +36,18 @@ DAMPING = 0.1  # of the mass
 NODES = {16: 24, 24: 40, 32: 60, 48: 100}  # field nodes by outline nodes
 COUNTS = [16, 24, 32]  # coarser ones
 ISOSTATIC = 4 * (1 - 1 / DISCS)
-ROUGHEST = 3.0  # the same of discs that cannot slide
+ROUGHEST = 3.0  # the same for discs that cannot slide
 POSITION = 1e-6  # rounding of frames' positions, in single precision: two halves of the last bit, 9.5e-7 from 8 to 16
-ONSET = 1e-4  # pressure over E below which a packing has come apart: a tenth of that at an excess of 0.01
-QUASI_STATIC = 0.01  # kinetic over stored energy: of the order of the pressure that motion adds
-FITTED = (0.005, 0.06)  # excess solid fractions: overlaps larger than corners stand out, and strains below 10 %
+ONSET = 1e-4  # pressure over E below which a packing is unjammed: a tenth of that at an excess of 0.01
+QUASI_STATIC = 0.01  # kinetic over stored energy, of the order of the kinetic share of the pressure
+FITTED = (0.005, 0.06)  # excess solid fractions: overlaps exceed the height of corners, and strains are below 10 %
 BANDS = {"below 0.02": (0.005, 0.02), "above 0.02": (0.02, 0.06)}
 ROOT, ROOT_ERROR = 3.6, 0.5  # Z - Z0 over the root of the excess in two dimensions: O'Hern et al. 2003
-SQUARES, SAMPLES = 4, 400  # of the bootstrap: across the region, so some 15 discs in each
+SQUARES, SAMPLES = 4, 400  # of the bootstrap; squares across the region, with some 15 discs in each
 
 
 def half_width(fraction: float) -> float:
-    """Of the square between the walls."""
+    """Half width of the square between the walls."""
     return 0.5 * math.sqrt(AREA / fraction)
 
 
@@ -79,20 +79,20 @@ def packings() -> list[Packing]:
 
 
 def walls_of(stage: Stage) -> np.ndarray:
-    """[4] forces on the walls, outwards, as FORCES has them."""
+    """[4] outward forces on the walls, in the order of FORCES."""
     sums = stage.network.resultants()
     return np.array([-sums[BOTTOM, 1], sums[RIGHT, 0], sums[TOP, 1], -sums[LEFT, 0]])
 
 
 def test_outlines_alone_give_the_same_forces(packings: list[Packing]) -> None:
-    """A second search for contacts and the law of the scene; and the areas in a box by a second clipping."""
+    """A second contact search with the law of the scene."""
     in_touch = 2 * 2 * half_width(START)  # length of a wall, from either side
     for seed, packing in zip(SEEDS, packings):
         found = np.array([walls_of(stage) for stage in packing.stages])
         engine = np.abs(np.stack([packing.run.probe(name)[1:] for name in FORCES], axis=1))
         CASE.check(Label.EXACT, f"packing {seed}: forces on walls, by outlines less engine",
                    np.abs(found - engine).max() / engine.max(), 0, 0.5 * STIFFNESS * in_touch * POSITION / engine.max(),
-                   "penalty law; rounding of all outlines at a wall")
+                   "penalty law; rounding of all outline positions at a wall")
 
 
 def test_clipping_anew_gives_the_same_solid_fraction(packings: list[Packing]) -> None:
@@ -107,16 +107,16 @@ def test_clipping_anew_gives_the_same_solid_fraction(packings: list[Packing]) ->
 def test_at_rest(packings: list[Packing]) -> None:
     for seed, packing in zip(SEEDS, packings):
         opened = packing.opened(ONSET)
-        at = slice(len(CLOSING), len(CLOSING) + len(opened))  # of probes, which begin with the start
+        at = slice(len(CLOSING), len(CLOSING) + len(opened))  # of probes, whose first row is the start
         kinetic, strain, contact = (packing.run.probe(f"energy.{of}")[at] for of in ("kinetic", "strain", "contact"))
         CASE.check(Label.EXACT, f"packing {seed}: kinetic over stored energy", (kinetic / (strain + contact)).max(), 0,
-                   QUASI_STATIC, "a pressure of motion of as much of the pressure: 2 kinetic / area against dU/dA")
+                   QUASI_STATIC, "kinetic pressure over pressure is of this order: 2 kinetic / area against dU/dA")
 
 
 def test_pressure_of_contacts_is_that_of_walls(packings: list[Packing]) -> None:
-    """At each stage. Of all forces f at places x, sums of f x over discs and walls leave -f depth: an overlap counts
-    twice. So Love-Weber's sum over discs, of arms from their centres c, is that over the walls and 2 x contact energy
-    and the sum of resultants x c, which is zero at rest."""
+    """At each stage, sums of forces f times positions x over discs and walls leave -f depth, as overlaps count twice.
+    Love-Weber's sum over discs, with arms from their centres c, is thus that over the walls, plus 2 x contact energy,
+    plus the sum of resultants x c, which is zero at rest."""
     for seed, packing in zip(SEEDS, packings):
         opened = packing.opened(ONSET)
         at = slice(len(CLOSING), len(CLOSING) + len(opened))
@@ -127,17 +127,17 @@ def test_pressure_of_contacts_is_that_of_walls(packings: list[Packing]) -> None:
         worst = (np.abs(found - 1) / allowed).argmax()
         CASE.check(Label.EXACT, f"packing {seed}: pressure by contacts over that by walls - 1, worst of {len(opened)}",
                    found[worst] - 1, 0, allowed[worst],
-                   "virial, less overlaps and resultants; rounding of the outlines: three standard errors of all "
-                   "depths, and all at the walls, whose faces are straight, at once")
+                   "virial less overlaps and resultants; rounding of the outlines: three standard errors of all "
+                   "depths, plus the sum of those at the walls, whose faces are straight")
         changed = np.abs(np.diff([packing.stages[packing.closing - 2].moment_of_walls, *walls]))
         CASE.check(Label.EXACT, f"packing {seed}: resultants of discs x centres over what the step before changed of the "
                    "moment of the walls, largest", np.abs(unbalanced / changed).max(), 0, QUASI_STATIC,
-                   "damping and inertia hold what the walls do not: what is left of that step's motion, however near a "
-                   "packing is to coming apart")
+                   "damping and inertia balance the resultants: residues of that step's motion, however close a "
+                   "packing is to unjamming")
 
 
 def rounded_moments(stage: Stage) -> float:
-    """What rounding of the outlines makes of the sum of force x arm: arms of a large disc, or of two."""
+    """Effect of rounding of the outlines on the sum of force x arm; arms are one or two large diameters."""
     force = 0.5 * STIFFNESS * math.pi * LARGE / OUTLINE_NODES * POSITION
     inside = len(stage.touching.own)
     return force * LARGE * (3 * math.sqrt(inside / 3) + stage.nodes_at_walls / 2)
@@ -147,7 +147,7 @@ def test_no_friction_from_corners(packings: list[Packing]) -> None:
     for seed, packing in zip(SEEDS, packings):
         CASE.check(Label.EXACT, f"packing {seed}: forces across over along the line of centres, rms",
                    packing.opened(ONSET)[-1].obliquity, 0, OBLIQUE,
-                   "normals of polygons turn by pi / n at most, evenly")
+                   "normals of polygons deviate by pi / n at most, uniformly")
 
 
 def test_jams_where_others_do(packings: list[Packing]) -> None:
@@ -157,23 +157,23 @@ def test_jams_where_others_do(packings: list[Packing]) -> None:
 
 
 def fitted(packing: Packing, band: tuple[float, float]) -> tuple[list[Stage], np.ndarray]:
-    """Stages in a band of solid fractions above jamming, and these."""
+    """Stages in a band of excess solid fractions, and these fractions."""
     jammed = packing.jamming_fraction(ONSET)
     stages = [s for s in packing.opened(ONSET) if band[0] < s.solid_fraction - jammed < band[1]]
     return stages, np.array([s.solid_fraction - jammed for s in stages])
 
 
 def excess(packing: Packing) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Solid fractions above jamming, of what is fitted, and coordination there with its standard error."""
+    """Excess solid fractions of the fitted stages, and coordination there with its standard error."""
     stages, over = fitted(packing, FITTED)
     errors = [s.counts.std() / math.sqrt(len(s.counts)) for s in stages]
     return over, np.array([s.coordination for s in stages]), np.array(errors)
 
 
 def drawn_anew(stages: list[Stage]) -> np.ndarray:
-    """[stages x (1 + SAMPLES)] coordination, first as it is, then of squares of the region drawn anew.
+    """[stages x (1 + SAMPLES)] coordination: first the original, then bootstrap samples of squares of the region.
 
-    The same ones in all stages, as these are of one network. Squares, because neighbours share contacts.
+    Samples are the same in all stages, which form one network. Squares are drawn because neighbours share contacts.
     """
     sums, discs = (np.array(part) for part in zip(*(s.by_square(SQUARES) for s in stages)))
     drawn = np.random.default_rng(1).multinomial(SQUARES**2, np.full(SQUARES**2, SQUARES**-2), SAMPLES).T
@@ -182,14 +182,14 @@ def drawn_anew(stages: list[Stage]) -> np.ndarray:
 
 
 def at_jamming(packing: Packing) -> tuple[float, float]:
-    """Coordination with no excess, by a straight line over the root of the excess, and its standard error by bootstrap."""
+    """Coordination at zero excess, by a straight line over the root of the excess, and its bootstrap standard error."""
     stages, over = fitted(packing, FITTED)
     values = np.polyfit(np.sqrt(over), drawn_anew(stages), 1)[-1]
     return float(values[0]), float(values[1:].std())
 
 
 def over_root(packing: Packing, band: tuple[float, float]) -> tuple[float, float]:
-    """Z - Z0 over the root of the excess by least squares in a band of excesses, and its standard error, by bootstrap."""
+    """Z - Z0 over the root of the excess by least squares in a band of excesses, and its bootstrap standard error."""
     stages, over = fitted(packing, band)
     root, above = np.sqrt(over), drawn_anew(stages) - ISOSTATIC
     values = root @ above / (root @ root)
@@ -201,16 +201,16 @@ def test_coordination(packings: list[Packing]) -> None:
         value, error = at_jamming(packing)
         last = packing.stages[-1]
         CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination when opened below jamming", last.coordination,
-                   0, 0, "O'Hern et al. 2003: contacts vanish at once, from isostatic to none")
+                   0, 0, "O'Hern et al. 2003: contacts drop discontinuously from isostatic to none")
         middle, half = (ISOSTATIC + ROUGHEST) / 2, (ISOSTATIC - ROUGHEST) / 2
         CASE.check(Label.INDEPENDENT, f"packing {seed}: coordination at jamming", value, middle, half + 3 * error,
-                   "isostatic: 4 (1 - 1/N) of smooth discs, 3 of rough ones, corners lie in between; three standard "
+                   "isostatic: 4 (1 - 1/N) for smooth discs, 3 for rough ones, polygons between them; three standard "
                    "errors of the line, by bootstrap")
 
 
 @pytest.mark.parametrize("band", BANDS)
 def test_coordination_grows_with_the_root_of_the_excess(packings: list[Packing], band: str) -> None:
-    """Of all packings together. In both bands alike: from the one to the other the root grows by 1.8, the excess by 3.4."""
+    """Mean of all packings, equal in both bands, between which the root grows by 1.8 and the excess by 3.4."""
     values, errors = np.transpose([over_root(packing, BANDS[band]) for packing in packings])
     error = float(np.sqrt((errors**2).sum()) / len(errors))
     CASE.check(Label.INDEPENDENT, f"Z - Z0 over the root of the excess, {band}", values.mean(), ROOT,
@@ -220,12 +220,12 @@ def test_coordination_grows_with_the_root_of_the_excess(packings: list[Packing],
 
 @pytest.mark.skipif(not FULL, reason="three packings more")
 def test_corners_vanish(packings: list[Packing]) -> None:
-    """With the number of sides: the forces across the line of centres, at the last stage that bears load."""
+    """Forces across the line of centres vanish with the number of sides, at the last stage that bears load."""
     compared = [*(compact(1, count) for count in COUNTS), packings[0]]
     across = [packing.opened(ONSET)[-1].obliquity for packing in compared]
     CASE.check_rate("forces across over along the line of centres, by outline spacing",
                     [1 / n for n in [*COUNTS, OUTLINE_NODES]], across, 1, 0.3,
-                    "angles of normals go with 1 / n; several nodes in touch, and fewer as pressure falls")
+                    "angles of normals scale with 1 / n; several nodes in contact, fewer at lower pressure")
 
 
 def test_pictures(packings: list[Packing]) -> None:
@@ -243,7 +243,7 @@ def test_pictures(packings: list[Packing]) -> None:
 
 
 def draw_packing(axes: Axes, packing: Packing, stage: Stage) -> None:
-    """Mean pressure of each disc, and forces as lines between centres, as wide as they are strong."""
+    """Mean pressure of each disc, and forces as lines between centres, with widths proportional to forces."""
     frames = Frames(packing.run.folder / "frames.h5", None)
     index = packing.stages.index(stage) + 1
     cells = frames.grids["bodies"]

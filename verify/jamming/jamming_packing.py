@@ -1,4 +1,4 @@
-"""Packings at rest between four walls, and where they jam."""
+"""Packings at rest between four walls, and their jamming point."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Stage:
     outlines: Outlines
     touching: Touching
     half: float  # of the square between the walls
-    margin: float  # from the walls to the region that counts
+    margin: float  # from the walls to the evaluated region
     reference_areas: np.ndarray  # [bodies] at the start
     pressure: float  # of the walls
 
@@ -33,12 +33,12 @@ class Stage:
 
     @cached_property
     def moment_of_walls(self) -> float:
-        """Sum of the walls' forces times the places where they act: of a pressure, twice the area as much."""
+        """Sum of the walls' forces times their points of action: twice pressure times area."""
         return float(self.touching.moments(DISCS + len(WALLS))[DISCS:].sum())
 
     @cached_property
     def unbalanced(self) -> float:
-        """Sum of the discs' resultants times their centres: what discs in motion take from the moment of the walls."""
+        """Sum of the discs' resultants times their centres: the share of moving discs in the moment of the walls."""
         return float((self.network.resultants() * self.outlines.centres())[:DISCS].sum())
 
     @property
@@ -47,12 +47,12 @@ class Stage:
 
     @cached_property
     def solid_fraction(self) -> float:
-        """Of the region, by areas at the start: what a disc gives way counts as excess."""
+        """Solid fraction of the region, by initial areas, so that a disc's compression counts as excess."""
         reach = self.half - self.margin
         return float(self.shares((-reach, reach, -reach, reach)) @ self.reference_areas[:DISCS]) / (2 * reach) ** 2
 
     def shares(self, box: Box) -> np.ndarray:
-        """[discs] of their areas that lie in the box."""
+        """[discs] shares of their areas that lie in the box."""
         return filled(self.outlines, np.arange(DISCS), box)
 
     @cached_property
@@ -61,17 +61,17 @@ class Stage:
 
     @cached_property
     def counted(self) -> np.ndarray:
-        """[discs] whether the centre is in the region, and the disc no rattler."""
+        """[discs] whether the centre is in the region and the disc is no rattler."""
         inside = (np.abs(self.outlines.centres()[:DISCS]) < self.half - self.margin).all(axis=1)
         return inside & (self.backbone.counts()[:DISCS] > 0)
 
     @cached_property
     def counts(self) -> np.ndarray:
-        """Contacts of each disc that is counted."""
+        """Contacts of each counted disc."""
         return self.backbone.counts()[:DISCS][self.counted]
 
     def by_square(self, across: int) -> tuple[np.ndarray, np.ndarray]:
-        """Sums of those contacts, and how many discs they are, in each of across^2 squares of the region."""
+        """Sums of those contacts, and numbers of discs, in each of across^2 squares of the region."""
         reach = self.half - self.margin
         column, row = ((self.outlines.centres()[:DISCS][self.counted] / reach + 1) / 2 * across).astype(int).T
         square = row * across + column
@@ -94,24 +94,24 @@ class Stage:
 
 @dataclass
 class Packing:
-    """A packing that is closed in and opened again, in stages."""
+    """A packing that is compressed and released in stages."""
 
     run: Run
     stages: list[Stage]
     closing: int  # stages of closing, which come first
 
     def opened(self, onset: float) -> list[Stage]:
-        """From the densest on, as long as they bear a pressure above `onset`."""
+        """Stages from the densest on while the pressure exceeds `onset`."""
         return [stage for stage in self.stages[self.closing - 1 :] if stage.pressure > onset]
 
     def jamming_fraction(self, onset: float) -> float:
-        """Where the pressure of opening vanishes: solid fraction as a parabola of the pressure, at 0."""
+        """Solid fraction at which the pressure of opening vanishes: a parabola of the pressure, at 0."""
         opened = self.opened(onset)
         return float(np.polyfit([s.pressure for s in opened], [s.solid_fraction for s in opened], 2)[-1])
 
 
 def read_packing(run: Run, frames: list[Outlines], stiffness: float, margin: float, closing: int) -> Packing:
-    """Of the outlines at the start and at each rest."""
+    """Packing from the outlines at the start and at each state of rest."""
     start, *rests = frames
     tributary, areas = start.tributary_lengths(), start.areas()
     forces = np.abs(np.stack([run.probe(name) for name in FORCES], axis=1))

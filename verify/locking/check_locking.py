@@ -1,4 +1,4 @@
-"""Locking: a nearly incompressible disc (nu = 0.49) between two plates, by all methods, beside nu = 0.4."""
+"""Locking: a nearly incompressible disc (nu = 0.49) between two plates, by all methods, compared with nu = 0.4."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ RATIOS = [0.4, 0.49]
 STIFFNESS = 3e3  # of the contact, mu / R
 LINEAR, SQUARE, CUBIC = 1, 2, 3  # degrees of finite elements
 ELEMENTS_ERROR = 3e-4  # of quadratic ones
-# Of forces on the same nodes in frames: as SAME_NODES of modes, of a disc that reaches to x = 3.
+# Tolerance of forces on the same nodes in frames: as SAME_NODES of modes, for a disc that extends to x = 3.
 ROUNDED_NODES = 3 * SINGLE / np.sqrt(np.pi / 168) * np.sqrt(49 / 2)
 NEAR_A_PLATE = 0.8  # of the radius: the half width of a contact at 10 % is 0.4, up to 0.92 of it
 FRAMES = f'\n[frames]\nperiod = {LONG_PAUSE}\nfields = ["displacement"]\n'
@@ -47,7 +47,7 @@ def elements() -> dict[float, np.ndarray]:
 
 @pytest.fixture(scope="module")
 def runs() -> dict[float, dict[str, dict[int, list[Rests]]]]:
-    """By Poisson's ratio, method and nodes, both ways."""
+    """By Poisson's ratio, method and nodes, with corners and with facets at the poles."""
     return {poisson: {method: {nodes: both_ways(CASE, squeeze(poisson, method, nodes)) for nodes in NODES}
                       for method in METHODS} for poisson in RATIOS}
 
@@ -63,7 +63,7 @@ def squeeze(poisson: float, method: str, nodes: int) -> Squeeze:
 
 
 def rms_errors(sizes: dict[int, list[Rests]], elements: np.ndarray) -> np.ndarray:
-    """[sizes] of the force, over approaches and both ways."""
+    """[sizes] rms errors of the force, over approaches and both orientations."""
     found = [[rests.force / elements - 1 for rests in both] for both in sizes.values()]
     return np.sqrt(np.mean(np.square(found), axis=(1, 2)))
 
@@ -73,7 +73,7 @@ def spacings(nodes: list[int]) -> list[float]:
 
 
 def test_finite_elements_agree() -> None:
-    """Quadratic triangles do not lock: cubic ones and finer meshes of both give the same."""
+    """Quadratic triangles do not lock: cubic ones and a finer mesh give the same force."""
     forces = [by_elements(0.1, 0.49, *choice) for choice in ((SQUARE, 12, 6), (SQUARE, 24, 12), (CUBIC, 12, 6))]
     for name, force in zip(("a finer mesh", "cubic triangles"), forces[1:]):
         CASE.check(Label.INDEPENDENT, f"finite elements: quadratic triangles over {name} at 10 %", forces[0] / force, 1,
@@ -85,21 +85,21 @@ def test_finite_elements_agree() -> None:
 def test_does_not_lock(runs: dict, elements: dict, method: str) -> None:
     CASE.check_rate(f"{method}: error of the force in h at nu = 0.49", spacings(NODES),
                     list(rms_errors(runs[0.49][method], elements[0.49])), 3, 1.2,
-                    "from 2, as at nu = 0.4, to 4: a dilation of order h^2 that shapes cannot avoid costs lambda h^4; "
-                    "0.2 for ten samples of a saw tooth")
+                    "from 2, as at nu = 0.4, to 4: an unavoidable dilation of order h^2 costs lambda h^4; 0.2 for ten "
+                    "samples of a saw tooth")
 
 
 def test_linear_triangles_lock(runs: dict, elements: dict) -> None:
     found = rms_errors(runs[0.49]["t3"], elements[0.49])[:3]
     CASE.check_rate("t3: error of the force in h at nu = 0.49", spacings(NODES[:3]), list(found), 1, 1,
-                    "between no convergence (two triangles a node, each holds its area: no freedom left) and order 2, "
-                    "which sets in at h^2 lambda / mu << 1: here 0.8 to 0.2")
+                    "between no convergence (two triangles per node preserve their areas: no freedom left) and order 2 "
+                    "for h^2 lambda / mu << 1: here 0.8 to 0.2")
 
 
 @pytest.mark.parametrize("facet", [False, True], ids=["corner", "facet"])
 def test_linear_triangles_of_dolfinx_lock_alike(facet: bool) -> None:
-    """On the engine's own nodes: those near the plates are held where the engine has them, the others find their
-    places, and what holds them is the force on a plate."""
+    """On the engine's own nodes: those near the plates are fixed at the engine's positions, the others are in
+    equilibrium, and the reactions give the force on a plate."""
     chosen = replace(squeeze(0.49, "t3", 168), facet=facet).at_full_rest()
     run = CASE.engine(f"{chosen.name()}_frames", chosen.scene(CASE) + FRAMES)
     rests = Rests(chosen, run)
@@ -108,12 +108,12 @@ def test_linear_triangles_of_dolfinx_lock_alike(facet: bool) -> None:
     worst = (np.abs(off) / allowed).argmax()
     CASE.check(Label.INDEPENDENT, f"t3, {'facet' if facet else 'corner'} at the poles: force over that of dolfinx's "
                "linear triangles on these nodes - 1", off[worst], 0, allowed[worst],
-               "the same triangles; the force of what still moves, from its kinetic energy; nodes in single precision "
-               "turn gradients by 1e-6, energies by that x root of lambda/(2 mu)")
+               "the same triangles; force of residual motion, from its kinetic energy; nodes in single precision "
+               "change gradients by 1e-6, energies by that x root of lambda/(2 mu)")
 
 
 def forces_of_linear_triangles(motion: Motion, poisson: float) -> np.ndarray:
-    """[frames but the first] on a plate."""
+    """[frames but the first] force on a plate."""
     start = motion.positions[0]
     solid = Solid(create(start, motion.triangles, LINEAR), Material.of_poisson(poisson), LINEAR)
     node = cKDTree(start).query(solid.space.tabulate_dof_coordinates()[:, :2])[1]
@@ -137,7 +137,7 @@ def test_engine_against_reference(references: dict[str, Rests], method: str) -> 
     forces = dict(zip(APPROACHES, references[method].force))
     ratio, allowed = worst_over_reference(CASE, squeeze(0.49, method, 168), forces)
     CASE.check(Label.INDEPENDENT, f"{method}, nu = 0.49: engine over reference, the worst", ratio, 1, allowed,
-               "as in plates: the force of what still moves, from its kinetic energy; Newton's method")
+               "as in plates: force of residual motion, from its kinetic energy; Newton's method")
 
 
 def test_picture(runs: dict, references: dict[str, Rests], elements: dict) -> None:

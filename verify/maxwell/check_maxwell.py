@@ -1,4 +1,4 @@
-"""A Maxwell branch beside a neo-Hookean solid: creep in small strains by modes, and large strains, engine against reference."""
+"""A neo-Hookean solid with a Maxwell branch: creep at small strains by modes; large strains, engine and reference."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ MU, BRANCH, RELAXATION = 1.0, 3.0, 0.3
 SMALL, END = 1e-4, 8.0
 LARGE, LARGE_END = 0.6, 3.0
 STEPS = [0.02, 0.01, 0.005]
-MASS = ["--mass", "corrected"]  # lumped mass makes the first mode slow by percents
-FINE = 0.05  # safety of the engine that the reference is compared with: steps of some 1 ms
+MASS = ["--mass", "corrected"]  # lumped mass lowers the first frequency by percents
+FINE = 0.05  # safety of the engine run compared with the reference: steps of some 1 ms
 
 
 def scene(pull: float, end: float, safety: float = 0.5, integrator: str = "verlet", target: float = 1e-6) -> str:
@@ -40,8 +40,8 @@ def large() -> dict[str, Run]:
 
 
 def way_of_centre(t: np.ndarray) -> np.ndarray:
-    """rho u_tt = stress_x on a bar of length 1, held at x = 0, pulled by SMALL at x = 1, with the stress 2 (mu + m s T / (1 + s T)) u_x in Laplace's
-    terms: the mean of u, by modes, each of which has a cubic of s."""
+    """Mean of u by modes, each with a cubic of s: rho u_tt = stress_x on a bar of length 1, held at x = 0, with the
+    traction SMALL at x = 1. The Laplace transform of the stress is 2 (mu + m s T / (1 + s T)) u_x."""
     mean = np.zeros_like(t)
     for number in range(200):
         k = (number + 0.5) * np.pi
@@ -64,8 +64,8 @@ def test_creep(small: dict[str, Run]) -> None:
         late = t >= 1
         error = float(np.abs(moved(run)[late] / way_of_centre(t[late]) - 1).max())
         CASE.check(Label.EXACT, f"creep in small strains, {name}", error, 0, 0.003,
-                   "by modes; the support yields by 2e-4 of the bar's stretch, frequencies of the first modes are off by some 1e-3 (corrected "
-                   "mass), which shows as 1e-3 of the way while it swings, and its stretch by as much")
+                   "by modes; the support's compliance is 2e-4 of the bar's; first frequencies err by some 1e-3 "
+                   "(corrected mass), which gives 1e-3 of the oscillating displacement; the stretch errs by as much")
 
 
 def test_energy_balance(small: dict[str, Run], large: dict[str, Run]) -> None:
@@ -75,7 +75,7 @@ def test_energy_balance(small: dict[str, Run], large: dict[str, Run]) -> None:
         dt = STEPS[-1] if "reference" in name else float(run.steps("dt").max())
         order = 1 if name == "step-doubling" else 2
         CASE.check(Label.EXACT, f"balance of energy, {name}", run.balance_error, 0, (instant * dt) ** order,
-                   f"of order {order} in the step, of the first mode, which carries the energy")
+                   f"order {order} in the step times frequency of the first mode, which carries the energy")
 
 
 def differences(large: dict[str, Run]) -> list[float]:
@@ -85,9 +85,9 @@ def differences(large: dict[str, Run]) -> list[float]:
 
 def test_large_strains(large: dict[str, Run]) -> None:
     stretch = 2 * moved(large["engine"]).max()
-    CASE.check(Label.EXACT, "large strains: the square's stretch", stretch, 0.4, 0.25, "or it says little about them")
+    CASE.check(Label.EXACT, "large strains: the square's stretch", stretch, 0.4, 0.25, "premise: strains are large")
     CASE.check_rate("large strains: reference against the engine at fine steps", STEPS, differences(large), 2, 0.15,
-                    "both are of second order, by different rules: trapezoidal and exponential")
+                    "both are of second order, with different rules: trapezoidal and exponential")
 
 
 def test_picture(small: dict[str, Run], large: dict[str, Run]) -> None:

@@ -28,16 +28,17 @@ METHODS = {"mls": "", "mls-gauss 1": "gauss_points = 1", "mls-gauss 3": "gauss_p
            "mls-gauss 6": "gauss_points = 6", "t3": "", "es-t3": ""}
 MASSES = ["lumped", "corrected"]
 LAST = 8.0  # of the stored roots, w R / c_s
-# Of the frequencies of triangles whose nodes are rounded. SINGLE / h turns gradients, and adds so much of |grad u| to a
-# dilation d: lambda d |grad u| is at most sqrt(lambda / 2 mu) of the energy (lambda d^2 / 2 + mu |grad u|^2).
+# Tolerance for frequencies of triangles with rounded nodes. Gradients turn by SINGLE / h, which adds this share of
+# |grad u| to a dilation d: lambda d |grad u| is at most sqrt(lambda / 2 mu) of the energy (lambda d^2 / 2 +
+# mu |grad u|^2).
 SAME_NODES = SINGLE / H[0] * np.sqrt(49 / 2)
 
-# rms errors of the first ten at nu = 0.4 in %, 168, 340 and 700 nodes, as README.md has them: lumped, corrected.
+# rms errors of the first ten at nu = 0.4 in %, 168, 340 and 700 nodes, as in README.md: lumped, corrected.
 FIGURES = {"mls": ("4.10 2.03 0.96", "0.161 0.111 0.082"), "mls-gauss 1": ("4.19 2.02 0.95", "0.329 0.211 0.129"),
            "mls-gauss 3": ("4.70 2.33 1.11", "0.582 0.216 0.077"),
            "mls-gauss 6": ("4.55 2.24 1.07", "0.441 0.120 0.029"), "t3": ("1.15 0.50 0.23", "3.07 1.44 0.68"),
            "es-t3": ("2.85 1.35 0.64", "0.086 0.014 0.004")}
-LAST_DIGIT = "our own earlier figure, +- half of its last digit: the same meshes, whose nodes rounding alone may move"
+LAST_DIGIT = "our own earlier figure, +- half of its last digit: the same meshes, up to rounding of nodes"
 
 
 def scene(method: str, mass: str, poisson: float, nodes: int, extra: str = "") -> str:
@@ -46,7 +47,7 @@ def scene(method: str, mass: str, poisson: float, nodes: int, extra: str = "") -
 
 
 def ask(name: str, text: str, *options: str) -> dict:
-    """What `pliant modes` says of the only body."""
+    """Output of `pliant modes` for the only body."""
     file, answer = CASE.out / f"{name}.toml", CASE.out / f"{name}.json"
     return answer_of([ENGINE, "modes", file, "--count", COUNT, "--json", answer, *options], text, file, answer)
 
@@ -73,7 +74,7 @@ def errors(method: str, mass: str, poisson: float, nodes: int) -> np.ndarray:
     export = ["--matrices", str(CASE.out / name)] if exported else []
     answer = ask(name, scene(method, mass, poisson, nodes), *export)
     CASE.check(Label.EXACT, f"{method}, {mass}, nu = {poisson}, {nodes} nodes: motions without stiffness",
-               answer["motions_at_rest"], 3, 0, "two translations and a rotation; more were mechanisms")
+               answer["motions_at_rest"], 3, 0, "two translations and a rotation; any more would be mechanisms")
     return np.array(answer["frequencies"]) / frequencies(poisson, COUNT) - 1
 
 
@@ -90,7 +91,7 @@ def errors_of_the_reference(method: str, mass: str, poisson: float) -> np.ndarra
 
 @cache
 def finite_elements(poisson: float) -> tuple[list[int], list[int], list[np.ndarray]]:
-    """Rings of elements, nodes, frequencies of three meshes."""
+    """Rings of elements, nodes and frequencies of three meshes."""
     from fem.eigen import natural_frequencies
     from fem.meshes import disc
     from fem.solid import Material, Solid
@@ -120,7 +121,7 @@ def test_roots_are_those_stored() -> None:
 
 @pytest.mark.parametrize("poisson", POISSON)
 def test_no_root_is_missed(poisson: float) -> None:
-    """The argument principle counts zeros of the entire function in a rectangle, whatever a grid may have missed."""
+    """The argument principle counts zeros of the entire function in a rectangle, including any missed by a grid."""
     highest = max(mode.order for mode in disc_modes(poisson, LAST)) + 3
     lines = {(n, kind): f for n in range(highest + 1) for kind, f in frequency_functions(n, poisson).items()}
     missed = sum(abs(count_in_the_plane(f, 0.3, LAST) - len(roots(f, 0.3, LAST))) for f in lines.values())
@@ -132,11 +133,12 @@ def test_finite_elements_agree_with_the_roots(poisson: float) -> None:
     rings, _, found = finite_elements(poisson)
     error = [rms(f / frequencies(poisson, COUNT) - 1) for f in found]
     CASE.check_rate(f"finite elements, nu = {poisson}: rms error", [1 / n for n in rings], error, 4, 0.5,
-                    "quadratic elements: twice the second order of their strains; late if nearly incompressible")
+                    "quadratic elements: twice the second order of their strains; on finer meshes if nearly "
+                    "incompressible")
     limit = found[-1] + (found[-1] - found[-2]) / ((rings[-1] / rings[-2])**4 - 1)
     CASE.check(Label.INDEPENDENT, f"finite elements, nu = {poisson}: extrapolated over exact",
                rms(limit / frequencies(poisson,
-                                       COUNT) - 1), 0, error[-1] / 4, "dolfinx and SLEPc, live; a quarter is left")
+                                       COUNT) - 1), 0, error[-1] / 4, "dolfinx and SLEPc, live; a quarter remains")
 
 
 @pytest.mark.parametrize("poisson", POISSON)
@@ -146,12 +148,12 @@ def test_lumped_mass_is_of_second_order(method: str, poisson: float) -> None:
         pytest.skip("locks: see test_locking")
     error = [rms(errors(method, "lumped", poisson, nodes)) for nodes in NODES]
     CASE.check_rate(f"{method}, lumped, nu = {poisson}: rms of the first ten", H, error, 2, 0.3,
-                    "row sums and linear functions; 0.3 for the fourth order in h^2 <= 0.14^2 x 4.8^2")
+                    "row sums and linear functions: second order; 0.3 for the fourth order in h^2 <= 0.14^2 x 4.8^2")
 
 
 @pytest.mark.parametrize("method", FIGURES)
 def test_figures_stay(method: str) -> None:
-    """On both sides: two errors of opposite sign make those of corrected mass, and one of them alone may change."""
+    """Bounds on both sides: errors of corrected mass are sums of two of opposite sign, either of which may change."""
     for mass, figures in zip(MASSES, FIGURES[method]):
         for nodes, figure in zip(NODES, figures.split()):
             CASE.check(Label.FROZEN, f"{method}, {mass}, {nodes} nodes: rms of the first ten [%]",
@@ -183,8 +185,8 @@ def matrices(method: str, nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 @cache
 def parts(method: str) -> tuple[list[float], list[float]]:
-    """rms over NODES of what the stiffness errs (with the consistent mass), and of what the corrected mass adds to
-    that."""
+    """rms over NODES of the stiffness error (with the consistent mass), and of the additional error of the corrected
+    mass."""
     of_stiffness, of_mass = [], []
     for nodes in NODES:
         consistent = np.sqrt(eigh(*matrices(method, nodes), eigvals_only=True, subset_by_index=(3, 2 + COUNT),
@@ -198,22 +200,22 @@ def parts(method: str) -> tuple[list[float], list[float]]:
 @pytest.mark.parametrize("method", ["mls", "mls-gauss 3", "t3", "es-t3"])
 def test_corrected_mass_errs_in_fourth_order(method: str) -> None:
     CASE.check_rate(f"{method}: corrected over consistent mass", H, parts(method)[1], 4, 0.5,
-                    "W - M^-1 = -D^-1 (1 - M D^-1)^2 ..., M D^-1 - 1 of the order h^2; half an order for its next term")
+                    "W - M^-1 = -D^-1 (1 - M D^-1)^2 ..., M D^-1 - 1 of the order h^2; half an order for the next term")
 
 
 @pytest.mark.parametrize("method", ["mls", "t3"])
 def test_stiffness_is_of_second_order(method: str) -> None:
     CASE.check_rate(f"{method}: stiffness with consistent mass", H, parts(method)[0], 2, 0.5,
-                    "linear functions; half an order for the h^4 that is left")
+                    "linear functions; half an order for the remaining h^4")
 
 
 @pytest.mark.parametrize("method", [method for method in METHODS if method != "t3"])
 def test_does_not_lock(method: str) -> None:
-    """What near incompressibility adds to the error of each of the ten; corrected mass, so that the stiffness shows."""
+    """Additional error of each frequency by near incompressibility; corrected mass isolates the stiffness."""
     added = [rms(errors(method, "corrected", 0.49, nodes) - errors(method, "corrected", 0.3, nodes)) for nodes in NODES]
     CASE.check_rate(f"{method}, corrected: error at nu = 0.49 less that at 0.3, rms of the first ten", H, added, 3, 1,
-                    "from 2, as all errors of linear functions, to 4: a dilation of order h^2 that shapes cannot avoid "
-                    "costs lambda h^4; that of order h of what locks costs lambda h^2, until nothing moves: below 2")
+                    "from 2, as all errors of linear functions, to 4: an unavoidable dilation of order h^2 costs "
+                    "lambda h^4; with locking, one of order h costs lambda h^2 and suppresses the motion: below 2")
 
 
 def frequencies_of_linear_triangles(poisson: float, nodes: int) -> dict[str, np.ndarray]:
@@ -239,12 +241,12 @@ def dense(matrix) -> np.ndarray:
 
 
 def test_linear_triangles_of_dolfinx_lock_alike() -> None:
-    """The least of the meshes, where locking is worst: 12 % with the corrected mass."""
+    """On the coarsest mesh, where locking is worst: 12 % with the corrected mass."""
     for mass, expected in frequencies_of_linear_triangles(0.49, NODES[0]).items():
         found = (errors("t3", mass, 0.49, NODES[0]) + 1) * frequencies(0.49, COUNT)
         CASE.check(Label.INDEPENDENT, f"t3, {mass}, nu = 0.49: largest of ten over dolfinx's linear triangles on these "
                    "nodes - 1", np.abs(found / expected - 1).max(), 0, SAME_NODES,
-                   "rounding of nodes in frames turns gradients by 4e-7, energies by that x root of lambda/(2 mu)")
+                   "rounding of nodes in frames changes gradients by 4e-7, energies by that x root of lambda/(2 mu)")
 
 
 @pytest.mark.parametrize("poisson", [0.4, 0.49])
@@ -258,7 +260,7 @@ def test_engine_against_reference(method: str, poisson: float) -> None:
     worst = np.unravel_index((np.abs(off) / np.array(allowed)).argmax(), np.shape(off))
     CASE.check(Label.INDEPENDENT, f"{method}, nu = {poisson}: engine over reference - 1, the worst of both masses",
                off[worst[0]][worst[1]], 0, allowed[worst[0]][worst[1]],
-               "differences of forces leave translations a residual, exactly 0; one of as much moves w^2 by no more")
+               "differences of forces leave a residual on translations, exactly 0; it bounds the error of w^2")
 
 
 def coarsest_errors(method: str, mass: str, poisson: float) -> np.ndarray:
@@ -266,8 +268,8 @@ def coarsest_errors(method: str, mass: str, poisson: float) -> np.ndarray:
 
 
 def residual_of_translations(method: str, mass: str, poisson: float) -> float:
-    """|A x| / |x| of the symmetric A = L^T K L, W = L L^T the inverse mass, for translations; the larger of the two. For
-    any x of a frequency w it would be the error of w^2 that the differences of forces make, at most (Weyl)."""
+    """|A x| / |x| of the symmetric A = L^T K L, W = L L^T the inverse mass, for translations; the larger of the two. It
+    bounds the error of w^2 by the differences of forces for any frequency w (Weyl)."""
     coarsest_errors(method, mass, poisson)
     folder = CASE.out / named(method, mass, poisson, NODES[0])
     stiffness = mmread(folder / "disc_stiffness.mtx").toarray()

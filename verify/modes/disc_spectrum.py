@@ -1,11 +1,11 @@
 """Exact natural frequencies of a free elastic disc in plane strain; units mu = R = rho = 1, lambda = 2 nu / (1 - 2 nu).
 
-Displacements from potentials, u = grad phi + curl psi, with phi = A J_n(a r) cos(n t), psi = B J_n(b r) sin(n t),
+Displacements have potentials, u = grad phi + curl psi, with phi = A J_n(a r) cos(n t), psi = B J_n(b r) sin(n t),
 a = w / c_p, b = w / c_s: u_r = phi_r + psi_t / r, u_t = phi_t / r - psi_r. On the rim r = 1 the tractions vanish:
     s_rr: A [2 a^2 J_n''(a) - lambda a^2 J_n(a)] + B 2 n [b J_n'(b) - J_n(b)] = 0,
     s_rt: A (-2 n) [a J_n'(a) - J_n(a)] + B [b J_n'(b) - n^2 J_n(b) - b^2 J_n''(b)] = 0.
-Bessel's equation takes the second derivatives away: z^2 J'' = (n^2 - z^2) J - z J'. For n = 0 the two part: s_rr = 0 is
-radial, s_rt = 0 torsion, J_2(b) = 0. Frequencies of n >= 1 are double (cos and sin), those of n = 0 single.
+Bessel's equation eliminates the second derivatives: z^2 J'' = (n^2 - z^2) J - z J'. For n = 0 the two decouple: s_rr =
+0 is radial, s_rt = 0 torsion, J_2(b) = 0. Frequencies of n >= 1 are double (cos and sin), those of n = 0 single.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def frequency_functions(order: int, poisson: float) -> dict[str, Callable[[np.nd
 
 
 def roots(function: Callable[[np.ndarray], np.ndarray], first: float, last: float) -> list[float]:
-    """Where it changes its sign on a fine grid, to rounding."""
+    """Sign changes of the function on a fine grid, to rounding."""
     grid = np.linspace(first, last, int(np.ceil((last - first) / GRID)) + 1)
     values = function(grid)
     change = np.flatnonzero(np.sign(values[:-1]) * np.sign(values[1:]) < 0)
@@ -70,8 +70,8 @@ def roots(function: Callable[[np.ndarray], np.ndarray], first: float, last: floa
 
 def count_in_the_plane(function: Callable[[np.ndarray], np.ndarray], first: float, last: float, height: float = 1.0,
                        points: int = 4000) -> int:
-    """Number of its zeros in a rectangle about [first, last], with multiplicity: the turns of its value along the
-    edge (argument principle)."""
+    """Number of zeros in a rectangle about [first, last], with multiplicity: the winding number of the value along the
+    boundary (argument principle)."""
     corners = [first - 1j * height, last - 1j * height, last + 1j * height, first + 1j * height, first - 1j * height]
     edge = np.concatenate([np.linspace(p, q, points) for p, q in zip(corners, corners[1:])])
     values = function(edge)
@@ -82,9 +82,9 @@ def count_in_the_plane(function: Callable[[np.ndarray], np.ndarray], first: floa
 
 
 def disc_modes(poisson: float, last: float, first: float = 0.3) -> list[Mode]:
-    """All modes with first < w < last, growing.
+    """All modes with first < w < last, in ascending order.
 
-    Orders go up until none has a root below `last`: the lowest root of an order grows with it.
+    Orders increase until none has a root below `last`, as the lowest root increases with the order.
     """
     found: list[Mode] = []
     order = 0
@@ -98,7 +98,7 @@ def disc_modes(poisson: float, last: float, first: float = 0.3) -> list[Mode]:
 
 
 def frequencies(poisson: float, count: int) -> np.ndarray:
-    """[count] the lowest, multiple ones repeated."""
+    """[count] lowest frequencies, multiple ones repeated."""
     last = 6.0
     while True:
         values = np.repeat(*np.array([(mode.frequency, mode.multiplicity) for mode in disc_modes(poisson,

@@ -1,4 +1,4 @@
-"""The stored numbers of oracles/, computed again: by finite elements on two meshes each, or from their closed forms."""
+"""The stored numbers of oracles/, computed again by finite elements on two meshes each, or from closed forms."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CASE = Case(__file__, fast=True)
 MATERIAL = Material()
 PLATES = read_oracle("disc_between_plates")
 APPROACHES = list(PLATES["approach_over_diameter"]) if FULL else [0.01, 0.05, 0.3]
-# Rings of triangles of the quarter disc, and edges in the half width of the contact.
+# Rings of triangles in the quarter disc, and edges in the half width of the contact.
 COARSE, FINE = (12, 6), (24, 12)
 PENALTY = 1e4  # mu / R; and twice that
 OSCILLATION = read_oracle("disc_oscillation")
@@ -35,7 +35,7 @@ class Both:
     fine: Squeezed
 
     def change(self, name: str, offset: float = 0) -> float:
-        """From mesh to mesh, relative, of what a quantity exceeds an offset by."""
+        """Relative change between meshes of a quantity less an offset."""
         return abs(getattr(self.coarse, name) - offset) / abs(getattr(self.fine, name) - offset) - 1
 
 
@@ -59,8 +59,8 @@ def test_disc_between_plates(plates: dict[float, Both], approach: float) -> None
         stored, value = PLATES[column][row] - offset, getattr(both.fine, name) - offset
         error = max(abs(other.change(name, offset)) for other in plates.values())
         CASE.check(Label.INDEPENDENT, f"plates at {100 * approach:g} %: {name.replace('_', ' ')}", value / stored, 1,
-                   stored_error + error, "stored error, and the largest difference of two meshes by a factor 2: at one "
-                   "approach the edge of contact may fall alike between the nodes of both")
+                   stored_error + error, "stored error plus largest difference of two meshes by a factor 2, as at one "
+                   "approach the contact edge may have the same position between nodes of both")
     balance = both.fine.reaction / both.fine.force
     CASE.check(Label.EXACT, f"plates at {100 * approach:g} %: reaction over force", balance, 1, 1e-9,
                "equilibrium; Newton's method to 1e-10 of the displacement")
@@ -70,14 +70,14 @@ def test_hertz() -> None:
     stored = PLATES["hertz_force_over_muR"]
     again = np.array([hertz_force(D, MATERIAL) for D in PLATES["approach_over_diameter"]])
     CASE.check(Label.EXACT, "Hertz: stored over computed", np.abs(stored / again - 1).max(), 0, 1e-9,
-               "the stored ones were solved to 4e-10")
+               "stored values were solved to 4e-10")
     small = PLATES["approach_over_diameter"] <= 0.03
     share = stored / (np.pi * modulus(MATERIAL))  # phi
     beyond = share**1.5 / PLATES["approach_over_diameter"]
     deviation = PLATES["force_over_muR"] / stored - 1
     CASE.check(Label.INDEPENDENT, "finite elements over Hertz up to 3 %, of what large strains may do",
                np.abs(deviation / beyond)[small].max(), 0, 1,
-               "linear theory; strain a / 2R in the contact, which makes up phi / D of the approach")
+               "linear theory; strain a / 2R in the contact, which contributes phi / D of the approach")
 
 
 def frequency_condition(order: int, omega: float) -> float:
@@ -116,7 +116,7 @@ def test_oscillation(oscillations: list[Oscillation]) -> None:
             continue
         found = [run.value(quantity, time) for run in (coarse, fine)]
         CASE.check(Label.INDEPENDENT, f"oscillation: {quantity.replace('_', ' ')} at {time:g}", found[1], value,
-                   error + abs(found[1] - found[0]), "stored error, and difference of two meshes by a factor 2")
+                   error + abs(found[1] - found[0]), "stored error plus difference of two meshes by a factor 2")
     CASE.check(Label.EXACT, "oscillation: energy at the start over pi / 16", fine.energies[0] / (np.pi / 16), 1, 1e-6,
                "closed form; quadratic edges of the circle")
 

@@ -1,4 +1,4 @@
-"""Time integration of a disc that bounces off a floor, with a smooth start of the contact pressure and without."""
+"""Time integration of a disc that bounces off a floor, with and without a smooth start of the contact pressure."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ FORCE = Quantity("force on the floor", ["force.force_y"])
 QUANTITIES = [POSITIONS, STRAIN, FORCE]
 SMOOTHING = {"smooth": 0.1, "plain": 0}
 EXPECTED = {
-    "smooth": (2, 0.15, "pressure with a continuous derivative: second order, as of free motion"),
-    "plain": (1.75, 0.5, "loose: kinks of the pressure fall anywhere within steps, so errors of second order have "
-                         "factors that scatter; 1.3 to 1.9 were seen elsewhere, 2 is theory's upper end"),
+    "smooth": (2, 0.15, "pressure with a continuous derivative: second order, as in free motion"),
+    "plain": (1.75, 0.5, "loose: kinks of the pressure occur at any time within steps, so factors of second-order "
+                         "errors scatter; 1.3 to 1.9 were measured elsewhere, 2 is the theoretical upper limit"),
 }
 
 

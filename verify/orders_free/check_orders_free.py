@@ -1,4 +1,4 @@
-"""Time integration of a free compliant disc at large strains: both solvers converge, to each other."""
+"""Time integration of a free compliant disc at large strains: both solvers converge to each other."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ POSITIONS = Quantity("positions", [f"{node}.position_{axis}" for node in NODES f
 STRAIN = Quantity("strain energy", ["energy.strain"])
 KINETIC = Quantity("kinetic energy", ["energy.kinetic"])
 QUANTITIES = [POSITIONS, STRAIN, KINETIC]
-SECOND = ("Verlet and Newmark (beta 1/4, gamma 1/2) are of second order; errors of the run compared with add at most "
-          "an eighth to the last error, 0.05 to the slope; the engine's short first steps take as much from it")
+SECOND = ("Verlet and Newmark (beta 1/4, gamma 1/2) are of second order; the finest run's error adds at most an eighth "
+          "to the last error, 0.05 to the slope; the engine's short first steps reduce it by as much")
 
 
 @pytest.fixture(scope="module", params=["lumped", "corrected"])

@@ -23,7 +23,7 @@ METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
 MASSES = ["lumped", "corrected"]
 VARIANTS = [(method, mass) for method in METHODS for mass in MASSES]
 NODES = [700, 1400, 2800] + ([5600] if FULL else [])
-SAFETY = 0.5  # so the step falls with the spacing of nodes, and its error as theirs
+SAFETY = 0.5  # the step decreases with the node spacing, and its error like that of space
 END, PERIOD = 9.0, 0.05  # of the scene and of its frames
 FRAMES = PERIOD * np.arange(round(END / PERIOD) + 1)
 EXACT_ENERGY = np.pi / 16
@@ -38,7 +38,7 @@ class Stored:
 
 
 def stored(quantity: str) -> Stored:
-    """Of disc_oscillation.csv: its README gives errors and origin."""
+    """Rows of disc_oscillation.csv; its README gives errors and origin."""
     table = read_oracle("disc_oscillation")
     rows = table["quantity"] == quantity
     return Stored(table["t_cs_over_R"][rows], table["value"][rows])
@@ -47,16 +47,16 @@ def stored(quantity: str) -> Stored:
 EXTREMES, SAMPLES = stored("extreme_of_s"), stored("s")
 EARLY = 5.0  # extremes until then
 
-# Lumped mass makes overtones slow by some h^2: at late extremes they swing against the oval mode by another phase.
+# Lumped mass slows overtones by some h^2, which changes their phase relative to the oval mode at late extremes.
 LATE = [("mls", "lumped"), ("mls-gauss", "lumped"), ("es-t3", "lumped")]
 
 RINGS = (8, 12)
-MESHES = "difference of two meshes, 1.5 times as fine: more than the error of the finer for any order from 1.7 on"
+MESHES = "difference of two meshes with ratio 1.5, which exceeds the finer one's error for any order from 1.7 on"
 
 
 @dataclass
 class Stretch:
-    """s = sqrt(Ixx / Ixx at the start) of FRAMES."""
+    """s = sqrt(Ixx / initial Ixx) at FRAMES."""
 
     values: np.ndarray
 
@@ -64,7 +64,7 @@ class Stretch:
         return CubicSpline(FRAMES, self.values)(times)
 
     def extremes(self) -> np.ndarray:
-        """In the order of their times, the one at the start left out."""
+        """Extremes in temporal order, without that at the start."""
         spline = CubicSpline(FRAMES, self.values)
         times = spline.derivative().roots(extrapolate=False)
         values = spline(times[(times > 2 * PERIOD) & (times < END - 2 * PERIOD)])
@@ -77,27 +77,27 @@ class Stretch:
         return self.extremes() / EXTREMES.value - 1
 
     def error(self) -> float:
-        """Root mean square over the extremes and the samples at equal times."""
+        """Rms error over the extremes and the samples at equal intervals."""
         return float(np.sqrt(np.mean(np.append(self.extremes() - EXTREMES.value,
                                                self.at(SAMPLES.time) - SAMPLES.value)**2)))
 
 
 @dataclass
 class Swing:
-    """A run, and what is read from its frames."""
+    """A run and its evaluated frames."""
 
     run: Run
     motion: Motion
     stretch: Stretch
 
     def energy_error(self) -> float:
-        """Of the kinetic energy at the start, relative."""
+        """Relative error of the initial kinetic energy."""
         return float(self.run.probe("energy.kinetic")[0] / EXACT_ENERGY - 1)
 
     def micro_inertia(self) -> float:
-        """Mean of S, where the mass has the energy of rho/2 (|v|^2 + S |grad v|^2); over R^2.
+        """Mean of S over R^2, where the kinetic energy is that of rho/2 (|v|^2 + S |grad v|^2).
 
-        Exact here: (X, -Y) has |grad v|^2 = 2, and 1/2 for the mean of |v|^2.
+        Exact here: (X, -Y) has |grad v|^2 = 2, and the mean of |v|^2 is 1/2.
         """
         return self.energy_error() / 4
 
@@ -110,7 +110,7 @@ def swing(run: Run) -> Swing:
 
 
 def spacing(nodes: int) -> float:
-    """Of nodes, over the radius: a square of its area each."""
+    """Node spacing over the radius: the side of a square with a node's area."""
     return float(np.sqrt(np.pi / nodes))
 
 
@@ -130,10 +130,10 @@ def engine_swing(method: str, mass: str, nodes: int, safety: float = SAFETY) -> 
 
 
 def test_extremes(swings: dict, variant: tuple[str, str]) -> None:
-    """Half a percent at 700 nodes; where late extremes err more there, at 1400."""
+    """Tolerance half a percent at 700 nodes, or at 1400 for variants with larger errors of late extremes."""
     name, runs = " ".join(variant), swings[variant]
     errors = runs[700].stretch.extreme_errors()
-    source = "finite elements, error 2e-6; half a percent is asked for"
+    source = "finite elements, error 2e-6; specified: half a percent"
     early = EXTREMES.time < EARLY
     CASE.check(Label.INDEPENDENT, f"{name}: extremes until {EARLY:g}, 700 nodes", largest(errors[early]), 0, 0.005,
                source)
@@ -144,7 +144,7 @@ def test_extremes(swings: dict, variant: tuple[str, str]) -> None:
 
 @dataclass
 class Lumping:
-    """What lumped mass changes of the extremes at 700 nodes, relative, [extremes]: seen, and by finite elements."""
+    """Relative change of the extremes by lumped mass at 700 nodes, [extremes]: measured, and by finite elements."""
 
     found: np.ndarray
     expected: np.ndarray
@@ -152,9 +152,9 @@ class Lumping:
 
 @pytest.fixture(scope="module")
 def lumping(swings: dict, elements: list[Oscillation]) -> dict[str, Lumping]:
-    """By method. Row sums move mass to nodes: sum of m_i v_i^2 = integral of rho (|v|^2 + grad v S grad v^T), S the
-    second moment of the shape functions about the point, of the order h^2. Finite elements with its mean must change
-    alike."""
+    """By method. Row sums move mass to nodes: sum of m_i v_i^2 = integral of rho (|v|^2 + grad v S grad v^T). S is the
+    second moment of the shape functions about the point, of the order h^2. Finite elements with the mean of S must show
+    the same change."""
     plain, coarse = of_elements(elements[0]).extremes(), elements[0]
 
     @cache
@@ -174,22 +174,22 @@ def test_lumping_is_micro_inertia(lumping: dict[str, Lumping], method: str, mass
     found, expected = lumping[method].found, lumping[method].expected
     worst = np.abs(expected).argmax()
     allowed = 2 * spacing(700) * abs(expected[worst])
-    source = "finite elements with the lumped mass's micro-inertia; another along the outline, 2 h/R of the area"
+    source = "finite elements with the lumped mass's micro-inertia; it differs along the outline, 2 h/R of the area"
     CASE.check(Label.INDEPENDENT, f"{method}: extreme at {EXTREMES.time[worst]:.1f}, {mass} over corrected mass - 1",
                found[worst], expected[worst], allowed, source)
     CASE.check(Label.INDEPENDENT, f"{method}: other extremes, {mass} over corrected mass, less finite elements'",
-               largest(np.delete(found - expected, worst)), 0, allowed, f"{source}; of the largest")
+               largest(np.delete(found - expected, worst)), 0, allowed, f"{source}; share of the largest change")
 
 
 @pytest.mark.parametrize("method, mass", LATE)
 def test_late_extremes_of_lumped_mass(swings: dict, lumping: dict[str, Lumping], method: str, mass: str) -> None:
-    """Beyond the half percent that is asked for, by as much as micro-inertia predicts: no more and no less."""
+    """These exceed half a percent; micro-inertia predicts the error from both sides."""
     errors, stiffness = (swings[method, of][700].stretch.extreme_errors() for of in (mass, "corrected"))
     expected = lumping[method].expected
     worst = np.abs(expected).argmax()
     allowed = 2 * spacing(700) * abs(expected[worst])
-    source = ("finite elements with the lumped mass's micro-inertia, of the largest 2 h/R as of lumped over corrected "
-              "mass; and the error of the stiffness, which is that with corrected mass")
+    source = ("finite elements with the lumped mass's micro-inertia; 2 h/R of the largest, as for lumped over "
+              "corrected mass, plus the stiffness error, which is that with corrected mass")
     CASE.check(Label.INDEPENDENT, f"{method} {mass}: extreme at {EXTREMES.time[worst]:.1f}, 700 nodes", errors[worst],
                expected[worst], allowed + abs(stiffness[worst]), source)
     late = (EXTREMES.time >= EARLY) & (np.arange(len(expected)) != worst)
@@ -198,20 +198,20 @@ def test_late_extremes_of_lumped_mass(swings: dict, lumping: dict[str, Lumping],
 
 
 def largest(values: np.ndarray) -> float:
-    """With its sign."""
+    """The largest value in magnitude, with its sign."""
     return float(values[np.abs(values).argmax()])
 
 
 def test_converges(swings: dict, variant: tuple[str, str]) -> None:
     errors = [swings[variant][n].stretch.error() for n in NODES]
     CASE.check_rate(f"{' '.join(variant)}: stretch", [spacing(n) for n in NODES], errors, 2, 0.5,
-                    "linear completeness and a step in proportion: second order; where its terms nearly cancel, as of "
-                    "es-t3 with corrected mass, the third order of the outline still shows: up to halfway")
+                    "linear completeness and a step proportional to h: second order; if its terms nearly cancel, as "
+                    "for es-t3 with corrected mass, up to halfway to the outline's third order")
 
 
 def test_energy_at_the_start(swings: dict, variant: tuple[str, str]) -> None:
-    """Lumping moves mass within the reach of a node: h^2. Corrected mass errs by the square of the shift of centres
-    of mass, O(h), at the outline alone, which has a share O(h) of the mass: h^3."""
+    """Lumping moves mass within the support of a node: h^2. The error of corrected mass is the square of the shift of
+    centres of mass, O(h), at the outline only, which has a share O(h) of the mass: h^3."""
     order = 2 if variant[1] == "lumped" else 3
     errors = [swings[variant][n].energy_error() for n in NODES]
     CASE.check_rate(f"{' '.join(variant)}: energy at the start", [spacing(n) for n in NODES], errors, order, 0.3,
@@ -225,11 +225,11 @@ def test_energy_of_the_mesh(swings: dict, method: str, mass: str) -> None:
     found = swings[method, mass][NODES[0]]
     expected = triangles_energy(found.motion, mass)
     CASE.check(Label.EXACT, f"{method} {mass}: energy of the mesh", found.run.probe("energy.kinetic")[0] / expected, 1,
-               10 * SINGLE, "masses of linear triangles, computed from the mesh in the frames; single precision")
+               10 * SINGLE, "masses of linear triangles, from the mesh in the frames; single precision")
 
 
 def triangles_energy(motion: Motion, mass: str) -> float:
-    """Kinetic energy of the velocity (X, -Y)/2, whose sign does not matter."""
+    """Kinetic energy of the velocity (X, -Y)/2, independent of its sign."""
     return float((motion.momenta(motion.positions[0], mass) * motion.positions[0]).sum() / 8)
 
 
@@ -239,7 +239,7 @@ def of_elements(solved: Oscillation) -> Stretch:
 
 @pytest.fixture(scope="module")
 def elements() -> list[Oscillation]:
-    """Quadratic triangles with curved edges, half of the stable step."""
+    """Quadratic triangles with curved edges, with half of the stable step."""
     return [Oscillation(rings, END) for rings in RINGS]
 
 
@@ -269,7 +269,7 @@ def reference_stretch(mass: str, dt: float) -> Stretch:
 
 
 def extrapolated(coarse: Stretch, fine: Stretch) -> Stretch:
-    """To no step, from a step and its half, by the second order of Newmark's method."""
+    """Extrapolation to zero step from a step and its half, with the second order of Newmark's method."""
     return Stretch((4 * fine.values - coarse.values) / 3)
 
 
@@ -280,13 +280,13 @@ def short_steps() -> dict[str, Stretch]:
 
 @pytest.mark.parametrize("mass", MASSES)
 def test_reference(references: dict, short_steps: dict, mass: str) -> None:
-    """The same nodes, so only steps in time tell them apart."""
+    """With the same nodes, the solvers differ only in time integration."""
     coarse, fine = references[mass]
     limit = extrapolated(coarse, fine)
     CASE.check(Label.INDEPENDENT, f"mls {mass}: engine - reference, {SOLVERS_NODES} nodes",
                np.abs(short_steps[mass].values - limit.values).max(), 0,
                0.25 * np.abs(limit.values - fine.values).max(),
-               "reference extrapolated from two steps: a quarter of what that changed is left, of the fourth order")
+               "reference extrapolated from two steps: a quarter of its change remains, of fourth order")
 
 
 def test_picture_of_solvers(swings: dict, elements: list[Oscillation], references: dict) -> None:
@@ -309,7 +309,7 @@ def draw_stretch(axes: Axes, swings: dict, elements: list[Oscillation], referenc
 
 
 def draw_differences(axes: Axes, swings: dict, elements: list[Oscillation], references: dict) -> None:
-    """From the finer finite elements, in percent; their own error as a band."""
+    """Differences from the finer finite elements, in percent; their own error as bars."""
     coarse, fine = (of_elements(e).values for e in elements)
     for (name, values), colour in zip({
             "engine, mls lumped, 700": swings["mls", "lumped"][700].stretch.values,

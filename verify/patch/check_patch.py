@@ -1,4 +1,4 @@
-"""Patch test: loads of a uniform stress must make a uniform strain."""
+"""Patch test: loads of a uniform stress must cause a uniform strain."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ from verification import Case, Label, Run
 CASE = Case(__file__, fast=True)
 MATERIAL = Material()
 NODES = [168, 340, 700, 1400]
-FINE = NODES[1:]  # at 168 the outline's curvature still shows
+FINE = NODES[1:]  # at 168 the outline's curvature still matters
 SIDE = {"square": 2.0, "disc": np.sqrt(np.pi)}  # of a square of the shape's area
-# By how much errors vary between meshes, standard deviation of the logarithm: measured on eleven meshes of 5 % more or
-# fewer nodes at each of FINE, root mean square of the three.
+# Scatter of errors between meshes, standard deviation of the logarithm: measured on eleven meshes of 5 % more or fewer
+# nodes at each of FINE, root mean square of the three.
 SCATTER = {"all": 0.035, "outline": 0.040, "middle": 0.076}
 STRETCH = {"square": np.array([[1.2, 0.1], [0.1, 1.1]]), "disc": 0.9 * np.eye(2)}
 CONSISTENT = [method for method in METHODS if method != "mls-gauss"]
@@ -34,14 +34,14 @@ def strain(F: np.ndarray) -> np.ndarray:
 
 
 def stress(F: np.ndarray) -> np.ndarray:
-    """First Piola-Kirchhoff, over mu: force on an area of the start."""
+    """First Piola-Kirchhoff stress over mu: force per initial area."""
     G = np.linalg.inv(F).T
     return MATERIAL.mu * (F - G) + MATERIAL.lame * np.log(np.linalg.det(F)) * G
 
 
 def scene(shape: str, method: str, nodes: int = 168) -> str:
     P = stress(STRETCH[shape])
-    if shape == "disc":  # force P N on an area of the start, of which F makes 0.9 times as much
+    if shape == "disc":  # force P N per initial area, which F reduces to 0.9 of it
         return CASE.scene("disc.toml", method=method, nodes=nodes, pressure=float(-P[0, 0] / STRETCH[shape][0, 0]))
     across, along = np.hypot(*P[:, 0]), np.hypot(*P[:, 1])
     return CASE.scene("square.toml", method=method, nodes=nodes, across=float(across), along=float(along),
@@ -49,7 +49,7 @@ def scene(shape: str, method: str, nodes: int = 168) -> str:
 
 
 def largest_error(run: Run, shape: str) -> float:
-    """Of the Green-Lagrange strain at all integration points."""
+    """Largest error of the Green-Lagrange strain at all integration points."""
     expected = strain(STRETCH[shape])
     return max(abs(run.probe(f"{which}.strain_{name}")[-1] - expected[index])
                for which in ("least", "largest") for name, index in COMPONENTS.items())
@@ -60,12 +60,12 @@ def largest_error(run: Run, shape: str) -> float:
 def test_uniform_strain(method: str, shape: str) -> None:
     run = CASE.engine(f"{shape}_{method}", scene(shape, method))
     CASE.check(Label.EXACT, f"engine, {method}, {shape}: error of the strain", largest_error(run, shape), 0, 1e-12,
-               "condition of the consistent gradients 1e-12; motion decays to exp(-1.5 x 28)")
+               "conditioning of the consistent gradients 1e-12; motion decays to exp(-1.5 x 28)")
     run = by_reference(shape, method)
     bounds = [run.probe(f"{which}_jacobian.jacobian")[-1] for which in ("least", "largest")]
     error = np.abs(np.array(bounds) / np.linalg.det(STRETCH[shape]) - 1).max()
     CASE.check(Label.EXACT, f"reference, {method}, {shape}: error of J", error, 0, 1e-11,
-               "condition of its gradients 1e-11; Newton to 1e-13 of the forces")
+               "conditioning of its gradients 1e-11; Newton to 1e-13 of the forces")
 
 
 def by_reference(shape: str, method: str) -> Run:
@@ -86,7 +86,7 @@ def cell_errors(run: Run, shape: str) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 @pytest.fixture(scope="module")
 def flawed() -> dict[str, dict[int, Run]]:
-    """The engine with `mls-gauss`, three points a triangle, by shape and nodes."""
+    """The engine with `mls-gauss`, three points per triangle, by shape and nodes."""
     def run(shape: str, nodes: int) -> Run:
         return CASE.engine(f"{shape}_mls-gauss_{nodes}", scene(shape, "mls-gauss", nodes))
 
@@ -94,7 +94,7 @@ def flawed() -> dict[str, dict[int, Run]]:
 
 
 def part_of(run: Run, part: str) -> np.ndarray:
-    """Mask of the triangles: all, those with a node on the outline, those within half of the radius."""
+    """Mask of the triangles: all, those with a node on the outline, or those within half of the radius."""
     frames = Frames(run.folder / "frames.h5", None)
     grid, points = frames.grids["bodies"], frames.positions("bodies", 0)
     cells = grid.cells[grid.kind == COMPLIANT]
@@ -105,15 +105,15 @@ def part_of(run: Run, part: str) -> np.ndarray:
 
 
 def root_mean_square(run: Run, shape: str, part: str = "all") -> float:
-    """Of the triangles' errors, over the strain."""
+    """Root mean square of the triangles' errors, over the strain."""
     errors = cell_errors(run, shape)[2][part_of(run, part)]
     return float(np.sqrt(np.mean(errors**2)) / np.linalg.norm(strain(STRETCH[shape])))
 
 
-FLAWS = [("square", "all", 1, "it does not fall at corners, a share h^2 of the area"),
-         ("disc", "outline", 0, "what the quadrature leaves there scales with the mesh"),
-         ("disc", "middle", 1.5, "1/h places along the outline, each at random, without resultant, an area h^2 of "
-          "stress: the root of 1/h (h^2)^2")]
+FLAWS = [("square", "all", 1, "the error does not decrease at corners, a share h^2 of the area"),
+         ("disc", "outline", 0, "the quadrature error there scales with the mesh"),
+         ("disc", "middle", 1.5, "1/h random loads along the outline without resultant, each a stress on an area h^2: "
+          "the root of 1/h (h^2)^2")]
 
 
 @pytest.mark.parametrize("shape, part, order, why", FLAWS, ids=lambda value: value if isinstance(value, str) else "")
@@ -132,11 +132,11 @@ def test_flaw_is_the_method_s(flawed: dict, shape: str) -> None:
     for which in ("least", "largest"):
         ratio = other.probe(f"{which}_jacobian.jacobian")[-1] / run.probe(f"{which}_jacobian.jacobian")[-1]
         CASE.check(Label.INDEPENDENT, f"mls-gauss, {shape}: {which} J, reference over engine", ratio, 1, 1e-9,
-                   "the same tables to 1e-11; condition of the equilibrium")
+                   "the same tables to 1e-11; conditioning of the equilibrium")
 
 
 def finite_elements(shape: str) -> Solid:
-    """A disc of curved triangles under the traction P N, held in translation and rotation at exact places."""
+    """A disc of curved triangles under the traction P N, with translation and rotation fixed at exact positions."""
     F = STRETCH[shape]
     solid = Solid(disc(4), MATERIAL)
     traction = ufl.dot(ufl.as_matrix(stress(F).tolist()), ufl.FacetNormal(solid.domain))
@@ -155,7 +155,7 @@ def test_finite_elements(shape: str) -> None:
     error = solid.deformation_gradient(solid.u) - ufl.as_matrix(STRETCH[shape].tolist())
     rms = np.sqrt(fem.assemble_scalar(compile_form(ufl.inner(error, error) * solid.dx)) / np.pi)
     CASE.check(Label.EXACT, f"finite elements, strain of the {shape}: rms error of F", rms, 0, 1e-12,
-               "linear displacements are among those of curved triangles; Newton's method")
+               "curved triangles contain linear displacements; Newton's method")
 
 
 def test_picture(flawed: dict) -> None:

@@ -15,22 +15,22 @@ from squeeze import (OUTLINE, METHODS, Rests, Squeeze, both_ways, by_engine, by_
 from verification import FULL, Case, Label
 
 CASE = Case(__file__)
-# The cheapest method is the furthest off: it gets one size more.
+# The cheapest method has the largest error and gets one more size.
 SIZES = {method: [168, 340, 700] + ([1400] if FULL or method == "t3" else []) for method in METHODS}
 APPROACHES = tuple(np.round(0.025 * np.arange(1, 13), 3))
-COMPARED = (0.05, 0.1, 0.2, 0.3)  # with the reference, after a long pause each
+COMPARED = (0.05, 0.1, 0.2, 0.3)  # compared with the reference, after a long pause each
 CHECKED = np.array(APPROACHES) >= 0.05
 SOFT, STIFF = 3e3, 12e3  # contact stiffness, mu / R
 STIFFNESSES = [1e3, 2e3, 4e3, 8e3]
 ACCEPTED = 0.003
-ELEMENTS_ERROR, LIMIT_ERROR = 1.5e-4, 2e-3  # of finite elements; of the saw tooth that extrapolation leaves
+ELEMENTS_ERROR, LIMIT_ERROR = 1.5e-4, 2e-3  # of finite elements; of the saw tooth remaining after extrapolation
 MATERIAL = Material()
 ORACLE = read_oracle("disc_between_plates")
 
 
 @pytest.fixture(scope="module")
 def squeezed() -> list[Squeezed]:
-    """By approach, finite elements with the engine's own penalty: the same problem, but for the mesh."""
+    """By approach, finite elements with the engine's own penalty: the same problem except for the mesh."""
     widths = [hertz_half_width(hertz_force(D, MATERIAL), MATERIAL) for D in APPROACHES]
     return [Plates(MATERIAL, 12, width, 6).squeeze(D, SOFT) for D, width in zip(APPROACHES, widths)]
 
@@ -43,7 +43,7 @@ def elements(squeezed: list[Squeezed]) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def runs() -> dict[str, dict[int, list[Rests]]]:
-    """By method and nodes, both ways."""
+    """By method and nodes, in both orientations."""
     return {method: {nodes: both_ways(CASE, Squeeze(APPROACHES, method, nodes)) for nodes in SIZES[method]}
             for method in METHODS}
 
@@ -60,12 +60,12 @@ def stiff() -> dict[int, list[Rests]]:
 
 
 def mean(both: list[Rests]) -> np.ndarray:
-    """[approaches] of the forces, both ways."""
+    """[approaches] mean force of both orientations."""
     return np.mean([rests.force for rests in both], axis=0)
 
 
 def errors(both: list[Rests], elements: np.ndarray) -> np.ndarray:
-    """[2 x approaches checked] of the forces against finite elements with the same penalty."""
+    """[2 x approaches checked] force errors against finite elements with the same penalty."""
     return np.array([rests.force / elements - 1 for rests in both])[:, CHECKED]
 
 
@@ -73,11 +73,11 @@ def errors(both: list[Rests], elements: np.ndarray) -> np.ndarray:
 def test_convergence_in_node_distance(runs: dict, elements: np.ndarray, method: str) -> None:
     found = rms_errors(runs[method], elements)
     CASE.check_rate(f"{method}: error of the force in h", spacings(runs[method]), found, 2, 0.4,
-                    "second order of triangles, outline and contact's edge; 1.5 to 3 node distances in the half width "
-                    "at 5 %, where errors weigh most, and 22 samples of a saw tooth")
+                    "second order of triangles, outline and contact edge; 1.5 to 3 node spacings in the half width at "
+                    "5 %, where errors are largest, and 22 samples of a saw tooth")
     limit = (at_zero_spacing(runs[method]) / elements)[CHECKED]
     CASE.check(Label.INDEPENDENT, f"{method}: force at h = 0 over finite elements", worst(limit), 1, ACCEPTED,
-               "dolfinx, same penalty, 1.5e-4; saw tooth of the contact's edges, halved by two ways to lie")
+               "dolfinx, same penalty, 1.5e-4; saw tooth of the contact edges, halved by two orientations")
 
 
 def rms_errors(sizes: dict[int, list[Rests]], elements: np.ndarray) -> list[float]:
@@ -101,11 +101,11 @@ def test_convergence_in_contact_stiffness() -> None:
     forces = [by_engine(CASE, Squeeze(APPROACHES, stiffness=k)).force[CHECKED] for k in stiffnesses]
     changes = [((b - a) / b).mean() for a, b in zip(forces, forces[1:])]
     CASE.check_rate("change of the force from k to 2 k in 1 / k", [1 / k for k in STIFFNESSES], changes, 1, 0.02,
-                    "penetration p / k; the next term is smaller by the penetration over D, 2e-4 / 0.05")
+                    "penetration p / k; the next term is smaller by penetration over D, 2e-4 / 0.05")
 
 
 def limits(runs: dict, stiff: dict) -> np.ndarray:
-    """[approaches] force of `mls` in rigid contact at zero node distance."""
+    """[approaches] force of `mls` in rigid contact at zero node spacing."""
     rigid = [to_rigid_contact(mean(runs["mls"][nodes]), mean(stiff[nodes]), STIFF / SOFT) for nodes in stiff]
     return to_zero_spacing(list(stiff), rigid)
 
@@ -124,7 +124,7 @@ def test_energy_of_the_disc(runs: dict, squeezed: list[Squeezed], method: str) -
     strain = [np.mean([rests.strain for rests in both], axis=0) for both in runs[method].values()]
     ratios = to_zero_spacing(SIZES[method], strain) / [squeeze.strain_energy for squeeze in squeezed]
     CASE.check(Label.INDEPENDENT, f"{method}: strain energy at h = 0 over finite elements", worst(ratios[CHECKED]), 1,
-               ACCEPTED, "dolfinx, same penalty, 1.5e-4; the work of the force, so as good as that")
+               ACCEPTED, "dolfinx, same penalty, 1.5e-4; work of the force, with the same accuracy")
 
 
 @pytest.mark.parametrize("facet", [False, True], ids=["corner", "facet"])
@@ -139,7 +139,7 @@ def test_work_is_force_times_way(facet: bool) -> None:
         unrest = np.sqrt((rests.kinetic[part] / stored).max())
         CASE.check(Label.EXACT, f"stored energy over work around {100 * D:g} %, {lie} at the pole",
                    (stored[2] - stored[0]) / work, 1, abs(work - chord) / work + unrest,
-                   "Simpson's rule on the force, its difference to the trapezoidal one; what still moves")
+                   "Simpson's rule on the force, its difference from the trapezoidal one; residual motion")
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -147,29 +147,29 @@ def test_engine_against_reference(references: dict[str, Rests], method: str) -> 
     forces = dict(zip(APPROACHES, references[method].force))
     ratio, allowed = worst_over_reference(CASE, Squeeze(COMPARED, method), forces)
     CASE.check(Label.INDEPENDENT, f"{method}: engine over reference, the worst", ratio, 1, allowed,
-               "the force of what still moves, from its kinetic energy by Cauchy and Schwarz; Newton's method")
+               "force of residual motion, from its kinetic energy by Cauchy and Schwarz; Newton's method")
 
 
 def test_at_rest_and_balanced(runs: dict) -> None:
     every = [rests for method in runs.values() for both in method.values() for rests in both]
     kinetic = max((rests.kinetic / rests.strain).max() for rests in every)
     CASE.check(Label.EXACT, "kinetic over strain energy at rest, all runs", kinetic, 0, 1e-6,
-               "the slowest, turning on the springs at the poles, decays by exp(-1.5 t) over 5.5 s: 7e-8, and as much "
-               "again for what the plates excite")
+               "the slowest motion, rotation on the springs at the poles, decays by exp(-1.5 t) over 5.5 s: 7e-8, and "
+               "as much again for the plates' excitation")
     uneven = max(np.abs((rests.upper - rests.lower) / rests.force)[CHECKED].max() for rests in every)
     CASE.check(Label.EXACT, "upper less lower force, all runs", uneven, 0, 1e-3, "balance; root of the kinetic energy")
     places = max(np.abs(rests.gap - 2 * (1 - np.array(APPROACHES))).max() for rests in every)
     CASE.check(Label.EXACT, "gap of the plates, all runs", places, 0, 1e-12, "imposed motion; rounding")
     held = max((rests.boundary / rests.strain)[CHECKED].max() for rests in every)
     CASE.check(Label.EXACT, "energy of the springs at the poles, all runs", held, 0, 1e-3,
-               "they may add no more than a third of the accepted error")
+               "their share is at most a third of the accepted error")
 
 
 def test_hertz(runs: dict) -> None:
     """The closed form for small approaches."""
     force = at_zero_spacing(runs["mls"])
     CASE.check(Label.INDEPENDENT, "mls: force at 2.5 % over Hertz", force[0] / hertz_force(APPROACHES[0], MATERIAL), 1,
-               0.02, "linear theory to 1.2e-3; at 168 nodes three of them touch: 5 % too much, of which h^2 takes most")
+               0.02, "linear theory to 1.2e-3; at 168 nodes three of them touch: 5 % too much, mostly removed by h^2")
 
 
 def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements: np.ndarray) -> None:

@@ -15,22 +15,22 @@ NODES = 340 if FULL else 168
 APPROACHES = [0.05, 0.1, 0.15, 0.2, 0.25, 0.3]
 STIFFNESS = 3e3  # of contact, as in the scene
 GAP = 0.001  # of either plate at the start
-PAUSE = 100.0  # s from one step to the next
-RAMP = 6.0  # s of them in motion
+PAUSE = 100.0  # s between steps
+RAMP = 6.0  # s of motion in each
 STEP = 1.0  # of the statics, s
-# Bearings: springs of 1 mu/R on the two segments at each end of both axes, along the plates at the poles and across
-# them beside. All nodes there would stay on their axes but for the outline's and the mesh's want of symmetry.
+# Bearings: springs of 1 mu/R on the two segments at each end of both axes, parallel to the plates at the poles and
+# normal to them at the sides. With a symmetric outline and mesh, all nodes there would stay on their axes.
 BEARINGS = [(0.0, "y"), (np.pi, "y"), (np.pi / 2, "x"), (-np.pi / 2, "x")]
 REACH = 0.1  # rad to either side: middles of segments lie at 0.065 (168 nodes), 0.046 (340)
 # 1/s: of the mass; decay of the slowest motion, creep along the plates: w^2 over the damping.
 DAMPING, SLOWEST = 1.0, 0.165
-# Of a segment: as near to a bisector a node belongs to the segment after it (docs/method.md 4).
+# Share of a segment: within it of a bisector, a node belongs to the following segment (docs/method.md 4).
 TIES = 1e-9
-SOURCE = "the force of what still moves, from its kinetic energy by Cauchy and Schwarz; Newton's method"
+SOURCE = "force of residual motion, from its kinetic energy by Cauchy and Schwarz; Newton's method"
 # Frictionless: dolfinx 0.5.2, quadratic triangles, infinite penalty, error 1e-4; lambda = 4 mu.
 FINITE_ELEMENTS = [0.1051389406525349, 0.258472983976877, 0.4545345427439884, 0.6990259315023695, 1.0026247766513285,
                    1.3811043025520182]
-# By which poles of the equal-area polygon of 48 or 68 sides stand out: approach, worth at least 1.15 / D
+# Height of the poles of the equal-area polygon of 48 or 68 sides: an approach, with an effect of at least 1.15 / D.
 POLES = (2 * np.pi / (68 if FULL else 48)) ** 2 / 12
 REST_TIMES = PAUSE * np.arange(1, len(APPROACHES) + 1)
 REST = 0.005  # 0.15 % of the penalty and the second-order error of the mesh
@@ -64,23 +64,24 @@ def free() -> Run:
 
 
 def unrest(engine: Run) -> np.ndarray:
-    """[approaches] how far its forces may be from those at rest, relative."""
+    """[approaches] relative bound of the difference between its forces and those at rest."""
     force, gap, kinetic = (engine.at(name, REST_TIMES)
                            for name in ("upper.force_y", "plate.position_y", "energy.kinetic"))
     return force_of_motion(force, 2 * gap, kinetic, DAMPING / SLOWEST) / force
 
 
 def rounding(force: np.ndarray) -> np.ndarray:
-    """[approaches] of the balance, relative. A place on the outline is a sum of some ten products about 1, off by ten
-    halves of eps at most, and by others as soon as a node rocks between two numbers: that much the contacts move the
-    disc, at worst all the same way. The faces in touch are no longer than the chords that the plates cut off."""
+    """[approaches] relative rounding error of the balance. A position on the outline is a sum of some ten products
+    about 1, off by ten halves of eps at most. The error changes when a node alternates between two numbers, and
+    contacts move the disc by as much, at worst all in one direction. Contact faces are at most as long as the chords
+    cut off by the plates."""
     in_touch = 2 * np.sqrt(1 - (1 - np.array(APPROACHES)) ** 2)
     return 2 * STIFFNESS * in_touch * 5 * np.finfo(float).eps / force
 
 
 def ties(force: np.ndarray) -> np.ndarray:
-    """[approaches] of the force of a node of either plate that rests on a bisector of the disc, where it is given to one
-    segment and to the other in turn: their lines are TIES times the turn of the outline apart there, relative."""
+    """[approaches] relative error of the force of a plate node on a bisector of the disc. It alternates between two
+    segments, whose lines are TIES times the turn of the outline apart there."""
     side = 2 * np.pi / (68 if FULL else 48)
     return 2 * 0.5 * STIFFNESS * side * TIES * side * side / force
 
@@ -104,17 +105,17 @@ def test_at_rest_and_balanced(runs: dict[str, Run], free: Run) -> None:
     kinetic, strain = (engine.at(f"energy.{name}", REST_TIMES) for name in ("kinetic", "strain"))
     creep = 1e-4 * SLOWEST * np.exp(-SLOWEST * (PAUSE - RAMP))
     CASE.check(Label.EXACT, "engine: kinetic over strain energy at rest", (kinetic / strain).max(), 0,
-               0.5 * np.pi * creep**2 / strain[0], "the slowest, creep along the plates, from 1e-4 R at the ramp's end")
+               0.5 * np.pi * creep**2 / strain[0], "slowest motion: creep along the plates, from 1e-4 R after the ramp")
     upper, lower = (engine.at(f"{plate}.force_y", REST_TIMES) for plate in ("upper", "lower"))
     off = np.abs(upper + lower - engine.at("bearings.applied_force_y", REST_TIMES)) / upper
     allowed = (DAMPING + SLOWEST) * np.sqrt(2 * np.pi * kinetic) / upper + rounding(upper) + ties(upper)
     worst = (off / allowed).argmax()
     CASE.check(Label.EXACT, "engine: upper, lower and bearings' force, over the upper", off[worst], 0, allowed[worst],
-               "damping and inertia of what still moves: the momentum is at most the root of 2 mass x kinetic energy; "
-               "rounding of places; nodes that rest on a bisector")
+               "damping and inertia of residual motion: the momentum is at most the root of 2 mass x kinetic energy; "
+               "rounding of positions; nodes on a bisector")
     upper, lower = (free.at(f"{plate}.force_y", REST_TIMES) for plate in ("upper", "lower"))
     CASE.check(Label.EXACT, "free: upper and lower force", np.abs((upper + lower) / upper).max(), 0, NEWTON,
-               "balance; Newton's 1e-10 of what cancels in each node, of which some ten are in touch")
+               "balance; Newton's 1e-10 of the forces that cancel at each of some ten nodes in contact")
 
 
 @pytest.mark.parametrize("number", range(len(APPROACHES)), ids=lambda i: f"{100 * APPROACHES[i]:g}")
@@ -122,7 +123,7 @@ def test_free_disc(free: Run, number: int) -> None:
     force = float(free.at("upper.force_y", REST_TIMES[number:number + 1])[0])
     CASE.check(Label.INDEPENDENT, f"free at {100 * APPROACHES[number]:g} %: reference over finite elements",
                force / FINITE_ELEMENTS[number], 1, 1.15 * POLES / APPROACHES[number] + REST,
-               "dolfinx 0.5.2; which facets or corners are the poles, penalty, mesh")
+               "dolfinx 0.5.2; facets or corners at the poles, penalty, mesh")
 
 
 def test_picture(runs: dict[str, Run], free: Run) -> None:

@@ -1,4 +1,4 @@
-"""Twenty rigid grains in a box, some thousand impacts: energy whenever nothing touches."""
+"""Twenty rigid grains in a box with some thousand impacts: energy at times without contact."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def runs() -> dict[str, Run]:
 
 
 def off(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Times at which nothing touches, and how far the kinetic energy is from the start's then."""
+    """Times without contact, and the relative deviation of the kinetic energy from its initial value."""
     kinetic, free = run.probe("energies.kinetic"), run.probe("energies.contact") == 0
     return run.times("energies.kinetic")[free], np.abs(kinetic[free] / kinetic[0] - 1)
 
@@ -56,9 +56,9 @@ def off(run: Run) -> tuple[np.ndarray, np.ndarray]:
 def test_keeps_its_energy(runs: dict[str, Run], grain: str) -> None:
     _, errors = off(runs[grain])
     CASE.check(Label.EXACT, f"{grain}s: kinetic energy when nothing touches, most", errors.max(), 0, 1e-2,
-               "conserved; promised: 1 % on the way, as pairs that have just parted may still have an energy error")
+               "conserved; specified: 1 % during the run, as pairs just separated may still have an energy error")
     CASE.check(Label.EXACT, f"{grain}s: the same, median", float(np.median(errors)), 0, 1e-10,
-               "corrected to rounding: some 1e4 sums of energies, each to 1e-15 of the whole")
+               "corrected to rounding: some 1e4 sums of energies, each to 1e-15 of the total")
 
 
 def test_picture(runs: dict[str, Run]) -> None:

@@ -1,5 +1,5 @@
-"""A rigid disc of many sides with Coulomb friction: sliding turns to rolling, and inclines on which it rolls or
-slides."""
+"""A rigid disc of many sides with Coulomb friction: transition from sliding to rolling, and inclines with rolling or
+sliding."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ CASE = Case(__file__)
 FRICTION = 0.2
 MASS = np.pi  # of a disc of radius and density 1; gravity 1
 SOLVERS = ["engine", "reference"]
-# The reference solver compares every node with every segment: fewer sides, and so a softer floor, that as many touch
-# it.
+# The reference solver compares every node with every segment, so it has fewer sides, and a softer floor for as many
+# sides in contact.
 STIFFNESS, SIDES = {"engine": 1e5, "reference": 1e3}, {"engine": 2000, "reference": 250}
 SOFT_TO_STIFF = [1e4, 1e5, 1e6]
 MANY_SIDES = [350, 500, 800, 1250]
-SLIDES_UNTIL = 1.6  # s: it rolls from 5/3 on
-SOFTER = 20  # contact against shear, where friction's delay is measured
-STEP = 0.01  # of the reference, s: eleven sides pass in a time unit
-ANGLES = [10.0, 20.0, 25.0, 28.0, 35.0, 40.0]  # degrees; it rolls up to atan(3 x 0.2) = 31
+SLIDES_UNTIL = 1.6  # s: the disc rolls from 5/3 on
+SOFTER = 20  # normal over tangential stiffness for the delay of friction
+STEP = 0.01  # of the reference, s: eleven sides pass per time unit
+ANGLES = [10.0, 20.0, 25.0, 28.0, 35.0, 40.0]  # degrees; the disc rolls up to atan(3 x 0.2) = 31
 END, PERIOD = 4.0, 0.01  # of a run, and of its probes
 REFERENCE_ANGLES = [20.0, 25.0, 28.0] if FULL else [20.0]
 DESCENTS = [("engine", angle) for angle in ANGLES] + [("reference", angle) for angle in REFERENCE_ANGLES]
@@ -33,14 +33,14 @@ SETTLED = 1.0  # s of rolling down, after the start from rest
 
 
 def depth(stiffness: float, pressing: float = 1.0) -> float:
-    """d over R, of a disc that bears `pressing` times its weight: 4/3 kn d sqrt(2 d R), half the width of contact
+    """d over R of a disc that carries `pressing` times its weight, 4/3 kn d sqrt(2 d R): half the width of contact
     times 4/3 of the depth."""
     return float((3 * MASS * pressing / (4 * stiffness * np.sqrt(2)))**(2 / 3))
 
 
 def tolerance(stiffness: float, sides: int, pressing: float = 1.0) -> float:
-    """Of an acceleration or a speed, relative: the next order after d, d^(3/2), and the sides, of which some m touch
-    on either side of the middle."""
+    """Relative, of an acceleration or a velocity: the next order after d, d^(3/2), plus the effect of m sides in
+    contact on either side of the middle."""
     d = depth(stiffness, pressing)
     touching = np.sqrt(2 * d) * sides / (2 * np.pi)
     return float(d * (np.sqrt(2 * d) + 1 / touching**2))
@@ -57,12 +57,10 @@ def run(solver: str, name: str, stiffness: float, sides: int, speed: float = 0.0
 
 # ---- sliding turns to rolling: u = u0 - mu g t, w R = 2 mu g t meet at t = u0 / (3 mu g), u = 2 u0 / 3
 
-# A floor that gives way by d shifts these. Friction acts below the centre by R less a mean depth: on the disc's nodes
-# by d/5, on the floor's, along the
-# disc's tangent, by 3 d/5, each half of it: 2 d/5. A disc that rolls without force has its rim faster than its centre,
-# by d/3, so that the elastic slip,
-# whose rate is parabolic over the contact, has the mean 0. Friction comes after the elastic slip mu z of depth z: late
-# by 2/5 mu d / u0.
+# A floor deflection d shifts these. Friction acts below the centre by R less a mean depth: on the disc's nodes d/5, on
+# the floor's, along the disc's tangent, 3 d/5. Each counts half: 2 d/5. The rim of a disc that rolls without force is
+# faster than its centre by d/3, so that the mean of the elastic slip, whose rate is parabolic over the contact, is 0.
+# Friction develops after the elastic slip mu z at depth z, which delays it by 2/5 mu d / u0.
 LEVER, RIM, DELAY = 2 / 5, 1 / 3, 2 / 5
 SPEED_LOST = (LEVER + RIM) / 3  # of 2 u0 / 3, in units of d
 TIME_GAINED = 2 / 3 * LEVER + 3 * FRICTION**2 * DELAY  # of u0 / (3 mu g)
@@ -71,12 +69,12 @@ LOSS_GAINED = 2 * 2 * SPEED_LOST - 2 * 2 / 3 * RIM  # of m u0^2 / 6: 1/2 - 1/3 (
 
 @dataclass
 class Turn:
-    """Of a disc that starts to slide."""
+    """Motion of a disc that starts in sliding."""
 
     run: Run
     slowing: float  # du/dt
     spinning: float  # R dw/dt
-    time: float  # when the two lines meet
+    time: float  # of the intersection of both lines
     speed: float  # mean, later
 
 
@@ -90,7 +88,7 @@ def turn(solver: str, stiffness: float, sides: int) -> Turn:
 
 
 def usual_turn(solver: str) -> tuple[Turn, float, float]:
-    """With d and the relative tolerance."""
+    """The turn with d and the relative tolerance."""
     stiffness, sides = STIFFNESS[solver], SIDES[solver]
     return turn(solver, stiffness, sides), depth(stiffness), tolerance(stiffness, sides)
 
@@ -98,8 +96,8 @@ def usual_turn(solver: str) -> tuple[Turn, float, float]:
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_sliding(solver: str) -> None:
     found, d, small = usual_turn(solver)
-    # The normal force swings about the weight by what the polygon's depth differs, and friction with it: a mean over
-    # 1.5 with 11 swings.
+    # The normal force oscillates about the weight as the polygon's depth varies, and so does friction: a mean over 1.5
+    # with 11 oscillations.
     source = "Coulomb; next order in the depth d, sides in touch"
     CASE.check(Label.EXACT, f"{solver}, sliding: deceleration over mu g", -found.slowing / FRICTION, 1, small, source)
     CASE.check(Label.EXACT, f"{solver}, sliding: spin over 2 mu g / R, and friction's lever",
@@ -107,48 +105,48 @@ def test_sliding(solver: str) -> None:
                2 * small, source)
     CASE.check(Label.EXACT, f"{solver}, turn: time over u0 / (3 mu g)", found.time * 3 * FRICTION, 1 + TIME_GAINED * d,
                2 * small + (3 * FRICTION * STEP / 2 if solver == "reference" else 0),
-               "u = w R; lever and late friction in the first order of d; half a step in which friction sets in")
+               "u = w R; lever and delayed friction in first order of d; half a step at the onset of friction")
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_rolling_after_the_turn(solver: str) -> None:
     found, d, small = usual_turn(solver)
     CASE.check(Label.EXACT, f"{solver}, turn: speed over 2 u0 / 3", 1.5 * found.speed, 1 - SPEED_LOST * d, 2 * small,
-               "angular momentum about the contact; lever and rim in the first order of d")
+               "angular momentum about the contact; lever and rim in first order of d")
     lost = found.run.probe("works.dissipated_by_contact")[-1]
     swing = 3 * FRICTION**2 * DELAY * 2 * d  # elastic energy at the turn, mu^2 (2/5) d of m g R, over 1/6
     CASE.check(Label.EXACT, f"{solver}, turn: dissipated over m u0^2 / 6", 6 * lost / MASS,
                1 + LOSS_GAINED * d - swing / 2, 4 * small + swing / 2,
-               "from the speeds; between none and all of the elastic energy at the turn swings on")
+               "from the speeds; none to all of the elastic energy at the turn remains as oscillation")
 
 
 def test_stiffer_floors() -> None:
     error = [1 - 1.5 * turn("engine", stiffness, SIDES["engine"]).speed for stiffness in SOFT_TO_STIFF]
     CASE.check_rate("turn: 2 u0 / 3 over the contact stiffness", [1 / k for k in SOFT_TO_STIFF], error, 2 / 3, 0.04,
-                    "d goes as stiffness^(-2/3); the next order, d^(3/2), is 0.08 of it at the softest")
+                    "d scales as stiffness^(-2/3); the next order, d^(3/2), is 0.08 of it at the softest")
 
 
 @pytest.mark.parametrize("axis, source", [("velocity_x", "u = u0 - mu g (t - delay)"),
                                           ("angular_velocity", "R w = 2 mu g (t - delay), friction's lever")])
 def test_friction_comes_late(axis: str, source: str) -> None:
-    """By the elastic slip, which a contact softer in shear makes so long that it shows."""
+    """The elastic slip delays friction; a contact softer in shear makes the delay measurable."""
     stiffness = STIFFNESS["engine"]
     d, small = depth(stiffness), tolerance(stiffness, SIDES["engine"])
     of = run("engine", "late", stiffness, SIDES["engine"], speed=1.0, shear_stiffness=stiffness / SOFTER,
              end=SLIDES_UNTIL)
     t = of.times(f"disc.{axis}")
-    at = (t > 0.1) & (t < 1.3)  # while it slides by so much that nodes slip as soon as they touch
+    at = (t > 0.1) & (t < 1.3)  # while sliding is fast enough for nodes to slip at first contact
     start, slope = (1, -FRICTION) if axis == "velocity_x" else (0, -2 * FRICTION * (1 - LEVER * d))
     late = float(np.mean(of.probe(f"disc.{axis}")[at] - start - slope * t[at])) / -slope
     expected = DELAY * FRICTION * SOFTER * d
     CASE.check(Label.EXACT, f"engine, kt = kn / {SOFTER}: delay of friction over closed form, by {axis}",
                late / expected, 1, small * t[at].mean() / expected + (FRICTION * SOFTER * d)**2 / (2 * d),
-               f"{source}; mu g as above, and the slip's square over the half width's")
+               f"{source}; mu g as above, plus the square of slip over half width")
 
 
 def lever(sides: int, quarter: int) -> float:
-    """Of friction, R and the radius of gyration being 1 and sqrt(1/2): half of dw / du while it slides. Starts turned
-    by quarters of a side, on a floor on which six sides touch on either side of the middle."""
+    """Lever of friction, half of dw / du during sliding, as R is 1 and the radius of gyration sqrt(1/2). Starts are
+    turned by quarters of a side; six sides touch the floor on either side of the middle."""
     of = run("engine", f"sides_{sides}_{quarter}", stiffness_for(sides), sides, speed=1.0, end=SLIDES_UNTIL,
              angle=quarter * np.pi / 2 / sides)
     t, u, w = of.times("disc.velocity_x"), of.probe("disc.velocity_x"), of.probe("disc.angular_velocity")
@@ -162,21 +160,21 @@ def stiffness_for(sides: int) -> float:
 
 @cache
 def lever_added(sides: int) -> float:
-    """By the sides, mean over quarters."""
+    """Increase of the lever by the sides, mean over quarters."""
     return float(np.mean([lever(sides, quarter) for quarter in range(4)])) - 1 + LEVER * depth(stiffness_for(sides))
 
 
-# A polygon of the disc's area has its corners at 1 + 2 x and its sides at 1 in the mean, x = pi^2 / (6 n^2). So its
-# centre is at 1 + x - d, its nodes sink in by d + x, the floor's by d - x, and they bear 1 +- 3 x / (2 d) of half the
+# A polygon of the disc's area has its corners at 1 + 2 x and its sides at 1 in the mean, x = pi^2 / (6 n^2). Its centre
+# is at 1 + x - d. Its nodes sink in by d + x and the floor's by d - x, and they carry 1 +- 3 x / (2 d) of half the
 # weight. Levers of 1 + 2 x - (d + x)/5 and 1 - 3/5 (d - x) have the mean 1 - 2/5 d + 3/2 x.
 SIDES_LEVER = np.pi**2 / 4
 
 
 def lever_error(sides: int) -> float:
-    """Of lever_added, relative. As sides pass, sums over nodes for integrals swing the mean of (x/a)^2 under the
-    pressure by 0.15 / m^2 either way at most: the disc's lever by d times that, the floor's by twice as much, their
-    mean by the root of both squares over two, d / (6 m^2) = 4/3 SIDES_LEVER / n^2. A first side takes long to pass,
-    until mu g t^2 = 2 pi / n, and counts 3/2 at the end of a straight line; quarters of sides cancel half of it."""
+    """Relative error of lever_added. As sides pass, nodal sums instead of integrals vary the mean of (x/a)^2 under the
+    pressure by +-0.15 / m^2 at most. The disc's lever varies by d times that, the floor's by twice as much, and their
+    mean by the root of both squares over two, d / (6 m^2) = 4/3 SIDES_LEVER / n^2. The first side passes slowly, until
+    mu g t^2 = 2 pi / n, and has the weight 3/2 at the end of a straight line; quarters of sides cancel half of it."""
     share = np.sqrt(2 * np.pi / sides / FRICTION) / SLIDES_UNTIL
     return float(4 / 3 * 1.5 * share / 2)
 
@@ -187,19 +185,19 @@ def test_more_sides() -> None:
     x = np.log(MANY_SIDES) - np.log(MANY_SIDES).mean()
     CASE.check_rate("sliding: lever over the number of sides", [1 / n for n in MANY_SIDES], added, 2,
                     float((np.abs(x) * errors).sum() / (x**2).sum()),
-                    "corners stand out by pi^2 / (3 n^2); while the first side passes its place counts")
+                    "corners protrude by pi^2 / (3 n^2); the result depends on the first side's position as it passes")
     CASE.check(Label.EXACT, "sliding: what sides add to the lever, over pi^2 / (4 n^2)",
                np.mean([a * n**2 for a, n in zip(added, MANY_SIDES)]) / SIDES_LEVER, 1, np.mean(errors),
-               "polygon of the disc's area; while the first side passes its place counts")
+               "polygon of the disc's area; the result depends on the first side's position as it passes")
 
 
-# ---- inclines: rolls with a = 2/3 g sin(theta) if tan(theta) <= 3 mu, else slides with a = g (sin - mu cos), dw/dt = 2
-# mu g cos / R
+# ---- inclines: rolling with a = 2/3 g sin(theta) if tan(theta) <= 3 mu, else sliding with a = g (sin - mu cos),
+# dw/dt = 2 mu g cos / R
 
 
 @dataclass
 class Incline:
-    """Angle in degrees, and what the closed forms say, d over R the depth."""
+    """Angle in degrees, and closed forms with d the depth over R."""
 
     degrees: float
     stiffness: float = STIFFNESS["engine"]
@@ -214,7 +212,7 @@ class Incline:
 
     @property
     def used(self) -> float:
-        """Of the friction that there is, the share that rolling needs."""
+        """Share of the available friction that rolling needs."""
         return self.sine / self.cosine / (3 * FRICTION)
 
     @property
@@ -223,7 +221,7 @@ class Incline:
 
     @property
     def creep(self) -> float:
-        """Of rolling, over the speed: kt = kn, so that slip grows from the front edge until mu p / kt holds it back.
+        """Creep of rolling over the speed: kt = kn, so that slip grows from the front edge up to the limit mu p / kt.
 
         With q = creep A / (mu d) of a half width A = sqrt(2 d R), the force is (3/4) (2 q - q^2 + q^3/6) of mu N, so
         q = 2 - 2 (1 - used)^(1/3).
@@ -254,7 +252,7 @@ def descent(solver: str, degrees: float) -> Run:
 
 
 def slopes(of: Run) -> tuple[float, float]:
-    """du/dt and R dw/dt, fitted once it has settled."""
+    """du/dt and R dw/dt, fitted after settling."""
     t = of.times("disc.velocity_x")
     late = t > SETTLED
     return tuple(float(np.polyfit(t[late], sign * of.probe(f"disc.{name}")[late], 1)[0])
@@ -266,18 +264,18 @@ def test_incline(solver: str, degrees: float) -> None:
     incline, (acceleration, spin) = Incline(degrees, STIFFNESS[solver]), slopes(descent(solver, degrees))
     small = tolerance(STIFFNESS[solver], SIDES[solver], incline.cosine)
     name = f"{solver}, {degrees:g} degrees, {'rolls' if incline.used <= 1 else 'slides'}"
-    source = "lever, rim and creep in the first order of d; the next order, sides in touch"
+    source = "lever, rim and creep in first order of d; next order, sides in contact"
     CASE.check(Label.EXACT, f"{name}: acceleration over closed form", acceleration / incline.acceleration, 1, small,
                source)
     CASE.check(Label.EXACT, f"{name}: spin over closed form", spin / incline.spin, 1, small, source)
     if solver == "engine" and incline.used <= 1:
         CASE.check(Label.EXACT, f"{name}: creep", acceleration / spin - 1, incline.creep - RIM * incline.d, 2 * small,
-                   "springs on a parabola of pressure, slipping behind; as the accelerations")
+                   "springs on a parabola of pressure, slipping behind; tolerance as for accelerations")
 
 
 @pytest.mark.parametrize("degrees", ANGLES)
 def test_dissipation_down_the_incline(degrees: float) -> None:
-    """Friction times the way that the lever's end slips past the floor."""
+    """Friction times the slip distance of the lever's end on the floor."""
     incline, of = Incline(degrees), descent("engine", degrees)
     t, lost = of.times("disc.velocity_x"), of.probe("works.dissipated_by_contact")
     late = t >= SETTLED
@@ -289,18 +287,18 @@ def test_dissipation_down_the_incline(degrees: float) -> None:
     small = tolerance(STIFFNESS["engine"], SIDES["engine"], incline.cosine)
     CASE.check(Label.EXACT, f"engine, {degrees:g} degrees: dissipated over friction times slip",
                (lost[-1] - lost[late][0]) / expected, 1,
-               3 * small * way / slipped, "closed form of the slip; next order in d over a slip that is little")
+               3 * small * way / slipped, "closed form of the slip; next order in d over the small slip")
 
 
 @pytest.mark.parametrize("degrees", REFERENCE_ANGLES)
 def test_both_solvers_on_the_same_disc(degrees: float) -> None:
-    """That of few sides, on the soft floor: creep is much of the slip there, and closed forms err by it."""
+    """The disc of few sides on the soft floor, where creep is a large part of the slip and closed forms err by it."""
     reference, incline = descent("reference", degrees), Incline(degrees, STIFFNESS["reference"])
     engine = run("engine", f"incline_soft_{degrees:g}", STIFFNESS["reference"], SIDES["reference"], degrees=degrees)
-    # Nodes gather slip from a step's end on, not from the edge: of their way through the half width a step's is late.
+    # Nodes accumulate slip from a step's end instead of from the edge: it starts late by the travel of one step.
     late = float(reference.probe("disc.velocity_x").max()) * STEP / np.sqrt(2 * incline.d)
     (a, spin), (own_a, own_spin) = slopes(reference), slopes(engine)
-    source = "the share of a step in the way through the half width of contact, of the creep"
+    source = "travel in one step over the half width of contact, times the creep"
     creep = own_a / own_spin - 1
     CASE.check(Label.INDEPENDENT, f"both, {degrees:g} degrees: creep, reference over engine", (a / spin - 1) / creep, 1,
                late, source)

@@ -1,4 +1,5 @@
-"""Grains of one mesh topology, in the lanes of one batch, beside the reference solver and beside grains that have meshes of their own."""
+"""Grains of one mesh topology in the lanes of one batch, against the reference solver and grains with separate meshes.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ FINER = {"left": 680, "middle": 681, "right": 682}
 
 
 def engine_of(nodes: dict[str, int], dt: float, of_one_topology: int) -> Run:
-    """A run, of which the engine says that so many of its bodies share one topology."""
+    """A run; the engine must report that `of_one_topology` of its bodies share one topology."""
     run = CASE.engine(f"engine_{nodes['middle']}_{dt:g}", CASE.scene(dt=dt, **nodes))
     said = subprocess.run([str(ENGINE), "check", f"{run.folder}.toml"], capture_output=True, text=True, check=True)
     assert f"of one topology: {of_one_topology};" in said.stdout
@@ -40,7 +41,7 @@ class Pair:
     fine: Run
 
     def error(self, quantity: Quantity) -> float:
-        """Of the fine one, by the second order of both solvers."""
+        """Error of the fine run, by the second order of both solvers."""
         return largest_difference(self.coarse, self.fine, quantity.columns, TIMES) / 3
 
 
@@ -59,7 +60,7 @@ def test_both_solvers(engine: Pair, reference: Pair, quantity: Quantity) -> None
     CASE.check(Label.INDEPENDENT, f"{quantity.name}: engine - reference",
                largest_difference(engine.fine, reference.fine, quantity.columns, TIMES), 0,
                2 * (engine.error(quantity) + reference.error(quantity)),
-               "both solvers' errors of second order in the step, and as much again for kinks of the pressure's derivative")
+               "second-order errors of both solvers, and as much again for kinks of the pressure's derivative")
 
 
 @pytest.mark.parametrize("quantity", [*POSITIONS, STRAIN], ids=lambda q: q.name)
@@ -68,4 +69,4 @@ def test_meshes_of_their_own(engine: Pair, quantity: Quantity) -> None:
     CASE.check(Label.INDEPENDENT, f"{quantity.name}: one topology from finer meshes of their own",
                largest_difference(engine.fine, finer, quantity.columns, TIMES), 0,
                2 * largest_difference(apart, finer, quantity.columns, TIMES),
-               "meshes of their own with as many nodes differ by half of this: the bent mesh may be twice as bad")
+               "separate meshes with as many nodes differ by half of this: the bent mesh may have twice their error")

@@ -1,4 +1,4 @@
-"""A compliant disc that spins: how it stretches, small and large, and a hundred turns."""
+"""A spinning compliant disc: its stretch at small and large spins, and a hundred turns."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__, cost=2)
 
-SLOW, FAST = 0.05, 1.4  # rad/s, of the round disc at the start: rims at 0.05 and 1.4 of S waves
+SLOW, FAST = 0.05, 1.4  # rad/s, of the initially round disc: rims at 0.05 and 1.4 of S waves
 MASSES = ["lumped", "corrected"]
 VARIANTS = [("mls", "lumped"), ("mls", "corrected"), ("es-t3", "lumped")]
 NODES = [168, 340, 700, 1400]
 VISCOSITY = 0.2
-REST = 40.0  # s: ringing, whose slowest part decays by exp(-0.19 t), is then 5e-4 of itself; of round modes nothing
+REST = 40.0  # s: the slowest ringing decays as exp(-0.19 t), to 5e-4; axisymmetric modes vanish
 PERIOD = 0.5  # of probes: less than half a turn
-SCATTER = 0.2  # of one mesh's error to the next, relative (verify/oscillation)
+SCATTER = 0.2  # relative, of errors between meshes (verify/oscillation)
 TURNS = 100
 SETTLED = 150.0  # s: exp(-0.19 t) is 4e-13
 EPSILON = np.finfo(float).eps
@@ -37,14 +37,14 @@ def scene(method: str, mass: str, nodes: int, spin: float, end: float, viscosity
 
 @dataclass
 class Spun:
-    """What a run at rest, but for its spin, shows."""
+    """Results of a run in steady spin."""
 
     spin: float  # rad/s, of the orientation
-    rim: float  # root of the area inside the outline, over that of the start
+    rim: float  # root of the area inside the outline, over the initial one
     energy: float  # of strain
-    inertia: float  # of the round disc over the circle's: from the kinetic energy at the start
-    places: np.ndarray  # [cells] distance of cells from the middle at the start
-    strains: np.ndarray  # [cells x 2] Green and Lagrange's, across and around
+    inertia: float  # of the round disc over the circle's: from the initial kinetic energy
+    places: np.ndarray  # [cells] initial distance of cells from the centre
+    strains: np.ndarray  # [cells x 2] Green-Lagrange, radial and hoop
 
     def shape_error(self, exact: Cylinder) -> float:
         """Rms of both strains over all cells, over the largest of the exact ones."""
@@ -61,14 +61,14 @@ def spun(method: str, mass: str, nodes: int, spin: float) -> Spun:
 
 
 def turning(run: Run, since: float) -> float:
-    """rad/s of the orientation, from a time on."""
+    """Rate of the orientation from a time on, rad/s."""
     times, angles = run.times("disc.rotation"), np.unwrap(run.probe("disc.rotation"))
     first = int(np.searchsorted(times, since - 1e-9))
     return float((angles[-1] - angles[first]) / (times[-1] - times[first]))
 
 
 def polar_strains(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Of the last frame. Green and Lagrange's strains do not see how far the disc has turned."""
+    """Polar strains of the last frame. Green-Lagrange strains are independent of the rotation."""
     frames = frames_of(run)
     grid = frames.grids["bodies"]
     centres = frames.positions("bodies", 0)[:, :2][grid.cells].mean(axis=1)
@@ -90,7 +90,7 @@ def spacings(nodes: list[int]) -> list[float]:
 
 
 def slope_error(share: float) -> float:
-    """Two standard errors of a slope through errors that scatter by that share."""
+    """Two standard errors of a slope through errors with that relative scatter."""
     logarithms = np.log(spacings(NODES))
     return float(2 * share / np.sqrt(((logarithms - logarithms.mean()) ** 2).sum()))
 
@@ -101,15 +101,15 @@ def rim_errors(method: str, mass: str, spin: float) -> list[float]:
 
 
 def test_closed_form_is_the_limit_of_the_equation() -> None:
-    """The equation for any strain, at two small spins, less the closed form: second order in the strain."""
+    """The finite-strain equation at two small spins, less the closed form: second order in the strain."""
     shares = [(spinning_at(spin).rim - 1) / linear_strains(spin, np.ones(1))[1][0] - 1 for spin in (SLOW, SLOW / 2)]
     CASE.check(Label.EXACT, "rim by the equation over the closed form, to no spin", (4 * shares[1] - shares[0]) / 3, 0,
-               shares[0] ** 2, "a series in spin^2, of which the first term is taken out")
+               shares[0] ** 2, "a series in spin^2 without its first term")
 
 
 @pytest.mark.parametrize("method, mass", VARIANTS)
 def test_small_spin(method: str, mass: str) -> None:
-    """The virial: of consistent gradients the mean dilation is that of the exact disc with the mesh's own inertia."""
+    """Virial theorem: with consistent gradients the mean dilation is that of the exact disc with the mesh's inertia."""
     closed = linear_strains(SLOW, np.ones(1))[1][0]
     for nodes in NODES:
         run = spun(method, mass, nodes, SLOW)
@@ -118,7 +118,7 @@ def test_small_spin(method: str, mass: str) -> None:
         CASE.check(Label.EXACT, f"{method} {mass}, {nodes} nodes: stretch of the rim over closed form and inertia",
                    (run.rim - 1) / closed / run.inertia / (1 + second), 1,
                    2 * second * (abs(load) + run.shape_error(exact) ** 2),
-                   "sum of forces x places; terms of second order, a share of the stretch: changed by twice the error "
+                   "sum of forces x positions; second-order terms, a share of the stretch, change by twice the error "
                    "of the load and by the square of the shape's")
 
 
@@ -128,16 +128,16 @@ def test_converges(method: str, mass: str, spin: float) -> None:
     order, name = 2 if mass == "lumped" else 3, f"{method} {mass}, spin {spin:g}"
     CASE.check_rate(f"{name}: stretch of the rim", spacings(NODES), np.abs(rim_errors(method, mass, spin)).tolist(),
                     order, slope_error(SCATTER), "as the inertia: second moments of lumped mass h^2, of corrected mass "
-                    "h^3; two standard errors of meshes that scatter by a fifth")
+                    "h^3; two standard errors for a scatter of a fifth between meshes")
     shapes = [run.shape_error(exact_at(run.spin)) for run in (spun(method, mass, n, spin) for n in NODES)]
     CASE.check_rate(f"{name}: strains, rms", spacings(NODES), shapes, 1.75, 0.25 + slope_error(SCATTER / np.sqrt(48)),
-                    "strains in the middle of cells: h^2 inside, h in a seam as wide as h, which is h^1.5 in the rms: "
-                    "from 1.5 to 2; meshes scatter less the more cells there are on the rim")
+                    "strains in the middle of cells: h^2 inside, h in a boundary layer of width h, which is h^1.5 in "
+                    "the rms: from 1.5 to 2; scatter decreases with the number of cells on the rim")
 
 
 @pytest.mark.parametrize("method, mass", VARIANTS)
 def test_large_spin(method: str, mass: str) -> None:
-    """At zero spacing, against the equation with the angular momentum of the start."""
+    """At zero spacing, against the equation with the initial angular momentum."""
     runs, exact = [spun(method, mass, n, FAST) for n in NODES], spun_up_to(FAST)
     for what, values, expected in (("spin that is left", [run.spin for run in runs], exact.spin),
                                    ("stretch of the rim", [run.rim - 1 for run in runs], exact.rim - 1),
@@ -145,11 +145,11 @@ def test_large_spin(method: str, mass: str) -> None:
         limit, error = to_no_spacing(values, [2] if mass == "lumped" else [2, 3])
         CASE.check(Label.INDEPENDENT, f"{method} {mass}, spin {FAST:g}: {what} at h = 0 over the equation's",
                    limit / expected, 1, error / expected, "neo-Hookean cylinder, ordinary differential equation to "
-                   "1e-11; limit of two meshes, whose errors scatter by a fifth; of corrected mass of order 2 or 3")
+                   "1e-11; limit of two meshes, whose errors scatter by a fifth; order 2 or 3 for corrected mass")
 
 
 def to_no_spacing(values: list[float], orders: list[int]) -> tuple[float, float]:
-    """From the two finest meshes, and how far off that may be where their errors scatter, or are of either order."""
+    """Limit from the two finest meshes, and its error for scattered errors and for either order."""
     coarse, fine = values[-2:]
     limits, scatters = [], []
     for order in orders:
@@ -179,19 +179,19 @@ def test_settled_disc_stays_as_it_is(mass: str) -> None:
                                ("strain yy", "mean.strain_yy", 0.1)):
         values = run.probe(column)[since:]
         CASE.check(Label.EXACT, f"mls {mass}: {what}, change in {TURNS} turns", np.ptp(values) / abs(values[0]), 0,
-                   rounding / size, "rounding of each step; of strains ten times of positions")
+                   rounding / size, "rounding of each step, ten times larger for strains than for positions")
 
 
 @pytest.mark.parametrize("mass", MASSES)
 def test_spin_is_the_angular_momentum_over_inertia(mass: str) -> None:
-    """Velocities of Verlet are chords of two steps, so they fall short of the orientation's rate by sin(a)/a."""
+    """Velocities of Verlet are chords of two steps, so they are below the orientation's rate by sin(a)/a."""
     run = long_run("mls", mass, VISCOSITY)
     spin, rate = turning(run, SETTLED), run.probe("disc.rotation_rate")[-1]
     steps = run.steps("dt")[run.steps("time") > SETTLED]
     short = [1 - np.sin(spin * dt) / (spin * dt) for dt in (steps.mean(), steps.min(), steps.max())]
     CASE.check(Label.EXACT, f"mls {mass}: 1 - angular momentum over inertia and orientation's rate, {TURNS} turns",
                1 - rate / spin, short[0], short[2] - short[1] + run.summary["steps"] * EPSILON,
-               "chords of two steps on a circle; how far steps differ, which end at probes' times")
+               "chords of two steps on a circle; variation of steps, which end at probes' times")
 
 
 @pytest.mark.parametrize("mass", MASSES)
@@ -200,7 +200,7 @@ def test_ringing_disc_keeps_energy_and_momentum(mass: str) -> None:
     energy = run.probe("energy.kinetic") + run.probe("energy.strain")
     CASE.check(Label.EXACT, f"es-t3 {mass}, nothing damped: energy over its start - 1, largest in {TURNS} turns",
                np.abs(energy / energy[0] - 1).max(), 0, (FAST * run.steps("dt").max()) ** 2,
-               "Verlet keeps K + U - dt^2 sum F^2/8m; F is none at first and swings up to twice the centripetal one")
+               "Verlet conserves K + U - dt^2 sum F^2/8m; F is 0 at first and at most twice the centripetal force")
     start, end = (angular_momentum(run, frame, mass) for frame in (0, -1))
     CASE.check(Label.EXACT, f"es-t3 {mass}, nothing damped: angular momentum over that of the start, {TURNS} turns",
                end / start, 1, 4 * SINGLE, "internal forces have no moment; positions and velocities of two frames in "
@@ -208,7 +208,7 @@ def test_ringing_disc_keeps_energy_and_momentum(mass: str) -> None:
 
 
 def angular_momentum(run: Run, frame: int, mass: str) -> float:
-    """Of linear triangles."""
+    """Angular momentum of linear triangles."""
     motion = read_motion(run)
     momenta = motion.momenta(motion.velocities[frame], mass)
     x, y = motion.positions[frame, :, :2].T

@@ -1,6 +1,6 @@
-"""A solid cylinder that spins at a steady rate in plane strain: linear, and neo-Hookean at any strain.
+"""A solid cylinder in steady spin and plane strain: linear, and neo-Hookean at finite strain.
 
-Units mu = R = rho = 1, lambda = 4. R here is the place at the start, r(R) where it is.
+Units mu = R = rho = 1, lambda = 4. R is the initial radial coordinate, r(R) the current one.
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from scipy.integrate import OdeSolution, solve_ivp
 from scipy.optimize import brentq
 
 MU, LAME = 1.0, 4.0
-AXIS = 1e-6  # the first place, in place of the axis itself
-TOLERANCE = 1e-12  # of a step, relative
+AXIS = 1e-6  # first coordinate, instead of the axis itself
+TOLERANCE = 1e-12  # relative, per step
 
 
 def linear_strains(spin: float, R: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """u' and u/R of u = c (k R - R^3), c = spin^2 / 8 (lambda + 2 mu), k = (2 lambda + 3 mu) / (lambda + mu).
 
-    It solves u'' + u'/R - u/R^2 = - spin^2 R / (lambda + 2 mu) with no stress at R = 1.
+    It solves u'' + u'/R - u/R^2 = - spin^2 R / (lambda + 2 mu) without stress at R = 1.
     """
     c, k = spin**2 / 8 / (LAME + 2 * MU), (2 * LAME + 3 * MU) / (LAME + MU)
     return c * (k - 3 * R**2), c * (k - R**2)
@@ -39,7 +39,7 @@ def energy_density(s: np.ndarray, h: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Cylinder:
-    """Of neo-Hookean material, at a spin in rad/s."""
+    """A neo-Hookean cylinder at a spin in rad/s."""
 
     spin: float
     solution: OdeSolution  # r and r' over R
@@ -51,7 +51,7 @@ class Cylinder:
 
     @property
     def rim(self) -> float:
-        """Its radius over that at rest."""
+        """Radius of the rim over that at rest."""
         return float(self.solution(1.0)[0])
 
     @property
@@ -63,14 +63,14 @@ class Cylinder:
         return self._integral(lambda R, s, h: energy_density(s, h))
 
     def _integral(self, density: Callable[..., np.ndarray]) -> float:
-        """Over the area of the start, by Gauss's rule: smooth."""
+        """Integral over the initial area by Gauss's rule, for smooth densities."""
         at, weights = np.polynomial.legendre.leggauss(40)
         R = (at + 1) / 2
         return float(weights @ (np.pi * R * density(R, *self.stretches(R))))
 
 
 def _derivatives(spin: float, R: float, y: np.ndarray) -> list[float]:
-    """Of r and s = r', from dP_R/dR + (P_R - P_Theta)/R + spin^2 r = 0."""
+    """Derivatives of r and s = r', from dP_R/dR + (P_R - P_Theta)/R + spin^2 r = 0."""
     r, s = y
     h = r / R
     log_J, (across, around) = np.log(s * h), stresses(s, h)
@@ -80,13 +80,13 @@ def _derivatives(spin: float, R: float, y: np.ndarray) -> list[float]:
 
 
 def _from_axis(spin: float, stretch: float) -> OdeSolution:
-    """With that stretch on the axis, and so what stress there is at the rim."""
+    """Solution with that stretch on the axis, which determines the stress at the rim."""
     return solve_ivp(lambda R, y: _derivatives(spin, R, y), (AXIS, 1), [stretch * AXIS, stretch], method="DOP853",
                      rtol=TOLERANCE, atol=1e-15, dense_output=True).sol
 
 
 def spinning_at(spin: float) -> Cylinder:
-    """Without stress at the rim; the stretch on the axis is sought between none and three times the linear one."""
+    """Cylinder without stress at the rim; the stretch on the axis is sought from no strain to three times the linear one."""
     def at_rim(stretch: float) -> float:
         r, s = _from_axis(spin, stretch)(1.0)
         return float(stresses(s, r)[0])
@@ -97,7 +97,7 @@ def spinning_at(spin: float) -> Cylinder:
 
 
 def spun_up_to(spin: float) -> Cylinder:
-    """That which has the angular momentum of a round one at that spin, pi/2 x spin."""
+    """Cylinder with the angular momentum of a round one at that spin, pi/2 x spin."""
     def excess(slower: float) -> float:
         return slower * spinning_at(slower).inertia - np.pi / 2 * spin
 
