@@ -43,7 +43,7 @@ inline Scene pushed_cluster(int rings, int nodes, bool mixed, const ContactRule&
       continue;
     }
     const Vec2 inward = -share * centre;
-    Drive* drives[2] = {&push.x, &push.y};
+    AxisCondition* drives[2] = {&push.x, &push.y};
     for (int c = 0; c < 2; ++c) {
       drives[c]->mode = rigid ? AxisCondition::Mode::velocity : AxisCondition::Mode::displacement;
       drives[c]->history = rigid ? History{{0, ramp, ramp + 0.001}, {inward[c] / ramp, inward[c] / ramp, 0}}
