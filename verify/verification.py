@@ -27,7 +27,7 @@ LONGEST_RUN = float(os.environ.get("PLIANT_VERIFY_LONGEST", 14400 if FULL else 9
 
 
 class Label(str, Enum):
-    """Where an expected value comes from."""
+    """Source of an expected value."""
 
     EXACT = "EXACT"
     RATE = "RATE"

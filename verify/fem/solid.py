@@ -27,7 +27,7 @@ class Material:
 
     @classmethod
     def of_poisson(cls, poisson: float) -> Material:
-        """With mu = density = 1."""
+        """Material with mu = density = 1."""
         return cls(lame=2 * poisson / (1 - 2 * poisson))
 
 

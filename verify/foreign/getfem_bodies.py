@@ -144,7 +144,7 @@ class Bodies:
         return bool(converged)
 
     def plate_force(self, name: str, plate: str, side: int) -> float:
-        """Of the plate on the body's mesh, N/m."""
+        """Force of the plate on the body's mesh, N/m."""
         return float(getfem.asm_generic(self._rules[name], 0, self._pressure(name, plate, side), OUTLINE, self.model))
 
     def _pressure(self, name: str, plate: str, side: int) -> str:
@@ -167,7 +167,7 @@ def fields(own: getfem.Mesh, components: int, degree: int) -> getfem.MeshFem:
 
 
 def as_getfem(mesh: Mesh) -> getfem.Mesh:
-    """With the regions of the curve and of the axis x = 0."""
+    """Mesh with the regions of the curve and of the axis x = 0."""
     own, kind = getfem.Mesh("empty", 2), getfem.GeoTrans("GT_PK(2,2)")
     for cell in mesh.cells[:, [0, 3, 1, 5, 4, 2]]:
         own.add_convex(kind, mesh.points[cell].T)

@@ -31,7 +31,7 @@ SAME_NODES = {"discs": Squeeze(size=discs.SAME_NODES, pause=40.0),
               "corner first on a facet": Press(first="corner", size=10, pause=60.0),
               "corner first on a node": Press(first="corner", size=10, way=2, pause=60.0),
               "face first on a facet": Press(first="face", size=10, pause=60.0)}
-LIVE = pytest.mark.skipif(not FULL, reason="needs the solvers from elsewhere")
+LIVE = pytest.mark.skipif(not FULL, reason="needs the third-party solvers")
 
 
 @cache
