@@ -6,7 +6,7 @@ from pliant import Run
 
 
 def restitution(run: Run) -> float:
-    """Speed of parting over speed of approach, of the discs' mean velocities."""
+    """Ratio of separation and approach speeds, by the discs' mean velocities."""
     left, right = (run.probes.column(f"velocity_{side}.velocity_x").values for side in ("left", "right"))
     apart, before = right[-1] - left[-1], left[0] - right[0]
     if apart <= 0:

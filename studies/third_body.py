@@ -1,4 +1,4 @@
-"""What the studies of the third body gather from a run: friction on the lower wall, and order."""
+"""Quantities of the third-body studies: friction on the lower wall, and order."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ NEIGHBOUR = 1.3e-6  # m between centres, of discs of 1 um
 
 
 def _friction(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Times, s, and factors while the layer is sheared; positive as the upper wall moves; means of 50 ns."""
+    """Times, s, and friction factors during shear, positive in the direction of the upper wall; means of 50 ns."""
     assert run.probes is not None
     column = {axis: run.probes.column(f"force_lower.force_{axis}") for axis in "xy"}
     times, along = run.probes.sampled(column["x"])
@@ -34,7 +34,7 @@ def peak_time(run: Run) -> float:
 
 
 def kept(run: Run) -> float:
-    """Share of the first neighbours that still are at the end."""
+    """Share of the first neighbours that are still neighbours at the end."""
     assert run.frames is not None
     grains = run.frames.bodies("grain")
     first, last = (neighbours(run.frames.centres(i)[grains], NEIGHBOUR, run.period) for i in (0, -1 + len(run.frames.times)))

@@ -1,4 +1,4 @@
-"""Starts the checks of each case afresh, adds times and failures to them, and shows all of them at the end."""
+"""Resets the checks of each case, adds times and failures to them, and lists all of them at the end."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # of numpy and dolfinx, before they load: cases run side by side
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # for numpy and dolfinx, before import, as cases run in parallel
 
 import pytest
 
@@ -21,7 +21,7 @@ BEGIN = "PLIANT_VERIFY_BEGIN"  # of the session, s
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Reports of tests arrive where the summary is written, not at the workers of pytest-xdist."""
+    """Reports of tests arrive at the process that writes the summary, not at the workers of pytest-xdist."""
     if not hasattr(config, "workerinput"):
         make_results_folder()
         os.environ[BEGIN] = str(time.time())  # the workers inherit it
@@ -38,21 +38,21 @@ def make_results_folder() -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """So that no long case is left over at the end, on one core."""
+    """Long cases start first, so that none remains at the end on one core."""
     items.sort(key=lambda item: -item.module.CASE.cost)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """Rows of an earlier run must not stand for checks that this one does not reach. Workers collect while others run."""
+    """Remove rows of earlier runs, which must not replace unreached checks. Workers collect while others run."""
     for case in {item.path.parent.name for item in session.items}:
         for file in (OUT / case / "checks.json", OUT / case / "failures.json"):
-            with suppress(FileNotFoundError):  # another worker may have been here between the two
+            with suppress(FileNotFoundError):  # another worker may have removed it between the two calls
                 if file.stat().st_mtime < float(os.environ[BEGIN]):
                     file.unlink()
 
 
 class Record:
-    """Of the tests of this session: times, failures and, at the end, the report."""
+    """Times and failures of this session's tests and, at the end, the report."""
 
     def __init__(self) -> None:
         self.seconds: dict[str, float] = defaultdict(float)
@@ -65,21 +65,21 @@ class Record:
             self.messages[report.nodeid] = str(report.longrepr)
 
     def pytest_collectreport(self, report: pytest.CollectReport) -> None:
-        """A case that cannot be loaded is red: its rows of an earlier run do not stand for it."""
+        """A case that cannot be loaded is red: rows of an earlier run do not count."""
         if report.failed and report.nodeid.endswith(".py"):
             (OUT / case_of(report.nodeid) / "checks.json").unlink(missing_ok=True)
             self.seconds[report.nodeid] = 0.0
             self.messages[report.nodeid] = str(report.longrepr)
 
     def pytest_sessionfinish(self) -> None:
-        """All cases that ever ran, in one report."""
+        """One report with all cases that have results."""
         ran = {case_of(test) for test in self.seconds}
         for case in ran:
             self._complete(OUT / case)
         self.cases = [case for case in report.write(OUT, ran) if case.name in ran]
 
     def _complete(self, folder: Path) -> None:
-        """Adds to the rows of a case how long they took, and what failed without a row."""
+        """Adds times to the rows of a case, and failures without a row."""
         rows = read_rows(folder / "checks.json")
         for row in rows:
             row["seconds"] = self.seconds.get(row["test"], 0.0)

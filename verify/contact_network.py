@@ -1,7 +1,7 @@
-"""The network of contacts of a packing from its outlines alone: who touches whom, with what force, how full a box is.
+"""The contact network of a packing from its outlines alone: contact pairs, forces, and area fractions in a box.
 
-Nothing here knows the engine's contact code: a node inside another outline is found by the distance to one of the two
-segments at the nearest corner, chosen by the corner's bisector, and pressed out of it.
+It is independent of the engine's contact code. A node inside another outline is found by the distance to one of the two
+segments at the nearest corner, chosen by the corner's bisector; the force pushes it out of that segment.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ Box = tuple[float, float, float, float]  # x and y limits
 
 @dataclass
 class Outlines:
-    """Closed outlines, counter-clockwise, points of each body one after another."""
+    """Closed counter-clockwise outlines, with consecutive points of each body."""
 
     points: np.ndarray  # [points x 2]
     body: np.ndarray  # [points]
@@ -34,7 +34,7 @@ class Outlines:
         return self.points[self.body == body]
 
     def tributary_lengths(self) -> np.ndarray:
-        """[points] half of the two segments."""
+        """[points] half of the two adjacent segments."""
         lengths = np.linalg.norm(self.points[self.following] - self.points, axis=1)
         return 0.5 * (lengths + lengths[self.preceding])
 
@@ -44,17 +44,17 @@ class Outlines:
         return np.bincount(self.body, 0.5 * (x * y[self.following] - x[self.following] * y))
 
     def centres(self) -> np.ndarray:
-        """[bodies x 2] mean of the points, which on these outlines are equally spaced."""
+        """[bodies x 2] mean of the points, which are equally spaced on these outlines."""
         count = np.bincount(self.body)
         return np.stack([np.bincount(self.body, column) / count for column in self.points.T], axis=1)
 
 
 @dataclass
 class Network:
-    """Pairs of bodies in touch, each once, i < j."""
+    """Pairs of bodies in contact, each once, i < j."""
 
     pairs: np.ndarray  # [pairs x 2]
-    forces: np.ndarray  # [pairs x 2] on j; on i the opposite
+    forces: np.ndarray  # [pairs x 2] on j, opposite on i
     bodies: int
 
     def magnitudes(self) -> np.ndarray:
@@ -68,11 +68,11 @@ class Network:
         return sums
 
     def counts(self) -> np.ndarray:
-        """[bodies] partners."""
+        """[bodies] numbers of partners."""
         return np.bincount(self.pairs.ravel(), minlength=self.bodies)
 
     def without_rattlers(self, walls: np.ndarray) -> Network:
-        """Less the grains that fewer than three bodies touch, which cannot hold them, until none is left; not walls."""
+        """Network without rattlers: grains with fewer than three contacts (no walls) are removed until none is left."""
         network = self
         while True:
             loose = (network.counts() < 3) & ~np.isin(np.arange(self.bodies), walls)
@@ -84,7 +84,7 @@ class Network:
 
 @dataclass
 class Touching:
-    """Nodes inside other bodies, each force where it acts: on the node's body there, on the other at its foot."""
+    """Nodes inside other bodies. A force acts on the node's body at the node, and on the other body at its foot."""
 
     own: np.ndarray  # [n] the node's body
     partner: np.ndarray  # [n]
@@ -99,7 +99,7 @@ class Touching:
 
 
 def touching(outlines: Outlines, tributary: np.ndarray, stiffness: float) -> Touching:
-    """Of frictionless penalty contact: stiffness times depth times the node's reference length, half from each side."""
+    """Frictionless penalty contact: stiffness times depth times the node's reference length, half from each side."""
     node, partner, push = _penetrations(outlines)
     places = outlines.points[node]
     return Touching(outlines.body[node], partner, places, places + push,
@@ -108,7 +108,7 @@ def touching(outlines: Outlines, tributary: np.ndarray, stiffness: float) -> Tou
 
 def network(touching: Touching, bodies: int) -> Network:
     own, partner, force = touching.own, touching.partner, touching.forces
-    swapped = own < partner  # the force acts on the node's body; kept is that on the later body
+    swapped = own < partner  # the force acts on the node's body; the network stores that on the later body
     keys = np.where(swapped, own, partner) * 1_000_000 + np.where(swapped, partner, own)
     signed = np.where(swapped[:, None], -force, force)
     unique, index = np.unique(keys, return_inverse=True)
@@ -117,7 +117,7 @@ def network(touching: Touching, bodies: int) -> Network:
 
 
 def _penetrations(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Nodes, the bodies they are in, and depth times outward normal, [n x 2]."""
+    """Nodes, bodies that contain them, and depth times outward normal, [n x 2]."""
     node, corner = _nearest_corners(outlines)
     start = np.where(_beyond(outlines, node, corner), corner, outlines.preceding[corner])
     along = outlines.points[outlines.following[start]] - outlines.points[start]
@@ -129,7 +129,8 @@ def _penetrations(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 
 def _beyond(outlines: Outlines, node: np.ndarray, corner: np.ndarray) -> np.ndarray:
-    """Whether a node is past the bisector of a corner, so that the segment after it counts, not the one before."""
+    """Whether a node lies past the bisector of a corner, so that the following segment counts, not the preceding one.
+    """
     here = outlines.points[corner]
     ways = here - outlines.points[outlines.preceding[corner]], outlines.points[outlines.following[corner]] - here
     tangent = sum(way / np.linalg.norm(way, axis=1)[:, None] for way in ways)
@@ -137,7 +138,7 @@ def _beyond(outlines: Outlines, node: np.ndarray, corner: np.ndarray) -> np.ndar
 
 
 def _nearest_corners(outlines: Outlines) -> tuple[np.ndarray, np.ndarray]:
-    """Of every node and every other body near it: the body's point nearest to the node."""
+    """Nearest point of every other nearby body, for every node."""
     reach = 1.01 * np.linalg.norm(outlines.points[outlines.following] - outlines.points, axis=1).max()
     pairs = cKDTree(outlines.points).query_pairs(reach, output_type="ndarray")
     pairs = np.concatenate([pairs, pairs[:, ::-1]])
@@ -151,7 +152,7 @@ def _nearest_corners(outlines: Outlines) -> tuple[np.ndarray, np.ndarray]:
 
 
 def filled(outlines: Outlines, bodies: np.ndarray, box: Box) -> np.ndarray:
-    """[bodies] share of the area of each that lies in the box."""
+    """[bodies] share of each body's area in the box."""
     areas = outlines.areas()
     shares = np.zeros(len(bodies))
     for i, body in enumerate(bodies):
@@ -168,7 +169,7 @@ def polygon_area(polygon: np.ndarray) -> float:
 
 
 def clipped(polygon: np.ndarray, box: Box) -> np.ndarray:
-    """A polygon within a box, side by side of the box (Sutherland and Hodgman 1974)."""
+    """A polygon clipped by the sides of a box (Sutherland and Hodgman 1974)."""
     for axis, sign, limit in ((0, 1, box[0]), (0, -1, box[1]), (1, 1, box[2]), (1, -1, box[3])):
         if len(polygon) == 0:
             return polygon
@@ -180,7 +181,7 @@ def clipped(polygon: np.ndarray, box: Box) -> np.ndarray:
 
 
 def _cut(polygon: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """What of a polygon is where `height` [points] is not negative."""
+    """Part of a polygon with nonnegative `height` [points]."""
     kept = []
     for i in range(len(polygon)):
         j = (i + 1) % len(polygon)

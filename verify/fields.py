@@ -14,7 +14,7 @@ STRESSES = ("xx", "yy", "xy")
 
 @dataclass
 class Stresses:
-    """Of all cells of the compliant bodies."""
+    """Stresses of all cells of the compliant bodies."""
 
     centres: np.ndarray  # [cells x 2] at the start, m
     areas: np.ndarray  # [cells] at the start, m2
@@ -24,7 +24,7 @@ class Stresses:
     triangles: np.ndarray  # [cells x 3 x 2] corners at the start, m
 
     def rms(self, difference: np.ndarray, where: np.ndarray) -> float:
-        """Root of the mean of |s|^2 = xx^2 + yy^2 + 2 xy^2 by area and a mask, or a weight, of the cells."""
+        """Root of the mean of |s|^2 = xx^2 + yy^2 + 2 xy^2, weighted by area and a mask or weight of the cells."""
         square = difference[:, 0] ** 2 + difference[:, 1] ** 2 + 2 * difference[:, 2] ** 2
         return float(np.sqrt(np.average(square, weights=self.areas * where)))
 
@@ -46,7 +46,7 @@ def stresses_of(run: Run, frame: int = -1) -> Stresses:
 
 
 def along_outline(run: Run, body: int, name: str, frame: int = -1) -> tuple[np.ndarray, np.ndarray]:
-    """[nodes x 2] places at the start, m, and [nodes] a field of frames, along the outline of a body."""
+    """[nodes x 2] initial positions, m, and [nodes] a field of frames, along the outline of a body."""
     frames = frames_of(run)
     number, there = range(len(frames.times))[frame], frames.grids["outlines"].point_body == body
     values = frames.field("outlines", number, name).astype(float)

@@ -1,4 +1,4 @@
-"""Motions that scenes prescribe, as tables over time."""
+"""Prescribed motions of scenes, as tables over time."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def speeds(places: Sequence[float], pause: float, ramp: float) -> list[list[float]]:
-    """[[time, velocity], ...] from the first of these places to each next one, triangles at each pause's start."""
+    """[[time, velocity], ...] triangular pulses from each of these places to the next, at the start of each pause."""
     corners = []
     for i, way in enumerate(np.diff(places).tolist()):
         start = i * pause

@@ -20,7 +20,7 @@ class Motion:
     times: np.ndarray  # [frames]
     positions: np.ndarray  # [frames x nodes x 2]
     displacements: np.ndarray  # [frames x nodes x 2]
-    velocities: np.ndarray | None  # [frames x nodes x 2], m/s; None where the frames have none
+    velocities: np.ndarray | None  # [frames x nodes x 2], m/s; None if the frames have none
     triangles: np.ndarray  # [triangles x 3]
 
     def areas(self) -> np.ndarray:
@@ -33,8 +33,9 @@ class Motion:
         return np.bincount(self.triangles.ravel(), np.repeat(self.areas() / 3, 3), self.positions.shape[1])
 
     def momenta(self, velocities: np.ndarray, mass: str) -> np.ndarray:
-        """[nodes x 2] of linear triangles over their density, m3/s, for [nodes x 2] velocities: D v of lumped mass,
-        inv(W) v with W = 2 inv(D) - inv(D) M inv(D) of corrected mass; M the consistent mass, D its row sums."""
+        """[nodes x 2] momenta of linear triangles over their density, m3/s, for [nodes x 2] velocities: D v for lumped
+        mass, inv(W) v with W = 2 inv(D) - inv(D) M inv(D) for corrected mass; M is the consistent mass, D its row sums.
+        """
         lumped = self.node_areas()
         if mass == "lumped":
             return lumped[:, None] * velocities
@@ -51,13 +52,13 @@ class Motion:
         return self.displacements[:, :, axis] @ (shape * self.node_areas())
 
     def second_moments(self, axis: int) -> np.ndarray:
-        """[frames] integral of x^2 over the area of the start, m4; x linear in each triangle."""
+        """[frames] integral of x^2 over the initial area, m4; x is linear in each triangle."""
         x = self.positions[:, :, axis][:, self.triangles]
         return ((x**2).sum(axis=2) + x.sum(axis=2)**2) @ (self.areas() / 12)
 
 
 def read_motion(run: Run) -> Motion:
-    """Of a run with one body and frames with the field displacement, and velocity if it is wanted."""
+    """Motion from a run with one body and frames with the field displacement, and optionally velocity."""
     frames = frames_of(run)
     count = range(len(frames.times))
     velocities = None
@@ -69,5 +70,5 @@ def read_motion(run: Run) -> Motion:
 
 
 def plane(frames: Frames, index: int, name: str) -> np.ndarray:
-    """[nodes x 2] of a vector that a frame stores with a z of zero."""
+    """[nodes x 2] plane part of a vector, which a frame stores with z = 0."""
     return np.array(frames.field("bodies", index, name), dtype=float)[:, :2]

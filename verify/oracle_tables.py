@@ -12,7 +12,7 @@ FOLDER = ROOT / "verify/oracles"
 
 
 def read_oracle(name: str) -> dict[str, np.ndarray]:
-    """Columns of oracles/<name>.csv, as text where they are no numbers. Units mu = R = rho = 1, lambda = 4."""
+    """Columns of oracles/<name>.csv, as text if they are not numeric. Units mu = R = rho = 1, lambda = 4."""
     with (FOLDER / f"{name}.csv").open() as stream:
         header, *rows = csv.reader(stream)
     return {title: as_numbers([row[i] for row in rows]) for i, title in enumerate(header)}

@@ -24,7 +24,7 @@ Curve = tuple[str, list[float], list[float]]  # name, steps, errors
 
 
 def panels(count: int, title: str, across: bool = False) -> tuple[Figure, list[Axes]]:
-    """Above one another with a common axis of x, or side by side, in rows of at most three."""
+    """Panels above one another with a common x axis, or side by side, in rows of at most three."""
     rows = (count + 2) // 3 if across else count
     columns = -(-count // rows)
     size = (4.6 * columns, 4.2 * rows + 0.2) if across else (9, 1.2 + 2.4 * rows)
@@ -40,14 +40,14 @@ def legend(axes: Axes) -> None:
 
 
 def describe(axes: Axes, title: str = "", x: str = "", y: str = "") -> None:
-    """What is given."""
+    """Sets the given title and labels."""
     if title:
         axes.set_title(title, fontsize=10, loc="left")
     axes.set(**{name: text for name, text in (("xlabel", x), ("ylabel", y)) if text})
 
 
 def set_ticks(axes: Axes, places: Sequence[float], labels: list[str]) -> None:
-    """Of x, and no others."""
+    """Sets these ticks of x and no others."""
     axes.set_xticks(places, labels)
     axes.set_xticks([], minor=True)
 
@@ -60,7 +60,7 @@ def draw_rate(axes: Axes, steps: Sequence[float], errors: Sequence[float], name:
 
 
 def draw_both(axes: Axes, runs: dict[str, Run], probe: str, factor: float = 1, what: str = "", first: int = 0) -> None:
-    """The engine's curve and the reference's, dashed upon it."""
+    """The engine's curve, and the reference's as a dashed line."""
     for (name, run), colour, style in zip(runs.items(), COLOURS[first:], ("-", "--")):
         axes.plot(run.times(probe), factor * run.probe(probe), style, color=colour, linewidth=1.1, label=what + name)
 
@@ -71,7 +71,7 @@ def draw_differences(axes: Axes, study: Study, quantities: list[Quantity]) -> No
 
 
 def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]) -> None:
-    """Errors over steps with their slopes, and lines of the orders that theory gives."""
+    """Errors over steps with their slopes, and lines of the theoretical orders."""
     for (name, steps, errors), colour, marker in zip(curves, COLOURS, MARKERS):
         draw_rate(axes, steps, errors, name, colour, marker)
     ends = np.array([min(min(steps) for _, steps, _ in curves), max(max(steps) for _, steps, _ in curves)])
@@ -87,7 +87,7 @@ def draw_orders(axes: Axes, title: str, curves: list[Curve], orders: list[float]
 
 def draw_ratios(axes: Axes, percent: np.ndarray, engine: dict[str, np.ndarray], references: dict[str, np.ndarray],
                 elements: np.ndarray, error: float) -> None:
-    """By method [approaches], over finite elements, whose own relative error the bars show, less 1, in percent."""
+    """By method [approaches]: ratio to finite elements less 1, in percent. Bars show the finite elements' own error."""
     for (method, force), colour, marker in zip(engine.items(), COLOURS, MARKERS):
         axes.plot(percent, 100 * (force / elements - 1), marker=marker, markersize=4, linewidth=1.1, color=colour,
                   label=f"engine, {method}")
@@ -100,7 +100,7 @@ def draw_ratios(axes: Axes, percent: np.ndarray, engine: dict[str, np.ndarray], 
 
 def draw_cells(figure: Figure, axes: Axes, triangles: np.ndarray, values: np.ndarray, colours: str,
                limits: tuple[float, float], title: str) -> None:
-    """A value a triangle, [triangles x 3 x 2] and [triangles], in colours between two limits."""
+    """One value per triangle, [triangles x 3 x 2] and [triangles], in colours between two limits."""
     cells = PolyCollection(list(triangles), array=values, cmap=colours, edgecolors="face", linewidths=0.1)
     cells.set_clim(*limits)
     axes.add_collection(cells)

@@ -1,4 +1,4 @@
-"""Means over time, with an error that does not take samples of one motion for independent ones."""
+"""Means over time, with an error that accounts for correlated samples."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import t as students_t
 
-FEWEST = 5  # blocks: with fewer, Student's factor lets nearly every mean pass
+FEWEST = 5  # blocks: with fewer, Student's factor accepts nearly every mean
 CONFIDENCE = 0.999
 
 
 @dataclass
 class Mean:
-    """Of blocks, each the mean of a time longer than the motion remembers; of several runs as well."""
+    """Mean of blocks, each longer than the correlation time, from one or several runs."""
 
     blocks: np.ndarray
 
@@ -27,7 +27,7 @@ class Mean:
 
     @property
     def error(self) -> float:
-        """Half of the interval in which the true mean is with the confidence."""
+        """Half of the confidence interval of the true mean."""
         count = len(self.blocks)
         factor = students_t.ppf((1 + CONFIDENCE) / 2, count - 1)
         return float(factor * self.blocks.std(ddof=1) / np.sqrt(count))
@@ -37,14 +37,14 @@ class Mean:
 
 
 def block_means(values: np.ndarray, length: int) -> np.ndarray:
-    """Of consecutive blocks of that many samples; what is left at the end counts in none."""
+    """Means of consecutive blocks of that many samples; remaining samples at the end are not used."""
     count = len(values) // length
     return values[: count * length].reshape(count, length).mean(axis=1)
 
 
 def correlation_time(values: np.ndarray) -> float:
-    """In samples: the integral of the autocorrelation up to where it first vanishes. Means of blocks several times as
-    long hardly know of each other."""
+    """In samples: the integral of the autocorrelation up to its first zero. Means of blocks several times as long are
+    nearly independent."""
     rest = values - values.mean()
     correlation = np.correlate(rest, rest, "full")[len(rest) - 1 :] / (rest @ rest)
     last = int(np.argmax(correlation <= 0)) or len(correlation)

@@ -1,4 +1,4 @@
-"""What every case of verify/ uses: runs of both solvers on scenes, their probes, and checks that are written down.
+"""Common to all cases of verify/: runs of both solvers on scenes, their probes, and recorded checks.
 
 A case is a folder with a README.md, scenes and one check_*.py that says `CASE = Case(__file__)`. Results, pictures
 and the rows of the checks go to results/verify/<case>/, or below PLIANT_VERIFY_OUT.
@@ -27,7 +27,7 @@ LONGEST_RUN = float(os.environ.get("PLIANT_VERIFY_LONGEST", 14400 if FULL else 9
 
 
 class Label(str, Enum):
-    """Where an expected value comes from."""
+    """Source of an expected value."""
 
     EXACT = "EXACT"
     RATE = "RATE"
@@ -43,7 +43,7 @@ class Label(str, Enum):
 
 @dataclass
 class Row:
-    """A check as results/verify/checks.json has it. Green: |value - expected| <= tolerance."""
+    """A check in the form of results/verify/checks.json. Green: |value - expected| <= tolerance."""
 
     label: str
     case: str
@@ -53,9 +53,9 @@ class Row:
     tolerance: float
     source: str  # of the expected value and of the tolerance
     green: bool
-    test: str = ""  # of pytest, in which it was made
-    seconds: float = 0.0  # of that test, with the runs that it waited for
-    commit: str = ""  # that the engine was built from
+    test: str = ""  # pytest test of the check
+    seconds: float = 0.0  # of that test, including its runs
+    commit: str = ""  # from which the engine was built
 
     @property
     def used(self) -> float | None:
@@ -72,11 +72,11 @@ class Run:
         self._probes = read_table(folder / "probes.csv")
 
     def probe(self, name: str) -> np.ndarray:
-        """A column such as "energy.strain", where it was measured."""
+        """Measured values of a column such as "energy.strain"."""
         return self._sampled(name)[1]
 
     def times(self, name: str) -> np.ndarray:
-        """When the column was measured, s."""
+        """Times of the column's values, s."""
         return self._sampled(name)[0]
 
     def _sampled(self, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -85,7 +85,7 @@ class Run:
         return self._probes.sampled(self._probes.column(name))
 
     def at(self, name: str, times: np.ndarray) -> np.ndarray:
-        """A column at times at which it was measured; others are an error."""
+        """A column at times of its values; others raise an error."""
         measured = self.times(name)
         index = np.abs(measured[:, None] - np.atleast_1d(times)).argmin(axis=0)
         if not np.allclose(measured[index], times, rtol=1e-9, atol=1e-9 * measured[-1]):
@@ -107,7 +107,7 @@ class Run:
 class Case:
     """A folder of verify/: its scenes, its results, its checks.
 
-    Fast cases run in ./pliant test too; those of the largest cost, in minutes of one core, start first.
+    Fast cases run in ./pliant test too. Cases with the largest cost, in minutes of one core, start first.
     """
 
     def __init__(self, file: str, fast: bool = False, cost: float = 1) -> None:
@@ -118,7 +118,7 @@ class Case:
         self.out.mkdir(parents=True, exist_ok=True)
 
     def scene(self, template: str = "scene.toml", **values: object) -> str:
-        """A scene file's text; @name@ stands for a value. All must be used, and none left open."""
+        """A scene file's text with @name@ replaced by values. All values must be used, and no @name@ may remain."""
         text = (self.folder / template).read_text()
         for name, value in values.items():
             if f"@{name}@" not in text:
@@ -127,11 +127,11 @@ class Case:
         return text
 
     def engine(self, run: str, scene: str, *options: str) -> Run:
-        """Runs the engine on a scene's text, on one thread: several cases may run at once."""
+        """Runs the engine on a scene's text, on one thread, as several cases may run at once."""
         return self._run(run, scene, [str(ENGINE), "run"], ["--threads", "1", *options])
 
     def reference(self, run: str, scene: str, *options: str) -> Run:
-        """Solves a scene's text by the reference solver."""
+        """Solves a scene's text with the reference solver."""
         return self._run(run, scene, [str(REFERENCE)], [*options])
 
     def _run(self, run: str, scene: str, program: list[str], options: list[str]) -> Run:
@@ -145,7 +145,7 @@ class Case:
 
     def check(self, label: Label | str, name: str, value: float, expected: float, tolerance: float,
               source: str) -> None:
-        """|value - expected| <= tolerance, which `source` derives. Red ones are written down as well, then fail."""
+        """Checks |value - expected| <= tolerance, derived in `source`. A red check is recorded before it fails."""
         value, expected, tolerance = float(value), float(expected), float(tolerance)
         if not (tolerance >= 0 and np.isfinite(expected)) or not source:
             raise ValueError(f"{name}: expected {expected}, tolerance {tolerance}, source '{source}'")
@@ -157,7 +157,7 @@ class Case:
 
     def check_rate(self, name: str, steps: list[float], errors: list[float], order: float, tolerance: float,
                    source: str) -> float:
-        """The slope of errors over steps in logarithms, of at least three."""
+        """Checks the slope of errors over steps in logarithms, for at least three steps."""
         if len(steps) < 3:
             raise ValueError(f"{name}: a rate needs three resolutions, not {len(steps)}")
         slope = observed_order(steps, errors)
@@ -172,7 +172,7 @@ class Case:
 
 @cache
 def commit_of_engine() -> str:
-    """That it was built from, as summaries have it; "unknown" when there is no engine, or none that says so."""
+    """Commit from which the engine was built, as in summaries; "unknown" without an engine or without its answer."""
     try:
         answer = subprocess.run([str(ENGINE), "--version"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     except OSError:
@@ -181,7 +181,7 @@ def commit_of_engine() -> str:
 
 
 def replace_file(file: Path, text: str) -> None:
-    """At once: other sessions may read it for their reports."""
+    """Atomic replacement, as concurrent runs may read the file for their reports."""
     temporary = file.with_suffix(file.suffix + ".tmp")
     temporary.write_text(text)
     temporary.replace(file)
@@ -192,17 +192,17 @@ def read_rows(file: Path) -> list[dict]:
 
 
 def weights_of_limit(spacings: np.ndarray, order: int) -> np.ndarray:
-    """[sizes] of what a straight line in this power of the spacing takes from each for h = 0."""
+    """[sizes] weights of the values at h = 0 of a straight line in this power of the spacing."""
     powers = spacings**order
     return np.polyfit(powers, np.eye(len(powers)), 1, w=1 / powers)[1]
 
 
 def observed_order(steps: list[float], errors: list[float]) -> float:
-    """Of a straight line through the logarithms, by least squares."""
+    """Slope of a straight line through the logarithms, by least squares."""
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
 def largest_difference(a: Run, b: Run, names: list[str], times: np.ndarray) -> float:
-    """Of columns of one unit, over their largest magnitude in b."""
+    """Largest difference of columns of one unit, over their largest magnitude in b."""
     first, second = (np.array([run.at(name, times) for name in names]) for run in (a, b))
     return float(np.abs(first - second).max() / np.abs(second).max())

@@ -13,7 +13,7 @@ from statistics import median
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [*ROOT.glob("*.md"), ROOT / "verify/README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+PAGES = [*ROOT.glob("*.md"), *sorted((ROOT / "verify").rglob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 Figures = tuple[float, float, int]  # as LIMITS
 LIMITS = (16, 5.0, 40)  # median length in words, share of sentences above 30 words in %, longest cell in words
 

@@ -132,7 +132,7 @@ def check_premise(result: Result) -> None:
     exist. At 1 an end lies over a corner; at 0.96 it passes the bisector there, 8e-3 deep."""
     for rest in (result.engine, result.reference[STEPS]):
         if (share := used_up(rest, result.grains)) > 0.96:
-            raise RuntimeError(f"facets' ends have gone {share:.2f} of the way to the corners opposite: another case")
+            raise RuntimeError(f"facet ends have moved {share:.2f} of the distance to the opposite corners: not valid")
 
 
 def used_up(rest: Rest, grains: list[Grain]) -> float:

@@ -11,7 +11,7 @@ from histories import speeds
 # Outline nodes of the three sorts are multiples of six, so every sort has a facet towards each neighbour. Half a facet
 # has the length tan(pi / sides). Halves differ by 0.027 and 0.045, and by 0.017 and 0.030: twice the slip, some 0.008.
 SIDES = {60: (18, 24, 30), 168: (30, 42, 54)}
-# Displacement gradient of the outermost ring's centres: facets are pressed and sheared alike.
+# Displacement gradient of the outermost ring's centres: facets are compressed and sheared equally.
 PUSH = np.array([[-0.03, 0.02], [0.005, -0.02]])
 
 

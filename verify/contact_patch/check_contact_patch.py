@@ -38,7 +38,7 @@ EXACT = np.array([0, -PRESSURE, 0])
 
 
 def spacing(face: Face) -> float:
-    """Of the coarser side."""
+    """Spacing of the coarser side."""
     return 2 / min(face)
 
 

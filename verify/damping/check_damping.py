@@ -127,7 +127,7 @@ def test_a_towed_square_comes_along(towed: dict[str, Run]) -> None:
 def test_picture(flights: dict[str, dict[float, Run]], creep: dict[str, Run], towed: dict[str, Run]) -> None:
     figure, axes = panels(3, "Damping", across=True)
     curves = [(f"{body}, {name}", STEPS, flight_errors(runs, body)) for body in FLIGHTS for name, runs in flights.items()]
-    draw_orders(axes[0], "mass damping: way flown", curves, [1, 2])
+    draw_orders(axes[0], "mass damping: distance", curves, [1, 2])
     for (name, run), colour, style in zip(creep.items(), COLOURS, ("-", "--")):
         t, x = run.times("square.position_x"), run.probe("square.position_x")
         axes[1].plot(t, (x - x[0]) / PULL, style, color=colour, linewidth=1.1, label=name)

@@ -99,7 +99,7 @@ class Damped:
 
 @pytest.fixture(scope="module")
 def damped() -> dict[float, Damped]:
-    """By alpha."""
+    """Results by alpha."""
     motions = small_motions()
     return {alpha: damped_by(alpha, *motions) for alpha in ALPHAS[1:]}
 

@@ -127,7 +127,7 @@ FINE = np.linspace(0, TEARING[-1][0], 54001)
 
 @cache
 def law_of(drive: Drive) -> Law:
-    """At the times FINE."""
+    """Tractions at the times FINE."""
     return integrate(drive, *drive.ways(FINE))
 
 

@@ -1,4 +1,4 @@
-"""Just-in-time compilation below the results, safe for several processes at once and after a kill."""
+"""Just-in-time compilation in the results folder, safe for concurrent processes and after a kill."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ jit.DOLFINX_DEFAULT_JIT_PARAMETERS["cache_dir"] = (str(CACHE), "Path for storing
 
 @contextmanager
 def compiling() -> Iterator[None]:
-    """One process at a time. What a killed one left unfinished would make dolfinx wait for it, and is removed."""
+    """Lock for one process at a time. Unfinished files of a killed process would block dolfinx and are removed."""
     CACHE.mkdir(parents=True, exist_ok=True)
     with (CACHE / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)

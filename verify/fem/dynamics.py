@@ -1,4 +1,4 @@
-"""Motion of a solid: explicit steps with the consistent mass, and implicit ones."""
+"""Motion of a solid: explicit steps with the consistent mass."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ class Motion:
         self._vector = petsc.create_vector(self._gradient)
 
     def potential(self) -> float:
-        """J/m; NaN where an element is turned inside out."""
+        """J/m; NaN if an element is inverted."""
         return fem.assemble_scalar(self._potential)
 
     def kinetic_energy(self) -> float:
         return fem.assemble_scalar(self._kinetic)
 
     def update_acceleration(self) -> None:
-        """From the forces at `u`. Conditions are of the acceleration: zero holds a boundary in its motion."""
+        """From the forces at `u`. Conditions prescribe the acceleration: zero keeps the velocity of a boundary."""
         with self._vector.localForm() as local:
             local.set(0)
         petsc.assemble_vector(self._vector, self._gradient)
@@ -46,7 +46,7 @@ class Motion:
         self._solver.solve(self._vector, self.a.vector)
 
     def largest_frequency(self, iterations: int = 60) -> float:
-        """Of small vibrations about `u` with the contacts of the moment, rad/s; power iteration, from below."""
+        """Of small vibrations about `u` with the current contacts, rad/s; power iteration, from below."""
         tangent = compile_form(ufl.derivative(self._force, self.u, self.solid.trial))
         stiffness = petsc.assemble_matrix(tangent, bcs=self.conditions)
         stiffness.assemble()
@@ -64,15 +64,16 @@ class Motion:
 class Explicit(Motion):
     """Velocity Verlet. Stable below 2 / largest_frequency, which grows with strain and contact.
 
-    Half of that at the start was enough for strains of a half. The caller sets u and v, and moves plates between steps.
+    Half of its initial value was sufficient for strains of a half. The caller sets u and v, and moves plates between
+    steps.
     """
 
     def start(self) -> None:
-        """After u and v are set."""
+        """Call after setting u and v."""
         self.update_acceleration()
 
     def step(self, dt: float) -> None:
-        """`u`, `v` and `a` from t to t + dt; raises where an element is turned inside out."""
+        """Advances `u`, `v` and `a` from t to t + dt; raises if an element is inverted."""
         self.v.x.array[:] += dt / 2 * self.a.x.array
         self.u.x.array[:] += dt * self.v.x.array
         self.update_acceleration()

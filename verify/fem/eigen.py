@@ -10,7 +10,7 @@ from slepc4py import SLEPc
 from fem.compiled import compile_form
 from fem.solid import Solid
 
-SHIFT = 1.0  # of w^2, near the lowest of a body of size and wave speed 1, where the matrix is regular
+SHIFT = 1.0  # of w^2, near the lowest for a body of size and wave speed 1, where the matrix is regular
 
 
 def matrix(form) -> PETSc.Mat:
@@ -20,8 +20,8 @@ def matrix(form) -> PETSc.Mat:
 
 
 def natural_frequencies(solid: Solid, count: int) -> np.ndarray:
-    """[count] lowest angular frequencies of a free body at its present `u`, growing; the three rigid motions are
-    left out."""
+    """[count] lowest angular frequencies of a free body at its current `u`, in ascending order, without the three rigid
+    motions."""
     solver = SLEPc.EPS().create(PETSc.COMM_SELF)
     solver.setOperators(matrix(solid.stiffness()), matrix(solid.mass()))
     solver.setProblemType(SLEPc.EPS.ProblemType.GHEP)

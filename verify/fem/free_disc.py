@@ -1,4 +1,4 @@
-"""A free disc that is set in motion by a velocity 0.5 (X, -Y)."""
+"""A free disc with the initial velocity 0.5 (X, -Y)."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ RATE = 0.5  # of the initial velocity, cs / R
 
 
 class Oscillation:
-    """Runs in so many steps, or at half of the stable one; `times`, `energies` and s = sqrt(Ixx / Ixx0), diameter at
-    each step."""
+    """Runs in this number of steps, or with half of the stable step. `times`, `energies`, s = sqrt(Ixx / Ixx0) and
+    diameter are those of each step."""
 
     def __init__(self, rings: int, until: float, material: Material = Material(), steps: int | None = None) -> None:
         solid = Solid(disc(rings), material)
@@ -39,7 +39,7 @@ class Oscillation:
         return [motion.time, energy, fem.assemble_scalar(self._inertia), 2 * (1 + self._solid.u.x.array[self._right])]
 
     def value(self, quantity: str, time: float) -> float:
-        """`quantity` as in disc_oscillation.csv: "s", "horizontal_diameter_over_R", the "extreme_of_s" near by."""
+        """`quantity` as in disc_oscillation.csv: "s", "horizontal_diameter_over_R", the nearest "extreme_of_s"."""
         if quantity == "horizontal_diameter_over_R":
             return float(CubicSpline(self.times, self.diameter)(time))
         curve = CubicSpline(self.times, self.s)

@@ -1,4 +1,4 @@
-"""A disc that flies into a rigid frictionless wall with a penalty."""
+"""A disc hits a rigid frictionless wall with a penalty."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from fem.solid import Material, Solid
 
 
 def velocities(rings: int, penalty: float, speed: float, start: float, period: float, samples: int) -> np.ndarray:
-    """[samples + 1] of the centre of mass, which starts that high over the wall; quadratic triangles, half of the
-    stable step with all nodes in touch."""
+    """[samples + 1] velocity of the centre of mass, which starts at this height over the wall; quadratic triangles,
+    with half of the stable step for contact of all nodes."""
     solid = Solid(disc(rings), Material())
     height, stiffness = Constant(solid.domain, 10.0), Constant(solid.domain, penalty)
     motion = Explicit(solid, solid.strain_energy() + solid.plate_energy(height, stiffness, -1))

@@ -1,4 +1,4 @@
-"""Triangles of discs, quarters of them and rectangles. Edges on a circle are curved: six nodes a triangle."""
+"""Triangles of discs, their quarters and rectangles. Edges on a circle are curved: six nodes per triangle."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ PLAIN = 1e-9  # a point is on an axis if it is that near to it
 
 
 def disc(rings: int) -> mesh.Mesh:
-    """Unit disc about the origin: rings of equal breadth, ring k of 8 k edges, mirror images about both axes."""
+    """Unit disc about the origin: rings of equal width, ring k with 8 k edges, symmetric about both axes."""
     return curved(*ringed(rings, 8, 2 * np.pi))
 
 
@@ -35,14 +35,14 @@ def quarter_disc_near_pole(rings: int, width: float, edges: float) -> mesh.Mesh:
 
 
 def rectangle(width: float, height: float, columns: int, rows: int) -> mesh.Mesh:
-    """[0, width] x [0, height], four triangles a cell, about its middle."""
+    """[0, width] x [0, height], four triangles per cell around its middle."""
     corners = [np.array([0.0, 0.0]), np.array([width, height])]
     return mesh.create_rectangle(MPI.COMM_SELF, corners, [columns, rows], mesh.CellType.triangle,
                                  diagonal=mesh.DiagonalType.crossed)
 
 
 def ringed(rings: int, sectors: int, angle: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points [n x 2] and counter-clockwise triangles [m x 3] of a unit sector; ring k has sectors x k edges."""
+    """Points [n x 2] and counter-clockwise triangles [m x 3] of a unit sector. Ring k has sectors x k edges."""
     closed = angle == 2 * np.pi
     points, first = [np.zeros((1, 2))], [0]
     for k in range(1, rings + 1):
@@ -67,12 +67,12 @@ def ring_cells(k: int, sector: int, node: Callable[[int, int], int]) -> list[lis
 
 
 def near_pole(points: np.ndarray, cells: np.ndarray, distance: float) -> np.ndarray:
-    """[cells] whose nearest corner is within the distance of (0, 1)."""
+    """[cells] whether the nearest corner is within the distance of (0, 1)."""
     return (np.linalg.norm(points - [0, 1], axis=1)[cells] < distance).any(axis=1)
 
 
 def refined(points: np.ndarray, cells: np.ndarray, marked: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Marked triangles divided, and neighbours so that the mesh stays conforming; new points of the arc go onto it."""
+    """Divides marked triangles, and neighbours so that the mesh stays conforming. New points of the arc lie on it."""
     linear = create(points, cells, 1)
     linear.topology.create_entities(1)
     linear.topology.create_connectivity(2, 1)
@@ -96,7 +96,7 @@ def arc_edges(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def curved(points: np.ndarray, cells: np.ndarray) -> mesh.Mesh:
-    """With a node in the middle of every edge, of boundary edges off the axes pushed out to the unit circle."""
+    """Mesh with a node in the middle of every edge; those of boundary edges off the axes lie on the unit circle."""
     sides = cells[:, [[1, 2], [0, 2], [0, 1]]]  # in the order of dolfinx
     edges, of_cell = np.unique(np.sort(sides.reshape(-1, 2)), axis=0, return_inverse=True)
     middles = points[edges].mean(axis=1)

@@ -13,8 +13,8 @@ from fem.meshes import PLAIN, quarter_disc_near_pole
 from fem.solid import Material, Solid
 from fem.statics import Conditions, Minimiser, NotConverged
 
-STEP = 0.03  # largest change of the approach at once, over the diameter
-SOFT, STIFFER = 100.0, 5.0  # first stiffness, mu / R, and by how much it grows at a time
+STEP = 0.03  # largest change of the approach per step, over the diameter
+SOFT, STIFFER = 100.0, 5.0  # first stiffness, mu / R, and its growth factor
 
 
 @dataclass
@@ -23,13 +23,13 @@ class Squeezed:
 
     approach: float
     force: float  # on one plate
-    reaction: float  # of the plane of symmetry, which must be the same
+    reaction: float  # of the plane of symmetry, which must be equal
     strain_energy: float
     horizontal_diameter: float
 
 
 class Plates:
-    """Squeezes a quarter disc whose mesh has `edges` edges in the half width of a contact, `width` over the radius."""
+    """Squeezes a quarter disc. Its mesh has `edges` edges in the half width of a contact, `width` over the radius."""
 
     def __init__(self, material: Material, rings: int, width: float, edges: float, degree: int = 2) -> None:
         self.solid = Solid(quarter_disc_near_pole(rings, width, edges), material, degree)
@@ -43,9 +43,9 @@ class Plates:
         self._minimiser = Minimiser(self.solid.strain_energy() + plate, self.solid.u, conditions)
 
     def squeeze(self, approach: float, stiffness: float) -> Squeezed:
-        """To that approach over the diameter, from the last one, with a penalty of stiffness x mu / R.
+        """From the last approach to this one, over the diameter, with a penalty of stiffness x mu / R.
 
-        On its way the plate is soft, then stiffened at its place: the kinks of a stiff one stop Newton's method.
+        The plate is soft while it moves and is then stiffened: the kinks of a stiff one stop Newton's method.
         """
         steps = int(np.ceil(abs(approach - self._at[0]) / STEP))
         for level in np.linspace(self._at[0], approach, 1 + steps)[1:]:
@@ -56,7 +56,7 @@ class Plates:
         return self._measured()
 
     def _move(self, approach: float, stiffness: float, halvings: int = 4) -> None:
-        """At once, or in halves where that does not converge."""
+        """In one step, or in halves if that does not converge."""
         before = self.solid.u.x.array.copy()
         self._height.value, self._stiffness.value = 1 - approach, stiffness
         try:
@@ -94,7 +94,7 @@ def without_penalty(coarse: Squeezed, fine: Squeezed) -> Squeezed:
 
 
 def hertz_force(approach: float, material: Material) -> float:
-    """Of the disc of radius 1 in linear theory: D = phi (ln(4 / phi) - 1), phi = f / (pi E* R)."""
+    """Force on a disc of radius 1 in linear theory: D = phi (ln(4 / phi) - 1), phi = f / (pi E* R)."""
     phi = approach / 5
     for _ in range(100):
         phi = approach / (np.log(4 / phi) - 1)

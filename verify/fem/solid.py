@@ -27,12 +27,12 @@ class Material:
 
     @classmethod
     def of_poisson(cls, poisson: float) -> Material:
-        """With mu = density = 1."""
+        """Material with mu = density = 1."""
         return cls(lame=2 * poisson / (1 - 2 * poisson))
 
 
 class Solid:
-    """Displacements `u` (a fem.Function of `space`) of a body on a mesh, elements of the degree given.
+    """Displacements `u` (a fem.Function of `space`) of a body on a mesh, with elements of the given degree.
 
     Constants of the material enter as fem.Constant, so that forms are compiled once for all values.
     """
@@ -50,7 +50,7 @@ class Solid:
         self.X = ufl.SpatialCoordinate(domain)
 
     def component_at(self, place: tuple[float, float], axis: int) -> np.ndarray:
-        """[1] the degree of freedom of that displacement at the node of that place; none if there is no node."""
+        """[1] the degree of freedom of that displacement at the node there; empty if there is no node."""
         part = self.space.sub(axis)
         near = fem.locate_dofs_geometrical((part, part.collapse()[0]), lambda x: np.hypot(*(x[:2].T - place).T) < 1e-9)
         return near[0]
@@ -82,7 +82,7 @@ class Solid:
         return self.density * product
 
     def stiffness(self) -> ufl.Form:
-        """Bilinear form of the tangent at the present `u`: at u = 0 that of linear elasticity."""
+        """Bilinear form of the tangent at the current `u`; at u = 0 that of linear elasticity."""
         force = ufl.derivative(self.strain_energy(), self.u, self.test)
         return ufl.derivative(force, self.u, self.trial)
 
@@ -91,7 +91,7 @@ class Solid:
         return stiffness / 2 * self._depth(height, side)**2 * self.ds
 
     def plate_force(self, height: fem.Constant, stiffness: fem.Constant, side: int) -> ufl.Form:
-        """Its size, N/m."""
+        """Magnitude of the plate's force, N/m."""
         return stiffness * self._depth(height, side) * self.ds
 
     def _depth(self, height: fem.Constant, side: int) -> ufl.core.expr.Expr:

@@ -28,10 +28,10 @@ def direct_solver(matrix: PETSc.Mat) -> PETSc.KSP:
 
 
 class Minimiser:
-    """Of a potential over `u`, which it changes in place.
+    """Minimiser of a potential over `u`, which it changes in place.
 
-    Values of conditions, constants and loads may change between calls: the first iteration, from the last solution,
-    moves a displaced boundary and the inside together, so no element is folded at the boundary.
+    Values of conditions, constants and loads may change between calls. The first iteration, from the last solution,
+    moves a displaced boundary and the interior together, so no element is folded at the boundary.
     """
 
     def __init__(self, potential: ufl.Form, u: fem.Function, conditions: Conditions = ()) -> None:
@@ -45,7 +45,8 @@ class Minimiser:
         self._solver = direct_solver(self._matrix)
 
     def solve(self, tolerance: float = 1e-10, iterations: int = 40) -> int:
-        """Until no displacement changes by more than the tolerance, m. Returns the iterations; raises NotConverged."""
+        """Iterates until no displacement changes by more than the tolerance, m. Returns the iterations; raises
+        NotConverged."""
         for i in range(iterations):
             self._newton_step()
             size = self._step.norm(PETSc.NormType.NORM_INFINITY)
@@ -55,11 +56,11 @@ class Minimiser:
         raise NotConverged(f"{iterations} iterations, the last step was {size:.2g}, more than {tolerance:.2g}")
 
     def potential(self) -> float:
-        """At the present u; NaN where an element is turned inside out."""
+        """At the current u; NaN if an element is inverted."""
         return fem.assemble_scalar(self._potential)
 
     def reaction(self) -> np.ndarray:
-        """[degrees of freedom] gradient of the potential: zero but for what conditions hold, N/m."""
+        """[degrees of freedom] gradient of the potential, N/m: zero except at conditions."""
         with self._vector.localForm() as local:
             local.set(0)
         petsc.assemble_vector(self._vector, self._gradient)

@@ -1,5 +1,5 @@
-"""Bodies in contact at large strains by solvers from elsewhere: an independent opinion without expected numbers.
+"""Bodies in contact at large strains in third-party solvers: independent solutions without expected numbers.
 
 `meshes` of triangles with curved sides in plain numpy, `getfem_bodies` for GetFEM, `calculix_deck` for CalculiX.
-`./pliant verify --full` alone installs their packages. One thread.
+Only `./pliant verify --full` installs their packages. One thread.
 """

@@ -1,5 +1,5 @@
-"""Bodies at large strain in contact, by CalculiX (ccx 2.20): quadratic triangles of plane strain, surfaces by penalty,
-Coulomb friction if wanted.
+"""Bodies at large strain in contact, by CalculiX (ccx 2.20): quadratic triangles in plane strain, surface contact by
+penalty, optional Coulomb friction.
 
 *HYPERELASTIC, NEO HOOKE is psi = C10 (J^(-2/3) I1 - 3) + (J - 1)^2 / D1, which is the law `melody` with C10 = mu/2,
 D1 = 2/K (docs/method.md, section 3).
@@ -17,21 +17,21 @@ import numpy as np
 from foreign.meshes import PLAIN, Mesh, Where
 
 PLATE_CELLS, PLATE_FROM, PLATE_TO = 6, -0.5, 3.0  # along x
-STEEL = 1e3  # mu: of plates, all of whose nodes are placed
-SHORTEST, STEPS = 1e-5, 1000  # of an increment over its step
+STEEL = 1e3  # mu: of plates, all of whose nodes are prescribed
+SHORTEST, STEPS = 1e-5, 1000  # shortest increment over its step, most increments
 SIMPSON = np.array([1, 1, 4]) / 6  # of both ends and the middle of a side
 
 
 class Failed(RuntimeError):
-    """ccx did not get to the end."""
+    """ccx did not reach the end."""
 
 
 class Deck:
-    """An input file that grows: bodies, plates and springs first, then contacts, then steps."""
+    """An input file, built in this order: bodies, plates and springs, then contacts, then steps."""
 
     def __init__(self, stiffness: float, meshes: dict[str, Mesh], moduli: dict[str, float],
                  friction: float = 0.0) -> None:
-        """The penalty is as stiff along as across; lambda = 4 mu."""
+        """Tangential and normal penalty are equal; lambda = 4 mu."""
         self._nodes, self._cells = 0, 0
         self._axis: list[int] = []
         self._bodies: dict[str, tuple[int, Mesh]] = {}  # with its first node
@@ -47,8 +47,8 @@ class Deck:
             self._add(name.upper(), mesh, moduli[name])
 
     def _add(self, name: str, mesh: Mesh, mu: float) -> None:
-        """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle. Of a
-        half one u_x = 0 on x = 0."""
+        """A body, with the surfaces <name>UP and <name>DOWN of its outline beyond 0.2 above and below its middle. A
+        half body has u_x = 0 on x = 0."""
         first = self._place(mesh.points)
         self._bodies[name] = first, mesh
         if mesh.half:
@@ -74,8 +74,8 @@ class Deck:
         self._plates.append(name)
 
     def hold(self, body: str, where: Where, stiffness: float, name: str) -> None:
-        """By springs of so much a length along x and y on what is there of its outline, Simpson's rule on each side.
-        Their other ends move as a plate does, by loads: ccx 2.20 fails with springs between two nodes (SPRING2)."""
+        """Springs of this stiffness per length along x and y on the selected outline, by Simpson's rule on each side.
+        Loads move their other ends like a plate: ccx 2.20 fails with springs between two nodes (SPRING2)."""
         first, mesh = self._bodies[body]
         springs = self._springs[name] = {}
         for cell, side in mesh.outline[where(mesh.side_middles())]:
@@ -96,8 +96,8 @@ class Deck:
         self._model += ["*CONTACT PAIR,INTERACTION=TOUCH,TYPE=SURFACE TO SURFACE", f"{slave},{master}"]
 
     def step(self, heights: dict[str, float], increment: float, asides: dict[str, float] | None = None) -> None:
-        """Plates and ends of springs moved up, and these ends aside, so far from the start, in increments of so much of
-        the step."""
+        """A step that moves plates and ends of springs up, and these ends aside, to these distances from the start.
+        `increment` is its share of the step."""
         places = {name: np.array([(asides or {}).get(name, 0.0), height]) for name, height in heights.items()}
         self._places.append(places)
         self._steps += [f"*STEP,NLGEOM,INC={STEPS}", "*STATIC", f"{increment:g},1.,{SHORTEST:g},{increment:g}"]
@@ -113,8 +113,8 @@ class Deck:
         self._steps += ["*END STEP"]
 
     def forces(self, job: Path, all_steps: bool = True) -> dict[str, np.ndarray]:
-        """Runs ccx; by plate [steps] the force along y that holds it, by support of springs [steps x 2] that along x
-        and y, at the end of each step, or of those that ccx gets to."""
+        """Runs ccx. Returns by plate [steps] its holding force along y, and by support of springs [steps x 2] that
+        along x and y, at the end of each step that ccx reaches."""
         axis = ["*NSET,NSET=AXIS", *map(str, self._axis), "*BOUNDARY", "AXIS,1,1"] if self._axis else []
         held = [*axis, *(f"ALL{name},1,1" for name in self._plates)]
         job.with_suffix(".inp").write_text("\n".join([*self._model, *held, *self._steps]) + "\n")

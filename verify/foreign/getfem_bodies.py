@@ -1,7 +1,7 @@
-"""Bodies at large strain in contact, by GetFEM (5.4): quadratic triangles, augmented Lagrangian, no penalty left.
+"""Bodies at large strain in contact, by GetFEM (5.4): quadratic triangles, augmented Lagrangian, no residual penalty.
 
-Bodies touch through GetFEM's brick of large sliding by ray tracing: the slave has multipliers of first order on its
-outline; slip is that since the last load step. Rigid plates without friction have pressures of second order.
+Contact uses GetFEM's large-sliding brick by ray tracing. The slave has first-order multipliers on its outline; slip is
+counted from the last load step. Rigid frictionless plates have second-order pressures.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ LAWS = {
               "-mu_{n}/3*pow(Det({F}),-2/3)*(Norm_sqr({F})+1))*Inv({F})')",
 }
 OUTLINE, AXIS, HELD = 1, 2, 3  # regions
-AUGMENTED = 20.0  # mu / R: the result does not depend on it
+AUGMENTED = 20.0  # mu / R: results are independent of it
 REACH = 0.5  # R, of rays
 RESIDUAL = 1e-9
 ITERATIONS, HALVINGS = 40, 6
 
 
 class NotConverged(RuntimeError):
-    """Newton's method, with the shortest load steps."""
+    """Newton's method did not converge with the shortest load steps."""
 
 
 class Bodies:
-    """Variables u_<name>, pressures p_<name>, multipliers t_<slave>; `load` places what is imposed. lambda = 4 mu."""
+    """Variables u_<name>, pressures p_<name>, multipliers t_<slave>; `load` sets imposed values. lambda = 4 mu."""
 
     def __init__(self, law: str, meshes: dict[str, Mesh], moduli: dict[str, float], imposed: dict[str, float]) -> None:
         self.model, self.law, self.meshes = getfem.Model("real"), law, meshes
@@ -49,7 +49,7 @@ class Bodies:
             self._add(name, mesh, moduli[name])
 
     def _add(self, name: str, mesh: Mesh, mu: float) -> None:
-        """Of a half one u_x = 0 on x = 0."""
+        """Adds a body; a half body has u_x = 0 on x = 0."""
         own = as_getfem(mesh)
         field = fields(own, 2, 2)
         self._own[name] = own
@@ -63,7 +63,7 @@ class Bodies:
             self.model.add_normal_Dirichlet_condition_with_multipliers(self._rules[name], f"u_{name}", 2, AXIS)
 
     def hold(self, name: str, where: Where, stiffness: float, x: str, y: str) -> None:
-        """By springs of so much a length on what is there of its outline, whose other ends move by imposed values."""
+        """Springs of this stiffness per length on the selected outline, whose other ends move by imposed values."""
         own = self._own[name]
         sides = own.region(OUTLINE)
         middles = np.array([own.pts(own.pid_in_faces(side[:, None])).mean(axis=1) for side in sides.T])
@@ -75,12 +75,12 @@ class Bodies:
         self.model.add_nonlinear_term(self._rules[name], f"-{self._springs[name]}.Test_u_{name}", HELD)
 
     def holding_force(self, name: str) -> np.ndarray:
-        """[2] of the springs on the body."""
+        """[2] force of the springs on the body."""
         return np.array([getfem.asm_generic(self._rules[name], 0, f"{self._springs[name]}({i})", HELD, self.model)
                          for i in (1, 2)])
 
     def press(self, name: str, plate: str, side: int) -> None:
-        """By a plate at y = the imposed value of its name, above (side 1) or below (-1)."""
+        """Contact with a plate at y = the imposed value of its name, above (side 1) or below (-1)."""
         self.model.add_filtered_fem_variable(f"p_{name}", fields(self._own[name], 1, 2), OUTLINE)
         pressure = self._pressure(name, plate, side)
         self.model.add_nonlinear_term(self._rules[name], f"{side}*{pressure}*Test_u_{name}(2)"
@@ -107,7 +107,7 @@ class Bodies:
 
     def go(self, loads: list[dict[str, float]], steps: list[int],
            force: Callable[[], object]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-        """Through all loads; [loads x ...] forces, and by body [loads x nodes x 2] outlines."""
+        """Applies all loads; returns [loads x ...] forces, and by body [loads x nodes x 2] outlines."""
         forces, outlines = [], {name: [] for name in self.meshes}
         for imposed, count in zip(loads, steps):
             self.load(imposed, count)
@@ -117,7 +117,7 @@ class Bodies:
         return np.array(forces), {name: np.array(places) for name, places in outlines.items()}
 
     def load(self, imposed: dict[str, float], steps: int) -> None:
-        """From the last load in so many steps, in halves where Newton's method fails."""
+        """Advances from the last load in this number of steps, in halves where Newton's method fails."""
         before = dict(self._at)
         for share in np.linspace(0, 1, steps + 1)[1:]:
             self._move({name: (1 - share) * before[name] + share * value for name, value in imposed.items()}, HALVINGS)
@@ -144,7 +144,7 @@ class Bodies:
         return bool(converged)
 
     def plate_force(self, name: str, plate: str, side: int) -> float:
-        """Of the plate on the body's mesh, N/m."""
+        """Force of the plate on the body's mesh, N/m."""
         return float(getfem.asm_generic(self._rules[name], 0, self._pressure(name, plate, side), OUTLINE, self.model))
 
     def _pressure(self, name: str, plate: str, side: int) -> str:
@@ -152,7 +152,7 @@ class Bodies:
         return f"pos_part(p_{name}-{AUGMENTED}*({gap}))"
 
     def outline(self, name: str) -> np.ndarray:
-        """[nodes x 2] where the outline's nodes are, along it."""
+        """[nodes x 2] current positions of the outline's nodes, along it."""
         mesh = self.meshes[name]
         places = mesh.points[mesh.order]
         moved = getfem.compute_interpolate_on(self.model.mesh_fem_of_variable(f"u_{name}"),
@@ -167,7 +167,7 @@ def fields(own: getfem.Mesh, components: int, degree: int) -> getfem.MeshFem:
 
 
 def as_getfem(mesh: Mesh) -> getfem.Mesh:
-    """With the regions of the curve and of the axis x = 0."""
+    """Mesh with the regions of the curve and of the axis x = 0."""
     own, kind = getfem.Mesh("empty", 2), getfem.GeoTrans("GT_PK(2,2)")
     for cell in mesh.cells[:, [0, 3, 1, 5, 4, 2]]:
         own.add_convex(kind, mesh.points[cell].T)

@@ -1,4 +1,4 @@
-"""Triangles of six nodes in plain numbers, for solvers from elsewhere: curved sides lie on the true outline."""
+"""Six-node triangles in plain numbers, for third-party solvers; curved sides lie on the true outline."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-PLAIN = 1e-9  # a point is on a line if it is that near to it
+PLAIN = 1e-9  # a point within this distance is on a line
 Curve = Callable[[np.ndarray], np.ndarray]  # [n] from 0 to 1 -> [n x 2]
 Where = Callable[[np.ndarray], np.ndarray]  # [sides x 2] middles of sides -> [sides] whether they are there
 
 
 @dataclass
 class Mesh:
-    """A body's. Cells are counter-clockwise: three corners, then the middles of the sides 1-2, 2-3 and 3-1."""
+    """Mesh of a body. Cells are counter-clockwise: three corners, then the middles of the sides 1-2, 2-3 and 3-1."""
 
     points: np.ndarray  # [points x 2]
     cells: np.ndarray  # [cells x 6]
@@ -55,7 +55,7 @@ def half_circle(t: np.ndarray) -> np.ndarray:
 
 
 def fan(curve: Curve, centre: tuple[float, float], rings: int, sectors: int) -> Mesh:
-    """What lies between the origin and a curve about it, moved to a centre. Ring k has sectors x k sides."""
+    """Mesh between the origin and a curve about it, moved to a centre. Ring k has sectors x k sides."""
     rows = [np.zeros((1, 2))] + [k / rings * curve(np.linspace(0, 1, sectors * k + 1)) for k in range(1, rings + 1)]
     first = np.concatenate([[0], np.cumsum([len(row) for row in rows])])
     corners = np.array([[first[k] + i for k, i in cell] for k in range(1, rings + 1) for s in range(sectors)
@@ -88,12 +88,12 @@ def full_circle(t: np.ndarray) -> np.ndarray:
 
 
 def full_disc(rings: int, centre: tuple[float, float]) -> Mesh:
-    """Of radius 1; ring k has 6 k sides. Its outline begins and ends at the highest point."""
+    """A disc of radius 1; ring k has 6 k sides. Its outline begins and ends at the highest point."""
     return welded(fan(full_circle, centre, rings, 6))
 
 
 def welded(mesh: Mesh) -> Mesh:
-    """Points in one place become one."""
+    """Merges coinciding points."""
     _, first, number = np.unique(np.round(mesh.points, 9), axis=0, return_index=True, return_inverse=True)
     number = number.ravel()
     return Mesh(mesh.points[first], number[mesh.cells], mesh.outline, number[mesh.order])

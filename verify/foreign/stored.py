@@ -1,4 +1,4 @@
-"""Stored numbers of solvers from elsewhere, and distances from stored outlines."""
+"""Stored results of third-party solvers, and distances from stored outlines."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-KEYS = ("first", "body", "slave", "rings", "rows", "steps", "stiffness", "down", "increment")  # columns that name a run
+KEYS = ("first", "body", "slave", "rings", "rows", "steps", "stiffness", "down", "increment")  # columns that key a run
 
 
 @dataclass
 class Opinion:
-    """Of one solver."""
+    """Result of one solver."""
 
     force: np.ndarray  # [places]
     error: np.ndarray  # [places] relative
 
 
 class Table:
-    """Rows below the header; lines that begin with # say where they come from."""
+    """Rows below the header; lines that begin with # give their origin."""
 
     def __init__(self, file: Path) -> None:
         lines = [line for line in file.read_text().splitlines() if not line.startswith("#")]
@@ -27,7 +27,7 @@ class Table:
         self.rows = np.loadtxt(lines[1:], delimiter=",", ndmin=2)
 
     def of(self, **key: float) -> np.ndarray:
-        """[rows x columns that are no KEYS] of one run, or of all that the key leaves."""
+        """[rows x columns that are no KEYS] of all runs that match the key."""
         there = np.full(len(self.rows), True)
         for name, value in key.items():
             there &= np.isclose(self.column(name), value)
@@ -53,7 +53,7 @@ def largest(values: np.ndarray) -> np.ndarray:
 
 
 def distances(places: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """[places] from a polyline."""
+    """[places] distances from a polyline."""
     starts, ways = line[:-1], np.diff(line, axis=0)
     seen = places[:, None] - starts
     along = np.clip((seen * ways).sum(axis=2) / (ways**2).sum(axis=1), 0, 1)
@@ -61,5 +61,5 @@ def distances(places: np.ndarray, line: np.ndarray) -> np.ndarray:
 
 
 def distances_from_half(places: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """[places] from an outline whose half x >= 0 is a polyline."""
+    """[places] distances from an outline whose half x >= 0 is a polyline."""
     return distances(np.stack([np.abs(places[:, 0]), places[:, 1]], axis=1), half)

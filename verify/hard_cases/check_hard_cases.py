@@ -104,7 +104,7 @@ def energy_error(run: Run) -> float:
 
 
 def shortest_segment(run: Run) -> float:
-    """Of all outlines of grains at the start, m."""
+    """Shortest initial segment of all grain outlines, m."""
     frames = frames_of(run)
     grid = frames.grids["outlines"]
     points = frames.positions("outlines", 0)[:, :2]

@@ -261,7 +261,7 @@ def draw_packing(axes: Axes, packing: Packing, stage: Stage) -> None:
     for half, style in ((stage.half, "-"), (reach, ":")):
         axes.add_patch(plt.Rectangle((-half, -half), 2 * half, 2 * half, fill=False, linestyle=style, color=COLOURS[0]))
     values = f"{stage.solid_fraction:.3f}, P = {stage.pressure:.2g} E, Z = {stage.coordination:.2f}"
-    axes.set_title(f"{values}; dotted: what counts", fontsize=10, loc="left")
+    axes.set_title(f"{values}; dotted: evaluated region", fontsize=10, loc="left")
     axes.set_xlim(-1.03 * stage.half, 1.03 * stage.half)
     axes.set_ylim(-1.03 * stage.half, 1.03 * stage.half)
     describe(axes, x="x over the small diameter", y="y over the small diameter")

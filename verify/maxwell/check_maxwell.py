@@ -96,14 +96,15 @@ def test_picture(small: dict[str, Run], large: dict[str, Run]) -> None:
         axes[0].plot(run.times("square.position_x"), moved(run) / SMALL, style, color=colour, linewidth=1.1, label=name)
     t = np.linspace(0, END, 400)
     axes[0].plot(t, way_of_centre(t) / SMALL, ":", color=COLOURS[6], linewidth=1.5, label="closed form")
-    axes[0].set_title("small strains: way of the centre over the pull", fontsize=10, loc="left")
+    axes[0].set_title("small strains: displacement of the centre over the traction", fontsize=10, loc="left")
     for name, colour, style in zip(("engine", f"{STEPS[-1]:g}"), COLOURS, ("-", "--")):
         run = large[name]
         axes[1].plot(run.times("square.position_x"), moved(run), style, color=colour, linewidth=1.1,
                      label=name if name == "engine" else f"reference, {name} s")
-    axes[1].set_title("large strains: way of the centre", fontsize=10, loc="left")
+    axes[1].set_title("large strains: displacement of the centre", fontsize=10, loc="left")
     for panel in axes[:2]:
         panel.set_xlabel("time [s]")
         legend(panel)
-    draw_orders(axes[2], "large strains: reference against engine", [("way", STEPS, differences(large))], [1, 2])
+    curves = [("displacement", STEPS, differences(large))]
+    draw_orders(axes[2], "large strains: reference against engine", curves, [1, 2])
     save(CASE, figure, "maxwell")

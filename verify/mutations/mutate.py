@@ -1,11 +1,12 @@
-"""Makes small mistakes of physics, one at a time, in a copy of the code, and shows which unit tests and which check of verify/ find each.
+"""Applies mutations, small errors of physics, one at a time to a copy of the code, and reports which unit tests and
+which check of verify/ detect each.
 
     ./pliant verify --mutate                  all mutations of mutations.toml: some hours
     ./pliant verify --mutate NAME NAME        these
 
-The copy and its builds are in build/mutants; what was found goes to results/verify/mutations.json and into the report. A mutation counts as found
-when a unit test or a check is red, or a run ends with an error, that is green without it. All unit tests and the mutation's own cases are asked, the
-other fast cases when those find nothing.
+The copy and its builds are in build/mutants; results go to results/verify/mutations.json and into the report. A
+mutation counts as detected if a unit test or a check is red, or a run ends with an error, that is green without it. All
+unit tests and the mutation's own cases are run, and the other fast cases if those detect nothing.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ LONGEST_RUN = 300  # s; a solver that runs longer than this does not come to an 
 
 @dataclass
 class Mutation:
-    """A text that stands once in a file, and what stands there instead. `cases` are tried first, the fast ones if nothing finds it."""
+    """A text that occurs once in a file, and its replacement. `cases` are tried first, then the fast ones."""
 
     name: str
     what: str
@@ -55,13 +56,13 @@ class Mutation:
 
     def mutated(self, text: str) -> str:
         if text.count(self.old) != 1:
-            raise ValueError(f"mutation {self.name}: its text stands {text.count(self.old)} times in {self.file}, not once")
+            raise ValueError(f"mutation {self.name}: text occurs {text.count(self.old)} times in {self.file}, not once")
         return text.replace(self.old, self.new)
 
 
 @dataclass
 class Verdict:
-    """As results/verify/mutations.json has it."""
+    """A row of results/verify/mutations.json."""
 
     name: str
     what: str
@@ -77,7 +78,7 @@ def read_mutations() -> list[Mutation]:
 
 
 def copy_sources() -> None:
-    """Files that are the same keep their times, so that little is built anew."""
+    """Unchanged files keep their times, so that little is rebuilt."""
     listed = subprocess.run(["git", "-C", str(ROOT), "ls-files", "-co", "--exclude-standard", "-z"], check=True,
                             capture_output=True, text=True).stdout
     names = {name for name in listed.split("\0") if name and (ROOT / name).is_file()}
@@ -103,7 +104,7 @@ def build() -> None:
 
 
 def run_cases(cases: list[str], name: str, *options: str) -> list[str]:
-    """What is red in them, each a line "case: check" and, after a tab, what it said."""
+    """Red checks in these cases, each a line "case: check" and, after a tab, its message."""
     out = SCRATCH / "results" / name
     shutil.rmtree(out, ignore_errors=True)
     folders = [str(SOURCE / "verify" / case) for case in cases]
@@ -131,7 +132,7 @@ def red_lines(checks: dict) -> list[str]:
 
 
 def last_error(message: str) -> str:
-    """The line of a failed run that says why."""
+    """The line of a failed run that states the reason."""
     lines = [line.removeprefix("E").strip() for line in message.splitlines() if line.strip()]
     errors = [line for line in lines if "error" in line.lower() or "pliant" in line.lower()]
     return (errors or lines or ["ended without a message"])[-1][:300]
@@ -144,22 +145,22 @@ def fast_cases() -> list[str]:
 
 @dataclass
 class Sound:
-    """What is green without a mutation: only this can find one."""
+    """Tests and cases that are green without a mutation: only these can detect one."""
 
     cases: list[str]
     red_tests: list[str]
     seconds: float  # of the unit tests
 
     def unit_tests(self, name: str) -> list[str]:
-        """Those that find a mutation."""
+        """Unit tests that detect a mutation."""
         longest = 3 * self.seconds + 60
-        usual = longest if self.red_tests else 1.5 * self.seconds + 30  # what is red anyway would be taken for a finding
+        usual = longest if self.red_tests else 1.5 * self.seconds + 30  # tests that are red anyway would count
         red = red_tests(BUILD / "pliant_tests", SCRATCH / "results" / name, longest, usual)
         return [test for test in red if test not in self.red_tests]
 
 
 def judge(mutation: Mutation, sound: Sound) -> Verdict:
-    """Builds the mutant and looks for tests and a check that find it."""
+    """Builds the mutant and searches for tests and a check that detect it."""
     start = time.monotonic()
     file = SOURCE / mutation.file
     text = file.read_text()
@@ -180,7 +181,7 @@ def judge(mutation: Mutation, sound: Sound) -> Verdict:
 
 
 def write_down(verdicts: list[Verdict], names: list[str]) -> None:
-    """Beside what is known of the other mutations."""
+    """Updates the results, keeping those of other mutations."""
     OUT.mkdir(parents=True, exist_ok=True)
     file = OUT / "mutations.json"
     known = {row["name"]: row for row in json.loads(file.read_text())["rows"]} if file.exists() else {}
@@ -215,7 +216,7 @@ def chosen(mutations: list[Mutation], names: list[str]) -> list[Mutation]:
 
 @contextmanager
 def alone() -> Iterator[None]:
-    """Another call would write its mistakes into the same copy."""
+    """Lock, as a concurrent call would change the same copy."""
     SCRATCH.mkdir(parents=True, exist_ok=True)
     with (SCRATCH / ".lock").open("w") as lock:
         try:
@@ -241,7 +242,7 @@ def main() -> int:
 
 
 def judge_all(mutations: list[Mutation], known: list[str]) -> int:
-    """Exit code: 1 when one survives. What is found is written down at once."""
+    """Exit code: 1 if a mutation survives. Results are written immediately."""
     copy_sources()
     build()
     sound = look_for_sound(mutations)

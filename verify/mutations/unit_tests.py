@@ -1,4 +1,4 @@
-"""The unit tests as judges of a mutation: which of them find it."""
+"""Unit tests that detect a mutation."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ LONGEST = 1200  # s, of all tests
 
 
 def red_tests(program: Path, folder: Path, longest: float = LONGEST, usual: float = LONGEST) -> list[str]:
-    """Names of the tests that fail, crash or, as a mutant may keep one of them from coming to an end, are not over after
-    so many seconds; after `usual` ones, when some are red already, no others are waited for. They run in one process a
-    core, each with its share; a crash ends its own share."""
+    """Names of the tests that fail, crash or do not end within this number of seconds, as a mutant may hang. Once some
+    are red, waiting ends after `usual` seconds. Tests run in one process per core, each with its share; a crash ends
+    only its own share."""
     folder.mkdir(parents=True, exist_ok=True)
     shards = os.cpu_count() or 1
     running = {shard: start(program, folder, shard, shards) for shard in range(shards)}
@@ -39,7 +39,7 @@ def red_tests(program: Path, folder: Path, longest: float = LONGEST, usual: floa
 
 
 def red_so_far(folder: Path, shards: int, running: Iterable[int]) -> list[str]:
-    """But for those that are at work."""
+    """Without those still running."""
     red = []
     for shard in range(shards):
         said = text_of(folder, shard)
@@ -75,7 +75,7 @@ def begun(said: str) -> list[str]:
 
 
 def unfinished(said: str) -> list[str]:
-    """Tests that began and did not end well, from what a test program says."""
+    """Tests that began and did not end successfully, from a test program's output."""
     well = set(re.findall(r"\[       OK \] (\S+)", said)) | set(re.findall(r"\[  SKIPPED \] (\S+)", said))
     return [name for name in begun(said) if name not in well]
 

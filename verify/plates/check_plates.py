@@ -181,7 +181,7 @@ def test_picture(runs: dict, stiff: dict, references: dict[str, Rests], elements
     draw_checked_ratios(axes[2], {method: mean(runs[method][700]) for method in METHODS}, {}, elements)
     draw_limits(axes[2], limits(runs, stiff))
     axes[2].axhspan(-100 * ACCEPTED, 100 * ACCEPTED, color="0.9")
-    axes[2].set_title("700 nodes, both ways to lie: over FEM, less 1 [%]", fontsize=10, loc="left")
+    axes[2].set_title("700 nodes, both orientations: over FEM, less 1 [%]", fontsize=10, loc="left")
     draw_convergence(axes[3], runs, elements)
     for panel in axes:
         legend(panel)

@@ -22,7 +22,7 @@ CASES = HERE.parent
 
 @dataclass
 class Failure:
-    """A test that ended before it wrote a red row down: a solver failed, or the check itself."""
+    """A test that ended without a red row: a solver or the check itself failed."""
 
     case: str
     test: str
@@ -32,7 +32,7 @@ class Failure:
 
 @dataclass
 class CaseReport:
-    """What is known of a case: its rows, red first."""
+    """Results of a case: its rows, red first."""
 
     name: str
     readme: str  # HTML
@@ -42,8 +42,8 @@ class CaseReport:
     now: bool  # run in the session that writes the report
 
     def is_stale(self, result: Row | Failure) -> bool:
-        """Whether other sources than the present ones may have made it. Changes that are not committed have no name:
-        only the session at hand is known to have run them."""
+        """Whether it may come from other than the current sources. Uncommitted changes have no name, so only results of
+        the current run are known to include them."""
         return result.commit != commit() or not (self.now or is_definite(result.commit))
 
     @property
@@ -56,7 +56,7 @@ class CaseReport:
 
     @property
     def seconds(self) -> float:
-        """Of its tests: rows of one test share its time."""
+        """Total time of its tests; rows of one test share its time."""
         return sum({row.test: row.seconds for row in self.rows}.values())
 
     @property
@@ -69,7 +69,7 @@ class CaseReport:
 
 @dataclass
 class Mutations:
-    """What ./pliant verify --mutate found last."""
+    """Last results of ./pliant verify --mutate."""
 
     written: str
     rows: list[dict]  # each with its commit
@@ -80,7 +80,7 @@ class Mutations:
 
 
 def write(out: Path, ran: set[str] = frozenset()) -> list[CaseReport]:
-    """Of all cases that ever ran with their results in this folder, `ran` just now. Several sessions may end at once."""
+    """Report of all cases with results in this folder; those in `ran` ran now. Several runs may end concurrently."""
     with (out / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         cases = [read_case(out, file.parent, file.parent.name in ran) for file in sorted(out.glob("*/checks.json"))]
@@ -97,7 +97,7 @@ def read_case(out: Path, folder: Path, now: bool) -> CaseReport:
 
 
 def own_fields(kind: type, values: dict) -> dict:
-    """Those of its fields; rows of an earlier version may have others."""
+    """Values of the class's fields; rows of an earlier version may have others."""
     return {field.name: values[field.name] for field in fields(kind) if field.name in values}
 
 
@@ -131,7 +131,7 @@ def number(value: float) -> str:
 
 @cache
 def commit() -> str:
-    """Of the sources, as cmake/build_info.cmake names that of a build."""
+    """Commit of the sources, in the form of cmake/build_info.cmake."""
     result = subprocess.run(["git", "-C", str(CASES), "describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"],
                             capture_output=True, text=True)
     return result.stdout.strip() or "unknown"

@@ -98,7 +98,7 @@ def test_sliding(solver: str) -> None:
     found, d, small = usual_turn(solver)
     # The normal force oscillates about the weight as the polygon's depth varies, and so does friction: a mean over 1.5
     # with 11 oscillations.
-    source = "Coulomb; next order in the depth d, sides in touch"
+    source = "Coulomb; next order in the depth d, sides in contact"
     CASE.check(Label.EXACT, f"{solver}, sliding: deceleration over mu g", -found.slowing / FRICTION, 1, small, source)
     CASE.check(Label.EXACT, f"{solver}, sliding: spin over 2 mu g / R, and friction's lever",
                found.spinning / (2 * FRICTION), 1 - LEVER * d,

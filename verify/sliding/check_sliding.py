@@ -184,7 +184,7 @@ def test_picture() -> None:
         axes[1].plot(times, lost, color=colour, linewidth=1.4, label=start.name)
         way = np.concatenate([[0], np.cumsum(np.abs(np.diff(of.probe("block.displacement_x"))))])
         axes[1].plot(times, FRICTION * MASS * start.cosine * way, "--", color=COLOURS[6], linewidth=1.0,
-                     label="friction x way" if start is STARTS[-1] else None)
+                     label="friction x distance" if start is STARTS[-1] else None)
     for panel, label in zip(axes, ("speed downhill over sqrt(g L)", "dissipated; density, g, L: 1")):
         describe(panel, x="time over sqrt(L / g)", y=label)
         legend(panel)

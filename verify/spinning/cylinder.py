@@ -86,7 +86,7 @@ def _from_axis(spin: float, stretch: float) -> OdeSolution:
 
 
 def spinning_at(spin: float) -> Cylinder:
-    """Cylinder without stress at the rim; the stretch on the axis is sought from no strain to three times the linear one."""
+    """Cylinder without stress at the rim; the stretch on the axis is sought up to three times the linear strain."""
     def at_rim(stretch: float) -> float:
         r, s = _from_axis(spin, stretch)(1.0)
         return float(stresses(s, r)[0])

@@ -1,4 +1,4 @@
-"""Time steps: what an oscillator conserves under each integrator, and the step that error control and stability let it take."""
+"""Time steps: conserved quantities of an oscillator under each integrator; steps by error control and stability."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from verification import Case, Label, Run
 
 CASE = Case(__file__, fast=True)
 
-SQUARED = 1050.0  # w^2, 1/s2: stiffness times the length in touch, (1.1 of the block + 1 of the floor)/2, over the mass 1
+SQUARED = 1050.0  # w^2, 1/s2: stiffness times contact length, (1.1 of the block + 1 of the floor)/2, over the mass 1
 OMEGA = np.sqrt(SQUARED)
-DEPTH = 1 / SQUARED  # where weight and springs balance
-AMPLITUDE = 0.8 * DEPTH  # released from rest below that: the block stays in touch
+DEPTH = 1 / SQUARED  # equilibrium of weight and springs
+AMPLITUDE = 0.8 * DEPTH  # released from rest below that: the block stays in contact
 SPACING = 0.1  # of the outline, to which errors of steps refer
 PERIOD = 2 * np.pi / OMEGA
-ROUNDING = 1e-9  # places near 0.5 with 1e-16 of rounding, amplitude 8e-4: 2e-13, over 1e4 steps
+ROUNDING = 1e-9  # positions near 0.5 with 1e-16 of rounding, amplitude 8e-4: 2e-13, over 1e4 steps
 TOLERANCE = (0.1**3) * AMPLITUDE / (6 * SPACING)  # for a step of 0.1 / w
 STEPS = [0.004, 0.002, 0.001, 0.0005]
 DISC_STEPS = [0.02, 0.01, 0.005, 0.0025]
-EQUAL = 10 * PERIOD  # from here on steps at the stability bound are equal
+EQUAL = 10 * PERIOD  # after this time steps at the stability bound are equal
 SAFETY, OUTPUT = 0.8, 5.3 * PERIOD  # of the run at the bound
-WHOLE_OUTLINE = 1000 * 4.0  # w^2, 1/s2, of the block's four sides in touch at once; it does not turn
+WHOLE_OUTLINE = 1000 * 4.0  # w^2, 1/s2, with all four sides of the block in contact; it does not turn
 DROP, DROP_TOLERANCE = 0.005, 1e-5  # above the floor; landing at the stable step has an error of up to 3e-3
 
 
@@ -32,13 +32,14 @@ def run(name: str, control: str, end: float, period: float) -> Run:
 
 
 def motion(result: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times, displacement from balance and speed."""
-    return result.times("block.position_y"), result.probe("block.position_y") - 0.5 + DEPTH, result.probe("speed.velocity_y")
+    """Times, displacement from equilibrium and velocity."""
+    position = result.probe("block.position_y") - 0.5 + DEPTH
+    return result.times("block.position_y"), position, result.probe("speed.velocity_y")
 
 
 @pytest.fixture(scope="module")
 def doubling() -> dict[float, Run]:
-    """Steps that end at outputs, whatever their error."""
+    """Steps that end at outputs, for any error."""
     control = 'integrator = "step-doubling"\ntarget = 1'
     return {dt: run(f"doubling_{dt:g}", control, 20 * PERIOD, dt) for dt in STEPS}
 
@@ -56,7 +57,7 @@ def stable() -> Run:
 
 @pytest.fixture(scope="module")
 def landing() -> Run:
-    """A few bounces. What is in touch after a step of free flight no estimate could foretell: such steps are rejected."""
+    """A few bounces. No estimate predicts the contact after a step of free flight, so such steps are rejected."""
     control = f'integrator = "verlet"\ntolerance = {DROP_TOLERANCE!r}'
     return CASE.engine("landing", CASE.scene(control=control, end=1.0, height=0.5 + DROP, period=1.0))
 
@@ -67,7 +68,7 @@ def test_verlet_conserves_its_quadratic_form() -> None:
     t, x, v = motion(run("verlet", 'integrator = "verlet"\ntolerance = 1\nsafety = 1', 50 * PERIOD, dt))
     form = (v**2 + SQUARED * x**2 * (1 - SQUARED * dt**2 / 4))[t > 20 * dt]
     CASE.check(Label.EXACT, "verlet: change of its quadratic form", np.ptp(form) / form[0], 0, ROUNDING,
-               "its matrix keeps v^2 + w^2 x^2 (1 - (w dt)^2/4) exactly; rounding")
+               "its matrix conserves v^2 + w^2 x^2 (1 - (w dt)^2/4) exactly; rounding")
 
 
 def test_step_doubling_conserves_its_quadratic_form(doubling: dict[float, Run]) -> None:
@@ -76,11 +77,11 @@ def test_step_doubling_conserves_its_quadratic_form(doubling: dict[float, Run]) 
         t, x, v = motion(result)
         form = (v**2 + SQUARED * x**2 - 0.5 * dt * SQUARED * x * v)[t > 20 * dt]
         CASE.check(Label.EXACT, f"step doubling, {1e3 * dt:g} ms: change of its quadratic form", np.ptp(form) / form[0],
-                   0, ROUNDING, "two steps dt/2 of semi-implicit Euler keep it exactly; rounding")
+                   0, ROUNDING, "two steps dt/2 of semi-implicit Euler conserve it exactly; rounding")
 
 
 def errors(doubling: dict[float, Run]) -> list[float]:
-    """Largest, against the closed form, over two periods and the amplitude."""
+    """Largest errors against the closed form within two periods, over the amplitude."""
     result = []
     for run_ in doubling.values():
         t, x, _ = motion(run_)
@@ -95,7 +96,8 @@ def test_step_doubling_is_of_first_order(doubling: dict[float, Run]) -> None:
 
 
 def shadow_changes() -> list[float]:
-    """Of the energy less (h/2) dU/dt, of a compliant disc, over the start's energy; h = dt/2, steps of semi-implicit Euler."""
+    """Changes of the energy less (h/2) dU/dt of a compliant disc, over the initial energy; h = dt/2 is the step of
+    semi-implicit Euler."""
     changes = []
     for dt in DISC_STEPS:
         result = CASE.engine(f"disc_{dt:g}", CASE.scene("disc.toml", dt=dt))
@@ -107,52 +109,54 @@ def shadow_changes() -> list[float]:
 
 
 def test_step_doubling_keeps_the_energy_of_a_disc_to_second_order() -> None:
-    CASE.check_rate("step doubling: energy of a disc, corrected by its first order", DISC_STEPS, shadow_changes(), 2, 0.3,
-                    "the shadow energy of semi-implicit Euler is K + U - (h/2) dU/dt + O(h^2); explicit Euler has none; the "
-                    "third order takes a share of w dt of that")
+    CASE.check_rate("step doubling: energy of a disc, corrected by its first order", DISC_STEPS, shadow_changes(), 2,
+                    0.3, "the shadow energy of semi-implicit Euler is K + U - (h/2) dU/dt + O(h^2); explicit Euler has "
+                    "none; the third order is a share w dt of it")
 
 
 def test_error_control_holds_its_tolerance(controlled: Run) -> None:
-    """The largest jerk w^3 A decides: dt^2 |da| / (6 d) with |da| = w^3 A dt."""
+    """The largest jerk w^3 A determines the step: dt^2 |da| / (6 d) with |da| = w^3 A dt."""
     time = controlled.steps("time")
-    # Not the start's short steps; and steps are equal parts of what is left until the end, shorter by up to one of the
-    # 630 parts that are left here.
+    # Without the short first steps. Steps are equal parts of the remaining time, shorter by up to one of the 630 parts
+    # that remain here.
     middle = (time > PERIOD) & (time < 10 * PERIOD)
     expected = (6 * SPACING * TOLERANCE / (OMEGA**3 * AMPLITUDE)) ** (1 / 3)
-    CASE.check(Label.EXACT, "least step over that of the largest jerk", controlled.steps("dt")[middle].min() / expected, 1,
-               0.003 + 1 / 630, "a step of 0.1/w meets the crest within half of it, 1.3e-3 of the jerk, and averages over it, 4e-4; "
-               "the energy swings by (w dt/2)^2, 1.3e-3 of the jerk: a third of the sum, twice")
+    CASE.check(Label.EXACT, "least step over that of the largest jerk",
+               controlled.steps("dt")[middle].min() / expected, 1, 0.003 + 1 / 630,
+               "a step of 0.1/w lies within half a step of the crest, 1.3e-3 of the jerk, and averages over it, 4e-4; "
+               "the energy oscillates by (w dt/2)^2, 1.3e-3 of the jerk: a third of the sum, twice")
     CASE.check(Label.EXACT, "largest error over the tolerance", controlled.steps("error")[middle].max() / TOLERANCE, 1,
-               0.003 + 3 / 630, "the largest jerk of the last 64 to 128 steps counts, and 31 steps make a swing: crests, each met "
-               "as above; an error goes with the cube of the step")
+               0.003 + 3 / 630, "the largest jerk of the last 64 to 128 steps counts, and half a period has 31 steps: "
+               "it includes crests, as above; the error is proportional to the cube of the step")
 
 
 def test_verlet_rejects_beyond_twice_the_tolerance(landing: Run) -> None:
     share = landing.steps("error").max() / (2 * DROP_TOLERANCE)
     CASE.check(Label.EXACT, "verlet, landings: largest error over twice the tolerance", share, 0.75, 0.25,
-               "steps above twice the tolerance are rejected, and one of them comes near")
+               "steps above twice the tolerance are rejected, and the largest accepted error is close to it")
 
 
 def test_steps_at_the_stability_bound(stable: Run) -> None:
-    """The bound counts on all of the block's outline in touch at once: w_b^2 = stiffness x its length / mass. Outputs
-    take equal steps."""
+    """The bound assumes contact of the block's whole outline: w_b^2 = stiffness x its length / mass. Steps between
+    outputs are equal."""
     later = stable.steps("time") > PERIOD
     largest = SAFETY * 2 / np.sqrt(WHOLE_OUTLINE)
     expected = OUTPUT / np.ceil(OUTPUT / largest)
     dt = stable.steps("dt")[later].max()
     CASE.check(Label.EXACT, "largest step over that of the bound", dt / expected, 1, ROUNDING,
-               f"safety x 2/w_b, in {np.ceil(OUTPUT / largest):.0f} equal steps an output; rounding")
+               f"safety x 2/w_b, in {np.ceil(OUTPUT / largest):.0f} equal steps per output; rounding")
     t, x, v = motion(stable)
     form = (v**2 + SQUARED * x**2 * (1 - SQUARED * dt**2 / 4))[t > EQUAL]
     CASE.check(Label.EXACT, "verlet at the stability bound, 1000 periods: change of its quadratic form",
-               np.ptp(form) / form[0], 0, ROUNDING, "its matrix keeps the form; equal steps, 41 an output; rounding")
+               np.ptp(form) / form[0], 0, ROUNDING,
+               "its matrix conserves the form; equal steps, 41 per output; rounding")
 
 
 def test_step_doubling_rejects_beyond_alpha() -> None:
     result = run("rejecting", 'integrator = "step-doubling"\ntarget = 1e-5\nalpha = 2', 5 * PERIOD, PERIOD)
     share = result.steps("error").max() / 2e-5
     CASE.check(Label.EXACT, "step doubling: largest error over alpha target", share, 0.75, 0.25,
-               "steps above alpha target are rejected, and one of them comes near")
+               "steps above alpha target are rejected, and the largest accepted error is close to it")
 
 
 def test_picture(doubling: dict[float, Run], controlled: Run) -> None:

@@ -21,24 +21,24 @@ CASE = Case(__file__, cost=5)
 PITCH, ROW_PITCH = 0.87e-6, 1.002e-6  # m
 COLUMNS, ROWS = 10, 20
 PRESSURE, DENSITY = 1e9, 1200  # Pa, kg/m3
-RAMP = 5e-8  # s, of the speed of shear
+RAMP = 5e-8  # s, of the shear velocity
 END = 4e-6  # s
 NODES, SEEDS = 60, [1, 2] if FULL else [1]
 FRAMES = 1e-7  # s
-SLAB = 5e-6 * DENSITY  # kg/m2, mass of a wall by its length
+SLAB = 5e-6 * DENSITY  # kg/m2, mass of a wall per length
 TOLERANCE = 1e-2  # of the engine's error estimate
 VERLET = f'integrator = "verlet"\ntolerance = {TOLERANCE}'
-TARGET, ALPHA, BETA = 1e-4, 2, 0.2  # the paper's of its scheme
+TARGET, ALPHA, BETA = 1e-4, 2, 0.2  # parameters of the paper's scheme
 DOUBLING = f'integrator = "step-doubling"\ntarget = {TARGET}\nalpha = {ALPHA}\nbeta = {BETA}'
-ROUNDING = 1e-12  # 1e4 contact forces of up to a hundredth of the whole, each to 2e-16, add up to 2e-14
+ROUNDING = 1e-12  # 1e4 contact forces of up to a hundredth of the total, each to 2e-16, add up to 2e-14
 PEAK, FLOW = 0.5, 0.25  # friction factors of the paper
-READING = 0.02  # of its curves
-PEAK_SCATTER = 0.02  # standard deviation, over deals of angles: README.md
-INTACT, GONE = 1.5e-6, 18.5e-6  # s, of the paper's snapshots: the lattice is whole, nothing is left of it
-BONDS, BONDS_ACROSS = 3 * ROWS - 2, 2  # pairs of neighbours a column, in all and from a row to the next
+READING = 0.02  # reading error of its curves
+PEAK_SCATTER = 0.02  # standard deviation over assignments of angles: README.md
+INTACT, GONE = 1.5e-6, 18.5e-6  # s, of the paper's snapshots with an intact and with a vanished lattice
+BONDS, BONDS_ACROSS = 3 * ROWS - 2, 2  # pairs of neighbours per column, in total and from a row to the next
 SLIDING = 1 / 3  # of a grain's neighbours stay with it in a row that slides as a whole
-PAPER_PERIOD, PAPER_END = 87e-6, 3.9e-6  # m, s: as far as an hour takes it
-FINISHED = ROOT / "results/third_body"  # where `./pliant run cases/third_body.toml` leaves the paper's scene
+PAPER_PERIOD, PAPER_END = 87e-6, 3.9e-6  # m, s: end of an hour's run
+FINISHED = ROOT / "results/third_body"  # output of `./pliant run cases/third_body.toml`, the paper's scene
 
 
 def scene(seed: int, nodes: int = NODES, columns: int = COLUMNS, rows: int = ROWS, end: float = END,
@@ -53,13 +53,13 @@ def solved(seed: int) -> Layer:
 
 
 def of_the_repository() -> Layer:
-    """cases/third_body_mini.toml as it is, with 168 nodes."""
+    """cases/third_body_mini.toml itself, with 168 nodes."""
     text = (ROOT / "cases/third_body_mini.toml").read_text()
     return Layer("168 nodes", CASE.engine("mini", text), COLUMNS * PITCH)
 
 
 def of_the_paper() -> Layer:
-    """cases/third_body.toml, 2000 discs of 168 nodes: as it was run, or its beginning."""
+    """cases/third_body.toml, 2000 discs of 168 nodes: a finished run, or its beginning."""
     summary = FINISHED / "summary.json"
     if summary.exists() and '"finished"' in summary.read_text():
         return Layer("2000 discs", Run(FINISHED), PAPER_PERIOD)
@@ -84,7 +84,7 @@ def mini() -> Layer:
 
 @pytest.fixture(scope="module")
 def groups(small: list[Layer], request: pytest.FixtureRequest) -> dict[str, list[Layer]]:
-    """Layers that differ in nothing but angles."""
+    """Layers that differ only in angles."""
     full = {"168 nodes": "mini", "2000 discs": "paper"} if FULL else {}
     return {f"{NODES} nodes": small, **{name: [request.getfixturevalue(layer)] for name, layer in full.items()}}
 
@@ -101,7 +101,7 @@ def test_forces_balance(small: list[Layer]) -> None:
             rest = sum(layer.run.probe(f"{of}.{what}_{axis}") for of, what in
                        (("force_lower", "force"), ("force_upper", "force"), ("grains", "total_force")))
             CASE.check(Label.EXACT, f"{layer.name}: {axis} forces on walls and grains", np.abs(rest).max() / whole, 0,
-                       ROUNDING, "contacts act on two bodies oppositely; rounding")
+                       ROUNDING, "contact forces on two bodies are opposite; rounding")
         pressed = ramp(layer.run.times("upper.acceleration_y")) * whole
         inertia = SLAB * layer.period * layer.run.probe("upper.acceleration_y")
         rest = layer.run.probe("force_upper.force_y") - pressed - inertia
@@ -110,7 +110,7 @@ def test_forces_balance(small: list[Layer]) -> None:
 
 
 def ramp(times: np.ndarray) -> np.ndarray:
-    """Of the pressure, 0 to 1."""
+    """Share of the pressure, 0 to 1."""
     return np.clip(times / PRESSED, 0, 1)
 
 
@@ -124,14 +124,14 @@ def test_normal_force_rises_and_stays(small: list[Layer]) -> None:
 
 def unbalanced_pressure(layer: Layer, start: float, end: float) -> np.ndarray:
     """By sample: normal force on the lower wall less the imposed one and the change of momentum since the last sample,
-    over the whole pressure. Momentum changes by the mean force, not by that of the sample: only means vanish."""
+    over the full pressure. Momentum changes by the mean force, not by that of the sample, so only means vanish."""
     times = layer.times_between("force_lower.force_y", start, end)
     normal = -layer.between("force_lower.force_y", start, end) / (PRESSURE * layer.period)
     return normal - ramp(times) - np.diff(momentum(layer, start - SAMPLING / 2, end)) / (PRESSURE * SAMPLING)
 
 
 def momentum(layer: Layer, start: float, end: float) -> np.ndarray:
-    """Of grains and upper wall, upwards, kg/(m s) a metre of the period; all grains have one mass."""
+    """Upward momentum of grains and upper wall, kg/(m s) per metre of the period; all grains have the same mass."""
     grains = ROWS * DENSITY * math.pi / 4 * DIAMETER**2 / PITCH
     return (SLAB * layer.between("upper_motion.velocity_y", start, end)
             + grains * layer.between("grains_motion.velocity_y", start, end))
@@ -145,7 +145,7 @@ def test_peak_of_friction(groups: dict[str, list[Layer]]) -> None:
 
 
 def test_friction_falls_suddenly(layers: list[Layer]) -> None:
-    """Within the width of the paper's line, 0.1 us, friction is on its plateau."""
+    """Friction reaches its plateau within the width of the paper's line, 0.1 us."""
     for layer in layers:
         block = layer.plateau.std(ddof=1)
         CASE.check(Label.INDEPENDENT, f"{layer.name}: friction factor, fall within {BREAK:.1g} s of the peak",
@@ -169,7 +169,7 @@ def test_energy(layers: list[Layer]) -> None:
 
 @pytest.fixture(scope="module")
 def doubling() -> Run:
-    """The paper's scheme, on a layer of 24 discs: what its controller does does not depend on the size."""
+    """The paper's scheme on a layer of 24 discs, as its controller does not depend on the size."""
     return CASE.engine("doubling", scene(1, columns=4, rows=6, end=0.3e-6, pressed=0.2e-6, integrator=DOUBLING))
 
 
@@ -179,7 +179,7 @@ def test_step_doubling_holds_its_target(doubling: Run) -> None:
                "steps above alpha targets are rejected")
     CASE.check(Label.INDEPENDENT, "step doubling: geometric mean of the error over the target",
                np.exp(np.log(error).mean()), 1, 0.02,
-               "Mollon 2018, figure 8; changes of the step cancel over a run, but where 60 outputs cut it short")
+               "Mollon 2018, figure 8; changes of the step cancel over a run, except where 60 outputs shorten it")
 
 
 def test_order(layers: list[Layer]) -> None:
@@ -189,31 +189,31 @@ def test_order(layers: list[Layer]) -> None:
         for time in (PRESSED, INTACT):
             CASE.check(Label.INDEPENDENT, f"{layer.name}: first neighbours kept at {1e6 * time:g} us",
                        layer.kept[layer.frames.nearest(time)], 1, 0.5 * BONDS_ACROSS / BONDS,
-                       "Mollon 2018, figures 7c and 7d: the lattice is intact; half of what one slipped row loses")
+                       "Mollon 2018, figures 7c and 7d: the lattice is intact; half of the loss by one slipped row")
         CASE.check(Label.INDEPENDENT, f"{layer.name}: first neighbours kept, carried on to {1e6 * GONE:g} us",
                    kept_at_last(layer), 0, SLIDING,
-                   "Mollon 2018, figure 7: order gone; grains in rows that slide as wholes keep two of six neighbours")
+                   "Mollon 2018, figure 7: no order; grains in rows that slide as wholes keep two of six neighbours")
 
 
 def kept_at_last(layer: Layer) -> float:
-    """Neighbours are lost at the rate of the plateau."""
+    """Share of kept neighbours at GONE, extrapolated at the rate of the plateau."""
     first, last = (layer.frames.nearest(time) for time in (PLATEAU, layer.end))
     times, kept = layer.frames.times[[first, last]], layer.kept[[first, last]]
     return float(kept[1] * (kept[1] / kept[0]) ** ((GONE - times[1]) / (times[1] - times[0])))
 
 
 def test_mixing(groups: dict[str, list[Layer]]) -> None:
-    """The first lattice has rows of one kind; mixed kinds are as a deal at random. Clusters come from nothing else."""
+    """The first lattice has rows of one kind; mixed kinds equal a random assignment. Clusters have no other cause."""
     for name, group in groups.items():
         for layer in group:
             CASE.check(Label.EXACT, f"{layer.name}: like neighbours at the start", layer.like[0], ROWS / BONDS, 1e-12,
-                       "kinds in turn up columns of an even number of grains: pairs in a row are alike, no others")
+                       "kinds in turn up columns of an even number of grains: only pairs in a row are alike")
         start, end = (np.mean([layer.like[frame] for layer in group]) for frame in (0, -1))
         mean, deviation = like_fraction_at_random(group[0].neighbours[-1], group[0].kinds)
         certain = 3 * deviation / math.sqrt(len(group))
         CASE.check(Label.INDEPENDENT, f"{name}: like neighbours at the end", end, 0.5 * (start + mean) + certain,
-                   0.5 * (mean - start), f"order that becomes random: more than {start:.3f} of the start, not more "
-                   f"than {mean:.3f} of a deal at random, each by three standard deviations of a deal")
+                   0.5 * (mean - start), f"order that becomes random: more than {start:.3f} at the start, not more "
+                   f"than {mean:.3f} at random, each by three standard deviations of random assignments")
 
 
 def test_pictures(layers: list[Layer], doubling: Run) -> None:
@@ -229,7 +229,7 @@ def test_pictures(layers: list[Layer], doubling: Run) -> None:
 
 
 def draw_histories(axes: list[Axes], layer: Layer, colour: str) -> None:
-    """Normal force, friction factor, order, mixing against time."""
+    """Normal force, friction factor, order and mixing over time."""
     times = 1e6 * layer.run.times("force_lower.force_y")
     force_x, force_y = (layer.run.probe(f"force_lower.force_{axis}") for axis in ("x", "y"))
     axes[0].plot(times, -force_y / (PRESSURE * layer.period), color=colour, linewidth=0.9, label=layer.name)
@@ -245,7 +245,7 @@ def draw_histories(axes: list[Axes], layer: Layer, colour: str) -> None:
 
 
 def decorate(axes: list[Axes], layer: Layer) -> None:
-    """What is expected, and labels."""
+    """Expected values and labels."""
     times = np.linspace(0, layer.end, 200)
     axes[0].plot(1e6 * times, ramp(times), "--", color=COLOURS[7], linewidth=0.8, label="imposed")
     for what, value, style in (("peak", PEAK, ":"), ("plateau", FLOW, "--")):

@@ -1,4 +1,4 @@
-"""A run of the third body's scene, and what its probes and frames tell."""
+"""A run of the third body's scene, evaluated from its probes and frames."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from verification import Run
 
 DIAMETER = 1e-6  # m
 NEIGHBOUR = 1.3  # diameters between centres: between the hexagonal packing's first neighbours, 1, and second, 1.73
-PRESSED = 1e-6  # s, when the pressure is whole and shear begins
+PRESSED = 1e-6  # s, when the pressure is complete and shear begins
 SAMPLING = 5e-9  # s, of forces
-SMOOTHED = 10  # samples of forces in a mean: 50 ns, as the paper's curves are smooth
-PLATEAU = 2.4e-6  # s: 0.35 us after the lattice broke, more than three diameters of slip
+SMOOTHED = 10  # samples of forces per mean: 50 ns, as the paper's curves are smooth
+PLATEAU = 2.4e-6  # s: 0.35 us after failure of the lattice, more than three diameters of slip
 BLOCK = 40  # samples, 0.2 us: four to nine times the correlation time of friction on the plateau
 SHORT_BLOCK = 10  # samples, 50 ns: eight times that of the normal force less the change of momentum
-BREAK = 1e-7  # s: as long as the line of the paper's figure 9 is wide
+BREAK = 1e-7  # s: width of the line in the paper's figure 9
 AFTERMATH = 3e-7  # s after the peak: friction is that of the broken lattice from BREAK until then
 
 
@@ -56,7 +56,7 @@ class Layer:
 
     @cached_property
     def kept(self) -> np.ndarray:
-        """[frames] share of the first neighbours that still are."""
+        """[frames] share of the first neighbours that are still neighbours."""
         return np.array([kept_fraction(self.neighbours[0], of) for of in self.neighbours])
 
     @cached_property
@@ -80,13 +80,13 @@ class Layer:
         return float(self.run.times("force_lower.force_y")[-1])
 
     def friction(self, start: float, end: float) -> np.ndarray:
-        """On the lower wall, positive as the upper one moves."""
+        """Friction factor on the lower wall, positive in the direction of the upper wall's motion."""
         force_x, force_y = (self.between(f"force_lower.force_{axis}", start, end) for axis in ("x", "y"))
         return -force_x / force_y
 
     @cached_property
     def smooth_friction(self) -> tuple[np.ndarray, np.ndarray]:
-        """Times, s, and friction factors while sheared; means of 50 ns."""
+        """Times, s, and friction factors during shear; means of 50 ns."""
         weights = np.ones(SMOOTHED) / SMOOTHED
         times, friction = self.times_between("force_lower.force_y", PRESSED, self.end), self.friction(PRESSED, self.end)
         return np.convolve(times, weights, "valid"), np.convolve(friction, weights, "valid")
@@ -102,10 +102,10 @@ class Layer:
 
     @property
     def fall(self) -> float:
-        """Of friction, from its peak to its mean from BREAK to AFTERMATH later."""
+        """Fall of friction from its peak to its mean from BREAK to AFTERMATH later."""
         return self.peak - float(self.friction(self.peak_time + BREAK, self.peak_time + AFTERMATH).mean())
 
     @property
     def plateau(self) -> np.ndarray:
-        """Means of blocks."""
+        """Block means of friction on the plateau."""
         return block_means(self.friction(PLATEAU, self.end), BLOCK)

@@ -1,9 +1,9 @@
-"""How far a chain scatters about its orders: /usr/bin/python3 verify/two_bars/chain.py.
+"""Scatter of a chain about its orders: /usr/bin/python3 verify/two_bars/chain.py.
 
-Half of the problem of two bars in one dimension: a chain of masses rho h, half of that at its ends, and springs E/h
-meets its mirror image at the speed v, with a penalty of 8 E/h, by velocity Verlet. Prints, over spacings from 1/8 to
-1/64, the orders of the velocity that is not exchanged and of the largest error of the mean stress, and the standard
-deviation of their logarithms about a straight line. Shares nothing with either solver.
+This is half of the problem of two bars in one dimension. A chain of masses rho h, half of that at its ends, and springs
+E/h meets its mirror image at the speed v, with a penalty of 8 E/h, by velocity Verlet. The script prints, over spacings
+from 1/8 to 1/64, the orders of the velocity that is not exchanged and of the largest error of the mean stress. It also
+prints the standard deviation of their logarithms about a straight line. It shares nothing with either solver.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ def inverse_mass(h: float, nodes: int, corrected: bool) -> np.ndarray:
 def forces(x: np.ndarray, h: float) -> np.ndarray:
     stretch = YOUNG / h * np.diff(x)
     force = np.append(stretch, 0) - np.insert(stretch, 0, 0)
-    force[0] += 8 * YOUNG / h * max(-2 * x[0], 0)  # the gap to the mirror image is twice the way
+    force[0] += 8 * YOUNG / h * max(-2 * x[0], 0)  # the gap to the mirror image is twice the displacement
     return force
 
 
 def chain(h: float, corrected: bool) -> tuple[float, float]:
-    """Share of the velocity that is not exchanged, and largest error of the mean stress over rho c v/2 in contact."""
+    """Share of the velocity not exchanged, and largest error of the mean stress over rho c v/2 during contact."""
     x = np.zeros(round(LENGTH / h) + 1)
     inverse = inverse_mass(h, len(x), corrected)
     momentum = np.linalg.solve(inverse, np.full(len(x), -SPEED / 2))

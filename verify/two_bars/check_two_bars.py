@@ -13,23 +13,23 @@ CASE = Case(__file__)
 
 LENGTH, HEIGHT, SPEED = 4.0, 0.5, 1e-3  # of a bar; closing speed
 WAVE = np.sqrt(2.0)  # sqrt(E/rho), E = 2, rho = 1, nu = 0
-STRESS = WAVE * SPEED / 2  # rho c v/2: each bar changes its velocity by v/2 behind its front, the face stays
+STRESS = WAVE * SPEED / 2  # rho c v/2: each bar changes its velocity by v/2 behind its front, the face is at rest
 FORCE = STRESS * HEIGHT
 CONTACT_TIME = 2 * LENGTH / WAVE
 SPACINGS = [1 / 8, 1 / 12, 1 / 16, 1 / 24, 1 / 32, *([1 / 64] if FULL else [])]
 MASSES = ["lumped", "corrected"]
 CLOCK = 0.01
-# A front in a chain of lumped masses, w = c k (1 - (k h)^2/24), spreads to (h^2 s/8)^(1/3) over a way s, here 2 L =
-# 8: h^(2/3).
-FRONT = "fronts of a lattice spread over (h^2 s/8)^(1/3) on a way s"
+# A front in a chain of lumped masses, w = c k (1 - (k h)^2/24), spreads to (h^2 s/8)^(1/3) over a distance s, here
+# 2 L = 8: h^(2/3).
+FRONT = "fronts of a lattice spread to (h^2 s/8)^(1/3) over a distance s"
 
-# Chatter at the faces and the phase of ringing scatter errors, the more on few spacings: standard deviations of their
-# logarithms about a straight line by a chain with the same penalty (chain.py), with lumped masses and corrected ones.
+# Chatter at the faces and the phase of ringing scatter errors. Values are standard deviations of their logarithms about
+# a straight line in a chain with the same penalty (chain.py), with lumped masses and corrected ones.
 SCATTER = {"stress": 0.080, "lumped": 0.129, "corrected": 0.065}
 
 
 def order_of_two(first: float, second: float, scatter: float) -> tuple[float, float]:
-    """Middle of the orders of two terms, and half their distance and twice the scatter of a slope over SPACINGS."""
+    """Mean of the orders of two terms, and half their difference plus twice the scatter of a slope over SPACINGS."""
     width = np.log(SPACINGS) - np.log(SPACINGS).mean()
     return (first + second) / 2, abs(second - first) / 2 + 2 * scatter / float(np.sqrt((width**2).sum()))
 
@@ -48,19 +48,19 @@ def runs() -> dict[str, dict[float, Run]]:
 
 
 def mean_stress(t: np.ndarray) -> np.ndarray:
-    """Of a bar, while in contact: fronts run to the free end, and back as waves of release."""
+    """Mean stress of a bar during contact: fronts travel to the free end, and back as release waves."""
     return -STRESS * np.clip(np.minimum(t * WAVE / LENGTH, 2 - t * WAVE / LENGTH), 0, None)
 
 
 def stress_error(run: Run) -> float:
-    """Largest of the mean over a bar, over rho c v/2, while in contact."""
+    """Largest error of the mean stress of a bar during contact, over rho c v/2."""
     t = run.times("stress.stress_xx")
     off = np.abs(run.probe("stress.stress_xx") - mean_stress(t))
     return float(off[t < CONTACT_TIME].max() / STRESS)
 
 
 def mean_force(run: Run) -> tuple[float, float]:
-    """While fronts run, over FORCE, and over what time. From momentum: samples of a force that rings alias."""
+    """Mean force over FORCE while fronts travel, and its duration; from momentum, as samples of ringing alias."""
     t, speed = run.times("right.velocity_x"), run.probe("right.velocity_x")
     first, last = np.flatnonzero((t > 0.5) & (t < CONTACT_TIME - 0.7))[[0, -1]]
     lasts = float(t[last] - t[first])
@@ -68,7 +68,7 @@ def mean_force(run: Run) -> tuple[float, float]:
 
 
 def lost_velocity(run: Run) -> float:
-    """1 less the mean velocity at the end over that before; wave theory: 0."""
+    """1 less the ratio of final and initial mean velocity; wave theory: 0."""
     return 1 - float(run.probe("right.velocity_x")[-1]) / (SPEED / 2)
 
 
@@ -79,17 +79,17 @@ def test_stress_and_time(runs: dict[str, dict[float, Run]], mass: str) -> None:
         name = f"{mass}, h = 1/{1 / h:.0f}"
         mean, lasts = mean_force(run)
         CASE.check(Label.EXACT, f"{name}: mean force over rho c v/2 x height", mean, 1, h / WAVE / lasts,
-                   "wave theory; a period of the faces' ringing, h/c, cut off at the ends of the mean")
+                   "wave theory; one period of the faces' ringing, h/c, at the ends of the averaging interval")
         CASE.check(Label.EXACT, f"{name}: end of contact less 2 L/c", t[force > 0].max() - CONTACT_TIME, 0,
-                   2 * front_width(h) / WAVE + CLOCK, f"wave theory; {FRONT}, of which two widths lie ahead")
+                   2 * front_width(h) / WAVE + CLOCK, f"wave theory; {FRONT}, two widths of which lie ahead")
 
 
 def test_order_of_the_stress(runs: dict[str, dict[float, Run]]) -> None:
-    """With lumped masses; corrected ones: 1.7, then 1.2, not yet of one order."""
+    """With lumped masses; corrected ones have 1.7, then 1.2, and are outside the asymptotic range."""
     CASE.check_rate("lumped: largest error of a bar's mean stress", SPACINGS,
                     [stress_error(runs["lumped"][h]) for h in SPACINGS], *order_of_two(2 / 3, 1, SCATTER["stress"]),
-                    "h^(2/3) of spreading fronts, h of the penalty and of half a spacing at the faces; twice a chain's "
-                    "scatter")
+                    "h^(2/3) of spreading fronts, h of the penalty and of half a spacing at the faces; twice the "
+                    "chain's scatter")
 
 
 @pytest.mark.parametrize("mass", MASSES)
@@ -97,8 +97,8 @@ def test_order_of_the_velocity(runs: dict[str, dict[float, Run]], mass: str) -> 
     second = 2 / 3 if mass == "lumped" else 1
     CASE.check_rate(f"{mass}: velocity not exchanged", SPACINGS, [lost_velocity(runs[mass][h]) for h in SPACINGS],
                     *order_of_two(2 / 3, second, SCATTER[mass]),
-                    "energy that stays as ringing behind fronts, h^(2/3); with corrected masses these ring less, and h "
-                    "of the faces shows; twice a chain's scatter")
+                    "energy left as ringing behind fronts, h^(2/3); with corrected masses these ring less, and h of "
+                    "the faces matters; twice the chain's scatter")
 
 
 def test_balances(runs: dict[str, dict[float, Run]]) -> None:
@@ -111,15 +111,15 @@ def test_balances(runs: dict[str, dict[float, Run]]) -> None:
 
 
 def test_both_solvers() -> None:
-    """On the coarsest mesh, all along the way."""
+    """On the coarsest mesh, over the whole run."""
     text = scene(SPACINGS[0], "lumped")
     reference = CASE.reference("reference_8", text, "--dt", repr(CLOCK))
     engine = Run(CASE.out / "engine_lumped_8")
     a, b = (run.probe("left.velocity_x") for run in (engine, reference))
     CASE.check(Label.INDEPENDENT, "h = 1/8: largest difference of mean velocities over v", np.abs(a - b).max() / SPEED,
                0,
-               SPACINGS[0] / (2 * LENGTH), "faces chatter: a bounce more or less is rho c v/2 over a period h/c, on "
-                                           "the mass rho L")
+               SPACINGS[0] / (2 * LENGTH), "chatter of faces: one bounce is rho c v/2 over a period h/c, on the mass "
+                                           "rho L")
 
 
 def draw_force(axes: Axes, runs: dict[str, dict[float, Run]]) -> None:

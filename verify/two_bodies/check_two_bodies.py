@@ -31,7 +31,7 @@ SAME_NODES = {"discs": Squeeze(size=discs.SAME_NODES, pause=40.0),
               "corner first on a facet": Press(first="corner", size=10, pause=60.0),
               "corner first on a node": Press(first="corner", size=10, way=2, pause=60.0),
               "face first on a facet": Press(first="face", size=10, pause=60.0)}
-LIVE = pytest.mark.skipif(not FULL, reason="needs the solvers from elsewhere")
+LIVE = pytest.mark.skipif(not FULL, reason="needs the third-party solvers")
 
 
 @cache
@@ -40,7 +40,7 @@ def study(kind: type[Study], law: str = "neo-hookean") -> Study:
 
 
 def params(*values: object, kind: type[Study], law: str = "neo-hookean") -> object:
-    """With a name for people; skipped where runs are long."""
+    """Parameters with a readable name, skipped where runs are long."""
     marks = [pytest.mark.skipif(not FULL, reason=kind.long[law])] if law in kind.long else []
     return pytest.param(kind, *values, marks=marks, id="-".join(map(str, (kind.name, *values))))
 
@@ -69,11 +69,11 @@ def test_getfem_over_calculix(kind: type[Study], i: int) -> None:
 
 @pytest.mark.parametrize("rings", push.CALCULIX_RINGS)
 def test_lag(rings: int) -> None:
-    """Where CalculiX pairs points of both surfaces at the start of an increment only, and all slips."""
+    """CalculiX in full slip; it pairs points of both surfaces only at the start of an increment."""
     order, error = push.order_of_lag(rings)
     CASE.check(Label.RATE, f"pushed, tangential, melody: force in slip, CalculiX with {rings} rings by three"
-               " increments", order, 1, error, "pairs of points at an increment's start; a next term of the lag's"
-               " square, with the longest one's lag")
+               " increments", order, 1, error, "pairs of points at an increment's start; next term, the square of"
+               " the lag, at the longest increment")
 
 
 @pytest.mark.parametrize("kind", [params(kind=kind) for kind in KINDS if kind.order])
@@ -89,7 +89,7 @@ def test_engine_and_reference(name: str) -> None:
     ratio, allowed = engine.force / reference.force, engine.unrest() + NEWTON
     worst = int((np.abs(ratio - 1) / allowed).argmax())
     CASE.check(Label.INDEPENDENT, f"{name}: force, engine over reference, worst", ratio[worst], 1, allowed[worst],
-               "the force of what still moves, from its kinetic energy by Cauchy and Schwarz; Newton's method")
+               "force of residual motion, from its kinetic energy by Cauchy and Schwarz; Newton's method")
 
 
 @pytest.mark.parametrize("state", ["sticks", "slips"])
@@ -99,8 +99,7 @@ def test_pushed_engine_and_reference(kind: type[Sliding], state: str) -> None:
     there = [i for i in kind.compared if SLIPS[i] == (state == "slips")]
     i = max(there, key=lambda i: abs(ratio[i] - 1) / allowed[i])
     CASE.check(Label.INDEPENDENT, f"{kind.name}: force that {state}, engine over reference, worst", ratio[i], 1,
-               allowed[i], "the order in the rate; what half as many load steps of statics change, or what changes"
-               " between samples")
+               allowed[i], "order in the rate; change by half as many load steps of statics, or between samples")
 
 
 @pytest.mark.parametrize("kind, body, i", [params(body, i, kind=kind) for kind in KINDS if issubclass(kind, RestStudy)
@@ -113,17 +112,17 @@ def test_shape(kind: type[RestStudy], body: str, i: int) -> None:
 
 @pytest.mark.parametrize("kind", [CornerFirst, FaceFirst])
 def test_symmetry(kind: type[Polygon]) -> None:
-    """The hexagon's corner stands on some place of a segment of the disc, not always on its middle."""
+    """The hexagon's corner touches a segment of the disc at an arbitrary position, not always its middle."""
     known = study(kind)
     CASE.check(Label.EXACT, f"{kind.name}: how far bodies move aside from each other, worst", known.apart(), 0,
-               known.spacings[-1] / 2, "symmetry, but for half a segment")
+               known.spacings[-1] / 2, "symmetry, up to half a segment")
 
 
 @pytest.mark.skipif(not FULL, reason=push.COARSE)
 @pytest.mark.parametrize("at", push.DRAWN)
 def test_surface(at: float) -> None:
-    """A force grows at least in proportion to the depth, so an error of it is less of the depth; along, what sticks at
-    the surface has gone no further than the push at which all slips."""
+    """A force grows at least in proportion to the depth, so its relative error bounds that of the depth. Sticking
+    points of the surface have moved along by at most the push at full slip."""
     finest = Push(size=push.CHOSEN["neo-hookean"][-1])
     found, place = push.by_engine(CASE, finest), push.STUCK.index(at) if at in push.STUCK else -1
     across, along = (np.abs(known.errors()[-1, place]) + known.scatter[-1, place]
@@ -133,7 +132,7 @@ def test_surface(at: float) -> None:
     off = distances(found.surface(finest.time_of(at)), tops[push.DRAWN.index(at)])
     CASE.check(Label.INDEPENDENT, f"pushed: block's top at push {at:g}, nodes from GetFEM's, rms",
                np.sqrt((off**2).mean()), 0, across * push.DEPTH + along * min(at, push.SLIDING[0]) + overlap,
-               "error of the normal force times depth, of the tangential one times the way that sticks, overlap")
+               "error of the normal force times depth, of the tangential one times the push in stick, overlap")
 
 
 @LIVE

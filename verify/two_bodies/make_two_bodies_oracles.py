@@ -1,6 +1,6 @@
 """Writes oracles/: /usr/bin/python3 verify/two_bodies/make_two_bodies_oracles.py [TABLE...], by default all of them.
 
-Half an hour each on a busy machine, push_getfem_neo-hookean an hour and a half.
+Each takes half an hour on a busy machine, push_getfem_neo-hookean an hour and a half.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ FORCE = "Force by depth. first 0: a corner, 1: a face. slave 0: the disc, 1: the
 PUSH = ["push", "along", "across"]
 ON_BLOCK = "Forces on the block by push. rings: of the disc; rows: of squares in the block;"
 HALF = "Half outlines from the lowest point up, law neo-hookean, by body."
-# Columns of the key, other columns, what they are. Then by key what makes its rows, in a folder for files of CalculiX.
+# Columns of the key, other columns, description; then, by key, the function that computes its rows, in a folder for
+# files of CalculiX.
 Made = dict[tuple[float, ...], Callable[[Path], np.ndarray]]
 Table = tuple[str, list[str], str, Made]
 
@@ -45,7 +46,7 @@ def forces(by_getfem: Callable[..., tuple[np.ndarray, object]], *run: object) ->
 
 def outlines(every: int, by_getfem: Callable[..., tuple[object, dict[str, np.ndarray]]],
              *run: object) -> Callable[[Path], np.ndarray]:
-    """Rows of body and places, of every so many nodes."""
+    """Rows of body and positions, of every n-th node."""
     return lambda _: np.array([[i, *places.ravel()] for i, each in enumerate(by_getfem(*run)[1].values())
                                for places in each[:, ::every].transpose(1, 0, 2)])
 
@@ -56,7 +57,7 @@ def surfaces(_: Path) -> np.ndarray:
 
 
 def by_getfem(law: str) -> dict[str, Table]:
-    """What slips does not depend on the way, so coarser load steps of the push end where it begins."""
+    """Slip is path-independent, so runs with coarser load steps of the push end at its onset."""
     bodies, coarsest, shortest = list(polygon.MODULI), push.RINGS[law][0], push.STEPS[-1]
     swapped = {first: polygon.SWAPPED[first, law] for first in polygon.FIRST}
     pressed = [(i, slave, rings) for i, first in enumerate(polygon.FIRST) for slave in (0, 1)
@@ -90,7 +91,7 @@ TABLES: dict[str, Table] = {
 
 
 def make(name: str) -> None:
-    """Written after each run."""
+    """Make a table, written after each run."""
     keys, columns, what, runs = TABLES[name]
     header = [f"# {what}", f"# {CALCULIX if 'calculix' in name else GETFEM}",
               f"# {date.today()}, make_two_bodies_oracles.py, one thread. Units mu = R = 1 of the softer body.",

@@ -18,15 +18,15 @@ from verification import FULL, Case, Run
 APPROACHES = [0.1, 0.2, 0.3, 0.4]  # over the sum of both diameters, 4
 MODULI = {"soft": 1.0, "stiff": 2.0}  # mu; lambda = 4 mu
 GAP = 0.001  # of either plate at the start, as in discs.toml
-HOLD = 20.0  # mu: of the springs at each pole, whatever their length
+HOLD = 20.0  # mu: of the springs at each pole, for any length
 SIZES = {96: (36, 126, 42), 168: (48, 220, 56), 340: (68, 450, 80), 700: (100, 900, 116)}  # by nodes of the soft disc
 CHOSEN = {"neo-hookean": [168, 340, 700], "melody": [168, 340, *([700] if FULL else [])]}
 SAME_NODES = 168 if FULL else 96  # of engine and reference
-STEPS = 2  # of GetFEM's load, an approach
-# Of the soft disc; the stiff one has a quarter more, so that nodes do not match.
+STEPS = 2  # of GetFEM's load, per approach
+# Rings of the soft disc; the stiff one has a quarter more, so that nodes do not match.
 RINGS = {"neo-hookean": [8, 16, 32, 64], "melody": [8, 16]}
 OUTLINE_RINGS = 24
-CALCULIX_REACHES = 3  # approaches: beyond 33 % its Newton's method fails with all steps and penalties that were tried
+CALCULIX_REACHES = 3  # approaches: beyond 33 % its Newton's method failed with all tested steps and penalties
 SOFT, STIFF = 300.0, 3000.0  # mu / R: penalties of CalculiX
 CALCULIX_RINGS = [4, 6, 8]
 CALCULIX = [(rings, stiffness) for rings in CALCULIX_RINGS for stiffness in (SOFT, STIFF)]
@@ -39,7 +39,7 @@ def meshes(rings: int, overlap: float = 0.0) -> dict[str, Mesh]:
 
 def by_getfem(law: str, rings: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """[approaches] forces of a plate on whole discs, and half outlines."""
-    from foreign.getfem_bodies import Bodies  # GetFEM is there with --full alone
+    from foreign.getfem_bodies import Bodies  # GetFEM is installed only with --full
 
     bodies = Bodies(law, meshes(rings), MODULI, {"low": -2.0, "high": 2.0})
     bodies.press("soft", "low", -1)
@@ -51,9 +51,9 @@ def by_getfem(law: str, rings: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
 
 
 def by_calculix(rings: int, stiffness: float, folder: Path) -> np.ndarray:
-    """[approaches it gets to] forces on a plate, by the law `melody` and a penalty of so many mu / R.
+    """[approaches reached] forces on a plate, with the law `melody` and a penalty in mu / R.
 
-    Discs and plates overlap at the start, by what the first step takes back: nothing is loose.
+    Discs and plates overlap at the start, so that nothing is loose; the first step removes the overlap.
     """
     deck = Deck(stiffness, meshes(rings, OVERLAP), MODULI)
     deck.add_plate("LOW", -3, -2 + 2 * OVERLAP, "up")
@@ -67,8 +67,8 @@ def by_calculix(rings: int, stiffness: float, folder: Path) -> np.ndarray:
 
 
 def opinion_of(by_rings: np.ndarray) -> Opinion:
-    """Of [meshes x approaches]: error is the largest change from a mesh half as fine, as at one approach it may be
-    small by accident."""
+    """Opinion from [meshes x approaches]. The error is the largest change from a mesh half as fine, as at one approach
+    it may be accidentally small."""
     return Opinion(by_rings[-1], largest(np.abs(by_rings[-2] / by_rings[-1] - 1)))
 
 
@@ -79,7 +79,7 @@ def calculix_by_rings() -> np.ndarray:
 
 
 class Squeeze(Setup):
-    """Of a soft disc of so many nodes, with facets (way 0) or corners at all poles."""
+    """Setup by the nodes of the soft disc, with facets (way 0) or corners at all poles."""
 
     WAYS, LEVELS, AXIS, STORED = 2, APPROACHES, 3.0, 8.0
 
@@ -89,7 +89,7 @@ class Squeeze(Setup):
 
     @property
     def spacing(self) -> float:
-        """Of both outlines, R."""
+        """Mean spacing of both outlines, R."""
         return 2 * np.pi * np.mean(1 / np.array(self.outlines))
 
     def scene(self, case: Case) -> str:
@@ -102,7 +102,7 @@ class Squeeze(Setup):
                           bearings=self.bearings(), up=up, down=[[t, -v] for t, v in up])
 
     def bearings(self) -> str:
-        """On the segment at each pole, or on the two whose corner is there."""
+        """Springs on the segment at each pole, or on the two that meet in a corner there."""
         return "\n".join(f"""[[boundary]]
 of = "{name}"
 part = {{ angles = [{pole - 1.2 * np.pi / count!r}, {pole + 1.2 * np.pi / count!r}] }}
@@ -111,13 +111,13 @@ stiffness = {HOLD * count / (2 * np.pi * (self.way + 1))!r}
 """ for name, count in zip(MODULI, self.outlines) for pole in (np.pi / 2, -np.pi / 2))
 
     def forces(self, run: Run) -> tuple[np.ndarray, np.ndarray]:
-        """[approaches] of a plate, and how far plates are apart."""
+        """[approaches] force of a plate, and gap between the plates."""
         upper, lower = (run.at(f"{name}.force_y", self.rests) for name in ("upper", "lower"))
         return (upper - lower) / 2, 2 * run.at("plate.position_y", self.rests)
 
 
 class Discs(RestStudy):
-    """Of Squeezes."""
+    """Study of Squeezes."""
 
     name, places = "discs", [f"at {100 * approach:g} %" for approach in APPROACHES]
     compared, between = range(len(APPROACHES)), range(CALCULIX_REACHES)
@@ -128,8 +128,8 @@ class Discs(RestStudy):
               "CalculiX": "CalculiX 2.20, its mesh and penalty"}
     both = "mesh of both, penalty"
     order = ("force over GetFEM, rms of approaches",
-             "linear consistency and a polygon for a circle; the saw tooth's scatter")
-    shape = "corners of the polygon of the circle's area; overlap of the penalty; mesh as of the force"
+             "linear consistency and a polygon for a circle; scatter of the saw tooth")
+    shape = "corners of the polygon of the circle's area; overlap of the penalty; mesh as for the force"
 
     def __init__(self, case: Case, law: str) -> None:
         super().__init__(case, law, [Squeeze(size=size, law=law) for size in CHOSEN[law]])
@@ -140,18 +140,19 @@ class Discs(RestStudy):
 
     @classmethod
     def read_calculix(cls) -> Opinion:
-        """Error: the largest change from half the rings; the product of both losses, as the penalty's second order."""
+        """Error: the largest change by halving the rings plus the product of both losses, second order of the penalty.
+        """
         by_rings = calculix_by_rings()
         losses = 1 - read("discs_calculix_melody").of(rings=CALCULIX_RINGS[-1]) / by_rings[-1]
         return Opinion(by_rings[-1], np.abs(by_rings[0] / by_rings[-1] - 1).max() + losses.prod(axis=0))
 
     def slope_error(self) -> float:
-        """From independent saw teeth of all sizes."""
+        """Error of the slope from independent saw teeth of all sizes."""
         return self.slope_error_of(np.sqrt((self.saw**2).mean(axis=1)), 0.0)
 
     def shape_error(self, body: int, level: int) -> float:
-        """R. A plate's approach that changes the force by its error; corners stand out by x^2/12, the contact's overlap
-        is the penalty's part of the approach."""
+        """R. The plate's approach that changes the force by its error. Corners protrude by x^2/12, and the contact's
+        overlap is the penalty's part of the approach."""
         approach_by_force = 4 / np.gradient(np.log(self.getfem.force), APPROACHES)[level]
         corners = self.setups[-1].outlines[body]
         return float((2 * np.pi / corners) ** 2 / 12 + self.lost(level) * approach_by_force / 2)
@@ -159,7 +160,7 @@ class Discs(RestStudy):
 
 @cache
 def live(law: str) -> np.ndarray:
-    """[meshes x approaches] forces by GetFEM on the two coarsest meshes, now."""
+    """[meshes x approaches] live forces by GetFEM on the two coarsest meshes."""
     return np.array([by_getfem(law, rings)[0] for rings in RINGS[law][:2]])
 
 
@@ -173,6 +174,6 @@ def calculix_again(folder: Path) -> np.ndarray:
 
 AGAIN: list[Again] = [
     *((f"discs, {law}: GetFEM", partial(getfem_again, law), 1.5e-7,
-       "Newton's residuals of 1e-9 in some fifty nodes on a plate, over the least force") for law in LAWS),
+       "Newton's residuals of 1e-9 in some fifty nodes on a plate, over the smallest force") for law in LAWS),
     ("discs, melody: CalculiX", calculix_again, 3e-5,
-     "where its Newton's method stops: what steps four times shorter change")]
+     "termination of its Newton's method: change by steps four times shorter")]

@@ -26,7 +26,7 @@ def draw_forces(axes: Axes, studies: Sequence[Study], at: list[float], x: str) -
 
 
 def draw_errors(axes: Axes, studies: Sequence[Study], of: str, what: str) -> None:
-    """Rms of places by mesh size, with its order."""
+    """Rms over places by mesh size, with its order."""
     for known, colour, marker in zip(studies, COLOURS, MARKERS):
         draw_rate(axes, known.spacings, known.rms(), f"{known.name}, rms", colour, marker)
     set_ticks(axes, studies[0].spacings, [f"{h:.3f}" for h in studies[0].spacings])
@@ -35,7 +35,7 @@ def draw_errors(axes: Axes, studies: Sequence[Study], of: str, what: str) -> Non
 
 
 def draw_outlines(axes: Axes, known: RestStudy, drawn: dict[str, list[tuple[str, int]]]) -> None:
-    """Halves by GetFEM, the engine's nodes: of bodies at levels, by label."""
+    """Half outlines by GetFEM and the engine's nodes, of bodies at levels, by label."""
     stored, gap = known.outlines(), [[np.nan, np.nan]]
     for (label, bodies), colour in zip(drawn.items(), COLOURS):
         halves = [stored[body][level] for body, level in bodies]
@@ -67,7 +67,7 @@ def draw_discs(case: Case, known: RestStudy) -> None:
 
 
 def draw_other_meshes(axes: Axes, percent: list[str]) -> None:
-    """Of the solvers from elsewhere, by rings of triangles in the soft disc."""
+    """Errors of the third-party solvers, by rings of triangles in the soft disc."""
     getfem, calculix = read("discs_getfem_neo-hookean").of(), discs.calculix_by_rings()
     rings, finest = discs.RINGS["neo-hookean"][:-1], Discs.read_getfem("melody").force
     for i, (what, colour) in enumerate(zip(percent, COLOURS)):

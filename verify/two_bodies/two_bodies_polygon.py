@@ -19,8 +19,8 @@ from verification import FULL, Case, Run
 DEPTHS = [0.1, 0.2, 0.4, 0.6]  # R
 MODULI = {"disc": 1.0, "hexagon": 2.0}  # mu; lambda = 4 mu
 HOLD = 100.0  # mu / R: of the springs
-FIRST = ("corner", "face")  # what touches first
-HEIGHT = {"corner": 1.0, "face": float(np.sqrt(0.75))}  # of the hexagon's centre above what is lowest
+FIRST = ("corner", "face")  # part in first contact
+HEIGHT = {"corner": 1.0, "face": float(np.sqrt(0.75))}  # of the hexagon's centre above its lowest point
 HELD = {"corner": [np.pi / 6, 5 * np.pi / 6], "face": [0.0, np.pi]}  # directions of the hexagon's upper sides
 UPPER = {"corner": above(1.5), "face": above(HEIGHT["face"])}  # these sides
 # Outlines of discs with a corner and with a facet at the top, nodes of either; outlines of hexagons whose sides have an
@@ -30,25 +30,25 @@ SIZES = {10: ((48, 50), 168, (48, 54), 140), 14: ((68, 70), 340, (72, 66), 290),
 CHOSEN = {"neo-hookean": [size for size in SIZES if FULL or size < 28],
           "melody": [size for size in SIZES if size < (28 if FULL else 20)]}
 RINGS = [8, 16, 32]  # of the disc; the hexagon has a quarter more
-# With the hexagon as slave; with 16 rings and `melody` a corner stops at 0.549 R.
+# Rings with the hexagon as slave; with 16 rings and `melody` a corner stops at 0.549 R.
 SWAPPED = {(first, law): [8, 12 if (first, law) == ("corner", "melody") else 16] for first in FIRST for law in LAWS}
 LONGEST = 0.05  # R, of a load step
 INCREMENT = 0.02  # R, of CalculiX
 SOFT, BETWEEN, STIFF = 300.0, 1000.0, 3000.0  # mu / R: penalties of CalculiX
-COARSE, FINE = 6, 12  # its rings of the disc; COARSE with either slave and all penalties
+COARSE, FINE = 6, 12  # CalculiX's rings of the disc; COARSE with either slave and all penalties
 # Slave, rings, penalty.
 CALCULIX = [*(("disc", rings, stiffness) for rings in (COARSE, 8, FINE) for stiffness in (SOFT, STIFF)),
             ("disc", COARSE, BETWEEN), ("hexagon", COARSE, SOFT), ("hexagon", COARSE, STIFF)]
 
 
 def corners(first: str) -> np.ndarray:
-    """[6 x 2] of the hexagon, counter-clockwise from the lowest on the right."""
+    """[6 x 2] corners of the hexagon, counter-clockwise from the lowest on the right."""
     angles = np.pi / 3 * np.arange(6) - np.pi / (2 if first == "corner" else 3)
     return np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
 
 def half_hexagon(first: str, t: np.ndarray) -> np.ndarray:
-    """[n x 2] of the half x >= 0 about the origin, from below, at shares of its length."""
+    """[n x 2] points of the half outline x >= 0 about the origin, from the bottom, at shares of its length."""
     places = corners(first)[:4]
     if first == "face":
         places = np.concatenate([[[0, -HEIGHT[first]]], corners(first)[:3], [[0, HEIGHT[first]]]])
@@ -64,7 +64,7 @@ def meshes(first: str, rings: int) -> dict[str, Mesh]:
 
 def by_getfem(first: str, law: str, rings: int, slave: str = "disc") -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """[depths] forces of the hexagon on the disc, and half outlines."""
-    from foreign.getfem_bodies import Bodies  # GetFEM is there with --full alone
+    from foreign.getfem_bodies import Bodies  # GetFEM is installed only with --full
 
     bodies = Bodies(law, meshes(first, rings), MODULI, {"down": 0.0})
     bodies.hold("disc", below(-1), HOLD, "0", "0")
@@ -75,8 +75,8 @@ def by_getfem(first: str, law: str, rings: int, slave: str = "disc") -> tuple[np
 
 
 def by_calculix(first: str, slave: str, rings: int, stiffness: float, folder: Path) -> np.ndarray:
-    """[depths, nan beyond what it gets to] forces of the hexagon on the disc, by the law `melody` and a penalty of so
-    many mu / R."""
+    """[depths, nan beyond those reached] forces of the hexagon on the disc, with the law `melody` and a penalty in
+    mu / R."""
     deck = Deck(stiffness, meshes(first, rings), MODULI)
     deck.hold("DISC", below(-1), HOLD, "GROUND")
     deck.hold("HEXAGON", UPPER[first], HOLD, "RAM")
@@ -88,13 +88,13 @@ def by_calculix(first: str, slave: str, rings: int, stiffness: float, folder: Pa
 
 
 def stored(solver: str, first: str, rings: int, slave: int = 0, **key: float) -> np.ndarray:
-    """[depths] by getfem_<law> or calculix_melody."""
+    """[depths] stored forces of getfem_<law> or calculix_melody."""
     return read(f"polygon_{solver}").of(first=FIRST.index(first), slave=slave, rings=rings, **key)[0]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Press(Setup):
-    """Of a size of SIZES. Ways: a facet of the disc at the top, the hexagon even and odd; a corner there, likewise."""
+    """Setup of a size of SIZES. Ways: a facet of the disc at the top, the hexagon even and odd; likewise a corner."""
 
     first: str
 
@@ -102,7 +102,7 @@ class Press(Setup):
 
     @property
     def spacing(self) -> float:
-        """Of the disc's outline, R."""
+        """Spacing of the disc's outline, R."""
         return 2 * np.pi / float(np.mean(SIZES[self.size][0]))
 
     def scene(self, case: Case) -> str:
@@ -115,12 +115,12 @@ class Press(Setup):
                           held=[float(angle) for angle in HELD[self.first]], down=down)
 
     def forces(self, run: Run) -> tuple[np.ndarray, np.ndarray]:
-        """[depths] on the disc, and how far ends are apart but for a constant."""
+        """[depths] force on the disc, and distance of the ends up to a constant."""
         return -run.at("disc.force_y", self.rests), -np.array(DEPTHS)
 
 
 class Polygon(RestStudy):
-    """Of Presses."""
+    """Study of Presses."""
 
     first: str
     bodies = tuple(MODULI)
@@ -141,9 +141,9 @@ class Polygon(RestStudy):
 
     @classmethod
     def read_getfem(cls, law: str) -> Opinion:
-        """Error: the largest change from a mesh half as fine at this depth and deeper ones, as at one it may be small
-        by accident (the smaller the contact, the worse is it resolved); of first order at least, half of what the other
-        body as slave changes on the finest mesh that has both."""
+        """Error: the largest change from a mesh half as fine at this depth and deeper ones, as at one it may be
+        accidentally small (small contacts are resolved worst). For at least first order, half of the change with the
+        other body as slave is added, on the finest mesh that has both."""
         of, swapped = partial(stored, f"getfem_{law}", cls.first), SWAPPED[cls.first, law][-1]
         half, finest = (of(rings) for rings in RINGS[-2:])
         swap = of(swapped, 1) / of(swapped) - 1
@@ -151,12 +151,12 @@ class Polygon(RestStudy):
 
     @classmethod
     def read_calculix(cls) -> Opinion:
-        """Force of rigid contact by the finest mesh. Error: the largest of this depth and deeper ones of the change
-        from half the rings, half of what the other body as slave changes, and the penalty: beside sharp corners the
-        pressure is singular and the order below one, so what a penalty between both would make of rigid contact in
-        place of the stiff one."""
+        """Force of rigid contact by the finest mesh. The error has three parts, the largest of this depth and deeper
+        ones: the change by halving the rings, half of the change with the other body as slave, and the penalty. Beside
+        sharp corners the pressure is singular and the order below one, so the last part is the change of rigid contact
+        with an intermediate penalty in place of the stiff one."""
         def rigid(rings: int, slave: int = 0, stiff: float = STIFF) -> np.ndarray:
-            """[depths] from two penalties: its error is of order 1 / K."""
+            """[depths] force from two penalties, as the error is of order 1 / K."""
             soft, hard = (stored("calculix_melody", cls.first, rings, slave, stiffness=k) for k in (SOFT, stiff))
             return to_rigid_contact(soft, hard, stiff / SOFT)
 
@@ -166,17 +166,17 @@ class Polygon(RestStudy):
         return Opinion(force, largest_from_here(mesh + swap / 2 + penalty))
 
     def shape_error(self, body: int, level: int) -> float:
-        """R. Corners of the disc's polygon stand out of the circle. A force grows at least in proportion to the depth,
-        so an error of it is less of the depth."""
+        """R. Corners of the disc's polygon protrude from the circle. A force grows at least in proportion to the depth,
+        so its relative error bounds that of the depth."""
         return self.spacings[-1] ** 2 / 12 + self.lost(level) * DEPTHS[level]
 
     def nodes(self, body: int, level: int) -> np.ndarray:
-        """Moved back to the axis."""
+        """Nodes, shifted back to the axis."""
         found = super().nodes(body, level)
         return found - [found[:, 0].mean(), 0]
 
     def apart(self) -> float:
-        """R. How far bodies of the finest size move aside from each other, at most."""
+        """R. Largest relative sideways displacement of bodies of the finest size."""
         aside = [[[rests.outline(body, level)[:, 0].mean() for level in self.compared] for body in range(len(MODULI))]
                  for rests in self.rests[-1]]
         return float(np.abs(np.diff(aside, axis=1)).max())
@@ -201,8 +201,8 @@ def calculix_again(first: str, folder: Path) -> np.ndarray:
 
 AGAIN: list[Again] = [
     *((f"{first} first, {law}: GetFEM", partial(getfem_again, first, law), 1e-6,
-       "Newton's residuals of 1e-9 in some fifty nodes of a support, over the least force")
+       "Newton's residuals of 1e-9 in some fifty nodes of a support, over the smallest force")
       for law in LAWS for first in FIRST),
     *((f"{first} first, melody: CalculiX", partial(calculix_again, first), 3e-4,
-       "where its Newton's method stops: what load steps half as long change, a corner at 0.1 R at most, K = 300")
+       "termination of its Newton's method: change by load steps half as long, at most for a corner at 0.1 R, K = 300")
       for first in FIRST)]

@@ -18,40 +18,40 @@ from two_bodies_study import HARDER, LAWS, Again, Setup, Study, lost_by_penalty,
 from verification import Case, Run
 
 COLUMN = {"along": 1, "across": 2}  # of samples by push
-FIRST = {"along": 1, "across": 0}  # place that is compared: there is next to no force along before the push
+FIRST = {"along": 1, "across": 0}  # first compared place: the tangential force nearly vanishes before the push
 DEPTH, FRICTION = 0.5, 0.3
 START = -0.5  # x of the disc
 MODULI = {"disc": 10.0, "block": 1.0}  # mu; lambda = 4 mu
 HOLD = 100.0  # mu / R: of the springs
 GAP = 0.001  # at the start, as in push.toml
-PRESSES = 2  # pauses on the way down, the last one's rest is at a push of 0
-STUCK = [0.0, 0.1, 0.2, 0.3]  # pushes at which all of the contact, or a part of it, sticks
-SLIDING = np.linspace(0.4, 1.2, 33)  # all of it slips
+PRESSES = 2  # states of rest during pressing
+STUCK = [0.0, 0.1, 0.2, 0.3]  # pushes with full or partial stick
+SLIDING = np.linspace(0.4, 1.2, 33)  # pushes with full slip
 PUSHES = [*STUCK, *(float(push) for push in SLIDING)]
 WINDOWS = [(0.4, 0.8), (0.8, 1.2)]  # of the push, over which forces in slip are averaged
 PLACES = [*(f"at push {push:g}" for push in STUCK), *(f"in slip, push {low:g} to {high:g}" for low, high in WINDOWS)]
 SLIPS = np.arange(len(PLACES)) >= len(STUCK)
 DRAWN = (0.3, 1.2)  # pushes of the stored surfaces, of the finest mesh
 # Outlines of the discs with a corner and with a facet at the lowest point, nodes of either; outlines of the blocks,
-# whose segments lie differently below it, nodes of either.
+# with different segment positions below it, nodes of either.
 SIZES = {10: ((48, 50), 168, (82, 80), 380), 14: ((68, 70), 340, (114, 112), 740),
          20: ((100, 102), 700, (162, 160), 1450), 28: ((140, 142), 1400, (228, 226), 2900)}
 CHOSEN = {"neo-hookean": [10, 14, 20, 28], "melody": [10, 14, 20]}
-# Of the change by half the rate, that to none. At rests: of first order or higher. In slip: drag is of first order,
-# but what snaps after each tooth sets in late by rate^(2/3), as whatever passes a fold slowly.
+# Change to zero rate over that by half the rate. At rests: first order or higher. In slip: drag is of first order, but
+# the drop after each tooth is delayed by rate^(2/3), as in any slow passage through a fold.
 FACTOR, FACTOR_ERROR = np.where(SLIPS, 2.35, 1.5), np.where(SLIPS, 0.35, 0.5)
 CONFIDENCE = 0.95
-COARSE = "two sizes tell 1 % of N and 3 to 8 % of T that sticks, for 16 runs: only three and more are worth it"
+COARSE = "two sizes resolve N to 1 % and T in stick to 3 to 8 %, in 16 runs: three or more sizes are needed"
 ROWS = {4: 5, 8: 10, 12: 15, 16: 20, 24: 30}  # of squares in the block, by rings of the disc
-# Rings of the disc, load steps for 0.1 R on the way along.
+# Rings of the disc, load steps per 0.1 R of push.
 RINGS = {"neo-hookean": [8, 12, 16, 24], "melody": [8, 12, 16]}
 STEPS = [2, 4, 8]
-# CalculiX: R, of its increments on the way down and then along, of which forces lag by first order; penalties, mu / R.
+# CalculiX: increments down and then along, R, by which forces lag in first order; penalties, mu / R.
 DOWN, LONGEST, LONG, SHORT = 0.025, 0.025, 0.0125, 0.00625
 SOFT, STIFF = 300.0, 1000.0
 CALCULIX_RINGS = [4, 8]
 FINEST = 12  # rings, with SOFT and LONG alone
-# Slave, rings, penalty, increments down and along, whether it goes on to slip.
+# Slave, rings, penalty, increments down and along, whether the run continues into slip.
 CALCULIX = [*(("disc", rings, stiffness, DOWN, along, True) for rings in CALCULIX_RINGS for stiffness in (SOFT, STIFF)
               for along in (LONG, SHORT)),
             *(("disc", rings, SOFT, DOWN, LONGEST, True) for rings in CALCULIX_RINGS),
@@ -65,9 +65,8 @@ def meshes(rings: int) -> dict[str, Mesh]:
 
 
 def by_getfem(law: str, rings: int, steps: int, slides: bool = True) -> tuple[np.ndarray, np.ndarray]:
-    """[pushes x 3] push, force along and across on the block; [pushes x nodes x 2] its top, from the right to the
-    left."""
-    from foreign.getfem_bodies import Bodies  # GetFEM is there with --full alone
+    """[pushes x 3] push, tangential and normal force on the block; [pushes x nodes x 2] its top, from right to left."""
+    from foreign.getfem_bodies import Bodies  # GetFEM is installed only with --full
 
     pushes = PUSHES if slides else STUCK
     bodies = Bodies(law, meshes(rings), MODULI, {"along": 0.0, "down": 0.0})
@@ -83,8 +82,8 @@ def by_getfem(law: str, rings: int, steps: int, slides: bool = True) -> tuple[np
 
 def by_calculix(slave: str, rings: int, stiffness: float, down: float, increment: float, slides: bool,
                 folder: Path) -> np.ndarray:
-    """[pushes it gets to x 3] push, force along and across on the block, by the law `melody` and a penalty of so many
-    mu / R. Opposite points of both surfaces are those at the start of an increment: forces lag by it."""
+    """[pushes reached x 3] push, tangential and normal force on the block, with the law `melody` and a penalty in
+    mu / R. Points of both surfaces are paired at the start of an increment, so forces lag by it."""
     deck = Deck(stiffness, meshes(rings), MODULI, FRICTION)
     deck.hold("DISC", above(1), HOLD, "RAM")
     deck.hold("BLOCK", below(-1), HOLD, "GROUND")
@@ -97,15 +96,15 @@ def by_calculix(slave: str, rings: int, stiffness: float, down: float, increment
 
 
 def hann(push: np.ndarray, low: float, high: float) -> np.ndarray:
-    """[samples] weights of a mean from which what repeats twice or more between low and high is gone."""
+    """[samples] weights of a mean that suppresses oscillations with two or more periods between low and high."""
     share = np.clip((push - low) / (high - low), 0, 1)
     weights = 1 - np.cos(2 * np.pi * share)
     return weights / weights.sum()
 
 
 def at_places(samples: np.ndarray, kind: str) -> np.ndarray:
-    """[places] forces at the pushes of STUCK, then means over WINDOWS if it slides, from [samples x 3] push, along and
-    across, with the pushes of STUCK and SLIDING among them."""
+    """[places] forces at the pushes of STUCK, then means over WINDOWS if the run slides. Samples [samples x 3] are
+    push, tangential and normal force, and include the pushes of STUCK and SLIDING."""
     push, force = samples[:, 0], samples[:, COLUMN[kind]]
     stuck = np.abs(push[:, None] - STUCK).argmin(axis=0)
     means = [hann(push, *window) @ force for window in WINDOWS if push[-1] >= window[1] - 1e-9]
@@ -113,32 +112,32 @@ def at_places(samples: np.ndarray, kind: str) -> np.ndarray:
 
 
 def by_group(values: np.ndarray, kind: str) -> np.ndarray:
-    """[places] the largest of what sticks, and of what slips: at a single place it may be small by accident."""
+    """[places] the largest value in stick, and in slip, as at a single place it may be accidentally small."""
     found = np.array(values, dtype=float)
     found[~SLIPS], found[SLIPS] = found[~SLIPS][FIRST[kind]:].max(), found[SLIPS].max()
     return found
 
 
 def getfem_samples(law: str, rings: int, steps: int = STEPS[-1]) -> np.ndarray:
-    """[pushes x 3] push, along, across as stored. Coarser load steps are there of what sticks alone."""
+    """[pushes x 3] stored push, tangential and normal force. Coarser load steps are stored only for stick."""
     return read(f"push_getfem_{law}").of(rings=rings, steps=steps)
 
 
 def calculix_samples(rings: int, stiffness: float, increment: float, slave: int = 0, down: float = DOWN) -> np.ndarray:
-    """[pushes x 3] push, along, across as stored."""
+    """[pushes x 3] stored push, tangential and normal force."""
     key = {"slave": slave, "rings": rings, "stiffness": stiffness, "down": down, "increment": increment}
     return read("push_calculix_melody").of(**key)
 
 
 def changed_on_the_way_down() -> np.ndarray:
-    """[pushes that stick x 2] what increments half as long on the way down change along and across, relative."""
+    """[pushes in stick x 2] relative change of tangential and normal force by half the increments down."""
     half, whole = (calculix_samples(CALCULIX_RINGS[0], SOFT, LONG, down=way)[:len(STUCK), 1:]
                    for way in (DOWN / 2, DOWN))
     return half / whole - 1
 
 
 def order_of_lag(rings: int) -> tuple[float, float]:
-    """Of the tangential force in slip, from three increments; and its error, by a next term of the lag's square."""
+    """Order of the tangential force in slip from three increments, and its error by the next term, the lag's square."""
     along = np.array([at_places(calculix_samples(rings, SOFT, increment), "along")[SLIPS]
                       for increment in (LONGEST, LONG, SHORT)])
     changes = np.sqrt((np.diff(along, axis=0) ** 2).mean(axis=1))
@@ -148,8 +147,8 @@ def order_of_lag(rings: int) -> tuple[float, float]:
 
 @dataclass(frozen=True, kw_only=True)
 class Push(Setup):
-    """Of a size of SIZES; in a pause, half in motion, 0.1 R are pushed. Ways: discs and blocks; the first two differ in
-    both."""
+    """Setup of a size of SIZES. A pause, half of it in motion, advances the push by 0.1 R. Ways are combinations of
+    discs and blocks; the first two differ in both."""
 
     pause: float = 40.0
     points: int = 16  # of a ramp's history
@@ -160,7 +159,7 @@ class Push(Setup):
 
     @property
     def speed(self) -> float:
-        """Of the disc that slides."""
+        """Speed of the sliding disc."""
         return 0.1 / self.pause
 
     @property
@@ -169,11 +168,11 @@ class Push(Setup):
 
     @property
     def spacing(self) -> float:
-        """Of the block's outline, R."""
+        """Spacing of the block's outline, R."""
         return 16 / float(np.mean(SIZES[self.size][2]))
 
     def time_of(self, push: float) -> float:
-        """Of the last one of STUCK, or the end."""
+        """Time of the last push of STUCK, or the end."""
         return float(self.rests[-1]) if push in STUCK else self.end
 
     def scene(self, case: Case) -> str:
@@ -189,7 +188,7 @@ class Push(Setup):
 
 
 class Pushed:
-    """Of a run: samples by push of the forces on the block."""
+    """Forces on the block in a run, sampled by push."""
 
     def __init__(self, push: Push, run: Run) -> None:
         self.run = run
@@ -201,14 +200,13 @@ class Pushed:
         self.forces = {kind: at_places(self.samples, kind) for kind in COLUMN}  # [places]
 
     def within_steps(self, kind: str) -> np.ndarray:
-        """[windows] how far means may be off since a force that changes between samples is known at these alone: at
-        each tooth it snaps."""
+        """[windows] error of means by sampling: the force is known only at samples and drops abruptly at each tooth."""
         push, force = self.samples[:, 0], self.samples[:, COLUMN[kind]]
         change = np.abs(np.diff(force, prepend=force[0]))
         return np.array([hann(push, *window) @ change / 2 for window in WINDOWS])
 
     def surface(self, time: float) -> np.ndarray:
-        """[nodes x 2] of the block's top, without its corners."""
+        """[nodes x 2] positions of the block's top, without its corners."""
         first = outline(self.run, 1, 0.0)
         return outline(self.run, 1, time)[(first[:, 1] > -1e-6) & (np.abs(first[:, 0]) < 2.99)]
 
@@ -219,7 +217,7 @@ def by_engine(case: Case, push: Push) -> Pushed:
 
 
 def error_of_mean(values: np.ndarray, freedoms: int) -> np.ndarray:
-    """[places] by Student's factor, of a mean over meshes, [meshes x places]; their spread has so many freedoms."""
+    """[places] error of a mean over meshes, [meshes x places], by Student's factor for these degrees of freedom."""
     factor = students_t.ppf((1 + CONFIDENCE) / 2, freedoms)
     return factor * values.std(axis=0, ddof=1) / np.sqrt(len(values))
 
@@ -230,12 +228,12 @@ class Sliding(Study):
     kind: str
     places = PLACES
     long = dict.fromkeys(LAWS, COARSE)
-    counted = SLIPS  # where the saw tooth is gone from the means
+    counted = SLIPS  # where means are free of the saw tooth
     own = "saw tooth between meshes of one size, penalty, rate"
     others = {"GetFEM": "GetFEM 5.4.2, its meshes and load steps", "CalculiX": "CalculiX, its meshes and load steps"}
     both = "meshes and load steps of both, penalty, slaves and lag of CalculiX 2.20"
     order = ("force in slip over GetFEM, rms of windows",
-             "linear consistency and a polygon for a circle; errors of rate and saw tooth by size, common ones")
+             "linear consistency and a polygon for a circle; errors of rate and saw tooth by size, common errors")
 
     def __init__(self, case: Case, law: str) -> None:
         super().__init__(case, law)
@@ -250,9 +248,9 @@ class Sliding(Study):
 
     @classmethod
     def read_getfem(cls, law: str) -> Opinion:
-        """Error: the largest change from meshes half as fine and finer, of what sticks and of what slips, as from a
-        single one or at a single push it may be small by accident; and that from load steps twice as long, of first
-        order."""
+        """Error: the largest change from meshes half as fine and finer, in stick and in slip, as from a single mesh or
+        at a single push it may be accidentally small. In stick, the first-order change by load steps twice as long is
+        added."""
         def of(rings: int, steps: int = STEPS[-1]) -> np.ndarray:
             return at_places(getfem_samples(law, rings, steps), cls.kind)
 
@@ -266,31 +264,31 @@ class Sliding(Study):
 
     @classmethod
     def read_calculix(cls) -> Opinion:
-        """Of the finest mesh, by what a coarser one makes of penalty and lag. Error: the sum of the largest of what
-        sticks and of what slips of each change."""
+        """Force of the finest mesh, with the corrections for penalty and lag of a coarser one. Error: the sum of all
+        changes, each the largest in stick and in slip."""
         def of(*run: float) -> np.ndarray:
             """[places]"""
             return at_places(calculix_samples(*run), cls.kind)
 
         def still(rings: int, stiffness: float, slave: int = 0, short: float = SHORT) -> np.ndarray:
-            """[places] without the lag, of first order: from these increments and ones twice as long."""
+            """[places] without the first-order lag, from these increments and ones twice as long."""
             return 2 * of(rings, stiffness, short, slave) - of(rings, stiffness, 2 * short, slave)
 
         def rigid(rings: int) -> np.ndarray:
-            """[places] of rigid contact, from two penalties: their error is of order 1 / K."""
+            """[places] rigid contact from two penalties, as the error is of order 1 / K."""
             return to_rigid_contact(still(rings, SOFT), still(rings, STIFF), STIFF / SOFT)
 
         def share(rings: int) -> np.ndarray:
-            """[places] of rigid contact without lag over forces with SOFT and LONG, which the finest mesh has alone."""
+            """[places] rigid contact without lag over forces with SOFT and LONG, the only ones of the finest mesh."""
             return rigid(rings) / of(rings, SOFT, LONG)
 
         coarse, fine = CALCULIX_RINGS
         soft, stiff = (still(fine, stiffness) / rigid(fine) - 1 for stiffness in (SOFT, STIFF))
         down = np.zeros(len(PLACES))
         down[~SLIPS] = changed_on_the_way_down()[:, COLUMN[cls.kind] - 1]
-        changes = [(of(fine, SOFT, LONG) / of(FINEST, SOFT, LONG) - 1) / (FINEST / fine - 1),  # what first order leaves
+        changes = [(of(fine, SOFT, LONG) / of(FINEST, SOFT, LONG) - 1) / (FINEST / fine - 1),  # rest, first order
                    share(coarse) / share(fine) - 1,
-                   soft * stiff,  # as the second order of the penalty is
+                   soft * stiff,  # second order of the penalty
                    (still(coarse, STIFF, 1) / still(coarse, STIFF) - 1) / 2,  # the other body as slave
                    down,
                    still(fine, SOFT, short=LONG) / still(fine, SOFT) - 1]  # the lag by longer increments
@@ -302,8 +300,8 @@ class Sliding(Study):
         return np.array([by_engine(self.case, push).forces[self.kind] for push in pushes])
 
     def _size(self, size: int) -> tuple[np.ndarray, np.ndarray]:
-        """[places] forces, those of the same meshes at half the rate drawn to no rate at all, and their error: that of
-        a mean over meshes, of which the spread is the largest of all places, and of the order in the rate."""
+        """[places] forces, extrapolated to zero rate from the same meshes at half the rate, and their error: that of a
+        mean over meshes, with the largest spread of all places, plus that of the order in the rate."""
         ways = Push(size=size, law=self.law).ways()
         usual, slower = self._of(ways[:2]), self._of([replace(way, pause=2 * way.pause) for way in ways[:2]])
         late = (slower - usual).mean(axis=0)
@@ -331,8 +329,8 @@ class Across(Sliding):
 
 @cache
 def engine_and_reference(case: Case) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """By kind [places] both forces' ratio on the same nodes, the engine's rate taken out, and how far it may be from 1.
-    Load steps in slip are longer than the engine's outputs."""
+    """By kind [places] ratio of both forces on the same nodes, corrected for the engine's rate, and its tolerance. Load
+    steps in slip are longer than the engine's outputs."""
     push = Push(size=CHOSEN[LAWS[0]][0])
     moving, slow = by_engine(case, push), by_engine(case, replace(push, pause=2 * push.pause))
     static, long_steps = (Pushed(way, way.by_reference(case)) for way in (
@@ -359,6 +357,6 @@ def calculix_again(folder: Path) -> np.ndarray:
 
 AGAIN: list[Again] = [
     ("pushed, neo-hookean: GetFEM", getfem_again, 3e-7,
-     "Newton's residuals of 1e-9 in some fifty nodes of a support, over the least force, 0.177"),
+     "Newton's residuals of 1e-9 in some fifty nodes of a support, over the smallest force, 0.177"),
     ("pushed, melody: CalculiX", calculix_again, float(np.abs(changed_on_the_way_down()[1:]).max()),
-     "what increments half as long on the way down change")]
+     "change by increments half as long during pressing")]

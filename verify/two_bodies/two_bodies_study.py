@@ -1,4 +1,4 @@
-"""What all pairs of bodies share: setups of runs, rests, and forces by mesh size beside those of other solvers."""
+"""Shared by all pairs of bodies: setups of runs, states of rest, and forces by mesh size against other solvers."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from verification import Case, Run, weights_of_limit
 FOLDER = Path(__file__).parent / "oracles"
 LAWS = ("neo-hookean", "melody")
 HARDER = 2.0  # times the contact stiffness
-RAMP = 8.0  # s of a pause in motion
-# Solver, what it computes now over what is stored less 1, tolerance and its source.
+RAMP = 8.0  # s of motion in a pause
+# Solver, ratio of live to stored values less 1, tolerance and its source.
 Again = tuple[str, Callable[[Path], np.ndarray], float, str]
 
 
@@ -28,19 +28,19 @@ def read(name: str) -> Table:
 
 @dataclass(frozen=True, kw_only=True)
 class Setup:
-    """What a run is made of; the ways of a size differ in outlines."""
+    """Parameters of a run; the `ways` of a size are variants with different outlines."""
 
     size: int
     way: int = 0
     law: str = LAWS[0]
     stiffness: float = 3e3  # of contact, mu / R
-    pause: float = 24.0  # s from one rest to the next
+    pause: float = 24.0  # s between states of rest
 
     WAYS: ClassVar[int]
-    LEVELS: ClassVar[list[float]]  # at which bodies rest
+    LEVELS: ClassVar[list[float]]  # loads at which bodies rest
     FIRST_REST: ClassVar[int] = 1  # pauses until then
-    STEP: ClassVar[float] = RAMP  # s, of the load in statics, at most
-    STORED: ClassVar[float]  # over the kinetic energy left: damping over the rate of the slowest motion
+    STEP: ClassVar[float] = RAMP  # s, largest load step in statics
+    STORED: ClassVar[float]  # stored over residual kinetic energy: damping over the rate of the slowest motion
     AXIS: ClassVar[float] = 0.0  # x
 
     @property
@@ -59,7 +59,7 @@ class Setup:
         return case.engine(self.run_name(), self.scene(case))
 
     def by_reference(self, case: Case) -> Run:
-        """Statics: load steps end at the points of the histories and at outputs."""
+        """Statics; load steps end at the points of the histories and at outputs."""
         return case.reference(self.run_name() + "_reference", self.scene(case), "--static", "--dt", repr(self.STEP))
 
 
@@ -71,7 +71,7 @@ def outline(run: Run, body: int, time: float) -> np.ndarray:
 
 
 class Rests:
-    """What a run shows at the end of each pause, [levels]."""
+    """Results at the end of each pause, [levels]."""
 
     def __init__(self, setup: Setup, run: Run) -> None:
         self.setup, self.run = setup, run
@@ -79,7 +79,7 @@ class Rests:
         self.kinetic = run.at("energy.kinetic", setup.rests)
 
     def unrest(self) -> np.ndarray:
-        """How far forces may be from those without motion, relative."""
+        """Relative bound of the effect of residual motion on forces."""
         return force_of_motion(self.force, self.gap, self.kinetic, self.setup.STORED) / self.force
 
     def outline(self, body: int, level: int) -> np.ndarray:
@@ -88,27 +88,27 @@ class Rests:
 
 
 def lost_by_penalty(usual: np.ndarray, harder: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """[places] mean of what contact lost by its penalty, of order 1 / stiffness, and half of its range, of [ways x
+    """[places] mean loss of force by the penalty, of order 1 / stiffness, and half of its range, from [ways x
     places]."""
     lost = HARDER / (HARDER - 1) * (harder / usual - 1)
     return lost.mean(axis=0), np.ptp(lost, axis=0) / 2
 
 
 class Study:
-    """One force of a pair of bodies at several places, by mesh size, without penalty, beside those of other solvers,
-    which `read_getfem(law)` and `read_calculix()` know."""
+    """One force of a pair of bodies at several places, by mesh size, without penalty. `read_getfem(law)` and
+    `read_calculix()` give those of other solvers."""
 
     name: str
     places: list[str]
     compared: range  # places of the engine's forces
     between: range  # places of GetFEM's over CalculiX's
-    long: dict[str, str] = {}  # laws whose runs are long, and why they wait for --full
+    long: dict[str, str] = {}  # laws whose runs are long, and why they need --full
     orders: tuple[int, ...] = (2,)  # of errors in the spacing: forces at h = 0 are the mean of lines in these powers
     counted: slice | np.ndarray = slice(None)  # places of rms
-    own: str  # where errors come from: of the engine; of others, by solver; of GetFEM over CalculiX; of the order
+    own: str  # sources of errors: of the engine; of others, by solver; of GetFEM over CalculiX; of the order
     others: dict[str, str]
     both: str
-    order: tuple[str, str] | None = None  # what of, if it is known
+    order: tuple[str, str] | None = None  # its quantity, if the order is known
 
     spacings: np.ndarray  # [sizes]
     force: np.ndarray  # [sizes x places]
@@ -124,7 +124,7 @@ class Study:
         return self.force / self.getfem.force - 1
 
     def rms(self) -> np.ndarray:
-        """[sizes] of errors, over the places that count."""
+        """[sizes] rms of errors over the evaluated places."""
         return np.sqrt((self.errors()[:, self.counted] ** 2).mean(axis=1))
 
     def weights(self) -> np.ndarray:
@@ -136,23 +136,23 @@ class Study:
         return (self.weights() @ self.force).mean(axis=0)
 
     def limit_error(self) -> np.ndarray:
-        """[places] relative: the order, saw tooth, penalty."""
+        """[places] relative error by the order, saw tooth and penalty."""
         order = np.ptp(self.weights() @ self.force, axis=0) / 2 / self.getfem.force
         return order + np.abs(self.weights().mean(axis=0)) @ self.scatter + self.penalty_error
 
     def slope_error_of(self, own: np.ndarray, common: float) -> float:
-        """Of the order in h, from [sizes] relative errors that are independent, and from one that all sizes have."""
+        """Error of the order in h, from [sizes] independent relative errors, and from one common to all sizes."""
         logs = np.log(self.spacings) - np.log(self.spacings).mean()
         independent = np.sqrt(((logs * own / self.rms()) ** 2).sum())
         return float((independent + np.abs((logs * common / self.rms()).sum())) / (logs**2).sum())
 
 
 class RestStudy(Study):
-    """Of setups of several sizes, all ways of each."""
+    """Study of setups of several sizes, with all ways of each."""
 
     scatters = 1.0  # times the error of a mean over ways
-    group: Callable[[np.ndarray], np.ndarray]  # at a single place scatter may be small by accident
-    shape: str  # where errors of outlines come from
+    group: Callable[[np.ndarray], np.ndarray]  # at a single place scatter may be accidentally small
+    shape: str  # sources of errors of outlines
     bodies: tuple[str, ...]
     table: str  # of stored outlines
 

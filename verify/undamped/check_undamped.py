@@ -1,4 +1,4 @@
-"""37 discs in a free ring, nothing damped, 200,000 steps (--full: a million): energy and momenta are kept."""
+"""37 discs in a free ring without damping, 200,000 steps (--full: a million): conservation of energy and momenta."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ CASE = Case(__file__)
 
 METHODS = ["mls", "es-t3"]  # the first is the default
 STEPS = {method: 1_000_000 if FULL else steps for method, steps in (("mls", 200_000), ("es-t3", 50_000))}
-STEP = {"mls": 0.0412, "es-t3": 0.0391}  # s, a little more than what the engine takes, so that there are so many steps
+STEP = {"mls": 0.0412, "es-t3": 0.0391}  # s, slightly more than the engine's, so that there are at least STEPS
 SAMPLES = 100
 DIAMETER, PITCH, NODES = 1.5, 1.7, 30
 INNER, OUTER, SLIT, SIDES = 6.0, 6.6, 0.02, 96  # radii of the ring; half the angle of its slit; sides of each circle
-SPEED, TURN = 0.1, 0.03  # m/s, root of the mean of squares of each component at random; rad/s, of all about the middle
-BLOCK = 10  # samples a block, thousands of collisions
+SPEED, TURN = 0.1, 0.03  # m/s, rms of each random component; rad/s, rotation of all discs about the centre
+BLOCK = 10  # samples per block, thousands of collisions
 
 
 def places() -> np.ndarray:
@@ -40,14 +40,14 @@ RIGID = [*(f"hard_{i}" for i in range(len(HARD))), "ring"]
 
 
 def ring() -> np.ndarray:
-    """One outline, counter-clockwise: outside, and back inside."""
+    """One counter-clockwise outline: the outer circle, and back along the inner one."""
     angle = np.linspace(SLIT, 2 * np.pi - SLIT, SIDES + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     return np.concatenate([OUTER * circle, INNER * circle[::-1]])
 
 
 def grains() -> str:
-    """A table for each disc, with a velocity of its own; soft and hard ones have no momentum together."""
+    """A table for each disc with its own velocity; the total momentum of soft and hard discs vanishes."""
     random = SPEED * np.random.default_rng(1).standard_normal((len(SOFT) + len(HARD), 2))
     centres = np.concatenate([SOFT, HARD])
     velocity = random - random.mean(axis=0) + TURN * np.stack([-centres[:, 1], centres[:, 0]], axis=1)
@@ -88,7 +88,7 @@ def run_of(method: str) -> Run:
 
 
 def energy(method: str) -> np.ndarray:
-    """[samples] over that of the start, less 1."""
+    """[samples] energy over the initial one, less 1."""
     run = run_of(method)
     total = sum(run.probe(f"energy.{part}") for part in ("kinetic", "strain", "contact"))
     return total / total[0] - 1
@@ -96,7 +96,7 @@ def energy(method: str) -> np.ndarray:
 
 @cache
 def kept_by_verlet(method: str) -> np.ndarray:
-    """[samples] dt^2/8 times the sum of m |a|^2 over the soft discs' nodes, over the energy; with `mls` about."""
+    """[samples] dt^2/8 times the sum of m |a|^2 over the soft discs' nodes, over the energy; approximate for `mls`."""
     run, frames = run_of(method), frames_of(run_of(method))
     mass = soft_motion(run)[1]
     squares = [mass @ (plane(frames, i, "acceleration") ** 2).sum(axis=1) for i in range(len(frames.times))]
@@ -108,19 +108,19 @@ def kept_by_verlet(method: str) -> np.ndarray:
 def test_energy(method: str) -> None:
     steps, errors = run_of(method).summary["steps"], energy(method)
     CASE.check(Label.EXACT, f"{method}: {STEPS[method]} steps and more", float(steps >= STEPS[method]), 1, 0,
-               "what is asked for")
+               "specified")
     CASE.check(Label.EXACT, f"{method}: energy over that of the start - 1, largest", np.abs(errors).max(), 0,
-               1e-2 + kept_by_verlet(method).max(), "promised of contacts; Verlet keeps K + U - dt^2 sum F^2/8m: "
-               "discs that ring have forces")
+               1e-2 + kept_by_verlet(method).max(), "specified for contacts; Verlet conserves K + U - dt^2 sum "
+               "F^2/8m: ringing discs have forces")
     CASE.check(Label.EXACT, f"{method}: forces and moments of contacts and stresses, what does not cancel",
-               run_of(method).summary["momentum_error"], 0, 1e-12, "promised")
+               run_of(method).summary["momentum_error"], 0, 1e-12, "specified")
 
 
 @pytest.mark.skipif(not FULL, reason="the first hundred time units, in which discs begin to ring, are a tenth of the run")
 @pytest.mark.parametrize("method", METHODS)
 def test_no_drift(method: str) -> None:
-    # K + U - dt^2 sum F^2/8m + (dt^2 sum F F_before/m - sum dx dF)/12: over slow vibrations either of the last is
-    # dt^2 F^2/m in the mean
+    # K + U - dt^2 sum F^2/8m + (dt^2 sum F F_before/m - sum dx dF)/12: for slow vibrations each of the last two terms
+    # is dt^2 F^2/m in the mean
     errors = energy(method) + kept_by_verlet(method) / 3
     halves = [Mean(block_means(half, BLOCK)) for half in (errors[1 : SAMPLES // 2 + 1], errors[SAMPLES // 2 + 1 :])]
     CASE.check(Label.EXACT, f"{method}: what Verlet keeps, mean of the second half less that of the first",
@@ -130,15 +130,15 @@ def test_no_drift(method: str) -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_discs_collide(method: str) -> None:
-    """They change their places for others'."""
+    """Discs exchange their positions."""
     at = np.array([part[2] for part in rigid_parts(run_of(method))[:-1]])
     ways = np.linalg.norm(at[:, -1, :2] - at[:, 0, :2], axis=1)
     CASE.check(Label.EXACT, f"{method}: hard discs have gone further than a place, rms", float(
-        np.sqrt((ways**2).mean()) > PITCH), 1, 0, "otherwise they would not meet")
+        np.sqrt((ways**2).mean()) > PITCH), 1, 0, "otherwise they would not collide")
 
 
 def rigid_parts(run: Run) -> list[tuple[float, float, np.ndarray, np.ndarray]]:
-    """Of each rigid body mass, moment of inertia, and positions and velocities, [samples x 3] with angles."""
+    """For each rigid body: mass, moment of inertia, positions and velocities, [samples x 3] with angles."""
     frames = frames_of(run)
     grid = frames.grids["outlines"]
     outlines = Outlines.of(frames.positions("outlines", 0)[:, :2], grid.cells, grid.body)
@@ -153,7 +153,7 @@ def rigid_parts(run: Run) -> list[tuple[float, float, np.ndarray, np.ndarray]]:
 
 
 def soft_motion(run: Run) -> tuple[Motion, np.ndarray]:
-    """Of all bodies, and masses of the soft ones' nodes: a third of the triangles around each."""
+    """Motion of all bodies, and masses of the soft ones' nodes: a third of the triangles around each."""
     motion, grid = read_motion(run), frames_of(run).grids["bodies"]
     soft = Motion(motion.times, motion.positions, motion.displacements, motion.velocities, grid.cells[grid.kind == 0])
     return soft, soft.node_areas()

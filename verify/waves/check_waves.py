@@ -1,4 +1,4 @@
-"""Speeds of P and S waves in a bar that is held sideways: standing and travelling, by three solvers."""
+"""Speeds of P and S waves in a laterally supported bar: standing and travelling waves, three solvers."""
 
 from __future__ import annotations
 
@@ -27,25 +27,25 @@ LENGTH, WIDTH = 2.0, 0.5
 MU, LAME = 1.0, 4.0
 STIFFNESS = 2e4  # of the supports
 SPACINGS = [1 / 8, 1 / 12, 1 / 16, 1 / 24] + ([1 / 32] if FULL else [])
-PERIODS, SAMPLES = 4, 20  # of the first mode; frames a period
-AMPLITUDE = 1e-5  # speed over wave speed: strains of 1e-5, so what is not linear is some 1e-5 of it
-# Linear triangles with lumped mass carry S waves almost without error, that of mass against that of stiffness: no
-# rate can be seen. With corrected mass both errors have one sign.
+PERIODS, SAMPLES = 4, 20  # of the first mode; frames per period
+AMPLITUDE = 1e-5  # velocity over wave speed: strains of 1e-5, so nonlinear terms are some 1e-5 of it
+# Linear triangles with lumped mass carry S waves almost without error, as those of mass and stiffness cancel, so no
+# rate is measurable. With corrected mass both errors have the same sign.
 CONVERGE = [("mls", "lumped"), ("mls-gauss", "lumped"), ("t3", "corrected"), ("es-t3", "lumped")]
 OTHERS = [("mls", "corrected"), ("t3", "lumped"), ("es-t3", "corrected")]
-# Of a chain of lumped masses in the first mode, which corrected mass takes away.
+# Dispersion of a chain of lumped masses in the first mode, which corrected mass removes.
 LUMPED_DISPERSION = (np.pi / LENGTH * SPACINGS[-1])**2 / 24
-ASKED = "closed form, a tenth of a percent is asked for"
+ASKED = "closed form; specified: a tenth of a percent"
 
 
 @dataclass(frozen=True)
 class Wave:
-    """P or S: what moves, what the long sides hold."""
+    """P or S wave: direction of motion, and support of the long sides."""
 
     name: str
     axis: int
     modulus: float
-    support: float  # the stress that the sides carry, over that of the wave's own strain
+    support: float  # stress carried by the sides, over the wave's strain
 
     @property
     def speed(self) -> float:
@@ -57,17 +57,17 @@ class Wave:
 
     @property
     def frequency(self) -> float:
-        """Of the first mode of free ends, u = sin(pi x / L) about the middle, rad/s."""
+        """Frequency of the first mode with free ends, u = sin(pi x / L) about the middle, rad/s."""
         return np.pi * self.speed / LENGTH
 
     @property
     def softening(self) -> float:
-        """Speed over that between rigid sides: springs that give by stress / k take energy like so much softer a
-        modulus, modulus - 2 support^2 / (k W) (first order in 1 / k, any wave length)."""
+        """Speed over that between rigid sides. Springs that deform by stress / k reduce the modulus to
+        modulus - 2 support^2 / (k W) (first order in 1 / k, any wavelength)."""
         return float(np.sqrt(1 - 2 * self.support**2 / (STIFFNESS * WIDTH * self.modulus)))
 
     def gradient(self) -> list[list[float]]:
-        """Of the velocity at the start along x, 1/s."""
+        """Gradient of the initial velocity along x, 1/s."""
         rate = 2 * AMPLITUDE * self.speed / LENGTH
         return [[rate, 0], [0, 0]] if self.axis == 0 else [[0, 0], [rate, 0]]
 
@@ -77,18 +77,19 @@ WAVES = {"P": Wave("P", 0, LAME + 2 * MU, LAME), "S": Wave("S", 1, MU, MU)}
 
 @dataclass(frozen=True)
 class Sine:
-    """Fitted to a history by least squares."""
+    """A sine fitted to a history by least squares."""
 
     frequency: float  # rad/s
-    overtones: float  # amplitude of one that would leave as much beside the sine, over its own
+    overtones: float  # amplitude of an overtone with the fit's residual, over the sine's
     turned: float  # phase from the first to the last value, rad
 
     @property
     def error(self) -> float:
-        """Of the frequency at most, relative, by overtones from the third on.
+        """Relative bound of the frequency error by overtones from the third on.
 
-        To first order the fit changes w by the part of e cos(W t + p) along (t - T/2) cos(w t), whose square integrates
-        to T^3/24: by parts 24/T^3 e T/2 (1/(W - w) + 1/(W + w)), with W = 3 w 9 e/(w T)^2 of w; higher ones less.
+        To first order the fit changes w by the component of e cos(W t + p) along (t - T/2) cos(w t), whose square
+        integrates to T^3/24. By parts this is 24/T^3 e T/2 (1/(W - w) + 1/(W + w)). With W = 3 w it is 9 e/(w T)^2 of
+        w; higher overtones contribute less.
         """
         return 9 * self.overtones / self.turned**2
 
@@ -112,13 +113,13 @@ def standing_scene(wave: Wave, method: str, mass: str, spacing: float) -> str:
 
 
 def mode_sine(wave: Wave, motion: Motion) -> Sine:
-    """Of the first mode."""
+    """Sine fitted to the first mode."""
     shape = np.sin(np.pi * motion.positions[0][:, 0] / LENGTH)
     return fitted_sine(motion.times, motion.modal(wave.axis, shape), wave.frequency)
 
 
 def mode_frequency(wave: Wave, motion: Motion) -> float:
-    """Of the first mode, rad/s, between sides that do not give."""
+    """Frequency of the first mode between rigid sides, rad/s."""
     return mode_sine(wave, motion).frequency / wave.softening
 
 
@@ -129,7 +130,7 @@ def engine_run(wave: Wave, method: str, mass: str, spacing: float) -> Run:
 
 
 def engine_speed(wave: Wave, *variant: str | float) -> float:
-    """Over the closed form."""
+    """Wave speed over the closed form."""
     return mode_frequency(wave, read_motion(engine_run(wave, *variant))) / wave.frequency
 
 
@@ -140,7 +141,7 @@ def wave(request: pytest.FixtureRequest) -> Wave:
 
 @pytest.fixture(scope="module")
 def errors() -> dict[tuple[str, str, str], list[float]]:
-    """Of the engine's wave speeds, relative, by wave, method and mass, for SPACINGS."""
+    """Relative errors of the engine's wave speeds, by wave, method and mass, for SPACINGS."""
     return {(wave.name, *variant): [engine_speed(wave, *variant, h) - 1 for h in SPACINGS]
             for wave in WAVES.values() for variant in CONVERGE}
 
@@ -150,8 +151,8 @@ def test_standing_waves_converge(wave: Wave, variant: tuple[str, str], errors: d
     name, found = f"{wave.name}, {' '.join(variant)}", errors[wave.name, *variant]
     CASE.check(Label.EXACT, f"{name}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}", 1 + found[-1], 1, 1e-3, ASKED)
     CASE.check_rate(f"{name}: standing wave", SPACINGS, np.abs(found).tolist(), 2, 0.4,
-                    "dispersion is even in wave number times spacing: second order; nodes along the outline are of the "
-                    "third, up to 0.3, and meshes scatter each error by a tenth")
+                    "dispersion is even in wave number times spacing: second order; nodes along the outline contribute "
+                    "third order, up to 0.3; meshes scatter each error by a tenth")
 
 
 @pytest.mark.parametrize("variant", OTHERS, ids=lambda v: "-".join(v))
@@ -160,7 +161,7 @@ def test_standing_waves_of_other_variants(wave: Wave, variant: tuple[str, str]) 
     name = f"{wave.name}, {' '.join(variant)}: standing wave, spacing 1/{1 / SPACINGS[-1]:.0f}"
     if variant[1] == "corrected":
         CASE.check(Label.EXACT, name, found, 1, LUMPED_DISPERSION,
-                   "closed form; dispersion of lumped masses, (q h)^2/24, is gone")
+                   "closed form; corrected mass removes the dispersion of lumped masses, (q h)^2/24")
     else:
         CASE.check(Label.EXACT, name, found, 1, 1e-3, ASKED)
 
@@ -170,19 +171,20 @@ REFERENCE_STEPS = 40  # a period
 
 
 def without_newmark(frequency: float, dt: float) -> float:
-    """Newmark's method turns every frequency w into 2/dt atan(w dt/2)."""
+    """Inverse of the frequency error of Newmark's method, which turns w into 2/dt atan(w dt/2)."""
     return float(np.tan(frequency * dt / 2) / (dt / 2))
 
 
 def without_verlet(frequency: float, steps: np.ndarray) -> float:
-    """Verlet's method turns every frequency w into 2/dt asin(w dt/2), of steps that differ by the mean of dt^2."""
+    """Inverse of the frequency error of Verlet's method, which turns w into 2/dt asin(w dt/2); unequal steps count by
+    the mean of dt^2."""
     dt = np.sqrt(np.average(steps**2, weights=steps))
     return float(np.sin(frequency * dt / 2) / (dt / 2))
 
 
 @cache
 def reference_sine(wave: Wave) -> Sine:
-    """What steps in time do to its frequency is undone."""
+    """Sine of the reference, corrected for the effect of time steps on its frequency."""
     dt = 2 * np.pi / wave.frequency / REFERENCE_STEPS
     scene = standing_scene(wave, "mls", "lumped", REFERENCE_SPACING)
     sine = mode_sine(wave, read_motion(CASE.reference(f"{wave.name}_reference", scene, "--dt", repr(float(dt)))))
@@ -190,12 +192,12 @@ def reference_sine(wave: Wave) -> Sine:
 
 
 def reference_speed(wave: Wave) -> float:
-    """Over the closed form."""
+    """Wave speed over the closed form."""
     return reference_sine(wave).frequency / wave.softening / wave.frequency
 
 
 def test_standing_waves_of_the_reference(wave: Wave) -> None:
-    """What steps in time do is undone for both solvers. What is left is space, the same in both."""
+    """Both solvers are corrected for the effect of time steps. The spatial error remains, the same in both."""
     reference, run = reference_sine(wave), engine_run(wave, "mls", "lumped", REFERENCE_SPACING)
     engine = mode_sine(wave, read_motion(run))
     CASE.check(Label.EXACT, f"{wave.name}, reference: standing wave, spacing 1/24", reference_speed(wave), 1, 1e-3,
@@ -203,16 +205,16 @@ def test_standing_waves_of_the_reference(wave: Wave) -> None:
     CASE.check(Label.INDEPENDENT, f"{wave.name}: standing wave, reference over engine - 1",
                reference.frequency / without_verlet(engine.frequency, run.steps("dt")) - 1, 0,
                reference.error + engine.error,
-               "the same nodes, steps of both undone; what overtones of the amplitudes that are seen do to the fits")
+               "the same nodes, both corrected for time steps; effect of overtones of the measured amplitudes on fits")
 
 
 ELEMENT_COLUMNS = 8  # quadratic triangles of LENGTH / 8
-ELEMENT_ERROR = 3e-5  # (q h)^4 / 1440 = 2e-5, and what is not linear, 1e-5
+ELEMENT_ERROR = 3e-5  # (q h)^4 / 1440 = 2e-5, plus nonlinear terms, 1e-5
 
 
 @cache
 def finite_element_speed(wave: Wave, steps: int = 20) -> float:
-    """Over the closed form; sides held exactly, Verlet's frequency error undone."""
+    """Wave speed over the closed form; sides held exactly, corrected for Verlet's frequency error."""
     solid = Solid(rectangle(LENGTH, WIDTH, ELEMENT_COLUMNS, ELEMENT_COLUMNS // 4), Material(MU, LAME))
     motion = Explicit(solid, solid.strain_energy(), held_sides(solid, wave))
     (xx, xy), (yx, yy) = wave.gradient()
@@ -240,12 +242,12 @@ def held_sides(solid: Solid, wave: Wave) -> list:
 
 def test_standing_waves_of_finite_elements(wave: Wave) -> None:
     CASE.check(Label.EXACT, f"{wave.name}, finite elements: standing wave", finite_element_speed(wave), 1, ELEMENT_ERROR,
-               "closed form; quadratic triangles of 1/4: (q h)^4 / 1440 = 2e-5, and what is not linear, 1e-5")
+               "closed form; quadratic triangles of 1/4: (q h)^4 / 1440 = 2e-5, plus nonlinear terms, 1e-5")
 
 
-# A pulse of a raised cosine of this length travels from the left end.
+# A raised-cosine pulse of this length travels from the left end.
 PULSE = 1.2
-GAUGES = (-0.6, 0.2)  # where it has passed before it comes back from the right end
+GAUGES = (-0.6, 0.2)  # where it has passed before its reflection from the right end arrives
 TRAVELLING_SPACING = 1 / 24
 
 
@@ -260,14 +262,14 @@ def travelling_scene(wave: Wave) -> str:
 
 
 def arrivals(wave: Wave, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Places of nodes between the gauges, and when the pulse s(t) began there: T of the largest integral of
+    """Positions of nodes between the gauges, and arrival times of the pulse s(t) there: T of the largest integral of
     v(t) s(t - T)."""
     x, duration = motion.positions[0][:, 0], PULSE / wave.speed
     chosen = (x > GAUGES[0]) & (x < GAUGES[1])
     velocities = motion.velocities[:, chosen, wave.axis]
 
     def slope(start: float, velocity: np.ndarray) -> float:
-        """Derivative of the integral, but for a factor."""
+        """Derivative of the integral, up to a factor."""
         phase = np.clip((motion.times - start) / duration, 0, 1)
         return float(velocity @ np.sin(2 * np.pi * phase))
 
@@ -277,7 +279,7 @@ def arrivals(wave: Wave, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def travelling_speed(wave: Wave, motion: Motion) -> float:
-    """Over the closed form, from a line through the arrivals at all nodes between the gauges."""
+    """Wave speed over the closed form, from a line through the arrivals at all nodes between the gauges."""
     slope = np.polyfit(*arrivals(wave, motion), 1)[0]
     return float(1 / slope / wave.speed / wave.softening)
 
@@ -291,7 +293,7 @@ def travelling() -> dict[str, Motion]:
 def test_travelling_waves(wave: Wave, travelling: dict[str, Motion]) -> None:
     CASE.check(Label.EXACT, f"{wave.name}, mls corrected: travelling wave, spacing 1/24",
                travelling_speed(wave, travelling[wave.name]), 1, 1e-3,
-               f"{ASKED}; dispersion at the pulse's wave number, 3.3 of the standing wave's, is 3e-4")
+               f"{ASKED}; dispersion at the pulse's wave number, 3.3 times the standing wave's, is 3e-4")
 
 
 def test_picture_of_travelling_waves(travelling: dict[str, Motion]) -> None:
@@ -302,7 +304,7 @@ def test_picture_of_travelling_waves(travelling: dict[str, Motion]) -> None:
 
 
 def draw_pulses(axes: Axes, wave: Wave, motion: Motion) -> None:
-    """At five nodes, above one another by place; theory is the pulse moved by x / c, until it comes back."""
+    """At five nodes, offset by position; theory is the pulse shifted by x / c, until its reflection."""
     points, way = motion.positions[0], np.linspace(0, PULSE, 100)
     for i, place in enumerate(np.linspace(-0.75, 0.25, 5)):
         node = int(np.argmin(np.hypot(points[:, 0] - place, points[:, 1])))
