@@ -53,9 +53,9 @@ inline double kinetic_energy_gain(const PairTotals& now) {
 void carry_forces(const Model& model, const ContactPair& old, const PairForceBuffer& from, const ContactPair& now,
                   PairForceBuffer& to);
 
-/// Relative change -chi W1 of a contact pair's forces that corrects an energy error, J/m, with chi <= `share`/S_p. `work_before`: work of the same
-/// law's forces in the last step. The larger work counts, because where the motion reverses the next displacement may
-/// be many times this one.
+/// Relative change -chi W1 of a contact pair's forces that corrects an energy error, J/m, with chi <= `share`/S_p.
+/// `work_before`: work of the same law's forces in the last step. The larger work counts, because where the motion
+/// reverses the next displacement may be many times this one.
 double relative_correction(double error, double share, const PairTotals& now, double work_before = 0);
 /// Whether the energy error is so small that it may be rounding of energies. Each correction removes about half of the
 /// error, which would never end. `now`: totals of parting_law(), whose gaps are about half a spacing.

@@ -20,8 +20,8 @@ class LawTable {
 
   /// Law at a given time: a body with a prescribed motion at that time counts as infinitely heavy for dashpots.
   ContactLaw between(int first, int second, double time = 0) const;
-  /// Index, from 0, of the time interval in which laws do not change. There is one interval unless dashpots meet conditions
-  /// with `from` or `until`.
+  /// Index, from 0, of the time interval in which laws do not change. There is one interval unless dashpots meet
+  /// conditions with `from` or `until`.
   int law_interval(double time) const;
   bool automatic_stiffness(int first, int second) const;
   /// Number of the ContactLawKind; -1: the two bodies never meet.

@@ -6,9 +6,9 @@
 namespace pliant {
 
 /// Surface coordinate of a node on the master's outline as one number, for the history: twice the segment's number,
-/// plus xi on the segment. Beyond an end it is outside [0, 1]: by |sine_beyond|/4 outside the outline, by 0.3 + 0.15 |sine_beyond|
-/// inside a re-entrant corner, where the normal turns against the direction of motion. The offset is always less than
-/// 1/2, so that every coordinate belongs to one segment.
+/// plus xi on the segment. Beyond an end it is outside [0, 1]: by |sine_beyond|/4 outside the outline, by 0.3 + 0.15
+/// |sine_beyond| inside a re-entrant corner, where the normal turns against the direction of motion. The offset is
+/// always less than 1/2, so that every coordinate belongs to one segment.
 inline Lanes place_of(const Projection& p) {
   const Lanes turn = abs(p.sine_beyond);
   const Lanes off = select(p.gap < 0.0, 0.3 + 0.15 * turn, 0.25 * turn);

@@ -37,8 +37,7 @@ class Forces {
   /// Result of the check of the contact candidates.
   struct ListCheck {
     bool rebuilt = false;
-    bool contact_lost = false;  ///< some penetration is beyond what is allowed
-    bool valid = true;          ///< false for a trial that exceeds the skin in a single step
+    bool valid = true;  ///< false for a trial that exceeds the skin in a single step
   };
   /// Makes sure that the candidates are valid for the outlines of a trial that ends at `time`. If they are not, they
   /// are rebuilt at the accepted state. Its history is stored in a new order and keeps its records, so that a rejected

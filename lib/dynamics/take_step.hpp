@@ -7,7 +7,8 @@
 
 namespace pliant {
 
-/// Interface of an integrator. `add_damping_work` also follows output samples; only `accepted` is for accepted steps alone.
+/// Interface of an integrator. `add_damping_work` also follows output samples; only `accepted` is for accepted steps
+/// alone.
 template <class S>
 concept StepScheme = requires(S& scheme, const S& fixed, State& state, const StepControl& control,
                               const Proposal& proposal, StepReport& report) {

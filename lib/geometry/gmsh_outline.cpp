@@ -7,10 +7,10 @@
 
 #include "core/errors.hpp"
 #include "geometry/mesh_parts.hpp"
-#include "scene/names.hpp"
 #include "geometry/outline_file.hpp"
 #include "geometry/polygon_rules.hpp"
 #include "scene/line_reader.hpp"
+#include "scene/names.hpp"
 
 namespace pliant {
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <map>
 
-#include "scene/names.hpp"
 #include "input/old_keys.hpp"
+#include "scene/names.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {

@@ -15,8 +15,8 @@ struct AxisConditionKind {
 };
 
 /// "fixed", "free", or a table with one of the histories, its dashpot and its times; `otherwise` without the key.
-AxisCondition read_axis_condition(TableReader& table, const std::string& axis, const std::vector<AxisConditionKind>& kinds,
-                 const AxisCondition& otherwise);
+AxisCondition read_axis_condition(TableReader& table, const std::string& axis,
+                                  const std::vector<AxisConditionKind>& kinds, const AxisCondition& otherwise);
 
 /// The keys `from` and `until`.
 Window read_window(TableReader& table);

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "input/read_tables.hpp"
 #include "geometry/sizes.hpp"
+#include "input/read_tables.hpp"
 
 namespace pliant {
 

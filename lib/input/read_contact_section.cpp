@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "scene/contact_rules.hpp"
 #include "input/read_tables.hpp"
+#include "scene/contact_rules.hpp"
 
 namespace pliant {
 

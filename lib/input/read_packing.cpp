@@ -4,8 +4,8 @@
 
 #include "geometry/grain_file.hpp"
 #include "geometry/polygon_rules.hpp"
-#include "input/read_tables.hpp"
 #include "geometry/sizes.hpp"
+#include "input/read_tables.hpp"
 #include "scene/line_reader.hpp"
 
 namespace pliant {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <charconv>
 
-#include "scene/quantities.hpp"
 #include "input/read_tables.hpp"
+#include "scene/quantities.hpp"
 
 namespace pliant {
 

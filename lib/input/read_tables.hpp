@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.hpp"
 #include "input/table_reader.hpp"
+#include "scene/scene.hpp"
 
 namespace pliant {
 

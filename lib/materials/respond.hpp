@@ -20,8 +20,8 @@ struct Response {
 ///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
 ///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
-///     Law weighted(w) const;                   of w >= 0 times as much material: stresses, energies and powers times w.
-///                                              Padding points have w = 0: respond must not divide by such constants
+///     Law weighted(w) const;                   of w >= 0 times as much material: stresses, energies, powers times w
+///                                              Padding points have w = 0: do not divide by such constants
 ///     LameConstants<T> small_strains() const;  instantaneous, before relaxation
 ///     static Law of(const Material&);          of one material
 ///

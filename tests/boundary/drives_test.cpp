@@ -112,7 +112,8 @@ void expect_servo_flight(Integrator integrator, const Vec2& gravity, const std::
   scene.shapes = {disc_shape("disc", 2, 20)};
   scene.grains = {grains("far", "disc", BodyKind::rigid, {{2, 50}})};
   scene.boundary = {drives_of("far", 0)};
-  for (AxisCondition* drive : {&scene.boundary[0].x, &scene.boundary[0].y, &scene.boundary[0].angle}) *drive = AxisCondition{};
+  for (AxisCondition* drive : {&scene.boundary[0].x, &scene.boundary[0].y, &scene.boundary[0].angle})
+    *drive = AxisCondition{};
   scene.walls[0].y = {AxisCondition::Mode::pressure, constant(pressure)};
   scene.walls[0].y.damping = damping;
   scene.gravity = gravity;

@@ -46,7 +46,8 @@ Scene crease_scene() {
   return scene;
 }
 
-// EXACT: the lip's outer face is nearer to the tip than its others all the distance, by more than the square root of two
+// EXACT: the lip's outer face is nearer to the tip than its others all the distance, by more than the square root of
+// two
 // that the tip's second side is worth, so the tip is pressed with kn times its depth
 // along that face's normal and slides with friction. The bisector between the two faces of the lip leaves the tip to
 // the lip's lower face, which ends before: by that the gap would jump between -0.45 and -1.1 or even to the outside.
@@ -63,7 +64,8 @@ TEST(FoldedOutline, TheNearestFaceCounts) {
   }
 }
 
-// EXACT: the same distance slid to and fro dissipates friction times pressure times length, less what it takes to turn the
+// EXACT: the same distance slid to and fro dissipates friction times pressure times length, less what it takes to
+// turn the
 // shear. Steps of 0.018 end where slip starts, 0.27 after the turn. Rounding of coordinates of order 10.
 TEST(FoldedOutline, SlidingUnderALipDissipatesForceTimesWay) {
   ContactRig rig(crease_scene());

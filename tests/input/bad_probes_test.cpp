@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "input/read_scene.hpp"
 #include "input/bad_scenes.hpp"
+#include "input/read_scene.hpp"
 
 namespace pliant {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "input/bad_scenes.hpp"
 #include "input/portable_scene.hpp"
 #include "input/read_scene.hpp"
 #include "input/scene_difference.hpp"
 #include "input/scene_keys.hpp"
-#include "input/bad_scenes.hpp"
 
 namespace pliant {
 namespace {

@@ -146,7 +146,8 @@ TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
 }
 
 TEST(ReferenceAgainstEngine, nodewise_bodies_agree) {
-  const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(DiscretisationMethod::mls), 3), BuildOptions{0, false, {}});
+  const Both both(some_grains(MaterialLaw::neo_hookean, settings_of(DiscretisationMethod::mls), 3),
+                  BuildOptions{0, false, {}});
   ASSERT_TRUE(std::any_of(both.model.batches.begin(), both.model.batches.end(),
                           [](const Batch& batch) { return batch.layout == Layout::nodewise; }));
   compare_forces(both);
