@@ -42,7 +42,7 @@ struct ContactHistory {
   std::vector<double> energy_error;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
   /// [contact pairs] relative change -chi W1 of the forces; after separation, factor of the forces of parting_law().
   std::vector<double> correction;
-  StepForces last;  ///< empty without correction; no part of the motion
+  StepForces last;  ///< empty without correction; no part of the state's hash
   /// Version of the storage layout (pair_table.hpp): histories with the same number store each node's record at the
   /// same position.
   std::int64_t layout = 0;

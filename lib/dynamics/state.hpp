@@ -72,7 +72,8 @@ struct State : StateNumbers {
   Dofs force;             ///< N/m
   Memory memory;
   BodyBalance body_balance;
-  // These follow from the positions and are no part of the motion, like contact_energy and contacts:
+  // These follow from the positions and are no part of the hash, like contact_energy, contacts and the contact forces of
+  // the last step (ContactHistory::last), from which the energy correction of the next step follows:
   Outlines outlines;           ///< with the velocities that dashpots used
   OutlineField contact_force;  ///< on outline nodes, N/m
 

@@ -95,6 +95,7 @@ Verdict StepDoubling::judge(const State&, const StepControl&, const Proposal& pr
 void StepDoubling::attempt(State& state, const Proposal& proposal, StepReport& report) {
   Halves halves = try_halves(state, proposal, report);
   if (halves == Halves::voided) halves = try_halves(state, proposal, report);
+  if (halves == Halves::voided) report.evaluation.valid = false;
   if (halves != Halves::done) report.error = std::numeric_limits<double>::infinity();
 }
 
@@ -104,9 +105,10 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   const Instant first{middle + 0.5 * half}, second{proposal.end_time, true};
   find_start_force(state, half);
   half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
-  const bool hold = show(state, first, proposal, report).valid;
-  if (!evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report) || !hold)
-    return Halves::failed;
+  const bool is_covered = show(state, first, proposal, report).valid;
+  evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report);
+  report.evaluation.valid &= is_covered;
+  if (!report.evaluation.valid) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
   if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
@@ -139,14 +141,16 @@ Motion StepDoubling::motion(const Instant& at) const {
   return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.reduced_momentum, at.time, at.ends_step};
 }
 
-/// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads.
+/// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads. Laws that change just
+/// then do so in the next step: both halves of a step have the same.
 Forces::ListCheck StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
   forces_.phases().enter(Phase::outlines);
   update_outlines(model_, motion(at), trial_.outlines);
   if (proposal.is_output_sample) return {};
-  return forces_.ensure_candidates(state, trial_.outlines.position, at.time);
+  const double time = at.ends_step ? std::nextafter(at.time, state.time) : at.time;
+  return forces_.ensure_candidates(state, trial_.outlines.position, time);
 }
 
 /// Evaluates forces; returns whether they are valid.

@@ -19,9 +19,9 @@ template <class Field>
 struct Held {
   using Type = Field;
 };
-template <class Type_>
-struct Held<std::optional<Type_>> {
-  using Type = Type_;
+template <class Inner>
+struct Held<std::optional<Inner>> {
+  using Type = Inner;
 };
 /// What a field holds: T of std::optional<T>.
 template <class Field>

@@ -36,7 +36,7 @@ using KeyKind =
 
 /// What holds without a key.
 struct Default {
-  Default(const char* text, const char* when_required = "", bool by_reader = false)
+  explicit(false) Default(const char* text, const char* when_required = "", bool by_reader = false)
       : value(text), required(when_required), derived(by_reader) {}
 
   std::string value;     ///< as a scene would give it, or "none"; the reader checks it; empty: the key must be there

@@ -232,7 +232,7 @@ Quantity within(Quantity kind, const Range& range) {
 
 Integer within(Integer kind, Least least) { return {least.value, kind.high}; }
 
-OneOf within(OneOf kind, const std::vector<std::string>& names) { return {kind.what, names}; }
+OneOf within(const OneOf& kind, const std::vector<std::string>& names) { return {kind.what, names}; }
 
 List<OneOf> within(List<OneOf> kind, const std::vector<std::string>& names) {
   kind.element.names = names;

@@ -222,7 +222,7 @@ const Kind& within(const Kind& kind) {
 }
 Quantity within(Quantity kind, const Range& range);
 Integer within(Integer kind, Least least);
-OneOf within(OneOf kind, const std::vector<std::string>& names);
+OneOf within(const OneOf& kind, const std::vector<std::string>& names);
 List<OneOf> within(List<OneOf> kind, const std::vector<std::string>& names);
 List<Quantity> within(List<Quantity> kind, Count count);
 /// Those of its names, in their order.

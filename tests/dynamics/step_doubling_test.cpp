@@ -160,6 +160,25 @@ TEST(StepDoubling, keeps_the_two_half_steps) {
   EXPECT_LT(largest_difference(bench.model, two.velocity, bench.state.reduced_momentum), 1e-14) << "EXACT: rounding";
 }
 
+/// EXACT: dashpots know a body as immovable from 0.1 to 0.2, and both halves of a step have the same laws.
+TEST(StepDoubling, passes_times_at_which_laws_change) {
+  Scene scene = on_a_floor(0.4, 8, 0.25, {0, -0.1});
+  scene.time.integrator = Integrator::step_doubling;
+  scene.shapes = {box_shape("block", 1, 0.5, 0.25)};
+  scene.grains = {grains("block", "block", BodyKind::rigid, {{2, 0.26}}, moving({0, -0.1}))};
+  scene.contacts = {frictionless(100)};
+  scene.contacts[0].restitution = 0.5;
+  BoundaryCondition held;
+  held.grains = "block";
+  held.x = {AxisCondition::Mode::velocity, constant(0.1), 0, {0.1, 0.2}};
+  held.y = {AxisCondition::Mode::velocity, constant(0), 0, {0.1, 0.2}};
+  scene.boundary = {held};
+  const Model model = build_model(scene);
+  Simulation simulation(model);
+  while (simulation.state().time < 0.4) simulation.step(0.4);
+  EXPECT_NEAR(simulation.state().position.rigid[0], 2 + 0.1 * 0.1 + 0.1 * 0.2, 1e-12) << "it keeps its speed";
+}
+
 TEST(StepDoubling, accepts_no_error_above_alpha_times_its_target) {
   const Model model = build_model(collision());
   Simulation simulation(model);
