@@ -100,7 +100,7 @@ class ContactSystem {
   }
   void loaded() {
     table_.set_laws([&](const ContactPair& p) { return laws_.between(p.first, p.second, refreshed_.time); });
-    make_room(unkept_);
+    if (!corrects_energy()) make_room(unkept_);
   }
 
  private:

@@ -72,8 +72,8 @@ struct State : StateNumbers {
   Dofs force;             ///< N/m
   Memory memory;
   BodyBalance body_balance;
-  // These follow from the positions and are no part of the hash, like contact_energy, contacts and the contact forces of
-  // the last step (ContactHistory::last), from which the energy correction of the next step follows:
+  // The hash leaves these out, like contact_energy and contacts: they follow from the positions. It also leaves out the
+  // contact forces of the last step (ContactHistory::last), which the energy correction of the next step needs.
   Outlines outlines;           ///< with the velocities that dashpots used
   OutlineField contact_force;  ///< on outline nodes, N/m
 

@@ -141,8 +141,8 @@ Motion StepDoubling::motion(const Instant& at) const {
   return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.reduced_momentum, at.time, at.ends_step};
 }
 
-/// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads. Laws that change just
-/// then do so in the next step: both halves of a step have the same.
+/// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads. Laws that change at
+/// the end of a step do so in the next one, because both halves of a step need the same laws.
 Forces::ListCheck StepDoubling::show(State& state, const Instant& at, const Proposal& proposal, StepReport& report) {
   trial_.time = at.time;
   ++report.evaluations;
