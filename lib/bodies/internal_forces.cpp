@@ -73,6 +73,8 @@ PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch
     totals.least_jacobian = min(response.J, totals.least_jacobian);
     if constexpr (dissipates<Law>)
       if (counts) totals.power += response.power;
+    if constexpr (has_loss<Law>)
+      if (counts) totals.loss += response.loss;
     return response.P;
   };
   const Upcoming<Access::read> next_position(motion.next_position, motion.next_count);

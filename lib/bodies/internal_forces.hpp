@@ -7,7 +7,7 @@
 namespace pliant {
 
 /// Adds the internal forces of one batch's bodies, f_i = - sum_g w_g P_g b_gi (docs/method.md 2), [slots x 2] of the
-/// batch. For a nodewise body all lanes have the least Jacobian, and lane 0 has the power.
+/// batch. For a nodewise body all lanes have the least Jacobian, and lane 0 has power and loss.
 PointTotals add_internal_forces(const Model& model, const Batch& batch, const BatchMotion& motion, Lanes* forces);
 
 /// Strain energy of each body of a batch, J/m; padding lanes give 0, as do all but lane 0 of a nodewise body.

@@ -64,6 +64,7 @@ PointTotals stresses_of(const Law law, const NodewiseShape& shape, const Batch& 
     store_record<Law>(batch, motion, p / lane_count, now);
     totals.least_jacobian = min(response.J, totals.least_jacobian);
     if constexpr (dissipates<Law>) totals.power += response.power;
+    if constexpr (has_loss<Law>) totals.loss += response.loss;
     store_columns(response.P, stresses + p);
   }
   return totals;
@@ -130,7 +131,7 @@ PointTotals add_nodewise_forces(const Model& model, const Batch& batch, const Ba
   PointTotals totals;
   for (int c = 0; c < chunks; ++c) {
     totals.least_jacobian = min(totals.least_jacobian, of_chunks[c].least_jacobian);
-    totals.power[0] += sum(of_chunks[c].power);
+    totals.power[0] += sum(of_chunks[c].power), totals.loss[0] += sum(of_chunks[c].loss);
   }
   totals.least_jacobian = broadcast(-largest(-totals.least_jacobian));
   return totals;

@@ -25,6 +25,7 @@ struct BatchMotion {
 struct PointTotals {
   Lanes least_jacobian = broadcast(1e300);
   Lanes power{};  ///< dissipated, for bodies of scale 1, W/m
+  Lanes loss{};   ///< dissipated in the time increment, for bodies of scale 1, J/m
 };
 
 /// Calls action(law) with the response of a batch's points to a motion.

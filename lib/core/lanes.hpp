@@ -54,6 +54,11 @@ inline LaneBits load(const std::int64_t* from) {
 inline void store(double* to, Lanes value) { std::memcpy(to, &value, sizeof value); }
 
 inline Lanes select(LaneBits mask, Lanes yes, Lanes no) { return mask ? yes : no; }
+inline bool any(bool mask) { return mask; }
+template <class T>
+T select(bool mask, T yes, T no) {
+  return mask ? yes : no;
+}
 inline Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes abs(Lanes a) { return max(a, -a); }

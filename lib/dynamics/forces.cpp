@@ -18,6 +18,13 @@ namespace {
 /// beyond the second. Detection ends a skin deeper.
 constexpr double warning_depth = 0.5, rejection_depth = 1;
 
+bool has_material_loss(const Model& model) {
+  return std::ranges::any_of(model.batches, [&](const Batch& batch) {
+    return with_law_type<Lanes>(model.groups[batch.group].law,
+                                []<class Law>(std::type_identity<Law>) { return has_loss<Law>; });
+  });
+}
+
 /// Padding lanes repeat a body, so that they need no masking here.
 double least_of(Lanes jacobian) { return -largest(-jacobian); }
 
@@ -30,6 +37,7 @@ Forces::Forces(const Model& model)
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
     stresses_.emplace_back(static_cast<std::size_t>(model.nodewise_shape_of(model.batches[b]).points()));
   if (model.rates || model.material_memory > 0) damping_power_.resize(least_jacobian_.size());
+  if (has_material_loss(model)) material_loss_.resize(least_jacobian_.size());
 }
 
 Forces::ListCheck Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
@@ -73,6 +81,7 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, update);
   phases_.enter(Phase::update);
   for (double power : damping_power_) result.damping_power += power;
+  for (double loss : material_loss_) result.material_loss += loss;
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.contact_lost = !(result.contact.deepest <= rejection_depth);
   result.valid = result.least_jacobian > 0 && !result.contact_lost;
@@ -107,6 +116,7 @@ void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_out
   const PointTotals totals = add_internal_forces(model_, batch, step, f);
   least_jacobian_[b] = least_of(totals.least_jacobian);
   if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
+  if (!material_loss_.empty()) material_loss_[b] = sum(batch.weight * totals.loss);
 }
 
 void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
@@ -127,6 +137,7 @@ void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlin
         nodewise_stresses(model_, chunk, step_of(batch, motion, from, to.memory), stresses_of(chunk.batch));
     least_jacobian_[model_.lane_batches + c] = least_of(totals.least_jacobian);
     if (!damping_power_.empty()) damping_power_[model_.lane_batches + c] = sum(totals.power) * batch.weight[0];
+    if (!material_loss_.empty()) material_loss_[model_.lane_batches + c] = sum(totals.loss) * batch.weight[0];
   });
   parallel_for(static_cast<int>(model_.regions.size()) - model_.lane_batches, [&](int i) {
     const int r = model_.lane_batches + i;

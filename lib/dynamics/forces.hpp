@@ -16,6 +16,7 @@ namespace pliant {
 struct Evaluation {
   PairTotals contact;
   double damping_power = 0;  ///< power of viscosity, Maxwell branches and the dashpots of contacts and supports, W/m
+  double material_loss = 0;  ///< dissipated in the step by plastic flow, J/m
   double least_jacobian = 1e300;
   bool contact_lost = false;  ///< some penetration is beyond what is allowed
   bool valid = true;  ///< false: the trial must be rejected, for J <= 0, deep penetration, or moves beyond the skin
@@ -90,6 +91,7 @@ class Forces {
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
   std::vector<double>
       damping_power_;  ///< of materials, as least_jacobian_, W/m; empty without rates and internal variables
+  std::vector<double> material_loss_;  ///< in the step, as damping_power_, J/m; empty without laws that have one
   std::vector<std::vector<StressColumns>> stresses_;  ///< [nodewise bodies][points]
   bool warned_deep_ = false;
   PhaseTimes phases_;

@@ -78,8 +78,9 @@ void take_over(const Model& model, State& state, Trial& trial, const StepReport&
   state.external_work += external_work(model, before, state.force, after, trial.force) +
                          outline_work(model, state.outlines, before.instant(), trial.outlines, after.instant());
   state.gravity_work += gravity_work(model, before, after);
-  state.dissipated += report.evaluation.contact.dissipated + report.damping_work;
+  state.dissipated += report.evaluation.contact.dissipated + report.damping_work + report.evaluation.material_loss;
   state.damped += report.damping_work;
+  state.plastic_loss += report.evaluation.material_loss;
   swap_motion(state, trial);
   state.time = end_time;
   ++state.steps;

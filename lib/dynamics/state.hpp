@@ -59,6 +59,7 @@ struct StateNumbers {
   double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
   double dissipated = 0;      ///< by contact laws and by damping, J/m
   double damped = 0;          ///< part of it by forces that depend on velocities, J/m
+  double plastic_loss = 0;    ///< part of it by plastic flow, J/m
   double damping_power = 0;   ///< of viscosity and of the dashpots of contacts and supports, for `force`, W/m
   double contact_energy = 0;  ///< stored in contacts, J/m; for `contact_force`
   std::int64_t contacts = 0;  ///< active slave nodes; slave segments if integrated
@@ -94,6 +95,7 @@ struct State : StateNumbers {
     visitor("gravity_work", gravity_work);
     visitor("dissipated", dissipated);
     visitor("damped", damped);
+    visitor("plastic_loss", plastic_loss);
     visitor("damping_power", damping_power);
     visitor("steps", steps);
     visitor("rejections", rejections);

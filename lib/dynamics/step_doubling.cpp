@@ -109,7 +109,8 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report);
   report.evaluation.valid &= is_covered;
   if (!report.evaluation.valid) return Halves::failed;
-  const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power;
+  const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power,
+               material_loss = report.evaluation.material_loss;
   if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
@@ -118,6 +119,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   const OutlineField* half_way = start_of_step(trial_.outlines) ? &half_outlines_ : nullptr;
   if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
+  report.evaluation.material_loss += material_loss;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return Halves::done;
 }

@@ -13,7 +13,8 @@ const Choice body_kinds = choice<BodyKind>({{"compliant", BodyKind::compliant}, 
 const OneOf some_material{"material", {}}, some_shape{"shape", {}};
 
 SceneTable material_table() {
-  const char *elastic = R"(law != "rigid")", *branch = R"(law = "neo-hookean-maxwell")";
+  const char *elastic = R"(law != "rigid")", *branch = R"(law = "neo-hookean-maxwell")",
+             *plastic = R"(law = "von-mises")";
   return {
       "[materials.NAME]",
       {
@@ -23,6 +24,7 @@ SceneTable material_table() {
                                 {"melody", MaterialLaw::melody},
                                 {"linear-elastic", MaterialLaw::linear_elastic},
                                 {"neo-hookean-maxwell", MaterialLaw::neo_hookean_maxwell},
+                                {"von-mises", MaterialLaw::von_mises},
                                 {"rigid", MaterialLaw::rigid}}),
            required, "Constitutive law"},
           {"density", Quantity{"kg/m3", positive}, required, "Mass density of the undeformed material"},
@@ -32,6 +34,12 @@ SceneTable material_table() {
           {"viscosity", Quantity{"Pa s", non_negative}, "0 Pa s", "Kelvin-Voigt viscosity", elastic},
           {"branch_modulus", Quantity{"Pa", positive}, required, "Shear modulus of the Maxwell branch", branch},
           {"relaxation_time", Quantity{"s", positive}, required, "Relaxation time of the Maxwell branch", branch},
+          {"yield", Quantity{"Pa", positive}, required, "Yield stress, at most `young`/3", plastic},
+          {"hardening", Quantity{"Pa"}, "0 Pa", "Slope of the yield stress by the equivalent plastic strain", plastic},
+          {"saturation", Quantity{"Pa", positive}, "none", "Yield stress to which Voce's hardening tends", plastic},
+          {"saturation_rate", Quantity{"1", positive}, required_if("with `saturation`", "none"),
+           "Rate of Voce's hardening by the equivalent plastic strain", "saturation"},
+          {"viscoplastic_time", Quantity{"s", non_negative}, "0 s", "Time of Perzyna's rate dependence", plastic},
           {"mass_damping", Quantity{"1/s", non_negative}, "0 1/s", "Mass-proportional damping coefficient of grains"},
       }};
 }

@@ -150,6 +150,33 @@ bool has_body(const Grains& grains, BodyKind kind) {
                      [&](const Species& entry) { return entry.body == kind; });
 }
 
+/// A stress that falls with the strain localises in one row of points unless a rate spreads it: the mesh then decides.
+void check_softening(TableReader& table, const Material& material) {
+  if (material.viscoplastic_time > 0) return;
+  if (material.hardening < 0)
+    table.fail("hardening", fmt::format("{} Pa: a material that softens localises in a band as thin as the mesh; "
+                                        "allowed: at least 0 Pa, or 'viscoplastic_time' > 0",
+                                        material.hardening));
+  if (material.saturation > 0 && material.saturation < material.yield)
+    table.fail("saturation", fmt::format("{} Pa: a material that softens localises in a band as thin as the mesh; "
+                                         "allowed: at least 'yield', {} Pa, or 'viscoplastic_time' > 0",
+                                         material.saturation, material.yield));
+}
+
+void read_plasticity(TableReader& table, Material& material) {
+  table.required("yield", material.yield);
+  if (material.yield > material.young / 3)
+    table.fail("yield",
+               fmt::format("{} Pa; allowed: at most a third of 'young', {} Pa", material.yield, material.young / 3));
+  table.optional("hardening", material.hardening);
+  if (table.optional("saturation", material.saturation))
+    table.required("saturation_rate", material.saturation_rate);
+  else if (table.has("saturation_rate"))
+    table.fail("saturation_rate", "there is no 'saturation' to be reached; remove it");
+  table.optional("viscoplastic_time", material.viscoplastic_time);
+  check_softening(table, material);
+}
+
 Material read_material(TableReader table, const std::string& name) {
   if (name == "all") table.fail("a material cannot be called 'all': contacts use that word for all materials");
   Material material;
@@ -163,6 +190,7 @@ Material read_material(TableReader table, const std::string& name) {
       table.required("branch_modulus", material.branch_modulus);
       table.required("relaxation_time", material.relaxation_time);
     }
+    if (material.law == MaterialLaw::von_mises) read_plasticity(table, material);
     table.optional("viscosity", material.viscosity);
   }
   table.optional("mass_damping", material.mass_damping);

@@ -26,6 +26,7 @@ struct NeoHookeanMaxwell {
                                                             {"overstrain_yy", 0},     {"inverse_metric_xx", 1},
                                                             {"inverse_metric_xy", 0}, {"inverse_metric_yy", 1}};
   using Record = std::array<T, 6>;  ///< H, and the C^-1 at the same time
+  static constexpr bool has_loss = false;
 
   static NeoHookeanMaxwell of(const Material& material) {
     const auto [mu, lambda] = lame_constants(material);

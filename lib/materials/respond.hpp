@@ -1,5 +1,7 @@
 #pragma once
 
+#include <concepts>
+
 #include "core/internal_variables.hpp"
 #include "materials/tensor.hpp"
 
@@ -11,6 +13,7 @@ struct Response {
   Tensor<T> P;  ///< first Piola stress, Pa
   T J;          ///< Jacobian, a by-product
   T power{};    ///< dissipated per reference volume, W/m3; of dissipative laws only
+  T loss{};     ///< dissipated in the time increment per reference volume, J/m3; of laws that `has_loss`
 };
 
 /// A law is a struct of its constants, all of type T: of one material (double) or of eight in lanes. It has
@@ -19,7 +22,7 @@ struct Response {
 ///                                              (core/internal_variables.hpp),
 ///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
-///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa
+///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa; or sigma_zz(F, record)
 ///     Law weighted(w) const;                   of w >= 0 times as much material: stresses, energies, powers times w
 ///                                              Padding points have w = 0: do not divide by such constants
 ///     LameConstants<T> small_strains() const;  instantaneous, before relaxation
@@ -27,7 +30,9 @@ struct Response {
 ///
 /// A law of the two Lame constants alone inherits the last three (LameLaw in elastic_constants.hpp). A law with
 /// internal variables also has Law over(dt), the law for a time increment, s. A law as constructed, and over(0), hold
-/// the internal variables. All laws with internal variables count as dissipative (`dissipates`).
+/// the internal variables: bounds, modes and energies are those of the elastic response from there on. Such a law says
+/// by `has_loss` how it dissipates: true, a loss of its increments; false, a power at their ends, for the trapezoidal
+/// rule. All laws with internal variables count as dissipative (`dissipates`).
 template <class Law, class T>
 Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
                     Record<Law, T>& now) {
@@ -51,6 +56,15 @@ T energy_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
   }
 }
 
+/// Cauchy stress out of the plane, Pa.
+template <class Law>
+double sigma_zz_of(const Law& law, const Tensor<double>& F, const Record<Law, double>& record) {
+  if constexpr (requires { law.sigma_zz(F, record); })
+    return law.sigma_zz(F, record);
+  else
+    return law.sigma_zz(F);
+}
+
 template <class Law>
 Law over(const Law& law, double elapsed) {
   if constexpr (has_internal_variables<Law>)
@@ -62,6 +76,15 @@ Law over(const Law& law, double elapsed) {
 template <class Law>
 constexpr bool has_rate = requires { requires Law::has_rate; };
 template <class Law>
+constexpr bool has_loss = requires { requires Law::has_loss; };
+template <class Law>
 constexpr bool dissipates = has_rate<Law> || has_internal_variables<Law>;
+
+/// What a law of materials must state: with internal variables, how it responds to time and how it dissipates.
+template <class Law>
+concept CompleteMaterialLaw = !has_internal_variables<Law> || requires(const Law& law) {
+  { law.over(1.0) } -> std::same_as<Law>;
+  { Law::has_loss } -> std::convertible_to<bool>;
+};
 
 }  // namespace pliant

@@ -10,13 +10,15 @@
 #include "materials/neo_hookean.hpp"
 #include "materials/neo_hookean_maxwell.hpp"
 #include "materials/neo_hookean_quadratic.hpp"
+#include "materials/von_mises.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant {
 
 /// Calls action(type_identity<Law<T>>) with the law of this name: selected once, outside all loops.
 template <class T, class Action>
-auto with_law_type(MaterialLaw law, Action&& action) {
+auto with_law_type(MaterialLaw law, Action&& any_action) {
+  const auto action = [&]<CompleteMaterialLaw Law>(std::type_identity<Law> type) { return any_action(type); };
   switch (law) {
     case MaterialLaw::neo_hookean:
       return action(std::type_identity<NeoHookean<T>>());
@@ -28,6 +30,8 @@ auto with_law_type(MaterialLaw law, Action&& action) {
       return action(std::type_identity<LinearElastic<T>>());
     case MaterialLaw::neo_hookean_maxwell:
       return action(std::type_identity<NeoHookeanMaxwell<T>>());
+    case MaterialLaw::von_mises:
+      return action(std::type_identity<VonMises<T>>());
     case MaterialLaw::rigid:
       break;
   }

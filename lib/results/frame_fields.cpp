@@ -117,6 +117,7 @@ BodyField body_field(const std::string& name) {
       {"displacement", at_nodes<displacements_at>},
       {"velocity", at_nodes<velocities_at>},
       {"acceleration", at_nodes<accelerations_at>},
+      {"plastic_strain", in_cells<[](const P& p) { return p.plastic_strain; }>},
       {"von_mises", in_cells<[](const P& p) { return von_mises(p.stress); }>},
       {"tresca", in_cells<[](const P& p) { return tresca(p.stress); }>},
       {"pressure", in_cells<[](const P& p) { return pressure(p.stress); }>},

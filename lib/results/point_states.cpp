@@ -13,9 +13,9 @@ namespace {
 template <class Law>
 Stress cauchy(const Law& law, const Tensor<double>& F, const Record<Law, double>& record) {
   Record<Law, double> now;
-  const auto [P, J, power] = respond(law, F, Tensor<double>{}, record, now);
+  const auto [P, J, power, loss] = respond(law, F, Tensor<double>{}, record, now);
   return {(P.xx * F.xx + P.xy * F.xy) / J, (P.yx * F.yx + P.yy * F.yy) / J, (P.xx * F.yx + P.xy * F.yy) / J,
-          law.sigma_zz(F)};
+          sigma_zz_of(law, F, now)};
 }
 
 /// What the law remembers of one point of a body.
@@ -74,6 +74,8 @@ std::vector<PointState> point_states(const Model& model, const Body& body, const
       states[g].jacobian = determinant(F[g]);
       states[g].stress = cauchy(law, F[g], record);
       states[g].energy = energy_of(law, F[g], record);
+      constexpr int plastic_strain = index_of_internal_variable<Law>("equivalent_plastic_strain");
+      if constexpr (plastic_strain >= 0) states[g].plastic_strain = record[plastic_strain];
       strain_at_start(F[g], c, s, states[g].strain);
     }
   });

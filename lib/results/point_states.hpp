@@ -27,11 +27,12 @@ double pressure(const Stress& stress);
 
 /// One integration point of a compliant body (docs/method.md 3).
 struct PointState {
-  double weight = 0;      ///< reference area, m2
-  double jacobian = 1;    ///< current over reference area
-  Stress stress;          ///< Cauchy
-  double energy = 0;      ///< strain energy per reference volume, J/m3
-  double strain[3] = {};  ///< Green-Lagrange, xx, yy, xy, in the axes of the start
+  double weight = 0;          ///< reference area, m2
+  double jacobian = 1;        ///< current over reference area
+  Stress stress;              ///< Cauchy
+  double energy = 0;          ///< strain energy per reference volume, J/m3
+  double strain[3] = {};      ///< Green-Lagrange, xx, yy, xy, in the axes of the start
+  double plastic_strain = 0;  ///< equivalent; 0 for laws without
 };
 
 /// [points] of one compliant body.

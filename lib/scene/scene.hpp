@@ -16,7 +16,15 @@ namespace pliant {
 /// What the user asked for, validated and in SI units (per metre of thickness). Immutable after reading.
 /// Numbers that the scene may leave open carry their default here; `auto` values are std::nullopt.
 
-enum class MaterialLaw { neo_hookean, neo_hookean_quadratic, melody, linear_elastic, neo_hookean_maxwell, rigid };
+enum class MaterialLaw {
+  neo_hookean,
+  neo_hookean_quadratic,
+  melody,
+  linear_elastic,
+  neo_hookean_maxwell,
+  von_mises,
+  rigid
+};
 enum class BodyKind { compliant, rigid };
 enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
@@ -64,13 +72,18 @@ struct Window {
 struct Material {
   std::string name;
   MaterialLaw law = MaterialLaw::neo_hookean;
-  double density = 0;          ///< kg/m3
-  double young = 0;            ///< Pa; 0 for `rigid`
-  double poisson = 0;          ///< [0, 0.5); 0 for `rigid`
-  double viscosity = 0;        ///< Kelvin-Voigt, of compliant bodies: second Piola stress 2 viscosity E_dot, Pa s
-  double mass_damping = 0;     ///< of grains: force - mass_damping m v, 1/s
-  double branch_modulus = 0;   ///< shear modulus of a Maxwell branch, Pa; 0 for laws without
-  double relaxation_time = 0;  ///< of the branch, s
+  double density = 0;            ///< kg/m3
+  double young = 0;              ///< Pa; 0 for `rigid`
+  double poisson = 0;            ///< [0, 0.5); 0 for `rigid`
+  double viscosity = 0;          ///< Kelvin-Voigt, of compliant bodies: second Piola stress 2 viscosity E_dot, Pa s
+  double mass_damping = 0;       ///< of grains: force - mass_damping m v, 1/s
+  double branch_modulus = 0;     ///< shear modulus of a Maxwell branch, Pa; 0 for laws without
+  double relaxation_time = 0;    ///< of the branch, s
+  double yield = 0;              ///< yield stress, Pa; 0 for laws without
+  double hardening = 0;          ///< of the yield stress by the equivalent plastic strain, Pa
+  double saturation = 0;         ///< yield stress that saturating hardening tends to, Pa; 0: none
+  double saturation_rate = 0;    ///< of that hardening, by the equivalent plastic strain
+  double viscoplastic_time = 0;  ///< Perzyna's time, s
 };
 
 struct ShapeSpec {

@@ -60,6 +60,7 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
       return 0.5 * m.bulk * volume * volume + 0.5 * m.mu * (pow(J, -2.0 / 3) * first_invariant(F) - 3.0);
     case MaterialLaw::linear_elastic:
       return linear_elastic_energy(m, F);
+    case MaterialLaw::von_mises:  // its energy needs the plastic strain
     case MaterialLaw::rigid:
       break;
   }

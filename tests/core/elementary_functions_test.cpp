@@ -108,5 +108,50 @@ TEST(ElementaryFunctions, ComplexStep) {
   }
 }
 
+/// Largest relative error of a function of lanes and of doubles, over samples of its argument.
+template <class Function, class Exact, class Sample>
+double worst_error(Function&& function, Exact&& exact, Sample&& sample) {
+  double worst = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Lanes x{};
+    for (int lane = 0; lane < lane_count; ++lane) x[lane] = sample(i * lane_count + lane);
+    const Lanes y = function(x);
+    for (int lane = 0; lane < lane_count; ++lane) {
+      const long double wanted = exact(static_cast<long double>(x[lane]));
+      for (const double found : {y[lane], function(x[lane])})
+        worst = std::max(worst, static_cast<double>(std::abs((found - wanted) / wanted)));
+    }
+  }
+  return worst;
+}
+
+// EXACT to the statement of the header.
+TEST(ElementaryFunctions, Exponential) {
+  Random random(3);
+  const auto function = [](auto x) { return exponential(x); };
+  const auto exact = [](long double x) { return std::exp(x); };
+  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-700, 700); }), 4e-16);
+  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-1, 1); }), 4e-16);
+  EXPECT_EQ(exponential(broadcast(0))[3], 1);
+}
+
+// EXACT to the statement of the header, on both sides of the limit of the series.
+TEST(ElementaryFunctions, SinhOver) {
+  Random random(4);
+  const auto function = [](auto x) { return sinh_over(x); };
+  const auto exact = [](long double y2) { return y2 == 0 ? 1 : std::sinh(std::sqrt(y2)) / std::sqrt(y2); };
+  EXPECT_LT(worst_error(function, exact, [&](int i) { return i == 0 ? 0 : std::pow(10, random.uniform(-12, 1.5)); }),
+            2e-15);
+}
+
+// EXACT to the statement of the header, on both sides of the limit of the series.
+TEST(ElementaryFunctions, ArtanhOver) {
+  Random random(5);
+  const auto function = [](auto x) { return artanh_over(x); };
+  const auto exact = [](long double z2) { return z2 == 0 ? 1 : std::atanh(std::sqrt(z2)) / std::sqrt(z2); };
+  EXPECT_LT(worst_error(function, exact, [&](int i) { return i == 0 ? 0 : std::pow(10, random.uniform(-12, -1e-3)); }),
+            4e-15);
+}
+
 }  // namespace
 }  // namespace pliant

@@ -144,6 +144,7 @@ TEST(BodyEnergyCorrection, are_kept_where_energy_has_no_other_way) {
   EXPECT_FALSE(kept([](Scene& scene) { scene.materials[0].viscosity = 0.1; }));
   EXPECT_FALSE(kept([](Scene& scene) { scene.materials[0].mass_damping = 0.1; }));
   EXPECT_FALSE(kept([](Scene& scene) { scene.materials[0].law = MaterialLaw::neo_hookean_maxwell; }));
+  EXPECT_FALSE(kept([](Scene& scene) { scene.materials[0].law = MaterialLaw::von_mises; }));
   EXPECT_FALSE(kept([](Scene& scene) { scene.contact.energy_consistent = false; }));
   EXPECT_FALSE(kept([](Scene& scene) { scene.gravity_history = {{{0, 1}, {0, 1}}, constant(0)}; }));
   EXPECT_FALSE(kept([](Scene& scene) { scene.grains = {grains("hard", "disc", BodyKind::rigid, {{0, 0}})}; }));

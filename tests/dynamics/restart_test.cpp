@@ -80,11 +80,21 @@ Scene own_images() {
   return scene;
 }
 
+/// The same discs of which one flows plastically.
+Scene plastic_images() {
+  Scene scene = own_images();
+  Material& soft = scene.materials[0];
+  soft.law = MaterialLaw::von_mises, soft.yield = 0.01, soft.saturation = 0.02, soft.saturation_rate = 5;
+  soft.viscoplastic_time = 0.01;
+  return scene;
+}
+
 const std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
     {"friction_and_cohesion", friction_and_cohesion},
     {"bonds_and_servo", bonds_and_servo},
     {"fast_blocks", fast_blocks},
-    {"own_images", own_images}};
+    {"own_images", own_images},
+    {"plastic_images", plastic_images}};
 
 std::string saved(Simulation& simulation) {
   std::string bytes;

@@ -67,6 +67,12 @@ Samples strain(const Snapshot& snapshot, const Selection& selection) {
   return samples;
 }
 
+Samples plastic_strain(const Snapshot& snapshot, const Selection& selection) {
+  Samples samples(1);
+  for_each_point(snapshot, selection, [&](const PointState& p) { samples.add(p.weight, {p.plastic_strain}); });
+  return samples;
+}
+
 /// sum over outline nodes of force (x) arm from the centre of mass: area times mean stress of a body at rest, J/m.
 Eigen::Matrix2d contact_moment(const Snapshot& snapshot, int b) {
   const Model& model = snapshot.model();
@@ -95,11 +101,9 @@ Samples contact_stress(const Snapshot& snapshot, const Selection& selection) {
 }  // namespace
 
 std::vector<ProbeFunction> stress_functions() {
-  return {{"stress", stress, finish_stress},
-          {"von_mises", local_von_mises},
-          {"jacobian", jacobian},
-          {"strain", strain},
-          {"contact_stress", contact_stress}};
+  return {
+      {"stress", stress, finish_stress},  {"von_mises", local_von_mises},    {"jacobian", jacobian}, {"strain", strain},
+      {"plastic_strain", plastic_strain}, {"contact_stress", contact_stress}};
 }
 
 }  // namespace pliant
