@@ -15,9 +15,9 @@ namespace pliant {
 ///     q = sqrt(3/2) |dev tau| <= sigma(a) = yield + hardening a + (saturation - yield)(1 - exp(-saturation_rate a)),
 ///
 /// and Perzyna's rate dependence q = sigma(a) (1 + t da/dt) of one time t. The exponential return (Weber and Anand
-/// 1990, Comput. Methods Appl. Mech. Eng. 79, 173-202) scales dev e by r = 1 - 3 G da/q. With the inverse plastic metric
-/// C = Cp^-1, b = F C F^T, A = tr b/2 and S(y) = sinh(y)/y, let h be half the difference of the principal logarithms in
-/// the plane, and m their deviatoric mean. Then
+/// 1990, Comput. Methods Appl. Mech. Eng. 79, 173-202) scales dev e by r = 1 - 3 G da/q. With the inverse plastic
+/// metric C = Cp^-1, b = F C F^T, A = tr b/2 and S(y) = sinh(y)/y, let h be half the difference of the principal
+/// logarithms in the plane, and m their deviatoric mean. Then
 ///
 ///     b_new = c1 1 + c2 b,   c2 = exp(2 (r - 1) m) r S(2 r h)/S(2 h),   C_new = c1 (F^T F)^-1 + c2 C:
 ///
