@@ -14,7 +14,8 @@ const OneOf some_material{"material", {}}, some_shape{"shape", {}};
 
 SceneTable material_table() {
   const char *elastic = R"(law != "rigid")", *branch = R"(law = "neo-hookean-maxwell")",
-             *plastic = R"(law = "von-mises")";
+             *plastic = R"(law = "von-mises")", *frictional = R"(law = "drucker-prager")",
+             *hardens = R"(law = "von-mises", "drucker-prager")";
   return {
       "[materials.NAME]",
       {
@@ -25,6 +26,7 @@ SceneTable material_table() {
                                 {"linear-elastic", MaterialLaw::linear_elastic},
                                 {"neo-hookean-maxwell", MaterialLaw::neo_hookean_maxwell},
                                 {"von-mises", MaterialLaw::von_mises},
+                                {"drucker-prager", MaterialLaw::drucker_prager},
                                 {"rigid", MaterialLaw::rigid}}),
            required, "Constitutive law"},
           {"density", Quantity{"kg/m3", positive}, required, "Mass density of the undeformed material"},
@@ -35,7 +37,13 @@ SceneTable material_table() {
           {"branch_modulus", Quantity{"Pa", positive}, required, "Shear modulus of the Maxwell branch", branch},
           {"relaxation_time", Quantity{"s", positive}, required, "Relaxation time of the Maxwell branch", branch},
           {"yield", Quantity{"Pa", positive}, required, "Yield stress, at most `young`/3", plastic},
-          {"hardening", Quantity{"Pa"}, "0 Pa", "Slope of the yield stress by the equivalent plastic strain", plastic},
+          {"cohesion", Quantity{"Pa", non_negative}, required, "Cohesion of Mohr and Coulomb", frictional},
+          {"friction_angle", Quantity{"rad", {.low = 0, .high = 1.4, .low_open = true}}, required,
+           "Friction angle of Mohr and Coulomb", frictional},
+          {"dilatancy_angle", Quantity{"rad", non_negative}, "0 rad", "Dilatancy angle, at most `friction_angle`",
+           frictional},
+          {"hardening", Quantity{"Pa"}, "0 Pa", "Slope of yield stress or cohesion by the equivalent plastic strain",
+           hardens},
           {"saturation", Quantity{"Pa", positive}, "none", "Yield stress to which Voce's hardening tends", plastic},
           {"saturation_rate", Quantity{"1", positive}, required_if("with `saturation`", "none"),
            "Rate of Voce's hardening by the equivalent plastic strain", "saturation"},

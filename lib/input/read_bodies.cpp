@@ -155,15 +155,16 @@ void check_softening(TableReader& table, const Material& material) {
   if (material.viscoplastic_time > 0) return;
   if (material.hardening < 0)
     table.fail("hardening", fmt::format("{} Pa: a material that softens localises in a band as thin as the mesh; "
-                                        "allowed: at least 0 Pa, or 'viscoplastic_time' > 0",
-                                        material.hardening));
+                                        "allowed: at least 0 Pa{}",
+                                        material.hardening,
+                                        material.law == MaterialLaw::von_mises ? ", or 'viscoplastic_time' > 0" : ""));
   if (material.saturation > 0 && material.saturation < material.yield)
     table.fail("saturation", fmt::format("{} Pa: a material that softens localises in a band as thin as the mesh; "
                                          "allowed: at least 'yield', {} Pa, or 'viscoplastic_time' > 0",
                                          material.saturation, material.yield));
 }
 
-void read_plasticity(TableReader& table, Material& material) {
+void read_von_mises(TableReader& table, Material& material) {
   table.required("yield", material.yield);
   if (material.yield > material.young / 3)
     table.fail("yield",
@@ -174,6 +175,17 @@ void read_plasticity(TableReader& table, Material& material) {
   else if (table.has("saturation_rate"))
     table.fail("saturation_rate", "there is no 'saturation' to be reached; remove it");
   table.optional("viscoplastic_time", material.viscoplastic_time);
+  check_softening(table, material);
+}
+
+void read_drucker_prager(TableReader& table, Material& material) {
+  table.required("cohesion", material.cohesion);
+  table.required("friction_angle", material.friction_angle);
+  table.optional("dilatancy_angle", material.dilatancy_angle);
+  if (material.dilatancy_angle > material.friction_angle)
+    table.fail("dilatancy_angle", fmt::format("{} rad would make energy; allowed: at most 'friction_angle', {} rad",
+                                              material.dilatancy_angle, material.friction_angle));
+  table.optional("hardening", material.hardening);
   check_softening(table, material);
 }
 
@@ -190,7 +202,8 @@ Material read_material(TableReader table, const std::string& name) {
       table.required("branch_modulus", material.branch_modulus);
       table.required("relaxation_time", material.relaxation_time);
     }
-    if (material.law == MaterialLaw::von_mises) read_plasticity(table, material);
+    if (material.law == MaterialLaw::von_mises) read_von_mises(table, material);
+    if (material.law == MaterialLaw::drucker_prager) read_drucker_prager(table, material);
     table.optional("viscosity", material.viscosity);
   }
   table.optional("mass_damping", material.mass_damping);

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "materials/drucker_prager.hpp"
 #include "materials/linear_elastic.hpp"
 #include "materials/melody.hpp"
 #include "materials/neo_hookean.hpp"
@@ -32,6 +33,8 @@ auto with_law_type(MaterialLaw law, Action&& any_action) {
       return action(std::type_identity<NeoHookeanMaxwell<T>>());
     case MaterialLaw::von_mises:
       return action(std::type_identity<VonMises<T>>());
+    case MaterialLaw::drucker_prager:
+      return action(std::type_identity<DruckerPrager<T>>());
     case MaterialLaw::rigid:
       break;
   }

@@ -23,6 +23,7 @@ enum class MaterialLaw {
   linear_elastic,
   neo_hookean_maxwell,
   von_mises,
+  drucker_prager,
   rigid
 };
 enum class BodyKind { compliant, rigid };
@@ -80,10 +81,12 @@ struct Material {
   double branch_modulus = 0;     ///< shear modulus of a Maxwell branch, Pa; 0 for laws without
   double relaxation_time = 0;    ///< of the branch, s
   double yield = 0;              ///< yield stress, Pa; 0 for laws without
-  double hardening = 0;          ///< of the yield stress by the equivalent plastic strain, Pa
+  double hardening = 0;          ///< of the yield stress or cohesion by the equivalent plastic strain, Pa
   double saturation = 0;         ///< yield stress that saturating hardening tends to, Pa; 0: none
   double saturation_rate = 0;    ///< of that hardening, by the equivalent plastic strain
   double viscoplastic_time = 0;  ///< Perzyna's time, s
+  double friction_angle = 0, dilatancy_angle = 0;  ///< of Mohr and Coulomb, rad; 0 for laws without
+  double cohesion = 0;                             ///< likewise, Pa
 };
 
 struct ShapeSpec {

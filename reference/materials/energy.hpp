@@ -61,6 +61,7 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
     case MaterialLaw::linear_elastic:
       return linear_elastic_energy(m, F);
     case MaterialLaw::von_mises:  // its energy needs the plastic strain
+    case MaterialLaw::drucker_prager:
     case MaterialLaw::rigid:
       break;
   }
