@@ -48,6 +48,44 @@ INTERNAL_FORCES(t3, "t3");
 INTERNAL_FORCES(same_topology, "mls-same-topology");
 INTERNAL_FORCES(large_body, "mls-nodewise");
 
+Cloud& neo_hookean() { return grains_with(MaterialLaw::neo_hookean); }
+Cloud& maxwell() { return grains_with(MaterialLaw::neo_hookean_maxwell); }
+Cloud& von_mises_elastic() { return grains_with(MaterialLaw::von_mises, 1e12); }
+Cloud& von_mises_flowing() { return grains_with(MaterialLaw::von_mises, 1e6); }
+Cloud& drucker_prager_flowing() { return grains_with(MaterialLaw::drucker_prager, 1e5); }
+
+/// Internal forces of a time increment after a larger one, 1e-4 of the strain further on: points that flow do so by
+/// little, as in a step.
+void law_of_points(benchmark::State& state, Cloud& (*cloud)()) {
+  const Cloud& grains = cloud();
+  const Model& model = grains.model;
+  const Threads threads(state);
+  Dofs force = zero_dofs(model);
+  Dofs position = initial_positions(model);
+  for (std::size_t i = 0; i < position.compliant.size(); ++i)
+    position.compliant[i] += (1 - 1e-4) * (grains.state.position.compliant[i] - position.compliant[i]);
+  Memory before = grains.state.memory, trial = before;
+  const auto evaluate = [&](const Dofs& at, const Memory& from, Memory& to) {
+    parallel_for(model.lane_batches, [&](int b) {
+      const Batch& batch = model.batches[b];
+      BatchMotion motion = motion_of(batch, at, from);
+      motion.elapsed = dt;
+      if (motion.memory) motion.new_memory = to.material.data() + batch.memory;
+      benchmark::DoNotOptimize(add_internal_forces(model, batch, motion, &force.compliant[batch.offset]));
+    });
+  };
+  evaluate(position, before, before);
+  for (auto _ : state) evaluate(grains.state.position, before, trial);
+  report(state, "point", integration_points(model), work::internal_forces(model));
+}
+#define LAW_OF_POINTS(scene, name) \
+  BENCHMARK_CAPTURE(law_of_points, scene, scene)->Name("law/" name)->Apply(one_and_two_threads)
+LAW_OF_POINTS(neo_hookean, "neo-hookean");
+LAW_OF_POINTS(maxwell, "neo-hookean-maxwell");
+LAW_OF_POINTS(von_mises_elastic, "von-mises elastic");
+LAW_OF_POINTS(von_mises_flowing, "von-mises flowing");
+LAW_OF_POINTS(drucker_prager_flowing, "drucker-prager flowing");
+
 void plain_internal_forces(benchmark::State& state, Cloud& (*cloud)()) {
   const Cloud& grains = cloud();
   std::vector<baseline::Body> bodies = baseline::bodies_of(grains.model, grains.state.position);

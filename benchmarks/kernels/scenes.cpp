@@ -132,6 +132,22 @@ Cloud& grains_of(DiscretisationMethod method) {
   return *cloud;
 }
 
+Cloud& grains_with(MaterialLaw law, double yield) {
+  static std::map<std::pair<MaterialLaw, double>, std::unique_ptr<Cloud>> clouds;
+  std::unique_ptr<Cloud>& cloud = clouds[{law, yield}];
+  if (!cloud) {
+    Scene scene = bare(DiscretisationMethod::mls);
+    Material& soft = scene.materials[0];
+    soft.law = law;
+    soft.branch_modulus = 1e9, soft.relaxation_time = 1e-6;
+    soft.yield = soft.cohesion = yield, soft.saturation = 2 * yield, soft.saturation_rate = 10;
+    soft.friction_angle = 0.5, soft.dilatancy_angle = 0.1;
+    add_grains(scene, disc(nodes), 40, 25, {0, 0});
+    cloud = std::make_unique<Cloud>(build_model(scene));
+  }
+  return *cloud;
+}
+
 Cloud& same_topology() {
   static Cloud cloud(same_topology_model());
   return cloud;

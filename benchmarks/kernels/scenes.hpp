@@ -22,6 +22,8 @@ struct Cloud {
 
 /// 1000 grains of 168 nodes, one shape: a shared table in lanes. `mls_gauss` with 3 points a triangle.
 Cloud& grains_of(DiscretisationMethod method);
+/// 1000 such grains by `mls` with a law whose points flow from a yield stress of `yield`, Pa.
+Cloud& grains_with(MaterialLaw law, double yield = 0);
 /// 200 Fourier grains of 168 nodes, each of its own shape, with common connectivity.
 Cloud& same_topology();
 /// One disc of 10,000 nodes, vectorised over its nodes.

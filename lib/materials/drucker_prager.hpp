@@ -64,7 +64,7 @@ struct DruckerPrager {
   Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
     const PlaneMetric<T> C{old[0], old[1], old[2]};
     const HenckyStrain<T> e = elastic_strain(F, old);
-    const T q = e.equivalent_stress(mu), s = bulk * e.volume;
+    const T q = square_root<T>(e.equivalent_stress_squared(mu)), s = bulk * e.volume;
     const T excess = q + friction * s - cohesion - hardening * old[4];
     T r = T{} + 1.0, plastic_volume{}, flow{};
     now = old;

@@ -59,16 +59,20 @@ struct VonMises {
   Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
     const PlaneMetric<T> C{old[0], old[1], old[2]};
     const HenckyStrain<T> e = elastic_strain(F, old);
-    const T q = e.equivalent_stress(mu);
+    const T q_squared = e.equivalent_stress_squared(mu);
     const Yield before = yield_at(old[3]);
     T r = T{} + 1.0, loss{};
     now = old;
-    const auto yields = is_less(before.stress, q) & is_less(T{}, flows);
+    const auto yields = is_less<T>(before.stress * before.stress, q_squared) & is_less(T{}, flows);
     if (any(yields)) {
-      const T trial = select(yields, q, before.stress + mu);  // another number above 0 where nothing flows
-      const T flow = select(yields, plastic_strain(trial, old[3], before), T{}), after = yield_at(old[3] + flow).stress;
-      r = 1.0 - 3.0 * mu * flow / trial;
-      loss = flow * (0.5 * (before.stress + after) + times * flow * after);
+      // Where nothing flows, another stress above 0.
+      const T square = select(yields, q_squared, before.stress * before.stress + mu * mu);
+      const T inverse = inverse_square_root<T>(square), q = square * inverse;
+      const T flow = select(yields, plastic_strain(q, before), T{});
+      r = 1.0 - 3.0 * mu * flow * inverse;
+      const T now_q = q - 3.0 * mu * flow;  // the yield stress without a rate
+      loss = 0.5 * flow * (before.stress + now_q);
+      if (is_viscous()) loss += 0.5 * flow * (now_q - now_q / (1.0 + times * flow));
       const PlaneMetric<T> metric = select_metric(yields, e.returned(F, C, r, T{}), C);
       now = {metric.xx, metric.xy, metric.yy, old[3] + flow};
     }
@@ -90,31 +94,42 @@ struct VonMises {
     return {F, {record[0], record[1], record[2]}, log_det, -log_det};
   }
 
+  bool is_viscous() const { return any(is_less(T{}, times)); }
+  bool saturates() const { return any(is_less(T{}, saturation_rate)); }
+
+  /// Yield stress, Pa, which does not fall below 0, and what saturation will still add to it.
   struct Yield {
-    T stress, slope;  ///< by the equivalent plastic strain, Pa
+    T stress, left;
   };
-  /// Yield stress; it does not fall below 0.
   Yield yield_at(T strain) const {
-    Yield result{yield + hardening * strain, hardening};
-    if (any(is_less(T{}, saturation_rate))) {
-      const T left = saturation_excess * exponential<T>(-saturation_rate * strain);
-      result.stress += saturation_excess - left, result.slope += saturation_rate * left;
-    }
-    const auto is_spent = is_less(result.stress, T{});
-    return {select(is_spent, T{}, result.stress), select(is_spent, T{}, result.slope)};
+    T left{};
+    if (saturates()) left = saturation_excess * exponential<T>(-saturation_rate * strain);
+    return not_negative({yield + hardening * strain + (saturation_excess - left), left});
   }
+  /// The same, by x further on.
+  Yield further(const Yield& from, T x) const {
+    T left{};
+    if (saturates()) left = from.left * exponential_of_small<T>(-saturation_rate * x);
+    return not_negative({from.stress + hardening * x + (from.left - left), left});
+  }
+  static Yield not_negative(const Yield& at) { return {select(is_less(at.stress, T{}), T{}, at.stress), at.left}; }
+  /// Derivative of the yield stress by the strain.
+  T slope(const Yield& at) const { return select(is_less(T{}, at.stress), hardening + saturation_rate * at.left, T{}); }
 
   /// Equivalent plastic strain x of a step: q - 3 G x = sigma(a + x)(1 + times x), by Newton's method from x = 0 on.
   /// The residual before the last iteration is below `tolerance` times q, and its square is the order of the error.
-  T plastic_strain(T q, T a, Yield at) const {
+  /// Without saturation and rate the first iteration is exact.
+  T plastic_strain(T q, const Yield& before) const {
     constexpr int most_iterations = 30;
     constexpr double tolerance = 1e-9;
+    const bool is_linear = !saturates() && !is_viscous();
+    Yield at = before;
     T x{};
     for (int i = 0; i < most_iterations; ++i) {
       const T viscous = 1.0 + times * x, residual = q - 3.0 * mu * x - at.stress * viscous;
-      x += residual / (3.0 * mu + at.slope * viscous + at.stress * times);
-      if (!any(is_less(tolerance * tolerance * q * q, residual * residual))) break;
-      at = yield_at(a + x);
+      x += residual / (3.0 * mu + slope(at) * viscous + at.stress * times);
+      if (is_linear || !any(is_less(tolerance * tolerance * q * q, residual * residual))) break;
+      at = further(before, x);
     }
     return x;
   }

@@ -135,13 +135,26 @@ TEST(ElementaryFunctions, Exponential) {
   EXPECT_EQ(exponential(broadcast(0))[3], 1);
 }
 
+// EXACT to the statement of the header, on both sides of the limit of the polynomial.
+TEST(ElementaryFunctions, ExponentialOfSmall) {
+  Random random(6);
+  const auto function = [](auto x) { return exponential_of_small(x); };
+  const auto exact = [](long double x) { return std::exp(x); };
+  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-0.03125, 0.03125); }), 4e-16);
+  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-2, 2); }), 4e-16);
+}
+
 // EXACT to the statement of the header, on both sides of the limit of the series.
-TEST(ElementaryFunctions, SinhOver) {
+TEST(ElementaryFunctions, Hyperbolic) {
   Random random(4);
-  const auto function = [](auto x) { return sinh_over(x); };
-  const auto exact = [](long double y2) { return y2 == 0 ? 1 : std::sinh(std::sqrt(y2)) / std::sqrt(y2); };
-  EXPECT_LT(worst_error(function, exact, [&](int i) { return i == 0 ? 0 : std::pow(10, random.uniform(-12, 1.5)); }),
-            2e-15);
+  const auto square = [&](int i) { return i == 0 ? 0 : std::pow(10, random.uniform(-12, 1.5)); };
+  const auto sinh_over = [](auto y2) { return hyperbolic(y2).sinh_over_y; };
+  const auto cosh = [](auto y2) { return hyperbolic(y2).cosh; };
+  EXPECT_LT(
+      worst_error(
+          sinh_over, [](long double y2) { return y2 == 0 ? 1 : std::sinh(std::sqrt(y2)) / std::sqrt(y2); }, square),
+      2e-15);
+  EXPECT_LT(worst_error(cosh, [](long double y2) { return std::cosh(std::sqrt(y2)); }, square), 2e-15);
 }
 
 // EXACT to the statement of the header, on both sides of the limit of the series.
