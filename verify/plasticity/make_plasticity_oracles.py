@@ -31,6 +31,7 @@ POINT = "scipy 1.10: logm, expm, brentq, 3x3 matrices. Plane strain; mu=0.8, bul
         " saturation=0.16, rate=9."
 GETFEM = "GetFEM 5.4.2, quadratic quadrilaterals; mixed 0: 2x2 points, 1: 3x3 points, discontinuous linear pressure."
 CALCULIX = "CalculiX 2.20, CPE4 (B-bar) or CPE8R, *PLASTIC with NLGEOM, contact by a linear penalty `stiffness`."
+TIMES = 2.0, 1.0  # differences by steps and by mesh: of first order in steps, if not less, and of second in meshes
 Run = tuple[float, ...]
 
 
@@ -48,12 +49,12 @@ class Runs:
 
 @dataclass(frozen=True)
 class Curve:
-    """The finest run of a table, and pairs of runs whose differences bound its errors by load steps and by mesh."""
+    """The finest run of a table, and two pairs of runs, of two steps and of two meshes, that give its errors."""
 
     what: str
     runs: str
     finest: Run
-    pairs: tuple[tuple[Run, Run], ...]
+    pairs: tuple[tuple[Run, Run], tuple[Run, Run]]
 
 
 def in_folder(around: int, kind: int, steps: int, stiffness: float) -> np.ndarray:
@@ -69,8 +70,8 @@ TABLES: dict[str, Runs] = {
         "Disc: approach of both plates. around: elements of an eighth of the outline; steps: for 0.005.", GETFEM,
         ["around", "steps"], disc.COLUMNS, disc.RUNS, disc.by_getfem),
     "disc_calculix_runs": Runs(
-        "Disc: approach of both plates. around: as in disc_runs; element 0: CPE4, 1: CPE8R; steps: for 0.005.", CALCULIX,
-        ["around", "element", "steps", "stiffness"], ["approach", "force"], disc.CALCULIX, in_folder),
+        "Disc: approach of both plates. around: as in disc_runs; element 0: CPE4, 1: CPE8R; steps: for 0.005.",
+        CALCULIX, ["around", "element", "steps", "stiffness"], ["approach", "force"], disc.CALCULIX, in_folder),
     "cook_runs": Runs(
         "Membrane: mm, MN/m. along: elements of a side; steps: for 0.1 MN/m.", GETFEM,
         ["along", "steps", "mixed"], cook.COLUMNS, cook.RUNS, cook.by_getfem),
@@ -117,11 +118,12 @@ def make_curve(name: str) -> None:
     curve = CURVES[name]
     table = TABLES[curve.runs]
     finest, pairs = rows_of(curve.runs, curve.finest), partial(rows_of, curve.runs)
-    errors = sum(np.abs(pairs(one) - pairs(other)) for one, other in curve.pairs)
+    errors = sum(times * np.abs(pairs(one) - pairs(other)) for times, (one, other) in zip(TIMES, curve.pairs))
     keys = ", ".join(f"{key} {value:g}" for key, value in zip(table.keys, curve.finest))
     columns = [*table.columns, *(f"error_{column}" for column in table.columns[1:])]
-    what = f"{curve.what} Run {keys}; errors: differences of " + " and ".join(
-        f"{'/'.join(f'{v:g}' for v in one)} from {'/'.join(f'{v:g}' for v in other)}" for one, other in curve.pairs) + "."
+    of = [[f"{'/'.join(f'{value:g}' for value in run)}" for run in pair] for pair in curve.pairs]
+    what = f"{curve.what} Run {keys}; errors: twice what {' and '.join(of[0])} differ by, and what " \
+           f"{' and '.join(of[1])} do."
     np.savetxt(FOLDER / f"{name}.csv", np.hstack([finest, errors[:, 1:]]), "%.9g", ",", comments="",
                header=origin(what, table.solver, columns))
 

@@ -31,6 +31,14 @@ class Law:
     def of_young(cls, young: float, nu: float, *hardens: float) -> Law:
         return cls(young / (2 * (1 + nu)), young / (3 * (1 - 2 * nu)), *hardens)
 
+    @property
+    def young(self) -> float:
+        return 9 * self.bulk * self.mu / (3 * self.bulk + self.mu)
+
+    @property
+    def nu(self) -> float:
+        return (3 * self.bulk - 2 * self.mu) / (6 * self.bulk + 2 * self.mu)
+
     def limit(self, a: float) -> float:
         return self.yields + self.hardening * a + (self.saturation - self.yields) * (1 - float(np.exp(-self.rate * a)))
 
