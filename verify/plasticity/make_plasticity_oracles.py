@@ -128,6 +128,21 @@ def make_curve(name: str) -> None:
                header=origin(what, table.solver, columns))
 
 
+def make_calculix() -> None:
+    """Curve of CalculiX and its relative difference from GetFEM's. Penalty: error of order 1 / stiffness."""
+    force = {run: rows_of("disc_calculix_runs", run)[:, 1] for run in disc.CALCULIX}
+    getfem = stored("disc")
+    best = force[disc.CALCULIX_FINEST]
+    of_mesh, of_steps, of_penalty = (np.abs(force[one] - force[other]) for one, other in disc.CALCULIX_PAIRS)
+    softer = disc.CALCULIX_FINEST[-1] / disc.CALCULIX_PAIRS[2][0][-1] - 1
+    error = of_mesh + 2 * of_steps + of_penalty / softer
+    what = "Disc: approach of both plates. difference: force over GetFEM's less 1. Errors by mesh, steps and penalty."
+    np.savetxt(FOLDER / "disc_calculix.csv",
+               np.column_stack([getfem[:, 0], best, error, getfem[:, 1], best / getfem[:, 1] - 1]), "%.9g", ",",
+               header=origin(what, CALCULIX, ["approach", "force", "error_force", "force_getfem", "difference"]),
+               comments="")
+
+
 def make_paths() -> None:
     what = "Stress P, Cauchy sigma_zz, inverse plastic metric and a at the end of each increment to F."
     np.savetxt(FOLDER / "paths.csv", law.paths(), "%.17g", ",", header=origin(what, POINT, law.COLUMNS), comments="")
@@ -138,6 +153,7 @@ MADE: dict[str, Callable[[], None]] = {
     "law": same_law.check,
     **{name: partial(make_runs, name) for name in TABLES},
     **{name: partial(make_curve, name) for name in CURVES},
+    "disc_calculix": make_calculix,
 }
 
 if __name__ == "__main__":

@@ -21,7 +21,10 @@ COLUMNS = ["approach", "force", "half_width", "largest_a"]
 RUNS = [(8, 1), (8, 2), (8, 4), (16, 1), (16, 2), (16, 4), (8, 8), (16, 8), (24, 8)]
 FINEST = (24, 8), (((16, 8), (16, 4)), ((24, 8), (16, 8)))  # and the pairs that give its error
 # Also element (0: CPE4, 1: CPE8R) and contact stiffness, by CalculiX.
-CALCULIX = [(8, 0, 2, 1e6), (16, 0, 2, 1e5), (16, 0, 2, 1e6), (8, 1, 8, 1e4), (16, 0, 4, 1e6), (32, 0, 4, 1e6)]
+CALCULIX = [(8, 0, 2, 1e6), (16, 0, 2, 1e5), (16, 0, 2, 1e6), (8, 0, 4, 1e6), (8, 1, 8, 1e4)]
+CALCULIX_FINEST = 16, 0, 2, 1e6
+CALCULIX_PAIRS = (((16, 0, 2, 1e6), (8, 0, 2, 1e6)), ((8, 0, 4, 1e6), (8, 0, 2, 1e6)),
+                  ((16, 0, 2, 1e5), (16, 0, 2, 1e6)))  # of meshes, steps, stiffnesses
 CORE = 0.5  # of the radius: the square of the mesh
 DENSER = 0.5  # spacing at the poles over the mean, along the outline and across it
 
