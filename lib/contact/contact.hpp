@@ -72,6 +72,11 @@ class ContactSystem {
   /// has it.
   std::vector<double> least_internal_variable(const ContactHistory& history, std::string_view name, double none) const;
 
+  /// [contact pairs] sums of the last evaluation, which wrote the history `of`.
+  const std::vector<PairTotals>& totals(const ContactHistory& of) const {
+    return corrects_energy() ? of.last.totals : unkept_.totals;
+  }
+
   const LawTable& laws() const { return laws_; }
   /// All pairs of the Verlet list; some have no candidates.
   const std::vector<ContactPair>& contact_pairs() const { return table_.contact_pairs(); }

@@ -118,8 +118,8 @@ inline Lanes exponential(Lanes x) {
   return sum * std::bit_cast<Lanes>(power);
 }
 
-/// Exponential of a small argument, |x| <= 1/32 in all lanes or it takes the time of `exponential`. Relative error below
-/// 4e-16; the remainder of the polynomial is 2e-17.
+/// Exponential of a small argument, |x| <= 1/32 in all lanes, or it takes the time of `exponential`. Relative error
+/// below 4e-16; the remainder of the polynomial is 2e-17.
 template <class T>
 T exponential_of_small(T x) {
   constexpr double limit = 1.0 / 32;

@@ -10,6 +10,7 @@
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 #include "core/parallel.hpp"
+#include "dynamics/body_heat.hpp"
 
 namespace pliant {
 namespace {
@@ -80,8 +81,13 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
   if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, update);
   phases_.enter(Phase::update);
-  for (double power : damping_power_) result.damping_power += power;
-  for (double loss : material_loss_) result.material_loss += loss;
+  for (const Lanes& power : damping_power_) result.damping_power += sum(power);
+  for (const Lanes& loss : material_loss_) result.material_loss += sum(loss);
+  if (!from.memory.heat.empty()) {
+    to.memory.heat = from.memory.heat;
+    add_heat(model_, {damping_power_, material_loss_}, contact_.contact_pairs(), contact_.totals(to.memory.contact),
+             from.dt, to.memory.heat);
+  }
   for (double j : least_jacobian_) result.least_jacobian = std::min(result.least_jacobian, j);
   result.contact_lost = !(result.contact.deepest <= rejection_depth);
   result.valid = result.least_jacobian > 0 && !result.contact_lost;
@@ -115,8 +121,8 @@ void Forces::lane_forces(int b, const Motion& motion, const OutlineField& on_out
   }
   const PointTotals totals = add_internal_forces(model_, batch, step, f);
   least_jacobian_[b] = least_of(totals.least_jacobian);
-  if (!damping_power_.empty()) damping_power_[b] = sum(batch.weight * totals.power);
-  if (!material_loss_.empty()) material_loss_[b] = sum(batch.weight * totals.loss);
+  if (!damping_power_.empty()) damping_power_[b] = batch.weight * totals.power;
+  if (!material_loss_.empty()) material_loss_[b] = batch.weight * totals.loss;
 }
 
 void Forces::rigid_forces(int r, const Motion& motion, const OutlineField& position, const OutlineField& on_outlines,
@@ -136,8 +142,8 @@ void Forces::nodewise_forces(const Motion& motion, const OutlineField& on_outlin
     const PointTotals totals =
         nodewise_stresses(model_, chunk, step_of(batch, motion, from, to.memory), stresses_of(chunk.batch));
     least_jacobian_[model_.lane_batches + c] = least_of(totals.least_jacobian);
-    if (!damping_power_.empty()) damping_power_[model_.lane_batches + c] = sum(totals.power) * batch.weight[0];
-    if (!material_loss_.empty()) material_loss_[model_.lane_batches + c] = sum(totals.loss) * batch.weight[0];
+    if (!damping_power_.empty()) damping_power_[model_.lane_batches + c] = totals.power * batch.weight[0];
+    if (!material_loss_.empty()) material_loss_[model_.lane_batches + c] = totals.loss * batch.weight[0];
   });
   parallel_for(static_cast<int>(model_.regions.size()) - model_.lane_batches, [&](int i) {
     const int r = model_.lane_batches + i;

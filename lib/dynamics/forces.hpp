@@ -89,9 +89,10 @@ class Forces {
   ContactSystem contact_;
   OutlineField outline_force_;          ///< sum of contact forces and loads on outlines; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
-  std::vector<double>
-      damping_power_;  ///< of materials, as least_jacobian_, W/m; empty without rates and internal variables
-  std::vector<double> material_loss_;  ///< in the step, as damping_power_, J/m; empty without laws that have one
+  /// Of materials, as least_jacobian_, W/m: one lane a body, or all one body; empty without rates and internal
+  /// variables.
+  std::vector<Lanes> damping_power_;
+  std::vector<Lanes> material_loss_;  ///< in the step, as damping_power_, J/m; empty without laws that have one
   std::vector<std::vector<StressColumns>> stresses_;  ///< [nodewise bodies][points]
   bool warned_deep_ = false;
   PhaseTimes phases_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/archive.hpp"
+#include "dynamics/body_heat.hpp"
 
 namespace pliant {
 
@@ -16,6 +17,7 @@ Memory initial_memory(const Model& model) {
           std::fill_n(&memory.material[batch.memory + k * static_cast<std::size_t>(batch.points)], batch.points,
                       broadcast(Law::internal_variables[k].initial));
     });
+  if (tracks_heat(model.scene)) memory.heat.resize(model.bodies.size());
   return memory;
 }
 

@@ -17,11 +17,13 @@ namespace pliant {
 struct Memory {
   ContactHistory contact;
   std::vector<Lanes> material;  ///< of integration points, see Batch::memory
+  std::vector<double> heat;     ///< [bodies] from dissipation, J/m (dynamics/body_heat.hpp); empty if nothing has one
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("contact", contact);
     visitor("material", material);
+    visitor("heat", heat);
   }
 };
 

@@ -48,6 +48,10 @@ SceneTable material_table() {
           {"saturation_rate", Quantity{"1", positive}, required_if("with `saturation`", "none"),
            "Rate of Voce's hardening by the equivalent plastic strain", "saturation"},
           {"viscoplastic_time", Quantity{"s", non_negative}, "0 s", "Time of Perzyna's rate dependence", plastic},
+          {"heat_capacity", Quantity{"J/(kg K)", positive}, "none",
+           "Specific heat capacity, if temperatures are followed"},
+          {"taylor_quinney", Quantity{"1", {.low = 0, .high = 1}}, "0.9", "Share of the plastic loss that becomes heat",
+           hardens},
           {"mass_damping", Quantity{"1/s", non_negative}, "0 1/s", "Mass-proportional damping coefficient of grains"},
       }};
 }

@@ -165,6 +165,7 @@ void check_softening(TableReader& table, const Material& material) {
 }
 
 void read_von_mises(TableReader& table, Material& material) {
+  table.optional("taylor_quinney", material.taylor_quinney);
   table.required("yield", material.yield);
   if (material.yield > material.young / 3)
     table.fail("yield",
@@ -179,6 +180,7 @@ void read_von_mises(TableReader& table, Material& material) {
 }
 
 void read_drucker_prager(TableReader& table, Material& material) {
+  table.optional("taylor_quinney", material.taylor_quinney);
   table.required("cohesion", material.cohesion);
   table.required("friction_angle", material.friction_angle);
   table.optional("dilatancy_angle", material.dilatancy_angle);
@@ -206,6 +208,7 @@ Material read_material(TableReader table, const std::string& name) {
     if (material.law == MaterialLaw::drucker_prager) read_drucker_prager(table, material);
     table.optional("viscosity", material.viscosity);
   }
+  table.optional("heat_capacity", material.heat_capacity);
   table.optional("mass_damping", material.mass_damping);
   table.finish();
   return material;

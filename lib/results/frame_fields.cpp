@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "dynamics/body_heat.hpp"
 #include "results/body_motion.hpp"
 
 namespace pliant {
@@ -46,6 +47,11 @@ Principal principal_of(const PointState& p) { return principal(p.stress.xx, p.st
 void contact_count(FramedBody& frame, std::vector<float>& values) {
   const int count = frame.snapshot.contact_counts()[frame.index];
   values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(count));
+}
+
+void temperature_of_body(FramedBody& frame, std::vector<float>& values) {
+  const double rise = temperature_rise(frame.snapshot.model(), frame.index, frame.snapshot.state().memory.heat);
+  values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(rise));
 }
 
 /// A component of the contact force over the reference tributary length: along the outline's tangent, or the inward
@@ -132,6 +138,7 @@ BodyField body_field(const std::string& name) {
       {"strain_xx", in_cells<[](const P& p) { return p.strain[0]; }>},
       {"strain_yy", in_cells<[](const P& p) { return p.strain[1]; }>},
       {"strain_xy", in_cells<[](const P& p) { return p.strain[2]; }>},
+      {"temperature_rise", temperature_of_body},
       {"contact_count", contact_count},
   };
   return function_of(all, name);

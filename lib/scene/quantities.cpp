@@ -153,6 +153,8 @@ std::vector<ProbeQuantity> energies() {
                       "J/m"),
             "external work of loads and imposed motions, and of gravity, and dissipation, by their origin since the "
             "start"),
+      by_body("temperature_rise", {"temperature_rise [K]"}, Of::any, mean_first, Node::none,
+              "of bodies since the start, from their dissipation, without conduction; NaN without `heat_capacity`"),
       by_body("kinetic_energy", {"kinetic_energy [J/m]"}, Of::any, sum_first, Node::none, "of bodies"),
       by_body("strain_energy", {"strain_energy [J/m]"}, Of::compliant, sum_first, Node::none, "of compliant bodies"),
   };
@@ -231,6 +233,7 @@ std::vector<FrameField> all_fields() {
       field(bodies, cell, "jacobian", "-", "current over reference volume"),
       field(bodies, cell, "strain_energy_density", "J/m3", "per reference volume"),
       field(bodies, cell, "plastic_strain", "-", "equivalent plastic strain, 0 for laws without"),
+      field(bodies, cell, "temperature_rise", "K", "since the start; NaN without `heat_capacity`"),
       field(bodies, cell, "contact_count", "-", "bodies that the grain touches"),
       field(bodies, cell, "material", "-", "number of the material in the scene file, from 0", 1, true),
       field(bodies, cell, "scale", "-", "size over that of the shape", 1, true),

@@ -86,6 +86,8 @@ struct Material {
   double saturation_rate = 0;    ///< of that hardening, by the equivalent plastic strain
   double viscoplastic_time = 0;  ///< Perzyna's time, s
   double friction_angle = 0, dilatancy_angle = 0;  ///< of Mohr and Coulomb, rad; 0 for laws without
+  double heat_capacity = 0;                        ///< J/(kg K); 0: temperatures are not followed
+  double taylor_quinney = 0.9;                     ///< share of the plastic loss that becomes heat
   double cohesion = 0;                             ///< likewise, Pa
 };
 

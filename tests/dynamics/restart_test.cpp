@@ -85,7 +85,7 @@ Scene plastic_images() {
   Scene scene = own_images();
   Material& soft = scene.materials[0];
   soft.law = MaterialLaw::von_mises, soft.yield = 0.01, soft.saturation = 0.02, soft.saturation_rate = 5;
-  soft.viscoplastic_time = 0.01;
+  soft.viscoplastic_time = 0.01, soft.heat_capacity = 1;
   return scene;
 }
 

@@ -1,4 +1,5 @@
 #include "bodies/nodal.hpp"
+#include "dynamics/body_heat.hpp"
 #include "results/body_motion.hpp"
 #include "results/point_states.hpp"
 #include "results/probes/probe_functions.hpp"
@@ -47,6 +48,12 @@ Samples kinetic_energy(const Snapshot& snapshot, const Selection& selection) {
   return samples;
 }
 
+Samples temperature_rises(const Snapshot& snapshot, const Selection& selection) {
+  Samples samples(1);
+  for (int b : selection.bodies) samples.add(1, {temperature_rise(snapshot.model(), b, snapshot.state().memory.heat)});
+  return samples;
+}
+
 Samples strain_energy(const Snapshot& snapshot, const Selection& selection) {
   Samples samples(1);
   for (int b : selection.bodies) {
@@ -62,7 +69,11 @@ Samples strain_energy(const Snapshot& snapshot, const Selection& selection) {
 }  // namespace
 
 std::vector<ProbeFunction> energy_functions() {
-  return {{"energy", energy}, {"works", works}, {"kinetic_energy", kinetic_energy}, {"strain_energy", strain_energy}};
+  return {{"energy", energy},
+          {"works", works},
+          {"temperature_rise", temperature_rises},
+          {"kinetic_energy", kinetic_energy},
+          {"strain_energy", strain_energy}};
 }
 
 }  // namespace pliant
