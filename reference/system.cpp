@@ -25,12 +25,12 @@ System::System(const Scene& scene)
   for (const Body& body : bodies_.all())
     if (body.compliant())
       internal_.emplace_back(bodies_.space_of(body), bodies_.material_of(body), body.placed.scale, body.placed.angle);
-  branches_.resize(internal_.size());
+  histories_.resize(internal_.size());
 }
 
 void System::accept() {
   contacts_.accept();
-  for (std::size_t i = 0; i < internal_.size(); ++i) internal_[i].accept(branches_[i]);
+  for (std::size_t i = 0; i < internal_.size(); ++i) internal_[i].accept(histories_[i]);
   accepted_ = evaluated_;
 }
 
@@ -64,9 +64,10 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
     if (!body.compliant()) continue;
     const int first = body.first_dof;
     const InternalState internal = internal_[number].evaluate(motion.q.segment(first, body.dofs), tangent, elapsed);
-    branches_[number] = internal.branch;
+    histories_[number] = internal.history;
     forces.symmetric &= !internal_[number++].has_branch();
     forces.creep_power += internal.power;
+    forces.plastic_loss += internal.loss;
     if (internal.least_jacobian < forces.least_jacobian) {
       forces.least_jacobian = internal.least_jacobian;
       forces.worst_body = static_cast<int>(b);

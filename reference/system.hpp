@@ -30,6 +30,7 @@ struct Forces {
   double strain = 0, contact = 0, boundary = 0;  ///< stored, J/m
   double potential = 0;                          ///< of all forces that have one: stored energy less that of loads, J/m
   double creep_power = 0;                        ///< dissipated by Maxwell branches, W/m
+  double plastic_loss = 0;                       ///< dissipated by plastic flow since the last accepted motion, J/m
   double dissipated = 0;                         ///< by contacts since the last accepted motion, J/m
   double least_jacobian = 1e300;
   int worst_body = -1;  ///< body with the least Jacobian
@@ -62,9 +63,9 @@ class System {
 
   Bodies bodies_;
   Loads loads_;
-  std::vector<InternalForces> internal_;            ///< [compliant bodies]
-  std::vector<std::vector<BranchPoint>> branches_;  ///< [compliant bodies] at the last motion evaluated
-  double evaluated_ = 0, accepted_ = 0;             ///< times, s
+  std::vector<InternalForces> internal_;              ///< [compliant bodies]
+  std::vector<std::vector<PointHistory>> histories_;  ///< [compliant bodies] at the last motion evaluated
+  double evaluated_ = 0, accepted_ = 0;               ///< times, s
   Contacts contacts_;
 };
 

@@ -259,6 +259,7 @@ void TimeStepping::update_balance(const Trial& trial) {
       balance_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
                                 0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
   balance_.dissipated_by_contact += trial.forces.dissipated;
+  balance_.dissipated_by_plasticity += trial.forces.plastic_loss;
   balance_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
   if (after.moves)
     balance_.dissipated_by_damping +=

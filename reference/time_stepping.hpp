@@ -22,12 +22,12 @@ struct SolverOptions {
 /// Energy balance of a run, J/m, as in the engine (docs/method.md 6).
 struct EnergyBalance {
   double kinetic = 0, strain = 0, contact = 0, boundary = 0;
-  double dissipated_by_contact = 0, dissipated_by_damping = 0;
+  double dissipated_by_contact = 0, dissipated_by_damping = 0, dissipated_by_plasticity = 0;
   double work_of_loads = 0, work_of_gravity = 0;
   double at_start = 0;  ///< kinetic, strain, contact and boundary energy
 
   double mechanical() const { return kinetic + strain + contact + boundary; }
-  double dissipated() const { return dissipated_by_contact + dissipated_by_damping; }
+  double dissipated() const { return dissipated_by_contact + dissipated_by_damping + dissipated_by_plasticity; }
   double external_work() const { return work_of_loads + work_of_gravity; }
   double made() const;           ///< energy without a source; negative: lost, J/m
   double scale() const;          ///< largest of external work, initial energy and dissipation, J/m

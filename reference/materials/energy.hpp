@@ -60,7 +60,7 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
       return 0.5 * m.bulk * volume * volume + 0.5 * m.mu * (pow(J, -2.0 / 3) * first_invariant(F) - 3.0);
     case MaterialLaw::linear_elastic:
       return linear_elastic_energy(m, F);
-    case MaterialLaw::von_mises:  // its energy needs the plastic strain
+    case MaterialLaw::von_mises:  // see plastic.hpp
     case MaterialLaw::drucker_prager:
     case MaterialLaw::rigid:
       break;
@@ -72,6 +72,13 @@ Scalar strain_energy(const Material& material, const Deformation<Scalar>& F) {
 template <class Scalar>
 struct Symmetric {
   Scalar xx{1.0}, xy{0.0}, yy{1.0};
+};
+
+/// Internal variables of a point: inverse of a viscous or plastic metric in the plane; for a Maxwell branch the value
+/// towards which it creeps, for plastic laws the equivalent plastic strain.
+struct PointHistory {
+  Symmetric<double> metric, goal;
+  double plastic_strain = 0;
 };
 
 /// Inverse of F^T F.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "reference/jet.hpp"
+#include "reference/materials/plastic.hpp"
 
 namespace pliant::reference {
 namespace {
@@ -59,7 +60,7 @@ InternalForces::InternalForces(const Space& space, const Material& material, dou
   gradient_.setFromTriplets(entries.begin(), entries.end());
   pattern_ = pattern_of(gradient_);
   for (std::size_t g = 0; g < space.points.size(); ++g) at_point_.push_back(gradient_at(int(g), space.points[g].node));
-  if (material.law == MaterialLaw::neo_hookean_maxwell) branch_.resize(space.points.size());
+  if (has_branch() || is_plastic()) history_.resize(space.points.size());
 }
 
 InternalForces::PointGradient InternalForces::gradient_at(int point, const std::vector<int>& nodes) const {
@@ -95,15 +96,15 @@ Eigen::SparseMatrix<double> InternalForces::at_nodes(const std::vector<Eigen::Ma
 /// relaxation time.
 void InternalForces::add_branch(Eigen::Index point, const Deformation<double>& F, double elapsed,
                                 Eigen::Vector4d& stress, Eigen::Matrix4d& stiffness, InternalState& state) const {
-  const BranchPoint& old = branch_[std::size_t(point)];
+  const PointHistory& old = history_[std::size_t(point)];
   const Symmetric<Jet<4>> goal = inverse_metric(as_variables<4>(F));
   const bool relaxed = std::isinf(elapsed);
   const double z = elapsed / material_.relaxation_time, share = relaxed ? 1 : z / (2 + z);
   const auto follow = [&](double viscous, double goal_before, const Jet<4>& to) {
     return relaxed ? to : Jet<4>((1 - 2 * share) * viscous + share * goal_before) + share * to;
   };
-  const Symmetric<Jet<4>> G{follow(old.viscous.xx, old.goal.xx, goal.xx), follow(old.viscous.xy, old.goal.xy, goal.xy),
-                            follow(old.viscous.yy, old.goal.yy, goal.yy)};
+  const Symmetric<Jet<4>> G{follow(old.metric.xx, old.goal.xx, goal.xx), follow(old.metric.xy, old.goal.xy, goal.xy),
+                            follow(old.metric.yy, old.goal.yy, goal.yy)};
   const Jet<7> energy = branch_energy(material_, as_variables<7>(F),
                                       {Jet<7>(G.xx.value, 4), Jet<7>(G.xy.value, 5), Jet<7>(G.yy.value, 6)});
   Eigen::Matrix<double, 3, 4> by_F;
@@ -115,7 +116,7 @@ void InternalForces::add_branch(Eigen::Index point, const Deformation<double>& F
   stiffness += energy.hessian.topLeftCorner<4, 4>() + energy.hessian.topRightCorner<4, 3>() * by_F;
   state.energy += weight_[point] * energy.value;
   state.power -= weight_[point] * energy.gradient.tail<3>().dot(rate);
-  state.branch.push_back({{G.xx.value, G.xy.value, G.yy.value}, {goal.xx.value, goal.xy.value, goal.yy.value}});
+  state.history.push_back({{G.xx.value, G.xy.value, G.yy.value}, {goal.xx.value, goal.xy.value, goal.yy.value}});
 }
 
 InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed) const {
@@ -129,10 +130,18 @@ InternalState InternalForces::evaluate(const Eigen::VectorXd& q, bool tangent, d
   }
   if (!(state.least_jacobian > 0)) return state;  // only `linear_elastic` has an energy there
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
-    const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
-    state.energy += weight_[g] * energy.value;
-    Eigen::Vector4d P = energy.gradient;
-    Eigen::Matrix4d by_F = energy.hessian;
+    Eigen::Vector4d P;
+    Eigen::Matrix4d by_F;
+    if (is_plastic()) {
+      const PlasticIncrement found = plastic_increment(material_, entries_at(F, g), history_[std::size_t(g)], elapsed);
+      P = found.stress, by_F = found.stiffness;
+      state.energy += weight_[g] * found.energy, state.loss += weight_[g] * found.loss;
+      state.history.push_back(found.now);
+    } else {
+      const Jet<4> energy = strain_energy(material_, measured(as_variables<4>(entries_at(F, g))));
+      state.energy += weight_[g] * energy.value;
+      P = energy.gradient, by_F = energy.hessian;
+    }
     if (has_branch()) add_branch(g, entries_at(F, g), elapsed, P, by_F, state);
     stress.segment<4>(4 * g) = weight_[g] * P;
     if (tangent) stiffness.push_back(weight_[g] * by_F);
@@ -167,9 +176,12 @@ std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) cons
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     // Derivative by the F of the law, which for small strains is also that of the stress.
     const Deformation<double> F = measured(entries_at(all, g));
-    Jet<5> energy = strain_energy(material_, as_variables<5>(F));
+    Jet<5> energy = is_plastic()
+                        ? elastic_energy(moduli(material_),
+                                         LogarithmicStrain<Jet<5>>(as_variables<5>(F), history_[std::size_t(g)].metric))
+                        : strain_energy(material_, as_variables<5>(F));
     if (has_branch()) {
-      const Symmetric<double>& G = branch_[std::size_t(g)].viscous;
+      const Symmetric<double>& G = history_[std::size_t(g)].metric;
       energy += branch_energy(material_, as_variables<5>(F), Symmetric<Jet<5>>{G.xx, G.xy, G.yy});
     }
     const auto& P = energy.gradient;
@@ -179,6 +191,7 @@ std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) cons
     else  // P F^T / J
       result.push_back({(P[0] * F.xx + P[1] * F.xy) / J, (P[2] * F.yx + P[3] * F.yy) / J,
                         (P[0] * F.yx + P[1] * F.yy) / J, P[4] / J, J, energy.value});
+    if (is_plastic()) result.back().plastic_strain = history_[std::size_t(g)].plastic_strain;
   }
   return result;
 }

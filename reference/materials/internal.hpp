@@ -9,11 +9,6 @@
 
 namespace pliant::reference {
 
-/// Maxwell branch at one point: the inverse of its viscous strain, and the value towards which that creeps.
-struct BranchPoint {
-  Symmetric<double> viscous, goal;
-};
-
 /// Internal forces of one body at one state. If some J <= 0, only the least J is set.
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
@@ -21,8 +16,9 @@ struct InternalState {
   Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty unless requested
   double least_jacobian = 0;
   int least_point = 0;
-  double power = 0;                 ///< dissipated by Maxwell branches, W/m
-  std::vector<BranchPoint> branch;  ///< [points] updated; empty without branches
+  double power = 0;                   ///< dissipated by Maxwell branches, W/m
+  double loss = 0;                    ///< dissipated by plastic flow in the increment, J/m
+  std::vector<PointHistory> history;  ///< [points] updated; empty without internal variables
 };
 
 /// Kelvin-Voigt damping of one body at one motion.
@@ -37,6 +33,7 @@ struct PointStress {
   double xx = 0, yy = 0, xy = 0, zz = 0;
   double jacobian = 1;
   double energy = 0;  ///< per reference volume, Pa
+  double plastic_strain = 0;
 };
 
 /// Internal forces of a body of given size and initial rotation, made of one material, from the shape's space of size
@@ -46,11 +43,13 @@ class InternalForces {
   InternalForces(const Space& space, const Material& material, double size, double angle);
 
   /// Internal forces at positions q, m, from any origin, after a time increment `elapsed`, s; if that is infinite,
-  /// branches have relaxed. With a branch the tangent is not symmetric.
+  /// branches have relaxed, and plastic flow has no rate. With a branch the tangent is not symmetric.
   InternalState evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed = 0) const;
   /// Sets the internal variables of the points.
-  void accept(std::vector<BranchPoint> branch) { branch_ = std::move(branch); }
-  bool has_branch() const { return !branch_.empty(); }
+  void accept(std::vector<PointHistory> history) { history_ = std::move(history); }
+  bool has_branch() const { return material_.law == MaterialLaw::neo_hookean_maxwell; }
+  bool is_plastic() const { return material_.law == MaterialLaw::von_mises; }
+  const std::vector<PointHistory>& history() const { return history_; }
   /// Damping at positions q, m, and velocities v, m/s.
   ViscousState damping(const Eigen::VectorXd& q, const Eigen::VectorXd& v, bool tangent) const;
   /// [points] elastic stresses at positions q.
@@ -83,7 +82,7 @@ class InternalForces {
 
   Material material_;
   double cos_, sin_;
-  std::vector<BranchPoint> branch_;       ///< [points] at the last accepted motion; empty without branches
+  std::vector<PointHistory> history_;     ///< [points] at the last accepted motion; empty without internal variables
   Eigen::VectorXd weight_;                ///< [points], m2
   Eigen::SparseMatrix<double> gradient_;  ///< [4 points x 2 nodes], F of each point from q: xx, xy, yx, yy; 1/m
   std::vector<PointGradient> at_point_;   ///< [points], the same

@@ -33,6 +33,7 @@ const std::map<std::string, std::pair<AtPoint, double>>& cell_fields() {
       {"pressure", {[](const PointStress& s) { return -(s.xx + s.yy + s.zz) / 3; }, 0}},
       {"jacobian", {[](const PointStress& s) { return s.jacobian; }, 1}},
       {"strain_energy_density", {[](const PointStress& s) { return s.energy; }, 0}},
+      {"plastic_strain", {[](const PointStress& s) { return s.plastic_strain; }, 0}},
       {"stress_xx", {[](const PointStress& s) { return s.xx; }, 0}},
       {"stress_yy", {[](const PointStress& s) { return s.yy; }, 0}},
       {"stress_xy", {[](const PointStress& s) { return s.xy; }, 0}},

@@ -130,8 +130,8 @@ Rows energy(const View& view, const Probe&, const std::vector<const Body*>&) {
 Rows works(const View& view, const Probe&, const std::vector<const Body*>&) {
   const EnergyBalance& balance = view.run().balance();
   Rows rows;
-  rows.add(
-      {balance.work_of_loads, balance.work_of_gravity, balance.dissipated_by_contact, balance.dissipated_by_damping});
+  rows.add({balance.work_of_loads, balance.work_of_gravity, balance.dissipated_by_contact,
+            balance.dissipated_by_damping, balance.dissipated_by_plasticity});
   return rows;
 }
 
@@ -206,6 +206,7 @@ const std::map<std::string, Measurement>& measures() {
       {"area", area},
       {"diameter", diameter},
       {"von_mises", at_points(von_mises, true)},
+      {"plastic_strain", at_points([](const PointStress& s) { return s.plastic_strain; }, false)},
       {"jacobian", at_points([](const PointStress& s) { return s.jacobian; }, false)}};
   return all;
 }

@@ -133,8 +133,9 @@ double compare_stresses(const Both& both, const Body& body) {
   return error / scale;
 }
 
-const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
-                                MaterialLaw::linear_elastic, MaterialLaw::neo_hookean_maxwell};
+const MaterialLaw all_laws[] = {
+    MaterialLaw::neo_hookean,    MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
+    MaterialLaw::linear_elastic, MaterialLaw::neo_hookean_maxwell,   MaterialLaw::von_mises};
 
 TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
   LargestFigures figures;
@@ -184,7 +185,7 @@ struct Remembering : Both {
   reference::InternalForces remembering(const Body& body) const {
     reference::InternalForces own = reference_of(body);
     const Batch& batch = model.batches[body.batch];
-    std::vector<reference::BranchPoint> points(static_cast<std::size_t>(own.weights().size()));
+    std::vector<reference::PointHistory> points(static_cast<std::size_t>(own.weights().size()));
     for (std::size_t g = 0; g < points.size(); ++g) {
       const bool nodewise = batch.layout == Layout::nodewise;
       const auto number = nodewise ? static_cast<std::size_t>(model.nodewise_shape_of(batch).point_number[g]) : g;
@@ -260,6 +261,88 @@ TEST(ReferenceAgainstEngine, stresses_agree) {
     const Both both(some_grains(law, settings_of(DiscretisationMethod::mls)));
     for (std::size_t b = 0; b < both.model.bodies.size(); b += 7)
       figures.note("stresses: mls, support 8", compare_stresses(both, both.model.bodies[b]));
+  }
+}
+
+/// Yielding grains, with saturation and a rate.
+Scene plastic_grains() {
+  Scene scene = some_grains(MaterialLaw::von_mises, settings_of(DiscretisationMethod::mls), 6);
+  for (Material& material : scene.materials) {
+    material.yield = 0.02 * material.young, material.hardening = 0.05 * material.young;
+    material.saturation = 0.03 * material.young, material.saturation_rate = 8;
+    material.viscoplastic_time = 0.1;
+  }
+  return scene;
+}
+
+// INDEPENDENT: forces, elastic energies, plastic losses and plastic strains of four increments, each program with its
+// own history: one from an energy in principal strains, the other by formulas without them. Losses are integrals of the
+// yield stress there, and by the trapezoidal rule here: they differ by x^2/12 of its curvature, 64 x 0.01 / 0.02 of it.
+TEST(ReferenceAgainstEngine, plastic_increments_agree) {
+  for (const bool nodewise : {false, true}) {
+    const Both both(plastic_grains(), nodewise ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
+    Random random(9);
+    Dofs q = initial_positions(both.model);
+    Memory memory = initial_memory(both.model);
+    std::vector<reference::InternalForces> own;
+    for (const Body& body : both.model.bodies) own.push_back(both.reference_of(body));
+    double flowed = 0;
+    for (int increment = 0; increment < 4; ++increment) {
+      for (const Body& body : both.model.bodies) deform(both.model, body, random, q);
+      Dofs force = zero_dofs(both.model);
+      Memory next = memory;
+      std::vector<PointTotals> totals;
+      for (const Batch& batch : both.model.batches) {
+        BatchMotion motion = motion_of(batch, q, memory);
+        motion.elapsed = 0.5, motion.new_memory = next.material.data() + batch.memory;
+        totals.push_back(add_internal_forces(both.model, batch, motion, &force.compliant[batch.offset]));
+      }
+      memory = std::move(next);
+      for (std::size_t b = 0; b < own.size(); ++b) {
+        const Body& body = both.model.bodies[b];
+        const reference::InternalState state = own[b].evaluate(of_body(both.model, body, q), false, 0.5);
+        own[b].accept(state.history);
+        const Eigen::VectorXd engine = of_body(both.model, body, force);
+        EXPECT_LT((state.residual + engine).cwiseAbs().maxCoeff(), tolerance * engine.cwiseAbs().maxCoeff());
+        const PointTotals& total = totals[static_cast<std::size_t>(body.batch)];
+        const double loss = total.loss[nodewise ? 0 : body.lane] * body.scale * body.scale;
+        double energy = 0, largest = 0;
+        const std::vector<PointState> states = point_states(both.model, body, q, memory);
+        for (std::size_t g = 0; g < states.size(); ++g) {
+          energy += states[g].weight * states[g].energy;
+          EXPECT_NEAR(states[g].plastic_strain, state.history[g].plastic_strain, tolerance);
+          largest = std::max(largest, states[g].plastic_strain);
+        }
+        EXPECT_NEAR(state.energy, energy, tolerance * energy);
+        EXPECT_NEAR(state.loss, loss, 3 * std::pow(largest, 2) * loss + tolerance * energy);
+        flowed = std::max(flowed, largest);
+      }
+    }
+    EXPECT_GT(flowed, 0.05);
+  }
+}
+
+// EXACT: the tangent of a plastic body is the difference quotient of its forces; central differences by 1e-5 are off by
+// 1e-10 times third derivatives of 1e3 and rounding of 1e-11.
+TEST(ReferenceAgainstEngine, plastic_tangent_is_the_derivative) {
+  const Both both(plastic_grains());
+  const Body& body = both.model.bodies[0];
+  reference::InternalForces own = both.reference_of(body);
+  const Eigen::VectorXd q = of_body(both.model, body, both.q);
+  own.accept(own.evaluate(q, false, 0.5).history);
+  const Eigen::VectorXd further = q + 0.05 * of_body(both.model, body, both.rate);
+  const reference::InternalState state = own.evaluate(further, true, 0.5);
+  EXPECT_GT(state.loss, 0);
+  Random random(10);
+  for (int sample = 0; sample < 5; ++sample) {
+    Eigen::VectorXd step(q.size());
+    for (Eigen::Index i = 0; i < step.size(); ++i) step[i] = random.uniform(-1, 1);
+    const double h = 1e-6;
+    const Eigen::VectorXd change = (own.evaluate(further + h * step, false, 0.5).residual -
+                                    own.evaluate(further - h * step, false, 0.5).residual) /
+                                   (2 * h);
+    const Eigen::VectorXd predicted = state.tangent * step;
+    EXPECT_LT((change - predicted).cwiseAbs().maxCoeff(), 1e-4 * predicted.cwiseAbs().maxCoeff());
   }
 }
 
