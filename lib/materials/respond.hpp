@@ -77,6 +77,9 @@ template <class Law>
 constexpr bool has_rate = requires { requires Law::has_rate; };
 template <class Law>
 constexpr bool has_loss = requires { requires Law::has_loss; };
+/// Whether the law flows at constant volume, in which linear triangles lock.
+template <class Law>
+constexpr bool flow_keeps_volume = requires { requires Law::flow_keeps_volume; };
 template <class Law>
 constexpr bool dissipates = has_rate<Law> || has_internal_variables<Law>;
 

@@ -29,7 +29,7 @@ struct VonMises {
                                                             {"inverse_plastic_metric_yy", 1},
                                                             {"equivalent_plastic_strain", 0}};
   using Record = std::array<T, 4>;
-  static constexpr bool has_loss = true;
+  static constexpr bool has_loss = true, flow_keeps_volume = true;
 
   static VonMises of(const Material& material) {
     const auto [mu, lambda] = lame_constants(material);
