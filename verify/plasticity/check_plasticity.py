@@ -234,6 +234,12 @@ def test_disc(discs: dict[int, Run]) -> None:
         CASE.check(Label.INDEPENDENT, f"disc between plates, force from 2 to 10 %, {nodes} nodes",
                    relative(disc_force(run, APPROACHES), expected), 0, float((0.5 * spacing / widths).max()),
                    "GetFEM, error 1.5 %; half a segment of the outline more or less in contact")
+    other = oracle("disc_calculix")
+    of_calculix = np.interp(APPROACHES, other["approach"], other["force"])
+    CASE.check(Label.INDEPENDENT, "disc between plates: CalculiX against GetFEM, 2 to 10 %",
+               relative(of_calculix, expected), 0, float((np.interp(APPROACHES, other["approach"], other["error_force"])
+                                                          / of_calculix).max()),
+               "both solvers' own error, from meshes, steps and penalty; the elastic laws differ by Y/E = 1e-3")
 
 
 def test_picture(bars: dict[tuple[str, float], Run], membranes: dict[tuple[str, float], Run],
@@ -255,6 +261,8 @@ def test_picture(bars: dict[tuple[str, float], Run], membranes: dict[tuple[str, 
     describe(axes[1], "Cook's membrane", "displacement of the tip [mm]", "force [MN/m]")
     table = oracle("disc")
     axes[2].plot(table["approach"], table["force"], "k.", markersize=5, label="GetFEM")
+    table = oracle("disc_calculix")
+    axes[2].plot(table["approach"], table["force"], "kx", markersize=4, label="CalculiX")
     approaches = np.linspace(0, APPROACH, 300)
     for (nodes, run), colour in zip(discs.items(), COLOURS):
         axes[2].plot(approaches, disc_force(run, approaches), color=colour, linewidth=1.1, label=f"{nodes} nodes")
