@@ -45,7 +45,7 @@ SceneTable material_table() {
           {"hardening", Quantity{"Pa"}, "0 Pa", "Slope of yield stress or cohesion by the equivalent plastic strain",
            hardens},
           {"saturation", Quantity{"Pa", positive}, "none", "Yield stress to which Voce's hardening tends", plastic},
-          {"saturation_rate", Quantity{"1", positive}, required_if("with `saturation`", "none"),
+          {"saturation_rate", Quantity{"1", positive}, required,
            "Rate of Voce's hardening by the equivalent plastic strain", "saturation"},
           {"viscoplastic_time", Quantity{"s", non_negative}, "0 s", "Time of Perzyna's rate dependence", plastic},
           {"heat_capacity", Quantity{"J/(kg K)", positive}, "none",
