@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/lanes.hpp"
+#include "geometry/cell.hpp"
 #include "scene/instant.hpp"
 
 namespace pliant {
@@ -11,6 +12,7 @@ namespace pliant {
 struct Dofs {
   std::vector<Lanes> compliant;  ///< batch after batch: [slots x 2 components]
   std::vector<double> rigid;     ///< [rigid bodies x 3]: x, y, angle
+  Lattice lattice;               ///< of the images; the state of a cell with two periods has its own member for it
 
   Dofs() = default;
   Dofs(std::size_t compliant_size, std::size_t rigid_size)

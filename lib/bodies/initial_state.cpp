@@ -20,6 +20,7 @@ void fill_padding(const Model& model, Dofs& q) {
 
 Dofs initial_positions(const Model& model) {
   Dofs q = zero_dofs(model);
+  q.lattice = initial_lattice(model.scene);
   for (const Body& body : model.bodies) {
     if (body.kind != BodyKind::compliant) continue;
     const Points& nodes = model.shape_of(body).space.mesh.nodes;

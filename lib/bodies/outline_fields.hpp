@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/vec2.hpp"
+#include "geometry/cell.hpp"
 
 namespace pliant {
 
@@ -47,6 +48,7 @@ OutlineShape make_outline_shape(const Points& points, double turn_shift);
 /// by lane_count cyclic copies.
 struct OutlineField {
   std::vector<double> x, y;  ///< [nodes and copies]
+  Lattice lattice;           ///< how periodic images of the nodes differ from these
 
   OutlineField() = default;
   explicit OutlineField(int nodes) : x(static_cast<std::size_t>(nodes), 0.0), y(x) {}
@@ -54,7 +56,7 @@ struct OutlineField {
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("x", x), visitor("y", y);
+    visitor("x", x), visitor("y", y), visitor("lattice", lattice);
   }
 };
 

@@ -153,11 +153,13 @@ void add_to_region(const Model& model, const Region& region, const OutlineField&
 }  // namespace
 
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position) {
+  position.lattice = positions.lattice;
   show(model, {positions, true}, position, model.rigid_bodies.size(),
        [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
 }
 
 void update_outline_field(const Model& model, const Dofs& values, OutlineField& field) {
+  field.lattice = values.lattice;
   show(model, {values, false}, field, 0, [](int) {});
 }
 

@@ -16,7 +16,9 @@ bool overlap_in_y(const Box& a, const Box& b, double margin) {
   return a.y_min <= b.y_max + margin && b.y_min <= a.y_max + margin;
 }
 
-BodyPair ordered(int a, int b, int images) { return a <= b ? BodyPair{a, b, images} : BodyPair{b, a, -images}; }
+BodyPair ordered(int a, int b, const Images& images) {
+  return a <= b ? BodyPair{a, b, images} : BodyPair{b, a, -images};
+}
 
 std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>& boxes) {
   std::vector<SweepEntry> entries;
@@ -42,7 +44,7 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
     const SweepEntry& b = entries[wrapped % entries.size()];
     if (!(b.x_min + lap * period <= a.x_max + margin)) return;  // so that NaN ends it too
     if (overlap_in_y(boxes[a.body], boxes[b.body], margin))
-      pairs.push_back(ordered(a.body, b.body, a.turn - b.turn + lap));
+      pairs.push_back(ordered(a.body, b.body, {a.turn - b.turn + lap, 0}));
   }
 }
 
@@ -71,7 +73,7 @@ std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& bo
     if (!model.bodies[wall].wall) continue;
     for (int other = 0; other < static_cast<int>(boxes.size()); ++other)
       if ((!model.bodies[other].wall || other < wall) && overlap_in_y(boxes[wall], boxes[other], margin))
-        pairs.push_back(ordered(other, wall, 0));
+        pairs.push_back(ordered(other, wall, {}));
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

@@ -15,7 +15,8 @@ struct Box {
 /// Two bodies, or a body and its own periodic image, whose bounding boxes are closer than the margin.
 struct BodyPair {
   int first, second;  ///< first <= second
-  int images;         ///< periods to add to x of the second; positive for a body's own image
+  Images
+      images;  ///< of the second as seen from the first; the first one that is not 0 is positive for a body's own image
   auto operator<=>(const BodyPair&) const = default;
 };
 

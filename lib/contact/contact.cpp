@@ -114,6 +114,7 @@ void ContactSystem::remember(const Outlines& outlines, const std::vector<int>& p
   found_at_.tributary_length = outlines.tributary_length;
   found_at_.position.x.resize(outlines.position.x.size());
   found_at_.position.y.resize(outlines.position.x.size());
+  found_at_.position.lattice = outlines.position.lattice;
   std::vector<char> is_searched(model_.bodies.size(), model_.scene.contact.self_contact);
   for (int p : pairs) is_searched[verlet_list_[p].first] = is_searched[verlet_list_[p].second] = 1;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
@@ -218,6 +219,7 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
 
 const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
   moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
+  moved_.lattice = now.lattice - before.lattice;
   parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
     for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
       moved_.x[i] = now.x[i] - before.x[i], moved_.y[i] = now.y[i] - before.y[i];
@@ -275,7 +277,7 @@ void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     if (model_.bodies[b].kind != BodyKind::compliant) continue;
     // as for any pair: parts of the body may move by the skin relative to each other
-    verlet_list_.add({b, b, 0}, found_at_.position);
+    verlet_list_.add({b, b, {}}, found_at_.position);
     ContactPair of_body;
     of_body.first = of_body.second = b;
     of_body.law = laws_.between(b, b, refreshed_.time);

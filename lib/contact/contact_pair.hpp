@@ -34,7 +34,7 @@ inline Arc hull(const Arc& a, const Arc& b) {
 /// segments far from them along the outline as those of the second.
 struct ContactPair {
   int first = 0, second = 0;  ///< bodies, first <= second
-  int images = 0;             ///< periods to add to x of the second body as seen from the first
+  Images images;              ///< of the second body as seen from the first
   int part = 0;               ///< first node of a part in self-contact; 0 for two bodies
   bool integrated = false;    ///< integrated over segments; else collocated at nodes
   ContactLaw law;
@@ -51,7 +51,7 @@ struct ContactPair {
   /// Whether it has no candidates.
   bool is_empty() const { return nodes[0].count + nodes[1].count == 0; }
   /// Self-contact: both sides are parts of one outline, not of two bodies or two images.
-  bool of_itself() const { return first == second && images == 0; }
+  bool of_itself() const { return first == second && images == Images{}; }
 
   /// All members except the law, which follows from the bodies.
   template <class Visitor>
@@ -85,8 +85,12 @@ struct PairView {
   double dt = 0;                        ///< size of the step that led here, s; 0: unknown
   const OutlineField* moved = nullptr;  ///< displacements of outline nodes in that step, m; null: none
   int body(int side) const { return side == 0 ? contact_pair.first : contact_pair.second; }
-  /// Shift of one side's body in x, by its periods, m.
-  double shift(int side) const { return side == 0 ? 0.0 : contact_pair.images * model.scene.period.value_or(0); }
+  /// Shift of one side's body to its image, m.
+  Vec2 shift(int side) const { return image_of(outlines.position, side); }
+  /// Difference of a field between the image of one side's body and the body itself.
+  Vec2 image_of(const OutlineField& field, int side) const {
+    return side == 0 ? Vec2(0, 0) : field.lattice.shift(contact_pair.images);
+  }
 };
 
 /// Sums over both half passes of a contact pair.

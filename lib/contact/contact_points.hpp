@@ -24,9 +24,9 @@ struct ContactPoint {
 /// Two bodies, a body and its own periodic image, or parts of one body, in contact.
 struct TouchingPair {
   int first = 0, second = 0;  ///< bodies, first <= second
-  int images = 0;             ///< periods to add to x of the second body as seen from the first
+  Images images;              ///< of the second body as seen from the first
   std::vector<ContactPoint> points;
-  bool of_itself() const { return first == second && images == 0; }  ///< self-contact: no pair of grains
+  bool of_itself() const { return first == second && images == Images{}; }  ///< self-contact: no pair of grains
 
   /// Mean unit normal of the contact from the first to the second body, weighted by length; zero when the normals
   /// cancel.

@@ -117,18 +117,19 @@ class OutlineViews {
   std::map<int, OutlineView> sorted_;
 };
 
-/// Slave and master of a query. The master is shifted by `shift` in x or, if one of them is a wall, taken at its
-/// nearest image in a period.
+/// Slave and master of a query. The master is shifted by `shift` or, if one of them is a wall, taken at its nearest
+/// image in a period.
 struct Sight {
   int slave, master;
-  double shift = 0, period = 0;
+  Vec2 shift{0, 0};
+  double period = 0;
   Sight back() const { return {master, slave, -shift, period}; }
 };
 
-Sight sight_of(const Model& model, const BodyPair& pair) {
-  const double period = model.scene.period.value_or(0);
-  if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return {pair.first, pair.second, 0, period};
-  return {pair.first, pair.second, pair.images * period};
+Sight sight_of(const Model& model, const Lattice& lattice, const BodyPair& pair) {
+  if (model.bodies[pair.first].wall || model.bodies[pair.second].wall)
+    return {pair.first, pair.second, {0, 0}, model.scene.period.value_or(0)};
+  return {pair.first, pair.second, lattice.shift(pair.images)};
 }
 
 bool is_deeper(const DeepestNode& a, const DeepestNode& b) {
@@ -138,8 +139,8 @@ bool is_deeper(const DeepestNode& a, const DeepestNode& b) {
 void find_deepest(const OutlineViews& views, const Sight& sight, DeepestNode& deepest) {
   const OutlineView slave = views[sight.slave], master = views[sight.master];
   const Box& box = master.box();
-  slave.for_each_between(box.x_min + sight.shift, box.x_max + sight.shift, sight.period, [&](int node) {
-    const Vec2 position = slave.node(node), seen = position - Vec2(sight.shift, 0);
+  slave.for_each_between(box.x_min + sight.shift.x(), box.x_max + sight.shift.x(), sight.period, [&](int node) {
+    const Vec2 position = slave.node(node), seen = position - sight.shift;
     if (master.is_clear_of(seen, sight.period)) return;
     const Nearest nearest = master.nearest_segment(seen, sight.period);
     const double reference = master.shape().segment_length[nearest.number];
@@ -166,12 +167,12 @@ void find_self_penetration(const PairView& view, DeepestNode& deepest) {
 }
 
 /// Whether two bodies are at nearly the same place. Their nodes are not deep then, but their centres are.
-bool share_a_middle(const Model& model, const OutlineViews& views, const BodyPair& pair) {
+bool share_a_middle(const Model& model, const Lattice& lattice, const OutlineViews& views, const BodyPair& pair) {
   if (model.bodies[pair.first].wall || model.bodies[pair.second].wall) return false;
   const OutlineView first = views[pair.first], second = views[pair.second];
   Vec2 sum(0, 0);
   for (int node = 0; node < first.count(); ++node) sum += first.node(node);
-  const Vec2 middle = sum / first.count(), seen = middle - Vec2(sight_of(model, pair).shift, 0);
+  const Vec2 middle = sum / first.count(), seen = middle - sight_of(model, lattice, pair).shift;
   const Nearest own = first.nearest_segment(middle), other = second.nearest_segment(seen);
   return own.depth > own.length && other.depth > other.length;
 }
@@ -190,7 +191,7 @@ std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineFi
     const bool above = model.outline_of(wall).turn_shift < 0;  // the open side
     for (int body = 0; body < bodies; ++body) {
       const bool clear = above ? boxes[body].y_min > boxes[wall].y_max : boxes[body].y_max < boxes[wall].y_min;
-      if (!clear && (!model.bodies[body].wall || body < wall)) pairs.push_back({body, wall, 0});
+      if (!clear && (!model.bodies[body].wall || body < wall)) pairs.push_back({body, wall, {}});
     }
   }
   return pairs;
@@ -205,7 +206,7 @@ DeepestNode deepest_node(const Model& model, const OutlineField& outlines, const
   parallel_for_uneven(static_cast<int>(of_block.size()), 1, [&](int b) {
     const std::size_t begin = block * static_cast<std::size_t>(b);
     for (std::size_t p = begin; p < std::min(begin + block, pairs.size()); ++p) {
-      const Sight sight = sight_of(model, pairs[p]);
+      const Sight sight = sight_of(model, outlines.lattice, pairs[p]);
       find_deepest(views, sight, of_block[b]);
       find_deepest(views, sight.back(), of_block[b]);
     }
@@ -237,7 +238,8 @@ void refuse_deep_overlap(const Model& model, const OutlineField& outlines) {
   const std::vector<BodyPair> pairs = pairs_that_may_overlap(model, outlines);
   std::vector<char> alike(pairs.size());
   const OutlineViews views(model, outlines);
-  parallel_for(static_cast<int>(pairs.size()), [&](int p) { alike[p] = share_a_middle(model, views, pairs[p]); });
+  parallel_for(static_cast<int>(pairs.size()),
+               [&](int p) { alike[p] = share_a_middle(model, outlines.lattice, views, pairs[p]); });
   if (const auto found = std::ranges::find(alike, 1); found != alike.end()) {
     const BodyPair& pair = pairs[found - alike.begin()];
     refuse(pair.first, pair.second, "nearly wholly");

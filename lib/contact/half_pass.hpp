@@ -15,7 +15,7 @@ struct HalfPass {
   const double* slave_y;
   Arc nodes;
   int segments;  ///< slave segments from the first node on, if contact is integrated over them
-  double slave_shift;
+  Vec2 slave_shift;
   int record;
   int slave_force;                 ///< buffer entry of the first node
   int master_force;                ///< buffer entry of the window's first row
@@ -24,8 +24,9 @@ struct HalfPass {
   bool present_lengths;            ///< whether lengths are those of the current outline
   // For dashpots only:
   const double *slave_vx = nullptr, *slave_vy = nullptr, *master_vx = nullptr, *master_vy = nullptr;
-  double damping = 0;  ///< Pa s/m
-  double dt = 0;       ///< see PairView, s
+  Vec2 image_velocity{0, 0};  ///< of the slave's image less that of the master's, m/s
+  double damping = 0;         ///< Pa s/m
+  double dt = 0;              ///< see PairView, s
 };
 
 struct SlaveNodes {
@@ -37,8 +38,8 @@ inline SlaveNodes load_slaves(const HalfPass& pass, int i) {
   const int index = pass.nodes.begin + i;
   const int turn = turn_of(index, pass.slave->count);
   const int node = index - turn * pass.slave->count;
-  return {load(pass.slave_x + node) + (pass.slave_shift + turn * pass.slave->turn_shift), load(pass.slave_y + node),
-          load(pass.tributary_length + node)};
+  return {load(pass.slave_x + node) + (pass.slave_shift.x() + turn * pass.slave->turn_shift),
+          load(pass.slave_y + node) + pass.slave_shift.y(), load(pass.tributary_length + node)};
 }
 
 /// Nodes of one side that receive forces; `begin`: the first node's entry in a buffer.

@@ -69,7 +69,7 @@ bool on_one_lattice(const Model& model, int first, int second) {
 
 /// Factor on the pitch of a lattice: neighbours move apart in proportion to their distance.
 double growth_of(const Model& model, const ContactPair& contact_pair, double separation, const Vec2& normal) {
-  const Vec2 image(contact_pair.images * model.scene.period.value_or(0), 0);
+  const Vec2 image = initial_lattice(model.scene).shift(contact_pair.images);
   const double distance =
       (model.bodies[contact_pair.second].centre + image - model.bodies[contact_pair.first].centre).dot(normal);
   return distance > separation ? 1 + separation / distance : 1;

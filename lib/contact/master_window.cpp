@@ -23,7 +23,7 @@ struct Segments {
 }  // namespace
 
 void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, const double* outline_y,
-                        const Arc& segments, double shift, double inward) {
+                        const Arc& segments, const Vec2& shift, double inward) {
   shape_ = &shape;
   count_ = segments.count;
   outline_count_ = shape.count;
@@ -33,7 +33,8 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
   // Whole lanes, and at least two vectors for look_up.
   const std::size_t wanted = std::max<std::size_t>(static_cast<std::size_t>(padded(rows) / lane_count), 2);
   if (stride_ < wanted) stride_ = wanted, entries_.assign(columns * stride_, Lanes{});
-  const Vec2 origin(outline_x[first_number_] + shift + first_turn * shape.turn_shift, outline_y[first_number_]);
+  const Vec2 origin(outline_x[first_number_] + shift.x() + first_turn * shape.turn_shift,
+                    outline_y[first_number_] + shift.y());
   // The segment before the first gives its tangent for the bisector at the first node.
   const int before = segments.begin - 1 - turn_of(segments.begin - 1, shape.count) * shape.count;
   const Segments last(outline_x + before, outline_y + before);
@@ -45,14 +46,14 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
     const Segments now(outline_x + node, outline_y + node);
     const Lanes along_x = after(last_tx, now.tangent_x) + now.tangent_x,
                 along_y = after(last_ty, now.tangent_y) + now.tangent_y,
-                shifted_x = now.x + (shift + turn * shape.turn_shift);
+                shifted_x = now.x + (shift.x() + turn * shape.turn_shift), shifted_y = now.y + shift.y();
     Lanes* at = &entries_[static_cast<std::size_t>(w / lane_count)];
     const auto put = [&](Column c, Lanes value) { at[c * stride_] = value; };
-    put(x, shifted_x), put(y, now.y);
+    put(x, shifted_x), put(y, shifted_y);
     put(tangent_x, now.tangent_x), put(tangent_y, now.tangent_y);
     put(length, now.length), put(inverse_length, now.inverse_length);
     put(bisector_x, along_x), put(bisector_y, along_y);
-    put(bisector_at, (shifted_x - origin.x()) * along_x + (now.y - origin.y()) * along_y - ties_up_to * now.length);
+    put(bisector_at, (shifted_x - origin.x()) * along_x + (shifted_y - origin.y()) * along_y - ties_up_to * now.length);
     longest = max(longest, select(first_lanes(rows - w), now.length, Lanes{}));
     last_tx = now.tangent_x, last_ty = now.tangent_y;
   }

@@ -29,7 +29,7 @@ class MasterWindow {
 
   /// `inward`: detection depth below a segment in excess of the longest segment's length, m.
   void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& segments,
-            double shift, double inward);
+            const Vec2& shift, double inward);
 
   int count() const { return count_; }
   /// Values of all rows from 0 on. There is one row more than segments, for the end node of the last.

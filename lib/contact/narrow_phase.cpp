@@ -14,11 +14,11 @@ struct ContactSide {
   const OutlineShape* shape;
   const double* x;
   const double* y;
-  double shift;               ///< added to x
+  Vec2 shift;                 ///< to the image
   int first_turn, last_turn;  ///< turns of the outline to search: 0 to 0 for a closed one
   double longest_segment;
 
-  Vec2 point(int turn, int i) const { return {x[i] + shift + turn * shape->turn_shift, y[i]}; }
+  Vec2 point(int turn, int i) const { return {x[i] + shift.x() + turn * shape->turn_shift, y[i] + shift.y()}; }
 };
 
 double longest_segment(const OutlineShape& shape, const double* x, const double* y) {
@@ -79,7 +79,7 @@ Arc select_arc(const ContactSide& side, const Box& box, const Vec2& d, double le
     thread_local std::vector<char> flags;  // so that memory is allocated once
     flags.resize(static_cast<std::size_t>(n));
     for (int i = 0; i < n; ++i) {
-      const double x = side.x[i] + side.shift, y = side.y[i];
+      const double x = side.x[i] + side.shift.x(), y = side.y[i] + side.shift.y();
       flags[i] =
           (x >= box.x_min) & (x <= box.x_max) & (y >= box.y_min) & (y <= box.y_max) & (x * d.x() + y * d.y() >= least);
     }
@@ -103,7 +103,7 @@ Vec2 direction(const Model& model, const ContactPair& pair, const Box& a, const 
   return d.norm() > 0 ? d.normalized() : Vec2(1, 0);
 }
 
-ContactSide make_side(const Model& model, const OutlineField& outlines, int body, double shift) {
+ContactSide make_side(const Model& model, const OutlineField& outlines, int body, const Vec2& shift) {
   const OutlineShape& shape = model.outline_of(body);
   ContactSide side{
       &shape, &outlines.x[model.outline_offset[body]], &outlines.y[model.outline_offset[body]], shift, 0, 0, 0};
@@ -192,7 +192,8 @@ double narrow(const ContactSide& slave, const ContactSide& master, const Arc& ca
   Lanes least = broadcast(1e300);
   for (int i = 0; i < candidates.count; i += lane_count) {
     const int index = candidates.begin + i, turn = turn_of(index, n), node = index - turn * n;
-    const Lanes px = load(slave.x + node) + (slave.shift + turn * slave.shape->turn_shift), py = load(slave.y + node);
+    const Lanes px = load(slave.x + node) + (slave.shift.x() + turn * slave.shape->turn_shift),
+                py = load(slave.y + node) + slave.shift.y();
     Lanes nearest = broadcast(1e300);
     for (int row = 0; row < window.count(); ++row) {
       const Lanes distance = signed_distance(window[row], px, py);
@@ -281,12 +282,13 @@ void widen_to_segments(const OutlineShape& shape, bool two_walls, int side, Cont
 
 double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& contact_pair, double margin,
                  double skin, MasterWindow& scratch, double distance) {
-  const double shift = contact_pair.images * model.scene.period.value_or(0);
-  ContactSide sides[2] = {make_side(model, outlines, contact_pair.first, 0),
+  const Vec2 shift = outlines.lattice.shift(contact_pair.images);
+  ContactSide sides[2] = {make_side(model, outlines, contact_pair.first, {0, 0}),
                           make_side(model, outlines, contact_pair.second, shift)};
   const Box box_a = bounding_box(model, outlines, contact_pair.first);
   Box box_b = bounding_box(model, outlines, contact_pair.second);
-  box_b.x_min += shift, box_b.x_max += shift;
+  box_b.x_min += shift.x(), box_b.x_max += shift.x();
+  box_b.y_min += shift.y(), box_b.y_max += shift.y();
   Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
   double gap =
@@ -318,14 +320,14 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
 
 void find_self_pairs(const Model& model, const OutlineField& outlines, const ContactPair& of_body, double margin,
                      double skin, std::vector<ContactPair>& contact_pairs, MasterWindow& scratch) {
-  const ContactSide side = make_side(model, outlines, of_body.first, 0);
+  const ContactSide side = make_side(model, outlines, of_body.first, {0, 0});
   const int n = side.shape->count;
   constexpr int together = 2, unseen = 2;
   for (int begin = 0; begin < n; begin += together) {
     const Arc nodes{begin, std::min(together, n - begin) + of_body.integrated};
     const Arc segments{nodes.end() + unseen, n - nodes.count - 1 - 2 * unseen};
     if (segments.count <= 0) continue;
-    scratch.fill(*side.shape, side.x, side.y, segments, 0, skin);
+    scratch.fill(*side.shape, side.x, side.y, segments, {0, 0}, skin);
     ContactPair contact_pair = of_body;
     contact_pair.part = begin;
     const Margins margins{margin, skin, scratch.depth()};

@@ -40,11 +40,11 @@ Lanes gap_rate(const HalfPass& pass, int i, const Projection& p, LaneBits touchi
   Lanes rate{};
   for (unsigned left = bits(touching); left != 0; left &= left - 1) {
     const int lane = std::countr_zero(left), foot = static_cast<int>(p.number[lane]);
-    const auto relative = [&](const double* slave, const double* master) {
-      return slave[node + lane] - (1 - p.xi[lane]) * master[foot] - p.xi[lane] * master[foot + 1];
+    const auto relative = [&](const double* slave, const double* master, double of_image) {
+      return slave[node + lane] - (1 - p.xi[lane]) * master[foot] - p.xi[lane] * master[foot + 1] + of_image;
     };
-    rate[lane] = p.normal_x[lane] * relative(pass.slave_vx, pass.master_vx) +
-                 p.normal_y[lane] * relative(pass.slave_vy, pass.master_vy);
+    rate[lane] = p.normal_x[lane] * relative(pass.slave_vx, pass.master_vx, pass.image_velocity.x()) +
+                 p.normal_y[lane] * relative(pass.slave_vy, pass.master_vy, pass.image_velocity.y());
   }
   return rate;
 }
@@ -134,6 +134,7 @@ void load_velocities(const PairView& view, int slave_side, HalfPass& pass) {
             master = view.model.outline_offset[view.body(1 - slave_side)];
   pass.slave_vx = &velocity.x[slave], pass.slave_vy = &velocity.y[slave];
   pass.master_vx = &velocity.x[master], pass.master_vy = &velocity.y[master];
+  pass.image_velocity = view.image_of(velocity, slave_side) - view.image_of(velocity, 1 - slave_side);
 }
 
 /// Both half passes of a contact pair. Sums that a law does not need are skipped.
@@ -165,7 +166,10 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
 class StepWork {
  public:
   StepWork(const PairView& view, const PairStep& step, int side)
-      : now_(view.outlines.position), step_(step), rigid_(step.rigid[side]) {
+      : now_(view.outlines.position),
+        step_(step),
+        rigid_(step.rigid[side]),
+        of_image_(view.image_of(now_, side) - view.image_of(*step.before, side)) {
     const double now = 0.125 * step.dt * step.dt, before = 0.125 * step.dt_before * step.dt_before;
     for (int c = 0; rigid_ && c < 3; ++c)
       kept_by_force_[c] = before * rigid_->acceleration_before[c] - now * rigid_->acceleration[c];
@@ -177,13 +181,14 @@ class StepWork {
     const Lanes x0 = load(&step_.before->x[node]), y0 = load(&step_.before->y[node]), x1 = load(&now_.x[node]),
                 y1 = load(&now_.y[node]);
     if (!rigid_) {
-      const Lanes displacement_x = x1 - x0, displacement_y = y1 - y0;
+      const Lanes displacement_x = x1 - x0 + of_image_.x(), displacement_y = y1 - y0 + of_image_.y();
       add_in_order(old_x * displacement_x + old_y * displacement_y, before_);
       add_in_order(x * displacement_x + y * displacement_y, now_work_);
       return;
     }
     const RigidStep& r = *rigid_;
-    const double displacement_x = r.to.x() - r.from.x(), displacement_y = r.to.y() - r.from.y();
+    const double displacement_x = r.to.x() - r.from.x() + of_image_.x(),
+                 displacement_y = r.to.y() - r.from.y() + of_image_.y();
     const Lanes arm_x = x0 - r.from.x(), arm_y = y0 - r.from.y();
     add_in_order(old_x * (displacement_x - r.turn * arm_y) + old_y * (displacement_y + r.turn * arm_x), before_);
     add_in_order(x * (displacement_x - r.turn * (y1 - r.to.y())) + y * (displacement_y + r.turn * (x1 - r.to.x())),
@@ -199,6 +204,7 @@ class StepWork {
   const OutlineField& now_;
   const PairStep& step_;
   const RigidStep* rigid_;
+  Vec2 of_image_;                 ///< displacement of the side's image relative to its body, m
   double kept_by_force_[3] = {};  ///< of a unit force or moment on a rigid body, m or 1
   double before_ = 0, now_work_ = 0, kept_ = 0;
 };

@@ -178,7 +178,7 @@ void PairTable::refuse_others() const {
   const auto fits = [](int at, int count, int room) { return at >= 0 && at % lane_count == 0 && at <= room - count; };
   const auto is_one = [&](const ContactPair& contact_pair) {
     bool good = contact_pair.first >= 0 && contact_pair.first <= contact_pair.second && contact_pair.second < bodies &&
-                contact_pair.images > -far && contact_pair.images < far;
+                std::abs(contact_pair.images.x) < far && std::abs(contact_pair.images.y) < far;
     for (int side = 0; good && side < 2; ++side)
       good = is_arc(contact_pair.nodes[side]) && is_arc(contact_pair.segments[side]) &&
              is_arc(contact_pair.window[side]) &&

@@ -46,8 +46,8 @@ struct SlaveArc {
   void fill(const HalfPass& pass) {
     segments = pass.segments;
     const Arc arc{pass.nodes.begin, segments};
-    x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift, pass.slave->turn_shift);
-    y.fill(pass.slave_y, arc, *pass.slave, 0, 0);
+    x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift.x(), pass.slave->turn_shift);
+    y.fill(pass.slave_y, arc, *pass.slave, pass.slave_shift.y(), 0);
     if (const auto room = static_cast<std::size_t>(padded(segments)); lengths.size() < room) lengths.resize(room);
     for (int i = 0; i < segments; i += lane_count) {
       Lanes length = load(&pass.slave->segment_length[static_cast<std::size_t>(slave_index(pass, i))]);

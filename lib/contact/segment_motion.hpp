@@ -50,10 +50,11 @@ struct PairMotion {
     const OutlineShape &of_slave = view.model.outline_of(slave), &of_master = view.model.outline_of(master);
     const Arc segments{view.contact_pair.nodes[slave_side].begin, view.contact_pair.slave_segments[slave_side]},
         window = view.contact_pair.window[1 - slave_side];
-    slave_x.fill(&field.x[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
-    slave_y.fill(&field.y[view.model.outline_offset[slave]], segments, of_slave, 0, 0);
-    master_x.fill(&field.x[view.model.outline_offset[master]], window, of_master, 0, 0);
-    master_y.fill(&field.y[view.model.outline_offset[master]], window, of_master, 0, 0);
+    const Vec2 by_slave = view.image_of(field, slave_side), by_master = view.image_of(field, 1 - slave_side);
+    slave_x.fill(&field.x[view.model.outline_offset[slave]], segments, of_slave, by_slave.x(), 0);
+    slave_y.fill(&field.y[view.model.outline_offset[slave]], segments, of_slave, by_slave.y(), 0);
+    master_x.fill(&field.x[view.model.outline_offset[master]], window, of_master, by_master.x(), 0);
+    master_y.fill(&field.y[view.model.outline_offset[master]], window, of_master, by_master.y(), 0);
   }
 };
 

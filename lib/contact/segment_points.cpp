@@ -86,7 +86,8 @@ void add_points(const PairView& view, const HalfPass& pass, int side, const Node
     point.damage = std::numeric_limits<double>::quiet_NaN();
     point.length = 2 * weight;
     point.normal = normal, point.side = side;
-    point.position = Vec2(pass.slave_x[node] + pass.slave_shift + turn * pass.slave->turn_shift, pass.slave_y[node]);
+    point.position = Vec2(pass.slave_x[node] + pass.slave_shift.x() + turn * pass.slave->turn_shift,
+                          pass.slave_y[node] + pass.slave_shift.y());
     points.push_back(point);
   }
 }

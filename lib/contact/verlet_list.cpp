@@ -181,7 +181,7 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
     if (!model_.bodies[b].wall) swept_at_[b] = place_of(model_, b, here);
   });
   std::vector<BodyPair> found = broad_phase(model_, boxes, margin_);
-  std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair); });
+  std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair, here); });
   follow(std::move(found), here);
   skin_is_exceeded(trial);
   return true;
@@ -189,11 +189,11 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
 
 /// Whether discs around both outlines were further apart than the margin at the broad phase. Of the pairs of grains
 /// that only boxes let in, few remain to be searched.
-bool VerletList::discs_are_apart(const BodyPair& pair) const {
+bool VerletList::discs_are_apart(const BodyPair& pair, const OutlineField& here) const {
   if (model_.bodies[pair.first].wall || model_.bodies[pair.second].wall) return false;
   const BodyPlace &a = swept_at_[pair.first], &b = swept_at_[pair.second];
-  const double dx = b.x + pair.images * model_.scene.period.value_or(0) - a.x, dy = b.y - a.y,
-               reach = a.outer + b.outer + margin_;
+  const Vec2 image = here.lattice.shift(pair.images);
+  const double dx = b.x + image.x() - a.x, dy = b.y + image.y() - a.y, reach = a.outer + b.outer + margin_;
   return dx * dx + dy * dy > reach * reach;
 }
 

@@ -65,7 +65,7 @@ class VerletList {
   double displacement(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
   void reset_references(const OutlineField& here, const OutlineField& trial);
-  bool discs_are_apart(const BodyPair& pair) const;
+  bool discs_are_apart(const BodyPair& pair, const OutlineField& here) const;
   void follow(std::vector<BodyPair> found, const OutlineField& here);
 
   const Model& model_;

@@ -39,7 +39,9 @@ Trial::Trial(const Model& model)
     : position(zero_dofs(model)),
       reduced_momentum(position),
       force(position),
-      contact_force(model.outline_offset.back()) {}
+      contact_force(model.outline_offset.back()) {
+  position.lattice = initial_lattice(model.scene);
+}
 
 Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
   Dofs scratch;

@@ -45,6 +45,7 @@ void Simulation::begin(const StartPoint& start) {
   start.require_fit(model_);
   control_ = start.control;
   state_.position = start.position, state_.reduced_momentum = start.reduced_momentum;
+  state_.position.lattice = initial_lattice(model_.scene);
   state_.memory.material = start.material;
   set_imposed_velocities(model_, state_.reduced_momentum);
   forces_.inherit(start.contact, state_.memory.contact);

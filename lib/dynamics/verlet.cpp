@@ -133,6 +133,7 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
 
 /// Predicts positions at the end of the step and, for forces that depend on them, velocities there.
 void Verlet::predict(const State& state, double dt) {
+  trial_.position.lattice = state.position.lattice + dt * state.reduced_momentum.lattice;
   if (needs_velocities_) {
     predict_velocities(state, dt);
     return move_by_mean_velocity(state, dt);

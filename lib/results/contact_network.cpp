@@ -28,7 +28,7 @@ FrameTable contact_network(const Snapshot& snapshot) {
     PairSums sums;
     for (const ContactPoint& point : pair.points) sums.add(point);
     append(Vec2(pair.first, pair.second), bodies);
-    images.push_back(static_cast<float>(pair.images));
+    images.push_back(static_cast<float>(pair.images.x));
     append(sums.point(), points);
     append(sums.force, forces);
     lengths.push_back(static_cast<float>(sums.length));

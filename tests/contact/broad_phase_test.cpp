@@ -48,12 +48,12 @@ std::vector<BodyPair> all_pairs(const Boxes& in) {
       const Box &p = in.boxes[a], &q = in.boxes[b];
       if (!overlap(p.y_min, p.y_max, q.y_min, q.y_max, in.margin)) continue;
       if (in.model.bodies[a].wall || in.model.bodies[b].wall) {
-        pairs.push_back({a, b, 0});
+        pairs.push_back({a, b, {}});
         continue;
       }
       for (int k = a == b ? 1 : -images; k <= images; ++k)
         if (overlap(p.x_min, p.x_max, q.x_min + k * period, q.x_max + k * period, in.margin))
-          pairs.push_back({a, b, k});
+          pairs.push_back({a, b, {k, 0}});
     }
   return pairs;
 }

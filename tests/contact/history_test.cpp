@@ -206,7 +206,7 @@ TEST(PairTable, refuses_other_bodies) {
   EXPECT_THROW(with([](ContactPair& p) { p.second = 2; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.first = -1; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.first = 1, p.second = 0; }).loaded(), ArchiveError);
-  EXPECT_THROW(with([](ContactPair& p) { p.images = 1 << 30; }).loaded(), ArchiveError);
+  EXPECT_THROW(with([](ContactPair& p) { p.images.x = 1 << 30; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.nodes[0].begin = 1660944399; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.segments[1].count = -1; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.record[1] = 1 << 20; }).loaded(), ArchiveError);

@@ -39,7 +39,7 @@ struct Pair {
   const OutlineShape& shape(int side) const { return rig.model.outlines[rig.model.bodies[body(side)].outline]; }
   Vec2 node(int side, int k) const {
     const int n = shape(side).count, turn = turn_of(k, n);
-    const double shift = side == 0 ? 0 : bodies.images * rig.model.scene.period.value_or(0);
+    const double shift = side == 0 ? 0 : rig.outlines.position.lattice.shift(bodies.images).x();
     return rig.node(body(side), k - turn * n) + Vec2(shift + turn * shape(side).turn_shift, 0);
   }
 };

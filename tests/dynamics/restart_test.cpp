@@ -238,7 +238,7 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   EXPECT_EQ(worn > 0, history.fields() > 0) << "bonds are half worn";
   const std::vector<ContactPair>& contact_pairs = simulation.forces().contact().contact_pairs();
   EXPECT_TRUE(std::any_of(contact_pairs.begin(), contact_pairs.end(), [&](const ContactPair& p) {
-    return p.images != 0 || scene_model.bodies[p.first].wall || scene_model.bodies[p.second].wall;
+    return p.images != Images{} || scene_model.bodies[p.first].wall || scene_model.bodies[p.second].wall;
   })) << "bodies touch across the period";
 }
 
