@@ -163,6 +163,13 @@ class SwitchTimes {
   explicit SwitchTimes(const Scene& scene) {
     for (const Wall& wall : scene.walls) add(wall.x), add(wall.y);
     for (const History& gravity : scene.gravity_history) add(gravity);
+    if (scene.cell)
+      for (const auto& row : scene.cell->gradient)
+        for (const History& component : row) add(component);
+    if (scene.cell)
+      for (const auto& row : scene.cell->stress)
+        for (const std::optional<History>& component : row)
+          if (component) add(*component);
     for (const BoundaryCondition& condition : scene.boundary) {
       add(condition.window), add(condition.pressure);
       add(condition.x), add(condition.y), add(condition.angle);

@@ -159,7 +159,7 @@ std::vector<PairEstimate> pair_estimates(const Model& model, const LawTable& law
     const Body &a = model.bodies[first], &b = model.bodies[second];
     if (a.wall && b.wall) return;
     // A body as wide as the period touches its own image.
-    if (first == second && !(model.scene.period && width_of(model, a) >= *model.scene.period)) return;
+    if (first == second && !(model.scene.is_periodic() && width_of(model, a) >= model.scene.shortest_period())) return;
     const PairEstimate pair = make_pair_of(model, laws, first, second);
     if (!is_known(pair)) pairs.push_back(pair);
   };

@@ -26,4 +26,14 @@ Box bounding_box(const Model& model, const OutlineField& position, int body);
 /// do not meet their own images.
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin);
 
+/// The same with two periods, of bodies without walls. `lattice`: of their positions. The sweep visits the bodies in a
+/// cell of shortest vectors and those of their images that are near it.
+std::vector<BodyPair> broad_phase_in_cell(const std::vector<Box>& boxes, double margin, const Lattice& lattice);
+
+/// That of the model's domain.
+inline std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin,
+                                         const Lattice& lattice) {
+  return model.scene.cell ? broad_phase_in_cell(boxes, margin, lattice) : broad_phase(model, boxes, margin);
+}
+
 }  // namespace pliant

@@ -270,7 +270,22 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   parallel_for(bodies, gather, static_cast<int>(block_totals_.size()), add_up);
   PairTotals total;
   for (const PairTotals& of_block : block_totals_) total.add(of_block);
+  if (model_.scene.cell) force.lattice = forces_on_images(now.forces);
   return total;
+}
+
+/// Forces on the vectors of the periods: of each pair the force on the second body, times its images.
+Lattice ContactSystem::forces_on_images(const PairForceBuffer& forces) const {
+  Lattice sum;
+  for (const ContactPair& contact_pair : contact_pairs()) {
+    if (contact_pair.images == Images{} || contact_pair.is_empty()) continue;
+    double x = 0, y = 0;
+    for (int i = 0, entry = contact_pair.entry[1]; i < contact_pair.forces(1).count; ++i)
+      x += forces.x[entry + i], y += forces.y[entry + i];
+    const Images n = contact_pair.images;
+    sum = sum + Lattice{n.x * x, n.x * y, n.y * x, n.y * y};
+  }
+  return sum;
 }
 
 void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {

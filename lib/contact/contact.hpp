@@ -122,6 +122,7 @@ class ContactSystem {
   bool corrects_energy() const { return largest_correction_ > 0 && model_.scene.corrects_energy(); }
   PairTotals corrected_forces(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
                               ContactHistory& to) const;
+  Lattice forces_on_images(const PairForceBuffer& forces) const;
   void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
   bool starts_from_a_state() const { return laws_before_.count > 0; }

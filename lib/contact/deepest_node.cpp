@@ -184,7 +184,7 @@ std::vector<BodyPair> pairs_that_may_overlap(const Model& model, const OutlineFi
   std::vector<Box> boxes(model.bodies.size());
   parallel_for(bodies, [&](int b) { boxes[b] = bounding_box(model, outlines, b); });
   std::vector<BodyPair> pairs;
-  for (const BodyPair& p : broad_phase(model, boxes, 0))
+  for (const BodyPair& p : broad_phase(model, boxes, 0, outlines.lattice))
     if (!model.bodies[p.first].wall && !model.bodies[p.second].wall) pairs.push_back(p);
   for (int wall = 0; wall < bodies; ++wall) {
     if (!model.bodies[wall].wall) continue;

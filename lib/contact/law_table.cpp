@@ -97,7 +97,7 @@ void LawTable::add_body(const Model& model, const Body& body) {
 /// Whether bodies of the group may meet each other. A single body meets at most its image or itself.
 bool LawTable::meets_itself(const Scene& scene, const Group& group) const {
   if (group.bodies > 1) return true;
-  return !group.wall && (scene.period || (scene.contact.self_contact && group.kind == BodyKind::compliant));
+  return !group.wall && (scene.is_periodic() || (scene.contact.self_contact && group.kind == BodyKind::compliant));
 }
 
 void LawTable::find_rules(const Scene& scene) {

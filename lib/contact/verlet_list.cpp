@@ -6,6 +6,7 @@
 
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
+#include "geometry/lattice.hpp"
 
 namespace pliant {
 namespace {
@@ -68,6 +69,7 @@ void VerletList::forget() {
   use_.clear();
   excess_.clear();
   gap_.clear(), watched_.clear();
+  image_.clear();
   pair_displacements_.set_bodies({});
   since_sweep_.assign(model_.bodies.size(), unknown_displacement);
   swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
@@ -79,6 +81,7 @@ void VerletList::loaded() {
     throw ArchiveError("displacements are those of other bodies");
   if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
     throw ArchiveError("displacements are those of other pairs");
+  if (image_.size() != (model_.scene.cell ? pairs_.size() : 0)) throw ArchiveError("images are those of other pairs");
   use_.assign(pairs_.size(), search_again);
 }
 
@@ -88,23 +91,48 @@ void VerletList::loaded() {
 /// when pairs are searched must have that property, because the stable step depends on the positions at the search.
 double VerletList::measure(const OutlineField& now) {
   parallel_for(count_of_bodies(), [&](int b) { motion_[b] = displacement_disc(model_, b, now, reference_); });
+  swept_by_.setZero();
+  double by_cell = 0;
+  if (now.lattice != swept_lattice_ && model_.scene.cell) {
+    swept_by_ = matrix_of(now.lattice) * matrix_of(swept_lattice_).inverse() - Eigen::Matrix2d::Identity();
+    by_cell = approach_by_cell();
+  }
   double x = 0, y = 0;
   int free = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
     if (model_.bodies[b].wall) continue;
-    const DisplacementDisc displacement = displacement_between(since_sweep_[b], motion_[b]);
+    const DisplacementDisc displacement = displacement_since_sweep(b);
     x += displacement.x, y += displacement.y, ++free;
   }
   if (free > 0) x /= free, y /= free;
   double farthest = 0;
   for (int b = 0; b < count_of_bodies(); ++b) {
-    const DisplacementDisc displacement = displacement_between(since_sweep_[b], motion_[b]);
+    const DisplacementDisc displacement = displacement_since_sweep(b);
     const bool wall = model_.bodies[b].wall;
     const double dx = wall ? 0.0 : displacement.x - x, dy = displacement.y - y,
                  from_mean = std::sqrt(dx * dx + dy * dy) + displacement.radius;
     if (from_mean > farthest) farthest = std::max(farthest, come_out_of_place(b, from_mean, x, y, now));
   }
-  return farthest;
+  return farthest + by_cell;
+}
+
+/// Displacement of a body since the last broad phase. In a cell that is deformed it is relative to the motion of the
+/// cell at the body's place.
+DisplacementDisc VerletList::displacement_since_sweep(int body) const {
+  DisplacementDisc displacement = displacement_between(since_sweep_[body], motion_[body]);
+  if (!model_.scene.cell) return displacement;
+  const Vec2 with_cell = swept_by_ * Vec2(swept_at_[body].x, swept_at_[body].y);
+  displacement.x -= with_cell.x(), displacement.y -= with_cell.y();
+  return displacement;
+}
+
+/// Half of the distance by which the cell's deformation alone may have brought a pair together that the broad phase
+/// excluded. The gap of two bodies, with the radii R, shrinks by at most the norm of the growth times gap + 2 R. What
+/// is left of a gap larger than the margin is larger too.
+double VerletList::approach_by_cell() const {
+  double radius = 0;
+  for (const BodyPlace& place : swept_at_) radius = std::max(radius, place.outer);
+  return swept_by_.norm() * (radius + 0.5 * margin_);
 }
 
 /// Distance by which a body may have left its place. A round body may spin without leaving it: the distance is from the
@@ -114,20 +142,37 @@ double VerletList::come_out_of_place(int body, double from_mean, double drift_x,
   const BodyPlace& then = swept_at_[body];
   if (from_mean < search_threshold * own_skin_ || then.inner < 0) return from_mean;
   const BodyPlace place = place_of(model_, body, now);
-  const double dx = place.x - then.x - drift_x, dy = place.y - then.y - drift_y;
+  const Vec2 with_cell = swept_by_ * Vec2(then.x, then.y);
+  const double dx = place.x - then.x - with_cell.x() - drift_x, dy = place.y - then.y - with_cell.y() - drift_y;
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
+}
+
+/// Relative displacement of both bodies of a pair, the second one at its image.
+double VerletList::with_image(int pair, const DisplacementDisc& first, DisplacementDisc second,
+                              const OutlineField& now) const {
+  if (!image_.empty()) {
+    const Vec2 image = now.lattice.shift(pairs_[pair].images);
+    second.x += image.x() - image_[pair].x, second.y += image.y() - image_[pair].y;
+  }
+  return relative_displacement(first, second);
+}
+
+void VerletList::note_image(int pair, const OutlineField& now) {
+  if (image_.empty()) return;
+  const Vec2 image = now.lattice.shift(pairs_[pair].images);
+  image_[pair] = {image.x(), image.y()};
 }
 
 /// Bound from the discs of the nodes' displacements: cheap, but an overestimate.
 double VerletList::displacement_bound(int pair, const OutlineField& now) const {
-  return relative_displacement(pair_displacements_.displacement_bound(2 * pair, displacements(now)),
-                               pair_displacements_.displacement_bound(2 * pair + 1, displacements(now)));
+  return with_image(pair, pair_displacements_.displacement_bound(2 * pair, displacements(now)),
+                    pair_displacements_.displacement_bound(2 * pair + 1, displacements(now)), now);
 }
 
 /// Bound from each node's own displacement.
 double VerletList::displacement(int pair, const OutlineField& now) const {
-  return relative_displacement(pair_displacements_.displacement(2 * pair, displacements(now)),
-                               pair_displacements_.displacement(2 * pair + 1, displacements(now)));
+  return with_image(pair, pair_displacements_.displacement(2 * pair, displacements(now)),
+                    pair_displacements_.displacement(2 * pair + 1, displacements(now)), now);
 }
 
 bool VerletList::stays_within(int pair, double limit, const OutlineField& now) const {
@@ -174,13 +219,14 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
     if (come_out_ < search_threshold * own_skin_) return false;
   }
   just_swept_ = true;
+  swept_lattice_ = here.lattice;
   std::vector<Box> boxes(model_.bodies.size());
   parallel_for(count_of_bodies(), [&](int b) {
     boxes[b] = bounding_box(model_, here, b);
     since_sweep_[b] = displacement_disc(model_, b, here, reference_);
     if (!model_.bodies[b].wall) swept_at_[b] = place_of(model_, b, here);
   });
-  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_);
+  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_, here.lattice);
   std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair, here); });
   follow(std::move(found), here);
   skin_is_exceeded(trial);
@@ -211,6 +257,8 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
   const std::vector<double> old_gap = std::exchange(gap_, std::vector<double>(pairs_.size(), 0.0));
   const std::vector<char> was_watched = std::exchange(watched_, std::vector<char>(pairs_.size(), 1));
+  const std::vector<ImageShift> old_image =
+      std::exchange(image_, std::vector<ImageShift>(model_.scene.cell ? pairs_.size() : 0));
   const NodeDisplacements old_displacements = std::exchange(pair_displacements_, NodeDisplacements(model_));
   pair_displacements_.set_bodies(both_bodies(pairs_));
   std::size_t old = 0;
@@ -218,6 +266,7 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
     if (old == before.size() || before[old] != pairs_[p] || !stays[old]) continue;
     excess_[p] = old_excess[old], gap_[p] = old_gap[old], watched_[p] = was_watched[old];
+    if (!image_.empty()) image_[p] = old_image[old];
     for (int side = 0; side < 2; ++side)
       pair_displacements_.copy_entry(2 * p + side, old_displacements, 2 * static_cast<int>(old) + side);
   }
@@ -244,6 +293,7 @@ bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {
   excess_[pair] = 0, gap_[pair] = gap;
   watched_[pair] = !(just_swept_ && gap > margin_);
+  note_image(pair, now);
   for (int side = 0; side < 2; ++side) pair_displacements_.set_reference(2 * pair + side, displacements(now));
 }
 
@@ -251,6 +301,7 @@ void VerletList::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(keep);
   excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);
+  if (model_.scene.cell) image_.push_back({0, 0});
   for (int body : {pair.first, pair.second}) pair_displacements_.append(body);
   searched(count() - 1, now, 0);
 }

@@ -52,6 +52,7 @@ class VerletList {
     visitor("reference", reference_);
     visitor("pairs", pairs_), visitor("excess", excess_);
     visitor("gap", gap_), visitor("watched", watched_);
+    visitor("image", image_), visitor("swept_lattice", swept_lattice_);
     visitor("pair_ways", pair_displacements_), visitor("since_sweep", since_sweep_), visitor("swept_at", swept_at_);
   }
   void loaded();
@@ -60,7 +61,11 @@ class VerletList {
   DisplacementsSoFar displacements(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   double measure(const OutlineField& now);
+  DisplacementDisc displacement_since_sweep(int body) const;
+  double approach_by_cell() const;
   double come_out_of_place(int body, double from_mean, double drift_x, double drift_y, const OutlineField& now) const;
+  void note_image(int pair, const OutlineField& now);
+  double with_image(int pair, const DisplacementDisc& first, DisplacementDisc second, const OutlineField& now) const;
   double displacement_bound(int pair, const OutlineField& now) const;
   double displacement(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
@@ -84,6 +89,13 @@ class VerletList {
   std::vector<double> gap_;               ///< [pairs] distance of the outlines at the last search, m
   std::vector<char> watched_;             ///< [pairs] 0: beyond the margin at the last broad phase
   NodeDisplacements pair_displacements_;  ///< [pairs][sides] since the last search
+  /// Vector from a body to its image, m.
+  struct ImageShift {
+    double x, y;
+  };
+  std::vector<ImageShift> image_;  ///< [pairs] of the second body at the last search; empty unless periods move
+  Lattice swept_lattice_;          ///< at the last broad phase
+  Eigen::Matrix2d swept_by_ = Eigen::Matrix2d::Zero();  ///< growth of the cell since, at the trial
   /// [bodies] displacements from the reference at the last broad phase
   std::vector<DisplacementDisc> since_sweep_;
   std::vector<BodyPlace> swept_at_;  ///< [bodies] at the last broad phase; unused for walls

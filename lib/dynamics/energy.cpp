@@ -112,7 +112,7 @@ double EnergyAccountant::contact_imbalance(const State& state) const {
       lever += std::abs(at.x[i] * force.y[i]) + std::abs(at.y[i] * force.x[i]);
     }
   const double linear = ratio(std::hypot(fx, fy), magnitude);
-  return model_.scene.period ? linear : std::max(linear, ratio(std::abs(moment), lever));
+  return model_.scene.is_periodic() ? linear : std::max(linear, ratio(std::abs(moment), lever));
 }
 
 double EnergyAccountant::internal_imbalance(const State& state) const {

@@ -62,6 +62,7 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
   }
   result.damping_power = result.contact.damping_power;
+  to.force.lattice = to.contact_force.lattice;
   phases_.enter(Phase::internal);
   const OutlineField* on_outlines = &to.contact_force;
   if (has_outline_loads(model_)) {

@@ -9,6 +9,7 @@
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
+#include "dynamics/cell_motion.hpp"
 
 namespace pliant {
 
@@ -24,6 +25,7 @@ void take_over_sums(const Evaluation& found, State& state) {
 /// Applies changes of histories and windows at the end time of a step: of the forces from then on, and of the energy of
 /// springs that begin or end to act.
 void pass_switch(const Model& model, State& state) {
+  turn_cell(model, state);
   const Instant before{state.time, true}, after{state.time};
   state.external_work +=
       support_energy(model, state.outlines.position, after) - support_energy(model, state.outlines.position, before);
@@ -79,6 +81,7 @@ void take_over(const Model& model, State& state, Trial& trial, const StepReport&
       after{trial.position, trial.reduced_momentum, end_time, true};
   state.external_work += external_work(model, before, state.force, after, trial.force) +
                          outline_work(model, state.outlines, before.instant(), trial.outlines, after.instant());
+  if (model.scene.cell) state.external_work += work_on_images(state, trial);
   state.gravity_work += gravity_work(model, before, after);
   state.dissipated += report.evaluation.contact.dissipated + report.damping_work + report.evaluation.material_loss;
   state.damped += report.damping_work;
@@ -89,6 +92,7 @@ void take_over(const Model& model, State& state, Trial& trial, const StepReport&
   state.rejections += report.rejections;
   state.evaluations += report.evaluations;
   take_over_sums(report.evaluation, state);
+  if (model.scene.cell) push_cell(model, state, report.dt);
   if (std::binary_search(model.switch_times.begin(), model.switch_times.end(), end_time)) pass_switch(model, state);
 }
 

@@ -23,12 +23,14 @@ class ShorterStep {
  public:
   ShorterStep(const Model& model, State& state, Trial& trial, const StepReport& report)
       : state_(state), trial_(trial), numbers_(state) {
+    if (model.scene.cell) work_of_bodies_ = state.body_balance.work;
     take_over(model, state, trial, report);
     state.steps = numbers_.steps, state.rejections = numbers_.rejections, state.evaluations = numbers_.evaluations;
   }
   ~ShorterStep() {
     swap_motion(state_, trial_);
     static_cast<StateNumbers&>(state_) = numbers_;
+    if (!work_of_bodies_.empty()) state_.body_balance.work.swap(work_of_bodies_);
   }
   ShorterStep(const ShorterStep&) = delete;
   ShorterStep& operator=(const ShorterStep&) = delete;
@@ -37,6 +39,7 @@ class ShorterStep {
   State& state_;
   Trial& trial_;
   const StateNumbers numbers_;
+  std::vector<double> work_of_bodies_;  ///< which a cell with two periods changes
 };
 
 enum class Shown { all, enough, failed };

@@ -6,6 +6,7 @@
 #include "bodies/place_outlines.hpp"
 #include "contact/deepest_node.hpp"
 #include "core/archive.hpp"
+#include "dynamics/cell_motion.hpp"
 #include "dynamics/failure.hpp"
 #include "dynamics/take_step.hpp"
 
@@ -29,6 +30,7 @@ Simulation::Simulation(const Model& model, const StartPoint* from) : model_(mode
     state_.reduced_momentum = initial_velocities(model, state_.position);
     refuse_deep_overlap(model, placed_outlines(model, state_.position));
   }
+  start_cell(model, state_);
   const Evaluation start = find_forces(forces_, state_);
   check_start(start, state_, forces_);
   forces_.warn_of_depth(start, 0);
@@ -45,7 +47,7 @@ void Simulation::begin(const StartPoint& start) {
   start.require_fit(model_);
   control_ = start.control;
   state_.position = start.position, state_.reduced_momentum = start.reduced_momentum;
-  state_.position.lattice = initial_lattice(model_.scene);
+  if (!model_.scene.cell) state_.position.lattice = initial_lattice(model_.scene);
   state_.memory.material = start.material;
   set_imposed_velocities(model_, state_.reduced_momentum);
   forces_.inherit(start.contact, state_.memory.contact);

@@ -22,6 +22,7 @@ struct StartPoint {
   void visit(Visitor&& visitor) {
     control.visit(visitor);
     visitor("position", position), visitor("reduced_momentum", reduced_momentum);
+    visitor("cell", position.lattice), visitor("cell_rate", reduced_momentum.lattice);
     visitor("material", material), visitor("contact", contact);
   }
   /// Throws ArchiveError unless it fits the model's numbers of degrees of freedom and points.

@@ -75,6 +75,7 @@ struct State : StateNumbers {
   Dofs force;             ///< N/m
   Memory memory;
   BodyBalance body_balance;
+  Lattice cell_start;  ///< of the positions at the start of the run; 0 without two periods
   // The hash leaves these out, like contact_energy and contacts: they follow from the positions. It also leaves out the
   // contact forces of the last step (ContactHistory::last), which the energy correction of the next step needs.
   Outlines outlines;           ///< with the velocities that dashpots used
@@ -107,6 +108,11 @@ struct State : StateNumbers {
     visitor("force", force);
     visitor("memory", memory);
     visitor("body_balance", body_balance);
+    if (cell_start == Lattice{}) return;
+    visitor("cell_start", cell_start);
+    visitor("cell", position.lattice);
+    visitor("cell_rate", reduced_momentum.lattice);
+    visitor("cell_force", force.lattice);
   }
 };
 

@@ -100,7 +100,7 @@ TimeStepBound::TimeStepBound(const Model& model, const LawTable& laws) : model_(
   contact_floor_.assign(model.bodies.size(), 0.0);
   bound_conditions();
   limit_ = limit(1);
-  if (model.bodies.size() < 2 && !model.scene.contact.self_contact && !model.scene.period) return;
+  if (model.bodies.size() < 2 && !model.scene.contact.self_contact && !model.scene.is_periodic()) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     contact_floor_[b] = compliance_[b] * laws.largest_stiffness(static_cast<int>(b));
 }

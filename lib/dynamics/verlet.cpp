@@ -12,6 +12,7 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
+#include "dynamics/cell_motion.hpp"
 #include "dynamics/mass_damping.hpp"
 
 namespace pliant {
@@ -134,6 +135,7 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
 /// Predicts positions at the end of the step and, for forces that depend on them, velocities there.
 void Verlet::predict(const State& state, double dt) {
   trial_.position.lattice = state.position.lattice + dt * state.reduced_momentum.lattice;
+  trial_.reduced_momentum.lattice = end_velocity_.lattice = state.reduced_momentum.lattice;
   if (needs_velocities_) {
     predict_velocities(state, dt);
     return move_by_mean_velocity(state, dt);
@@ -272,6 +274,7 @@ void Verlet::add_damping_work(const State& state, StepReport& report) {
 void Verlet::accepted(State& state, const StepReport& report) {
   if (body_correction_.is_active())
     body_correction_.add_work(trial_, state), body_correction_.correct(trial_, state, report.dt);
+  if (model_.scene.cell && model_.scene.cell->is_stress_controlled()) check_cell_holds(state);
   if (state.steps % bound_period == 0)
     forces_.phases().apart(Phase::bound, [&] { bound_.update_internal(state.position, state.memory); });
 }

@@ -40,6 +40,9 @@ inline Lattice operator*(double factor, const Lattice& p) {
 }
 
 /// Lattice of positions at the start of a scene.
-inline Lattice initial_lattice(const Scene& scene) { return {scene.period.value_or(0), 0, 0, 0}; }
+inline Lattice initial_lattice(const Scene& scene) {
+  if (scene.cell) return {scene.cell->periods.x(), 0, 0, scene.cell->periods.y()};
+  return {scene.period.value_or(0), 0, 0, 0};
+}
 
 }  // namespace pliant

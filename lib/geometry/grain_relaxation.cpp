@@ -80,6 +80,7 @@ bool GrainRelaxation::relax(int sweeps) {
 Vec2 GrainRelaxation::apart(const Placement& from, const Placement& to) const {
   Vec2 d = to.centre - from.centre;
   if (region_.periodic) d.x() -= std::round(d.x() / region_.width()) * region_.width();
+  if (region_.periodic_y) d.y() -= std::round(d.y() / region_.height()) * region_.height();
   return d;
 }
 
@@ -89,6 +90,8 @@ void GrainRelaxation::find_pairs() {
   for (Placement& grain : grains_) {
     if (region_.periodic)
       grain.centre.x() -= std::floor((grain.centre.x() - region_.left) / region_.width()) * region_.width();
+    if (region_.periodic_y)
+      grain.centre.y() -= std::floor((grain.centre.y() - region_.bottom) / region_.height()) * region_.height();
     found_at_.push_back(grain.centre);
   }
   std::vector<int> order(grains_.size());
@@ -155,6 +158,7 @@ GrainRelaxation::Push GrainRelaxation::push_of_edges(int i) const {
   };
   for (std::size_t k = 0; k < nodes_[i].size(); ++k) {
     const Vec2 x = grain.centre + nodes_[i][k];
+    if (region_.periodic_y) continue;
     touch(x.y() - region_.bottom, Vec2(0, 1), k);
     touch(region_.top - x.y(), Vec2(0, -1), k);
     if (region_.periodic) continue;
@@ -260,7 +264,7 @@ void GrainRelaxation::move(double dt) {
     grain.centre += dt * unit_ * velocity_[i];
     grain.angle += dt * spin_[i] / std::sqrt(inertia(grain));
     // Scattered grains may be pushed out of a box before they are pushed back.
-    grain.centre.y() = std::clamp(grain.centre.y(), region_.bottom, region_.top);
+    if (!region_.periodic_y) grain.centre.y() = std::clamp(grain.centre.y(), region_.bottom, region_.top);
     if (!region_.periodic) grain.centre.x() = std::clamp(grain.centre.x(), region_.left, region_.right);
   }
 }

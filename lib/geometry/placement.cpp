@@ -96,7 +96,8 @@ Points placed_outline(const Points& outline, const Placement& grain) {
 
 Packed place_grains(const Scene& scene, const Grains& grains, std::mt19937_64& random) {
   const Packing& packing = grains.packing;
-  const Strip region{packing.left, packing.right, packing.bottom, packing.top, scene.period.has_value()};
+  const Strip region{packing.left, packing.right,       packing.bottom,
+                     packing.top,  scene.is_periodic(), scene.cell.has_value()};
   Packed packed{draw_grains(scene, grains), {}};
   const bool fills = packing.kind == PackingKind::random || packing.kind == PackingKind::fourier_voronoi;
   const std::vector<WallProfile> walls = fills ? walls_in(scene, region) : std::vector<WallProfile>{};

@@ -26,10 +26,11 @@ struct Packed {
 /// grains do not fit.
 Packed place_grains(const Scene& scene, const Grains& grains, std::mt19937_64& random);
 
-/// Region that grains fill: a box, or a strip that is periodic in x.
+/// Region that grains fill: a box, a strip that is periodic in x, or a cell that is so in x and y.
 struct Strip {
   double left = 0, right = 0, bottom = 0, top = 0;  ///< m
-  bool periodic = false;
+  bool periodic = false;                            ///< in x
+  bool periodic_y = false;                          ///< in y, and so in x
   double width() const { return right - left; }
   double height() const { return top - bottom; }
   double area() const { return width() * height(); }
@@ -46,12 +47,12 @@ Points placed_outline(const Points& outline, const Placement& grain);
 void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
                    const std::vector<WallProfile>& walls, bool turn, std::uint64_t seed);
 
-/// Packing of grains in the cells of a Voronoi diagram of a periodic strip, after G. Mollon and J. Zhao, Granular
-/// Matter 14 (2012) 621, doi 10.1007/s10035-012-0356-x. Areas of cells are in proportion to scale^2 x area. Each cell
-/// is filled by its grain, rotated and translated so that it becomes as large as its cell allows. `grains` have shapes
-/// and sizes relative to each other at first, and a full placement then; these sizes are kept as far as their cells
-/// have room. A shape with descriptors is fitted to each of its cells: the returned shapes. Throws InputError with the
-/// largest possible solid fraction if the requested one does not fit.
+/// Packing of grains in the cells of a Voronoi diagram of a periodic strip or cell, after G. Mollon and J. Zhao,
+/// Granular Matter 14 (2012) 621, doi 10.1007/s10035-012-0356-x. Areas of cells are in proportion to scale^2 x area.
+/// Each cell is filled by its grain, rotated and translated so that it becomes as large as its cell allows. `grains`
+/// have shapes and sizes relative to each other at first, and a full placement then; these sizes are kept as far as
+/// their cells have room. A shape with descriptors is fitted to each of its cells: the returned shapes. Throws
+/// InputError with the largest possible solid fraction if the requested one does not fit.
 std::vector<ShapeSpec> pack_voronoi(std::vector<Placement>& grains, const std::vector<ShapeSpec>& shapes,
                                     const Strip& region, double solid_fraction, std::uint64_t seed);
 

@@ -43,18 +43,19 @@ class Bins {
     }
   }
 
-  /// Calls visit(other, shift in x) for all points in the bins `ring` bins away from that of point i.
+  /// Calls visit(other, shift of its image) for all points in the bins `ring` bins away from that of point i.
   template <class Visit>
   void ring(int i, int ring, Visit&& visit) const {
     const auto [column, row] = place_[i];
     for (int dy = -ring; dy <= ring; ++dy) {
-      if (row + dy < 0 || row + dy >= rows_) continue;
+      const int laps = static_cast<int>(std::floor(static_cast<double>(row + dy) / rows_));
+      if (laps != 0 && !region_.periodic_y) continue;
       const int step = std::abs(dy) == ring ? 1 : std::max(1, 2 * ring);
       for (int dx = -ring; dx <= ring; dx += step) {
         const int turns = static_cast<int>(std::floor(static_cast<double>(column + dx) / columns_));
         const int at = column + dx - turns * columns_;
-        for (const int other : members_[static_cast<std::size_t>(row + dy) * columns_ + at])
-          visit(other, turns * region_.width());
+        for (const int other : members_[static_cast<std::size_t>(row + dy - laps * rows_) * columns_ + at])
+          visit(other, Vec2(turns * region_.width(), laps * region_.height()));
       }
     }
   }
@@ -85,16 +86,15 @@ Points power_cell(int i, const Points& generators, const std::vector<double>& we
                   const Strip& region, const Bins& bins) {
   const Vec2& x = generators[i];
   const double half = region.width() / 2;
-  Points cell{{x.x() - half, region.bottom},
-              {x.x() + half, region.bottom},
-              {x.x() + half, region.top},
-              {x.x() - half, region.top}};
+  const double bottom = region.periodic_y ? x.y() - region.height() / 2 : region.bottom,
+               top = region.periodic_y ? x.y() + region.height() / 2 : region.top;
+  Points cell{{x.x() - half, bottom}, {x.x() + half, bottom}, {x.x() + half, top}, {x.x() - half, top}};
   for (int ring = 0; !cell.empty(); ++ring) {
     // Bisectors with generators at a distance d are at least (d^2 + w_i - w_max)/(2 d) away, increasing with d.
     const double d = bins.distance(ring);
     if (d > 0 && (d * d + weights[i] - largest_weight) / (2 * d) >= radius_about(cell, x)) break;
-    bins.ring(i, ring, [&](int j, double shift) {
-      const Vec2 other = generators[j] + Vec2(shift, 0), apart = other - x;
+    bins.ring(i, ring, [&](int j, const Vec2& shift) {
+      const Vec2 other = generators[j] + shift, apart = other - x;
       if (apart.squaredNorm() == 0) return;
       const double offset = apart.dot(x) + (apart.squaredNorm() + weights[i] - weights[j]) / 2;
       clip(cell, apart, offset);
@@ -106,6 +106,7 @@ Points power_cell(int i, const Points& generators, const std::vector<double>& we
 
 Vec2 wrapped(Vec2 x, const Strip& region) {
   x.x() -= std::floor((x.x() - region.left) / region.width()) * region.width();
+  if (region.periodic_y) x.y() -= std::floor((x.y() - region.bottom) / region.height()) * region.height();
   return x;
 }
 

@@ -6,9 +6,9 @@
 
 namespace pliant {
 
-/// Cells of a power (weighted Voronoi) diagram of a strip that is periodic in x: the points x of the region with least
-/// |x - generator|^2 - weight. [cells], convex polygons, counter-clockwise, around their generator whatever the period;
-/// empty for a generator without a cell. Weights are in m2; equal ones give the Voronoi diagram.
+/// Cells of a power (weighted Voronoi) diagram of a region that is periodic in x, or in x and y: the points x of the
+/// region with least |x - generator|^2 - weight. [cells], convex polygons, counter-clockwise, around their generator
+/// whatever the periods; empty for a generator without a cell. Weights are in m2; equal ones give the Voronoi diagram.
 std::vector<Points> power_cells(const Points& generators, const std::vector<double>& weights, const Strip& region);
 
 /// Moves generators from random positions until each cell has about its wanted area (m2, their sum the region's) and

@@ -27,6 +27,11 @@ void require_room(double largest, const Strip& region) {
         fmt::format("packing: the largest grain is {:.3g} m wide in a period of {:.3g} m; a random "
                     "packing needs a period of at least 2.2 times that",
                     largest, region.width()));
+  if (region.periodic_y && region.height() < 2.2 * largest)
+    throw InputError(
+        fmt::format("packing: the largest grain is {:.3g} m wide in a period of {:.3g} m along y; a random "
+                    "packing needs a period of at least 2.2 times that",
+                    largest, region.height()));
   if (largest < region.width() && largest < region.height()) return;
   throw InputError(
       fmt::format("packing: the largest grain is {:.3g} m wide, the region {:.3g} m x {:.3g} m; take "
@@ -36,9 +41,9 @@ void require_room(double largest, const Strip& region) {
 
 /// Random centre with the circle around the grain inside the region.
 Vec2 random_place(double rim, const Strip& region, std::mt19937_64& random) {
-  const double side = region.periodic ? 0 : rim;
+  const double side = region.periodic ? 0 : rim, end = region.periodic_y ? 0 : rim;
   const double x = uniform_number(random), y = uniform_number(random);
-  return {region.left + side + x * (region.width() - 2 * side), region.bottom + rim + y * (region.height() - 2 * rim)};
+  return {region.left + side + x * (region.width() - 2 * side), region.bottom + end + y * (region.height() - 2 * end)};
 }
 
 class Growth {

@@ -11,7 +11,7 @@ std::vector<SceneTable> setting_tables() {
       {top_table,
        {
            {"title", Text{}, derived("name of the file"), "Title of the scene in summaries"},
-           {"domain", one_table, "none", "Period and gravity"},
+           {"domain", one_table, "none", "Periods and gravity"},
            {"time", one_table, required, "End of the run and time integration"},
            {"discretisation", one_table, "none", "Shape functions and mass matrix of compliant grains"},
            {"materials", named_tables, required, "Materials of grains and walls"},
@@ -30,8 +30,24 @@ std::vector<SceneTable> setting_tables() {
       {"[domain]",
        {
            {"period", Quantity{"m", positive}, "none", "Length of the periodic domain along x"},
+           {"periods", List<Quantity>{{"m", positive}, 2, 2}, "none",
+            "Lengths of a cell with two periods, along x and y, at the start"},
+           {"cell", one_table, "none", "Deformation of the cell with two periods", "periods"},
            {"gravity", Vector{"m/s2"}, "zero", "Acceleration of gravity"},
            {"gravity", VectorHistory{"m/s2"}, "none", "History of the acceleration of gravity"},
+       }},
+      {"cell of [domain]",
+       {
+           {"xx", HistoryOf{{"1"}}, "none", "Deformation gradient of the cell: stretch along x; otherwise 1"},
+           {"yy", HistoryOf{{"1"}}, "none", "Stretch along y; otherwise 1"},
+           {"xy", HistoryOf{{"1"}}, "none", "Shear: displacement along x over y; otherwise 0"},
+           {"yx", HistoryOf{{"1"}}, "none", "Shear: displacement along y over x; otherwise 0"},
+           {"stress_xx", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `xx`, tension positive"},
+           {"stress_yy", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `yy`, tension positive"},
+           {"stress_xy", HistoryOf{{"Pa"}}, "none", "Shear stress of the cell in place of `xy`"},
+           {"inertia", Quantity{"1", positive}, "1", "Inertia of the cell that stress moves, over that of its matter"},
+           {"damping", Quantity{"1", {.low = 0, .high = 1, .high_open = true}}, "0.8",
+            "Share of the force on the cell that acts against its motion"},
        }},
       {"[time]",
        {

@@ -96,10 +96,10 @@ void check_size(const TableReader& table, const Grains& grains, const Scene& sce
   for (const auto& [index, share] : scene.shape_shares(grains)) {
     const ShapeSpec& shape = scene.shapes[static_cast<std::size_t>(index)];
     const double extent = largest_size(grains.size) * extent_of(shape);
-    if (scene.period && extent >= *scene.period) {
+    if (scene.is_periodic() && extent >= scene.shortest_period()) {
       table.fail(grains.shapes.empty() ? "shape" : "shapes",
                  fmt::format("the extent of '{}' is {} m; allowed: less than the period, {} m", shape.name, extent,
-                             *scene.period));
+                             scene.shortest_period()));
     }
     if (!shape.descriptors.empty() && grains.packing.kind != PackingKind::fourier_voronoi) {
       table.fail("shape", fmt::format("'{}' has variants = \"each\"; allowed: with packings \"fourier-voronoi\" only, "

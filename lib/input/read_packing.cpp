@@ -53,8 +53,21 @@ void check_fit(const TableReader& table, const Packing& packing, double period) 
   }
 }
 
+void check_fit_in_cell(const TableReader& table, const Packing& packing, const Vec2& periods) {
+  constexpr double rounding = 1e-9;
+  check_fit(table, packing, periods.x());
+  const double height = packing.rows * packing.row_pitch;
+  if (height > periods.y() * (1 + rounding))
+    table.fail("rows", fmt::format("{} rows at a pitch of {} m take {} m; allowed: at most the period, {} m",
+                                   packing.rows, packing.row_pitch, height, periods.y()));
+}
+
 /// The part of the plane that grains are to fill.
 void read_region(TableReader& table, const Scene& scene, Packing& packing) {
+  if (scene.cell) {
+    packing.right = scene.cell->periods.x(), packing.top = scene.cell->periods.y();
+    return;
+  }
   table.required("bottom", packing.bottom);
   table.required("top", packing.top, Range{.low = packing.bottom, .low_open = true});
   if (scene.period) {
@@ -109,10 +122,10 @@ void check_sizes(const std::string& file, const GrainFile& found, const Scene& s
   }
   for (std::size_t i = 0; i < found.lines.size(); ++i) {
     const double widest = found.scales.empty() ? found.diameters[i] * slenderness : found.scales[i] * extent;
-    if (widest >= *scene.period)
+    if (widest >= scene.shortest_period())
       fail_at_line(file, found.lines[i],
                    fmt::format("the extent of the grain is {:.6g} m; allowed: less than the period, {:.6g} m", widest,
-                               *scene.period));
+                               scene.shortest_period()));
   }
 }
 
@@ -138,7 +151,7 @@ void check_places(const std::string& file, const GrainFile& found, const Scene& 
 void read_grains_of_file(TableReader& table, const Scene& scene, const Grains& grains, Packing& packing) {
   const NamedFile file = read_named_file(table);
   GrainFile found = read_grain_file(file.path, file.unit, SceneLimits::bodies);
-  if (scene.period && !(found.scales.empty() && found.diameters.empty()))
+  if (scene.is_periodic() && !(found.scales.empty() && found.diameters.empty()))
     check_sizes(file.path.string(), found, scene, grains);
   if (!found.doubt.empty()) table.value("file").source.warnings.push_back(found.doubt);
   check_places(file.path.string(), found, scene, grains);
@@ -214,6 +227,7 @@ Packing read_packing(TableReader table, const Scene& scene, const Grains& grains
   } else {
     read_lattice(table, packing);
     if (scene.period) check_fit(table, packing, *scene.period);
+    if (scene.cell) check_fit_in_cell(table, packing, scene.cell->periods);
   }
   table.finish();
   return packing;

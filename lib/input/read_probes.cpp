@@ -105,7 +105,7 @@ void read_region(TableReader& table, const ProbeQuantity& quantity, const Scene&
   const bool between = table.optional("between", probe.between, names_of(scene.walls));
   const bool box = table.optional("box", probe.box);
   if (between && box) table.fail("box", "the region is given by between or by box, not by both; remove one");
-  if (!between && !box && quantity.where == Where::region_needed)
+  if (!between && !box && quantity.where == Where::region_needed && !scene.cell)
     table.fail(fmt::format("{} needs a region; add between = [lower wall, upper wall] or box = {}", quantity.name,
                            Corners{}.allowed()));
   if (!between) return;
@@ -124,6 +124,9 @@ Probe read_probe(TableReader table, const Scene& scene) {
   table.required("name", probe.name);
   table.required("quantity", probe.quantity);
   const ProbeQuantity& quantity = probe_quantity(probe.quantity);
+  if (quantity.in_cell && !scene.cell)
+    table.fail("quantity",
+               fmt::format("{} is of a cell with two periods; add [domain] periods, or take another", quantity.name));
   if (quantity.of != Of::whole) table.required("of", probe.of, Target{quantity.of, scene});
   table.required("period", probe.period);
   check_output_count(table, scene.time.end, probe.period);

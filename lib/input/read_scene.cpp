@@ -84,6 +84,7 @@ Scene read_scene(const fs::path& file, KeyUse* use) {
   read_outputs(root, scene);
   if (root.has("start")) read_start(root.optional_table("start"), scene);
   read_checkpoint(root.optional_table("checkpoint"), scene);
+  check_cell(root, scene);
   root.finish();
   scene.warnings = source.warnings;
   return scene;

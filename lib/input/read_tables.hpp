@@ -14,6 +14,8 @@ namespace pliant {
 // the order is that of read_scene. All throw InputError.
 
 void read_domain(TableReader table, Scene& scene);
+/// Refuses what a cell with two periods has no place for.
+void check_cell(const TableReader& root, const Scene& scene);
 TimeSettings read_time(TableReader table);
 DiscretisationSettings read_discretisation(TableReader table);
 Probe read_probe(TableReader table, const Scene& scene);

@@ -65,6 +65,9 @@ Wall read_wall(TableReader table, const Scene& scene) {
   Wall wall;
   wall.where = table.place();
   table.required("name", wall.name);
+  if (scene.cell)
+    table.fail(fmt::format("wall '{}' has no place in a cell with two periods; remove it, or give [domain] period",
+                           wall.name));
   if (!scene.period)
     table.fail(fmt::format("wall '{}' spans the period, and the scene has none; add [domain] period", wall.name));
   table.required("material", wall.material, names_of(scene.materials));

@@ -35,7 +35,7 @@ toml::table significant(const std::string& text) {
 toml::table of_bodies(const std::string& text) {
   toml::table table = significant(text);
   for (const char* key : {"start", "time", "boundary", "contacts", "probes", "frames"}) table.erase(key);
-  if (toml::table* domain = table["domain"].as_table()) domain->erase("gravity");
+  if (toml::table* domain = table["domain"].as_table()) domain->erase("gravity"), domain->erase("cell");
   if (toml::table* contact = table["contact"].as_table())
     for (const char* key : {"skin", "length", "refresh", "energy_consistent"}) contact->erase(key);
   for (const char* key : {"domain", "contact"})

@@ -44,7 +44,7 @@ bool meets_itself(const Scene& scene, const ContactGroup& group) {
     for (const Species& entry : grains.species) {
       if (contact_group(scene, entry.material, grains.name, false) != group) continue;
       bodies += grains.packing.grain_count();
-      may_return |= scene.period || (scene.contact.self_contact && entry.body == BodyKind::compliant);
+      may_return |= scene.is_periodic() || (scene.contact.self_contact && entry.body == BodyKind::compliant);
     }
   for (const Wall& wall : scene.walls) bodies += contact_group(scene, wall.material, wall.name, true) == group;
   return bodies != 1 || may_return;

@@ -141,6 +141,22 @@ std::vector<ProbeQuantity> stresses() {
   };
 }
 
+std::vector<ProbeQuantity> cells() {
+  std::vector<ProbeQuantity> all{
+      whole(
+          "cell_stress",
+          with_unit({"stress_xx", "stress_xy", "stress_yx", "stress_yy", "kinetic_xx", "kinetic_xy", "kinetic_yx",
+                     "kinetic_yy", "pressure"},
+                    "Pa"),
+          "of a cell with two periods, tension positive: Love-Weber over the area of the cell, with the kinetic part, "
+          "which is given alone as well; pressure -(xx + yy)/2"),
+      whole("cell_gradient",
+            {"gradient_xx [-]", "gradient_xy [-]", "gradient_yx [-]", "gradient_yy [-]", "cell_area [m2]"},
+            "deformation gradient of a cell with two periods, from the periods of the scene on, and its area")};
+  for (ProbeQuantity& quantity : all) quantity.in_cell = true;
+  return all;
+}
+
 std::vector<ProbeQuantity> energies() {
   return {
       whole("energy",
@@ -202,7 +218,8 @@ std::vector<ProbeQuantity> packing() {
        .reduced = {},
        .reductions = {},
        .where = Where::region_needed,
-       .meaning = "area inside the grains' outlines over that of the region; overlaps count twice"},
+       .meaning = "area inside the grains' outlines over that of the region; overlaps count twice; in a cell with two "
+                  "periods the region may be left out"},
       {.name = "fabric",
        .columns = {"fabric_xx [-]", "fabric_xy [-]", "fabric_yy [-]", "anisotropy [-]", "direction [rad]"},
        .of = Of::any,
@@ -294,7 +311,7 @@ std::string settings(const ProbeQuantity& quantity) {
 const std::vector<ProbeQuantity>& probe_quantities() {
   static const std::vector<ProbeQuantity> all = [] {
     std::vector<ProbeQuantity> result;
-    for (const auto& part : {motions(), forces(), stresses(), energies(), contacts(), packing()})
+    for (const auto& part : {motions(), forces(), stresses(), cells(), energies(), contacts(), packing()})
       result.insert(result.end(), part.begin(), part.end());
     return result;
   }();

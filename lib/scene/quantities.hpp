@@ -21,7 +21,8 @@ struct ProbeQuantity {
   enum class Node { none, outline, field } node = Node::none;
   bool with = false;  ///< may be restricted to contacts with some partners
   enum class Where { nowhere, region_allowed, region_needed } where = Where::nowhere;
-  std::string meaning;  ///< for docs/probes.md
+  bool in_cell = false;  ///< of a cell with two periods alone
+  std::string meaning;   ///< for docs/probes.md
 };
 
 const std::vector<ProbeQuantity>& probe_quantities();

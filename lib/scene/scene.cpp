@@ -51,6 +51,14 @@ double History::slope(double t) const {
   return (value[i] - value[i - 1]) / (time[i] - time[i - 1]);
 }
 
+Eigen::Matrix2d CellSettings::gradient_at(double time) const {
+  Eigen::Matrix2d f = Eigen::Matrix2d::Identity();
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      if (!gradient[i][j].time.empty()) f(i, j) = gradient[i][j].at(time);
+  return f;
+}
+
 Vec2 Scene::gravity_at(double time) const {
   return gravity_history.empty() ? gravity : Vec2(gravity_history[0].at(time), gravity_history[1].at(time));
 }

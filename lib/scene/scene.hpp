@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -68,6 +69,21 @@ struct Window {
   double from = -std::numeric_limits<double>::infinity(), until = std::numeric_limits<double>::infinity();
   bool contains(double t) const { return from <= t && t < until; }
   bool always() const { return std::isinf(from) && std::isinf(until); }
+};
+
+/// Cell with two periods that is deformed homogeneously (docs/method.md 10). The vectors of its periods are F times
+/// those at the start of the run.
+struct CellSettings {
+  Vec2 periods{0, 0};                                ///< at the start of the scene, along x and y, m
+  std::array<std::array<History, 2>, 2> gradient{};  ///< F: [row][column]; empty: that of the identity
+  /// Cauchy stress of the cell, Pa, tension positive, in place of a component of F; nullopt: F is given.
+  std::array<std::array<std::optional<History>, 2>, 2> stress{};
+  double mass = 1;       ///< of the cell where stress moves it, over that of the matter in it spread evenly
+  double damping = 0.8;  ///< share of the force on the cell that acts against its motion
+  Eigen::Matrix2d gradient_at(double time) const;
+  bool is_stress_controlled() const {
+    return std::ranges::any_of(stress, [](const auto& row) { return row[0] || row[1]; });
+  }
 };
 
 struct Material {
@@ -318,7 +334,8 @@ struct Scene {
   std::string name;  ///< file name without folder and extension
   std::string title;
   std::filesystem::path file;
-  std::optional<double> period;            ///< m
+  std::optional<double> period;            ///< of a domain with one period, along x, m
+  std::optional<CellSettings> cell{};      ///< of a domain with two periods
   Vec2 gravity{0, 0};                      ///< m/s2; with a history that of t = 0
   std::vector<History> gravity_history{};  ///< its x and y; empty: constant
   double skin = 0.5;                       ///< contact skin over the finest outline spacing
@@ -338,6 +355,9 @@ struct Scene {
   std::vector<std::string> warnings{};              ///< of values that are allowed but hardly meant, with their place
 
   Vec2 gravity_at(double time) const;
+  bool is_periodic() const { return period || cell; }
+  /// The shortest period, m; 0 without one.
+  double shortest_period() const { return cell ? cell->periods.minCoeff() : period.value_or(0); }
   /// Contacts correct the energy that steps gain or lose (contact/energy_correction.hpp): those that have an energy, of
   /// steps whose work is known.
   bool corrects_energy() const {

@@ -20,6 +20,7 @@ struct ProbeFunction {
 std::vector<ProbeFunction> motion_functions();
 std::vector<ProbeFunction> force_functions();
 std::vector<ProbeFunction> stress_functions();
+std::vector<ProbeFunction> cell_functions();
 std::vector<ProbeFunction> energy_functions();
 std::vector<ProbeFunction> contact_functions();
 std::vector<ProbeFunction> packing_functions();
