@@ -24,18 +24,20 @@ struct PairSums {
 
 FrameTable contact_network(const Snapshot& snapshot) {
   std::vector<float> bodies, images, points, forces, lengths;
+  const bool in_cell = snapshot.model().scene.cell.has_value();
   for (const TouchingPair& pair : snapshot.contacts()) {
     PairSums sums;
     for (const ContactPoint& point : pair.points) sums.add(point);
     append(Vec2(pair.first, pair.second), bodies);
     images.push_back(static_cast<float>(pair.images.x));
+    if (in_cell) images.push_back(static_cast<float>(pair.images.y));
     append(sums.point(), points);
     append(sums.force, forces);
     lengths.push_back(static_cast<float>(sums.length));
   }
   return {contact_network_name,
           {{"bodies", 2, std::move(bodies)},
-           {"images", 1, std::move(images)},
+           {"images", in_cell ? 2 : 1, std::move(images)},
            {"point", 2, std::move(points)},
            {"force", 2, std::move(forces)},
            {"length", 1, std::move(lengths)}}};

@@ -47,6 +47,16 @@ void give_in_parts(std::size_t bodies, const Part& empty, const std::function<vo
   }
 }
 
+constexpr const char* cell_name = "cell";
+
+/// The table of a cell with two periods, of one row: the vectors of its periods, m.
+FrameTable cell_vectors(const Snapshot& snapshot) {
+  FrameTable table{cell_name, {{"a", 2, {}}, {"b", 2, {}}}};
+  append(snapshot.outlines().lattice.a(), table.columns[0].values);
+  append(snapshot.outlines().lattice.b(), table.columns[1].values);
+  return table;
+}
+
 }  // namespace
 
 FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening)
@@ -58,6 +68,7 @@ FrameRecorder::FrameRecorder(const Model& model, const std::filesystem::path& fo
   choose_fields();
   std::vector<std::string> tables;
   if (model.scene.frames.contacts) tables.emplace_back(contact_network_name);
+  if (model.scene.cell) tables.emplace_back(cell_name);
   file_ = std::make_unique<FrameFile>(folder, std::vector{bodies_grid(), outlines_grid()},
                                       std::vector{bodies_topology(), outlines_topology()}, opening, std::move(tables));
 }
@@ -145,6 +156,7 @@ void FrameRecorder::record(Simulation& simulation) {
   const Snapshot snapshot(simulation);
   std::vector<FrameTable> tables;
   if (model_.scene.frames.contacts) tables.push_back(contact_network(snapshot));
+  if (model_.scene.cell) tables.push_back(cell_vectors(snapshot));
   file_->append(simulation.state().time, {bodies_frame(snapshot), outlines_frame(snapshot)}, tables);
   ++count_;
 }

@@ -64,7 +64,7 @@ class Contacts:
     """Pairs of bodies in touch in one frame; forces are those of the contact laws (lib/results/contact_network.hpp)."""
 
     bodies: np.ndarray  # [pairs x 2]
-    images: np.ndarray  # [pairs] periods to add to x of the second to see it from the first
+    images: np.ndarray  # [pairs] periods to add to the second to see it from the first; of a cell [pairs x 2], along both
     point: np.ndarray  # [pairs x 2] m, where the first body sees it
     force: np.ndarray  # [pairs x 2] N/m, on the second body
     length: np.ndarray  # [pairs] m
@@ -78,7 +78,7 @@ class Contacts:
 class Frames:
     """frames.h5, read frame by frame. Frames that a killed run did not finish are not listed, so not seen.
 
-    Bodies are numbered as in the grids; positions are not wrapped into the period.
+    Bodies are numbered as in the grids; positions are not wrapped into the period or the cell.
     """
 
     def __init__(self, file: Path, period: float | None) -> None:
@@ -92,6 +92,33 @@ class Frames:
             raise BadFolder(f"{file}: not a file of frames: {error}") from error
         if period is not None and "outlines" in self.grids:
             self.grids["outlines"] = self.grids["outlines"].closed_across()
+
+    @property
+    def in_cell(self) -> bool:
+        """Whether the domain has two periods."""
+        return "cell" in self._file
+
+    def periods(self, index: int) -> np.ndarray:
+        """[periods x 2] m, vectors of the periods in this frame: none, one, or the two of a cell that is deformed. The
+        second one of a cell leans by half of the first at most: a multiple of the first is taken from it."""
+        if not self.in_cell:
+            return np.empty((0, 2)) if self.period is None else np.array([[self.period, 0.0]])
+        a, b = self._cell_vectors(index)
+        return np.array([a, b - np.round(b @ a / (a @ a)) * a])
+
+    def _cell_vectors(self, index: int) -> np.ndarray:
+        """[2 x 2] m, those that images count."""
+        path = f"cell/{index:06}"
+        try:
+            return np.concatenate([self._file[f"{path}/a"][()], self._file[f"{path}/b"][()]]).astype(float)
+        except (OSError, KeyError) as error:
+            raise BadFolder(f"{self.path}: {path} cannot be read: {error}") from error
+
+    def shifts(self, images: np.ndarray, index: int) -> np.ndarray:
+        """[pairs x 2] m, of the images of contacts."""
+        if self.in_cell:
+            return images @ self._cell_vectors(index)
+        return np.column_stack([images * (self.period or 0), np.zeros(len(images))])
 
     def _grid(self, name: str) -> Grid:
         group = self._file[name]
@@ -146,7 +173,7 @@ class Frames:
             raise ValueError(f"no kind '{kind}'; there are {', '.join(KINDS)}")
         chosen = np.isin(self.kinds, KINDS[kind])
         if box is not None:
-            x, y = self.wrapped(self.centres(index)).T
+            x, y = self.wrapped(self.centres(index), index).T
             chosen &= (x >= box[0]) & (x <= box[1]) & (y >= box[2]) & (y <= box[3])
         return np.flatnonzero(chosen)
 
@@ -157,8 +184,11 @@ class Frames:
         sums = np.stack([np.bincount(of, column) for column in points.T], axis=1)
         return sums / np.bincount(of)[:, None]
 
-    def wrapped(self, points: np.ndarray) -> np.ndarray:
-        """Points [n x 2] in the period, [0, period), if there is one."""
+    def wrapped(self, points: np.ndarray, index: int = 0) -> np.ndarray:
+        """Points [n x 2] in the period, [0, period), if there is one, or in the cell of a frame."""
+        if self.in_cell:
+            periods = self.periods(index)
+            return (points @ np.linalg.inv(periods) % 1) @ periods
         if self.period is None:
             return points
         return np.column_stack([points[:, 0] % self.period, points[:, 1]])

@@ -66,9 +66,8 @@ def of_frame(frames: Frames, index: int) -> Network:
     contacts = frames.contacts(index)
     if contacts is None:
         raise BadFolder(f"{frames.path}: no contacts in frame {index}; scenes store them by [frames] contacts = true")
-    images = np.column_stack([contacts.images * (frames.period or 0), np.zeros(len(contacts.images))])
     centres = frames.centres(index)[contacts.bodies]
-    centres[:, 1] += images
+    centres[:, 1] += frames.shifts(contacts.images, index)
     walls = frames.kinds[contacts.bodies] == WALL
     arms = contacts.point[:, None] - centres
     arms[walls] = np.nan

@@ -13,7 +13,7 @@ from pliant.network import Network, of_frame
 from pliant.results import Run
 from plots.drawing import Painting, draw, finish_sheet, place, sheet
 from plots.scenery import scenery, whole_box
-from plots.wrapping import Box
+from plots.wrapping import Box, images
 
 PALE = ["#fbeedd", "#c8c8c8", "#a6a6a6"]  # compliant, rigid, wall
 WIDEST = 0.35  # of the mean branch: line of the largest force
@@ -37,14 +37,14 @@ def chains(run: Run, indices: list[int]) -> Figure | None:
         scene = scenery(run, index, box)
         place(panel, box)
         draw(panel, scene, Painting(scene.triangles, to_rgba_array(PALE)[scene.kind]), box, 0.15)
-        _draw_lines(panel, network, run.period, box, largest, mappable, factor)
+        _draw_lines(panel, network, run.frames.periods(index), box, largest, mappable, factor)
     finish_sheet(axes, [run.frames.times[index] for index in indices])
     figure.colorbar(mappable, ax=axes, label=units.label("force, pressing positive", unit), extend="both", shrink=0.8,
                     aspect=30, pad=0.02)
     return figure
 
 
-def _draw_lines(axes: Axes, network: Network, period: float | None, box: Box, largest: float, mappable: ScalarMappable,
+def _draw_lines(axes: Axes, network: Network, periods: np.ndarray, box: Box, largest: float, mappable: ScalarMappable,
                 factor: float) -> None:
     """The strongest last, upon the others."""
     lengths = np.linalg.norm(network.arms, axis=2)
@@ -55,8 +55,11 @@ def _draw_lines(axes: Axes, network: Network, period: float | None, box: Box, la
     signed = np.sign(network.compression) * network.magnitude
     order = np.argsort(network.magnitude)
     lines, signed = lines[order], signed[order]
-    if period is not None:
-        lines, signed = _in_the_period(lines, signed, period)
+    if len(periods) == 2:
+        index, shifts = images(lines.min(axis=1), lines.max(axis=1), periods, box)
+        lines, signed = lines[index] + shifts[:, None], signed[index]
+    elif len(periods) == 1:
+        lines, signed = _in_the_period(lines, signed, periods[0, 0])
     scale, _ = units.scale(max(box[1] - box[0], box[3] - box[2]), "m")
     drawn = LineCollection(lines * scale, colors=mappable.to_rgba(signed * factor), capstyle="round", zorder=3)
     axes.add_collection(drawn, autolim=False)

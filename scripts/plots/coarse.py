@@ -15,8 +15,10 @@ FEWEST = 50  # grains, that cells say something
 
 
 def coarse(run: Run, indices: list[int]) -> Figure | None:
-    """None for few grains."""
+    """None for few grains, and in a cell with two periods, which leans."""
     assert run.frames is not None
+    if run.frames.in_cell:
+        return None
     index = indices[-1]
     grains = run.frames.bodies("grain")
     if len(grains) < FEWEST:

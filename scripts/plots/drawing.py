@@ -19,7 +19,7 @@ from plots.wrapping import Box
 from pliant.frames import WALL
 
 KIND_COLOURS = ["#f2c079", "#4a4a4a", "#a6a6a6"]  # compliant, rigid, wall
-EDGE, MARK = "#2b2b2b", "#56b4e9"
+EDGE, MARK, CELL = "#2b2b2b", "#56b4e9", "#0072b2"
 
 
 class Triangles(Artist):
@@ -74,6 +74,9 @@ def draw(axes: Axes, scene: Scenery, painting: Painting, box: Box, line_width: f
         artists.append(axes.add_collection(coloured, autolim=False))
     if marked is not None:
         artists += _draw_lines(axes, scene.edges[scene.edge_body == marked] * factor, 2.0, MARK, 3)
+    if len(scene.cell):
+        sides = np.stack([scene.cell, np.roll(scene.cell, -1, axis=0)], axis=1)
+        artists += _draw_lines(axes, sides * factor, 1.2, CELL, 4)
     return artists + _draw_walls(axes, scene, box, factor)
 
 

@@ -22,6 +22,7 @@ class Scenery:
     edge_body: np.ndarray  # [segments]
     walls: np.ndarray  # [segments x 2 x 2]
     wall_below: np.ndarray  # [segments] whether the grains are above
+    cell: np.ndarray  # [4 x 2] corners of a cell with two periods; none without
 
 
 def scenery(run: Run, index: int, box: Box | None = None, origin: Sequence[float] = (0.0, 0.0)) -> Scenery:
@@ -30,22 +31,31 @@ def scenery(run: Run, index: int, box: Box | None = None, origin: Sequence[float
     assert frames is not None
     if box is None:
         box = (0.0, run.period, -np.inf, np.inf) if run.period is not None else (-np.inf, np.inf, -np.inf, np.inf)
+        box = whole_box(run, [index]) if frames.in_cell else box
+    periods = frames.periods(index)
     points = frames.positions("bodies", index) - origin
-    triangles, cells = _polygons(frames, "bodies", points, run.period, box)
+    triangles, cells = _polygons(frames, "bodies", points, periods, box)
     edges, edge_cells, edge_body, walls = np.empty((0, 2, 2)), np.empty(0, int), np.empty(0, int), np.empty((0, 2, 2))
     if "outlines" in frames.grids:
         outline_points = frames.positions("outlines", index) - origin
-        edges, edge_cells = _polygons(frames, "outlines", outline_points, run.period, box)
+        edges, edge_cells = _polygons(frames, "outlines", outline_points, periods, box)
         edge_body = frames.grids["outlines"].body[edge_cells]
         walls = _walls(frames, outline_points, run.period, box)
     middle = points[:, 1].mean() if len(points) else walls[:, :, 1].mean()
     kind = frames.grids["bodies"].kind[cells]
     below = walls[:, :, 1].mean(axis=1) < middle
-    return Scenery(triangles, cells, kind, edges, edge_cells, edge_body, walls, below)
+    cell = cell_corners(periods) - origin if frames.in_cell else np.empty((0, 2))
+    return Scenery(triangles, cells, kind, edges, edge_cells, edge_body, walls, below, cell)
+
+
+def cell_corners(periods: np.ndarray) -> np.ndarray:
+    """[4 x 2] of a cell at the origin, counter-clockwise."""
+    a, b = periods
+    return np.array([np.zeros(2), a, a + b, b])
 
 
 def _polygons(
-    frames: Frames, grid: str, points: np.ndarray, period: float | None, box: Box
+    frames: Frames, grid: str, points: np.ndarray, periods: np.ndarray, box: Box
 ) -> tuple[np.ndarray, np.ndarray]:
     """Cells of grains as polygons [n x corners x 2], and the cell each is a picture of."""
     topology = frames.grids[grid]
@@ -53,12 +63,12 @@ def _polygons(
     bodies, low, high = extents(points[:used], topology.point_body)
     grains = ~np.isin(bodies, topology.body[topology.kind == WALL])
     bodies, low, high = bodies[grains], low[grains], high[grains]
-    index, shifts = images(low, high, period, box)
+    index, shifts = images(low, high, periods, box)
     order, starts = topology.cells_by_body
     first, count = starts[bodies[index]], np.diff(starts)[bodies[index]]
     cells = order[runs(first, count)]
     polygons = points[topology.cells[cells]]
-    polygons[:, :, 0] += np.repeat(shifts, count)[:, None]
+    polygons += np.repeat(shifts, count, axis=0)[:, None]
     return polygons, cells
 
 
@@ -68,14 +78,19 @@ def _walls(frames: Frames, points: np.ndarray, period: float | None, box: Box) -
     segments = points[topology.cells[topology.kind == WALL]]
     if period is not None:
         segments = shortened(segments, period)
-    index, shifts = images(segments.min(axis=1), segments.max(axis=1), period, (*box[:2], -np.inf, np.inf))
-    return segments[index] + np.column_stack([shifts, np.zeros(len(shifts))])[:, None]
+    periods = np.empty((0, 2)) if period is None else np.array([[period, 0.0]])
+    index, shifts = images(segments.min(axis=1), segments.max(axis=1), periods, (*box[:2], -np.inf, np.inf))
+    return segments[index] + shifts[:, None]
 
 
 def extent(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
-    """Lower and upper corner of all grains and walls, where they are: not put into one period."""
+    """Lower and upper corner of all grains and walls, where they are: not put into one period. Of a cell with two
+    periods its own."""
     frames = run.frames
     assert frames is not None
+    if frames.in_cell:
+        corners = cell_corners(frames.periods(index))
+        return corners.min(axis=0), corners.max(axis=0)
     points = [frames.positions("bodies", index)]
     if "outlines" in frames.grids:
         grid = frames.grids["outlines"]

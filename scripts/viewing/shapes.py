@@ -75,7 +75,16 @@ class Points:
                 self.frames.positions("outlines", index)[: len(self.outlines.point_body)])
 
     def positions(self, index: int) -> np.ndarray:
-        """[points x 2], m."""
+        """[points x 2], m; in a cell with two periods each body with its centre in the cell."""
+        place = self._where_they_are(index)
+        if not self.frames.in_cell:
+            return place
+        count = np.maximum(np.bincount(self.body, minlength=self.bodies), 1)
+        centres = np.column_stack([by_body(column, self.body, self.bodies) for column in place.T]) / count[:, None]
+        return place + (self.frames.wrapped(centres, index) - centres)[self.body]
+
+    def _where_they_are(self, index: int) -> np.ndarray:
+        """[points x 2], m, not put into one cell."""
         if self.outlines is None:
             return self.frames.positions("bodies", index)[: len(self.cells.point_body)]
         inner, outline = self._both(index)
