@@ -84,7 +84,7 @@ struct DruckerPrager {
     const T pressure = s - bulk * plastic_volume;
     now[5] = r * q, now[6] = pressure;
     const T loss = 0.5 * ((old[5] + now[5]) * (1.0 - r) * q / (3.0 * mu) + (old[6] + now[6]) * plastic_volume);
-    return {e.piola(F, weight * pressure, weight * mu * r), e.J, {}, weight * loss};
+    return {e.piola(F, weight * pressure, weight * mu * r), e.J, T{}, weight * loss};
   }
 
   T energy(const Tensor<T>& F, const Record& record) const {

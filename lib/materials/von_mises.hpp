@@ -76,7 +76,7 @@ struct VonMises {
       const PlaneMetric<T> metric = select_metric(yields, e.returned(F, C, r, T{}), C);
       now = {metric.xx, metric.xy, metric.yy, old[3] + flow};
     }
-    return {e.piola(F, weight * bulk * e.volume, weight * mu * r), e.J, {}, weight * loss};
+    return {e.piola(F, weight * bulk * e.volume, weight * mu * r), e.J, T{}, weight * loss};
   }
 
   T energy(const Tensor<T>& F, const Record& record) const {

@@ -149,7 +149,9 @@ TEST(VonMises, lanes_agree_with_single_points) {
       expect_near({found.P.xx[lane], found.P.xy[lane], found.P.yx[lane], found.P.yy[lane]}, expected.P, rounding);
       EXPECT_NEAR(found.loss[lane], expected.loss, rounding);
       for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(now[k][lane], single[k], rounding);
-      if (lane >= 4) EXPECT_EQ(single, before[lane]);
+      if (lane >= 4) {
+        EXPECT_EQ(single, before[lane]);
+      }
       law(0.2).respond(points[lane], before[lane], held);
       EXPECT_EQ(held, before[lane]);
     }
