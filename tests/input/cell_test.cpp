@@ -45,7 +45,7 @@ damping = 0.5
 
 // EXACT: a packing fills the cell, whose edges it needs not say.
 TEST(CellInput, fills_the_cell) {
-  const SceneFile file(stones + "packing = { kind = \"random\", solid_fraction = 0.5 }\n" + contact +
+  const SceneFile file(stones + "packing = { kind = \"random\", solid_fraction = 0.5 }\nseed = 1\n" + contact +
                        "[domain]\nperiods = [10, 8]\n");
   const Packing packing = read_scene(file.path()).grains[0].packing;
   EXPECT_EQ(packing.right, 10);

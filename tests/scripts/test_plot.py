@@ -179,8 +179,9 @@ def test_bodies_stand_where_any_of_their_images_is_seen(period: float | None, bo
     expected = [(n, 10.0 * k) for n in range(200) for k in steps
                 if high[n, 0] + 10 * k > box[0] and low[n, 0] + 10 * k < box[1]
                 and high[n, 1] > box[2] and low[n, 1] < box[3]]
-    index, shifts = wrapping.images(low, high, period, box)
-    assert expected and list(zip(index, shifts)) == expected
+    periods = np.array([[period, 0.0]]) if period else np.empty((0, 2))
+    index, shifts = wrapping.images(low, high, periods, box)
+    assert expected and list(zip(index, shifts[:, 0])) == expected and (shifts[:, 1] == 0).all()
 
 
 def test_bodies_at_an_edge_are_copied_whole(run_folder: Path) -> None:
