@@ -21,15 +21,16 @@ from pliant.results import Run
 
 NEUTRAL = "#c9c9c9"
 KINDS = "kinds"
-UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "strain_energy_density": "J/m3",
+UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "strain_energy_density": "J/m3", "temperature_rise": "K",
          **dict.fromkeys(("von_mises", "tresca", "pressure", "stress_xx", "stress_yy", "stress_xy", "stress_zz",
                           "principal_stress_1", "principal_stress_2", "contact_pressure", "contact_shear"), "Pa"),
          **dict.fromkeys(("contact_gap", "contact_slip"), "m")}
 _TITLES = {"von_mises": "von Mises stress", "tresca": "Tresca stress", "jacobian": "volume over that at the start",
+           "plastic_strain": "equivalent plastic strain", "temperature_rise": "rise of temperature since the start",
            "contact_damage": "damage of bonds: 0 whole, 1 torn"}
 _COLOURS = {"velocity": "cividis", "displacement": "cividis", "acceleration": "cividis", "contact_damage": "turbo",
             "contact_count": "viridis", "material": "viridis", "scale": "viridis"}
-_OF_ANY_GRAIN = {"contact_count", "material", "scale"}  # other fields of cells are of what deforms
+_OF_ANY_GRAIN = {"temperature_rise", "contact_count", "material", "scale"}  # other fields of cells are of what deforms
 # Colours of a quantity that is not linear over a triangle are exact at this share of the picture's width.
 _RESOLUTION = 1 / 200
 _MOST_VALUES = 500_000  # of a frame, for the scale

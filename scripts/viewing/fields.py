@@ -59,6 +59,8 @@ LOOKS = {
     "pressure": Look("pressure", "Pa"),
     "jacobian": Look("J, volume over that at the start", "-", centre=1.0),
     "strain_energy_density": Look("strain energy density", "J/m3"),
+    "plastic_strain": Look("equivalent plastic strain", "-"),
+    "temperature_rise": Look("rise of temperature", "K", of_compliant=False),
     "contact_count": _number("bodies in touch"),
     "material": _number("material"),
     "scale": Look("size over that of the shape", "-", "viridis", of_compliant=False),
