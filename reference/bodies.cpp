@@ -1,5 +1,7 @@
 #include "reference/bodies.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <map>

@@ -101,7 +101,7 @@ class TangentialMotion {
     height_ = at.height - height;
   }
 
-  Lanes on_segment(const QuadraturePoint& p) const { return along_.at(p.s); }
+  Lanes on_segment(const SegmentPoint& p) const { return along_.at(p.s); }
   /// Integrals over a part of a vertex region.
   Moments in_fan(const FanShape& f) const {
     // Tangent in the direction of growing surface coordinates, in the segment's frame, times powers of s.

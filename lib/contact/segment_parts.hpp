@@ -9,7 +9,7 @@
 namespace pliant {
 
 /// Quadrature point on each of eight slave segments that project on segments of the master.
-struct QuadraturePoint {
+struct SegmentPoint {
   LaneBits hit;  ///< lanes that have a point; others have the weight 0
   Lanes s;       ///< coordinate on the slave segment
   Lanes gap;     ///< signed distance to the master's outline, negative inside, m
@@ -25,7 +25,7 @@ struct Moments {
 /// integrals over a part of the region.
 struct FanPoint {
   LaneBits hit;
-  Lanes s, gap;                  ///< as in QuadraturePoint
+  Lanes s, gap;                  ///< as in SegmentPoint
   Lanes weight;                  ///< of dashpots, m; 0 outside
   Lanes normal_x, normal_y;      ///< outward normal of the master there; for dashpots
   Lanes energy_weight;           ///< for energies, m

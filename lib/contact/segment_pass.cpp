@@ -96,7 +96,7 @@ class TractionVisitor {
     if constexpr (has_dashpot<Law>) rates_ = SpeedPast(pairs, *at_.speeds);
   }
 
-  void on_segment(const QuadraturePoint& p) {
+  void on_segment(const SegmentPoint& p) {
     const Traction traction = traction_at(p, pairs_->tangent_y, -pairs_->tangent_x);
     const Lanes force = p.weight * traction.pressure;
     pressure_.add(force, p.s);
@@ -254,7 +254,7 @@ double integrated_length(const PairView& view) {
   struct Length {
     Lanes sum{};
     void begin(const SegmentPairs&, const Linear&) {}
-    void on_segment(const QuadraturePoint& p) { sum += p.weight; }
+    void on_segment(const SegmentPoint& p) { sum += p.weight; }
     void in_fan(const FanPoint&) {}
     void in_fan_of(const FanShape& f) { sum += f.weight[0]; }
     void end() {}

@@ -25,7 +25,7 @@ class NodeTractions {
       const SegmentPairs* pairs = nullptr;
       void begin(const SegmentPairs& now, const Linear&) { pairs = &now; }
       void end() {}
-      void on_segment(const QuadraturePoint& p) {
+      void on_segment(const SegmentPoint& p) {
         const Lanes x = pairs->tangent_y, y = -pairs->tangent_x, second = p.s * p.weight, first = p.weight - second;
         const Lanes pressure = law(p.gap).pressure;
         FanShape shape{p.hit, {p.weight, second, p.s * second}};

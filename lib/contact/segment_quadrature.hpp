@@ -15,7 +15,7 @@ namespace pliant {
 /// in closed form unless three points suffice.
 ///
 /// Pairs are handled eight at a time. For each eight: visit.begin(SegmentPairs, xi), then
-/// visit.on_segment(QuadraturePoint) for some points, or visit.in_fan(FanPoint) for some distances and, where present,
+/// visit.on_segment(SegmentPoint) for some points, or visit.in_fan(FanPoint) for some distances and, where present,
 /// visit.in_fan_of(FanShape) for parts of a vertex region, then visit.end(); xi: coordinate on the master's segment,
 /// linear in s; 0 or 1 for nodes.
 class SegmentQuadrature {
@@ -60,7 +60,7 @@ class SegmentQuadrature {
       constexpr double gauss = 0.21132486540518713;  // 1/2 - 1/sqrt(12)
       for (const double share : {gauss, 1 - gauss}) {
         const Lanes s = part.span.low + share * span_length;
-        visit.on_segment(QuadraturePoint{part.hit, s, pairs.height.at(s), weight});
+        visit.on_segment(SegmentPoint{part.hit, s, pairs.height.at(s), weight});
       }
     }
     visit.end();
