@@ -2,6 +2,26 @@
 #include "scene/quantities.hpp"
 
 namespace pliant {
+namespace {
+
+SceneTable cell_table() {
+  return {
+      "cell of [domain]",
+      {
+          {"xx", HistoryOf{{"1"}}, "none", "Deformation gradient of the cell: stretch along x; otherwise 1"},
+          {"yy", HistoryOf{{"1"}}, "none", "Stretch along y; otherwise 1"},
+          {"xy", HistoryOf{{"1"}}, "none", "Shear: displacement along x over y; otherwise 0"},
+          {"yx", HistoryOf{{"1"}}, "none", "Shear: displacement along y over x; otherwise 0"},
+          {"stress_xx", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `xx`, tension positive"},
+          {"stress_yy", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `yy`, tension positive"},
+          {"stress_xy", HistoryOf{{"Pa"}}, "none", "Shear stress of the cell in place of `xy`"},
+          {"inertia", Quantity{"1", positive}, "1", "Inertia of the cell that stress moves, over that of its matter"},
+          {"damping", Quantity{"1", {.low = 0, .high = 1, .high_open = true}}, "0.8",
+           "Share of the force on the cell that acts against its motion"},
+      }};
+}
+
+}  // namespace
 
 std::vector<SceneTable> setting_tables() {
   const Range share{.low = 0, .high = 1, .low_open = true};
@@ -36,19 +56,7 @@ std::vector<SceneTable> setting_tables() {
            {"gravity", Vector{"m/s2"}, "zero", "Acceleration of gravity"},
            {"gravity", VectorHistory{"m/s2"}, "none", "History of the acceleration of gravity"},
        }},
-      {"cell of [domain]",
-       {
-           {"xx", HistoryOf{{"1"}}, "none", "Deformation gradient of the cell: stretch along x; otherwise 1"},
-           {"yy", HistoryOf{{"1"}}, "none", "Stretch along y; otherwise 1"},
-           {"xy", HistoryOf{{"1"}}, "none", "Shear: displacement along x over y; otherwise 0"},
-           {"yx", HistoryOf{{"1"}}, "none", "Shear: displacement along y over x; otherwise 0"},
-           {"stress_xx", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `xx`, tension positive"},
-           {"stress_yy", HistoryOf{{"Pa"}}, "none", "Stress of the cell in place of `yy`, tension positive"},
-           {"stress_xy", HistoryOf{{"Pa"}}, "none", "Shear stress of the cell in place of `xy`"},
-           {"inertia", Quantity{"1", positive}, "1", "Inertia of the cell that stress moves, over that of its matter"},
-           {"damping", Quantity{"1", {.low = 0, .high = 1, .high_open = true}}, "0.8",
-            "Share of the force on the cell that acts against its motion"},
-       }},
+      cell_table(),
       {"[time]",
        {
            {"end", Quantity{"s", positive}, required, "End of the simulated time"},

@@ -85,9 +85,8 @@ def check_all(study: Study, points: list[Point]) -> tuple[list[Estimate], dict[s
     unique_names = {point.name: point for point in points}
     if len(unique_names) < len(points):
         raise BadStudy(f"{study.file}: two runs would have the same values")
-    for quantity in study.quantities:
-        if quantity.function is not None:
-            function_of(quantity.function)
+    for where in study.functions:
+        function_of(where)
     base = Scene.read(study.scene)
     scenes, estimates = [scene_of(base, point) for point in points], []
     check_paths(study, base)

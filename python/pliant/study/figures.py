@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
+from pliant.study.curves import draw_curve, mean_curves
 from pliant.study.folder import Folder
 from pliant.study.spec import number_of, units_of
 from pliant.study.table import mean_of_replicas
@@ -30,6 +31,10 @@ def draw_all(folder: Folder) -> list[dict[str, str]]:
         figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
         _plot(axes, plot, about, table["rows"])
         drawn.append(_save(folder, figure, f"{number}_{plot['y']}_over_{plot['x']}", f"{plot['y']} over {plot['x']}"))
+    for curve in folder.curves():
+        figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+        draw_curve(axes, curve, mean_curves(folder, curve), COLOURS)
+        drawn.append(_save(folder, figure, f"curve_{curve.name}", curve.name))
     if "orders" in table:
         for output in about["convergence"]["of"]:
             if all(o["limit"] is None for o in table["orders"] if o["quantity"] == output):

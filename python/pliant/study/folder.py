@@ -11,7 +11,7 @@ from typing import Any
 
 from pliant.engine import engine
 from pliant.study.points import Point
-from pliant.study.spec import Quantity, Study
+from pliant.study.spec import Curve, Quantity, Study
 
 
 def replace(file: Path, text: str) -> None:
@@ -94,6 +94,9 @@ class Folder:
     def quantities(self) -> list[Quantity]:
         return [Quantity(**table) for table in self.read("quantities.json")]
 
+    def curves(self) -> list[Curve]:
+        return [Curve(**table) for table in self.read("curves.json")]
+
     def lay_out(self, study: Study, points: list[Point], files: dict[str, Path]) -> None:
         """All that the steps read, renewed where it differs. `files`: those that scenes name, by what they
         are called beside the scene."""
@@ -110,9 +113,10 @@ class Folder:
         for point in points:
             replace_if_other(self.path / f"points/{point.name}.json", as_text(asdict(point)))
         quantities = [asdict(quantity) for quantity in study.quantities]
-        functions = {q.function: Path(q.function.rpartition(":")[0]).read_text() for q in study.quantities if q.function}
+        functions = {where: Path(where.rpartition(":")[0]).read_text() for where in study.functions}
         replace_if_other(self.path / "functions.json", as_text(functions))  # gathered anew when one changes
         replace_if_other(self.path / "quantities.json", as_text(quantities))
+        replace_if_other(self.path / "curves.json", as_text([asdict(curve) for curve in study.curves]))
         about = {
             "title": study.title, "study": study.file.read_text(), "scene": study.scene.name, "kind": study.kind,
             "runs": [point.name for point in points], "parameters": [p.name for p in study.parameters],

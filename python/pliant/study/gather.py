@@ -14,7 +14,7 @@ import numpy as np
 
 from pliant import units
 from pliant.results import Run
-from pliant.study.spec import Quantity
+from pliant.study.spec import Curve, Quantity
 
 BLOCKS = 8  # of a plateau, for its error
 
@@ -75,12 +75,48 @@ def function_of(where: str) -> Callable[[Run], Any]:
     return getattr(module, name)
 
 
-def _of_function(where: str, run: Run) -> Value:
+def called(where: str, *arguments: Any) -> Any:
+    """CannotGather: whatever the user's function does wrong."""
     function = function_of(where)
     try:
-        value = function(run)
-    except (Exception, SystemExit) as error:  # noqa: BLE001: whatever the user's function does
+        return function(*arguments)
+    except (Exception, SystemExit) as error:  # noqa: BLE001
         raise CannotGather(f"{where}: {type(error).__name__}: {error}") from error
+
+
+def points_of(where: str, returned: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Two arrays of one length that a function returned."""
+    try:
+        x, y = (np.asarray(part, float) for part in returned)
+        if x.ndim == 1 and x.shape == y.shape:
+            return x, y
+    except (TypeError, ValueError):
+        pass
+    raise CannotGather(f"{where} did not return two arrays of the same length")
+
+
+def gather_curve(curve: Curve, run: Run) -> dict[str, Any]:
+    """x and y at the times at which both have values, and their units."""
+    if curve.function is not None:
+        x, y = points_of(curve.function, called(curve.function, run))
+        units_found = ["-", "-"]
+    elif run.probes is None:
+        raise CannotGather("the run has no probes")
+    else:
+        try:
+            columns = [run.probes.column(name or "") for name in (curve.x, curve.y)]
+        except KeyError as error:
+            raise CannotGather(error.args[0]) from error
+        x, y = (column.values for column in columns)
+        units_found = [column.unit for column in columns]
+    there = np.isfinite(x) & np.isfinite(y)
+    if not there.any():
+        raise CannotGather("it has no point")
+    return {"x": x[there].tolist(), "y": y[there].tolist(), "units": units_found}
+
+
+def _of_function(where: str, run: Run) -> Value:
+    value = called(where, run)
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise CannotGather(f"{where} returned {value!r}, not a number")
     return Value(float(value))

@@ -19,12 +19,15 @@ BEGINNING = "1e-25 s"  # of a run: one step, whatever the scene
 def rehearse(study: Study, scene_file: Path, scratch: Path) -> None:
     """BadStudy: a run has no such probe, or no such key in its summary. A scene that fails at once tells nothing."""
     named = [quantity for quantity in study.quantities if quantity.function is None]
+    columns = [(curve.name, column) for curve in study.curves for column in (curve.x, curve.y) if column is not None]
     folder = scratch / "beginning"
-    if not named or call("run", scene_file, "--out", folder, "--until", BEGINNING, "--quiet").returncode != 0:
+    if not named + columns or call("run", scene_file, "--out", folder, "--until", BEGINNING, "--quiet").returncode != 0:
         return
     run = read_run(folder)
     for quantity in named:
         _check(study, quantity, run)
+    for name, column in columns:
+        _check_probe(f"{study.file}: [[curves]]: '{name}'", column, run)
 
 
 def _check(study: Study, quantity: Quantity, run: Run) -> None:
@@ -34,9 +37,13 @@ def _check(study: Study, quantity: Quantity, run: Run) -> None:
         if quantity.summary not in names:
             raise BadStudy(f"{place}: summary.json has no number '{quantity.summary}'{nearest(quantity.summary, names)}")
         return
-    names = [column.full_name for column in run.probes.columns] if run.probes else []
-    if quantity.probe not in names:
-        raise BadStudy(f"{place}: the scene has no probe '{quantity.probe}'{nearest(quantity.probe or '', names)}")
+    _check_probe(place, quantity.probe or "", run)
+
+
+def _check_probe(place: str, column: str, run: Run) -> None:
+    names = [known.full_name for known in run.probes.columns] if run.probes else []
+    if column not in names:
+        raise BadStudy(f"{place}: the scene has no probe '{column}'{nearest(column, names)}")
 
 
 def _numbers(summary: dict[str, Any], before: str = "") -> list[str]:

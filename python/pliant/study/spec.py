@@ -41,6 +41,19 @@ class Plot:
 
 
 @dataclass
+class Curve:
+    """A curve of each run, of two columns of its probes or of what a function returns; means over replicas."""
+
+    name: str
+    x: str | None
+    y: str | None
+    function: str | None  # file:name
+    by: str | None
+    log: list[str]
+    beside: str | None  # file:name, of a curve that is drawn beside each mean
+
+
+@dataclass
 class Convergence:
     """Size of the mesh or the step: a parameter to a power."""
 
@@ -70,12 +83,19 @@ class Study:
     replicas: Parameter | None
     quantities: list[Quantity]
     plots: list[Plot]
+    curves: list[Curve]
     convergence: Convergence | None
     regression: Regression | None
 
     @property
     def name(self) -> str:
         return self.file.stem
+
+    @property
+    def functions(self) -> list[str]:
+        """All that it names, as file:name."""
+        named = [q.function for q in self.quantities] + [where for c in self.curves for where in (c.function, c.beside)]
+        return [where for where in named if where is not None]
 
 
 def number_of(value: Any) -> float | None:

@@ -86,6 +86,7 @@ def is_queued_again(job: str) -> bool:
 
 def gather(folder: Folder, name: str) -> None:
     values: dict[str, dict] = {}
+    curves: dict[str, dict] = {}
     problems: list[str] = []
     if folder.outcome(name)["status"] == "finished":
         results = read_run(folder.results(name))
@@ -94,12 +95,20 @@ def gather(folder: Folder, name: str) -> None:
                 values[quantity.name] = asdict(gathering.gather(quantity, results))
             except gathering.CannotGather as error:
                 problems.append(f"{quantity.name}: {error}")
-    replace(folder.run(name) / "quantities.json", as_text({"values": values, "problems": problems}))
+        for curve in folder.curves():
+            try:
+                curves[curve.name] = gathering.gather_curve(curve, results)
+            except gathering.CannotGather as error:
+                problems.append(f"{curve.name}: {error}")
+    replace(folder.run(name) / "quantities.json",
+            as_text({"values": values, "curves": curves, "problems": problems}))
 
 
 def table(folder: Folder) -> None:
+    from pliant.study.curves import write_curves
     from pliant.study.table import write_table
     write_table(folder)
+    write_curves(folder)
 
 
 def plots(folder: Folder) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from typing import Any
 from pliant import units
 from pliant.study.reading import BadStudy, Reader, quantity, unique
 from pliant.study.spec import (
-    TAKES, Convergence, Parameter, Plot, Quantity, Regression, Study, between, number_of, units_of,
+    TAKES, Convergence, Curve, Parameter, Plot, Quantity, Regression, Study, between, number_of, units_of,
 )
 
 
@@ -37,11 +38,12 @@ def read_study(file: Path) -> Study:
     replicas = _replicas(top.table("replicas"))
     quantities = [_quantity(reader, file.parent) for reader in top.tables("quantities")]
     plots = [_plot(reader) for reader in top.tables("plots")]
+    curves = [_curve(reader, file.parent) for reader in top.tables("curves")]
     convergence = _convergence(top.table("convergence"))
     regression = _regression(top.table("regression"), file.parent)
     top.done()
     study = Study(file, title, scene, kind, combine, samples, seed, threads, fixed, parameters, replicas, quantities,
-                  plots, convergence, regression)
+                  plots, curves, convergence, regression)
     _check_names(study, top)
     return study
 
@@ -63,8 +65,9 @@ def _check_names(study: Study, top: Reader) -> None:
             top.fail(f"nothing can be called '{name}': table.csv needs the name, or its brackets")
     if study.combine == "latin hypercube" and not study.parameters:
         top.fail("a Latin hypercube needs [[parameters]]")
-    if not outputs:
-        top.fail("no [[quantities]]: nothing would come of it")
+    unique([curve.name for curve in study.curves], "curves", top)
+    if not outputs and not study.curves:
+        top.fail("no [[quantities]] and no [[curves]]: nothing would come of it")
 
     def known(name: str, names: list[str], place: str) -> None:
         if name not in names:
@@ -78,6 +81,9 @@ def _check_names(study: Study, top: Reader) -> None:
         for p in study.parameters:
             if p.name == plot.x and None not in map(number_of, p.values) and len(units_of(p.values)) > 1:
                 top.fail(f"[[plots]]: x: values of '{p.name}' are in different units; write all in one")
+    for curve in study.curves:
+        if curve.by is not None:
+            known(curve.by, inputs, "[[curves]]: by")
     if study.combine == "zip" and len({len(p.values) for p in study.parameters}) > 1:
         top.fail("combine = \"zip\": parameters have " +
                  ", ".join(f"{len(p.values)} ({p.name})" for p in study.parameters) + " values; all need as many")
@@ -183,23 +189,48 @@ def _quantity(reader: Reader, folder: Path) -> Quantity:
                 reader.fail(f"'window': {error}")
             if not first < last:
                 reader.fail(f"'window' is {window!r}; it must begin before it ends")
-    result.function = reader.take("function", str, None)
-    if result.function is not None:
-        file, _, name = result.function.partition(":")
-        if not name or not (folder / file).is_file():
-            reader.fail(f"'function' is '{result.function}'; it must be FILE.py:NAME, a file beside the study's")
-        result.function = f"{(folder / file).resolve()}:{name}"
+    result.function = _function(reader, "function", folder)
     reader.done()
     return result
 
 
+def _function(reader: Reader, key: str, folder: Path) -> str | None:
+    """With the whole path of its file."""
+    value = reader.take(key, str, None)
+    if value is None:
+        return None
+    file, _, name = value.partition(":")
+    if not name or not (folder / file).is_file():
+        reader.fail(f"'{key}' is '{value}'; it must be FILE.py:NAME, a file beside the study's")
+    return f"{(folder / file).resolve()}:{name}"
+
+
 def _plot(reader: Reader) -> Plot:
-    plot = Plot(reader.take("x", str), reader.take("y", str), reader.take("by", str, None), reader.names("log", []))
-    for axis in plot.log:
-        if axis not in ("x", "y"):
-            reader.fail(f"'log' is {plot.log!r}; it may hold \"x\" and \"y\"")
+    plot = Plot(reader.take("x", str), reader.take("y", str), reader.take("by", str, None), _log(reader))
     reader.done()
     return plot
+
+
+def _log(reader: Reader) -> list[str]:
+    axes = reader.names("log", [])
+    for axis in axes:
+        if axis not in ("x", "y"):
+            reader.fail(f"'log' is {axes!r}; it may hold \"x\" and \"y\"")
+    return axes
+
+
+def _curve(reader: Reader, folder: Path) -> Curve:
+    name = reader.take("name", str)
+    if not re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        reader.fail(f"'name' is '{name}'; a file is called by it: letters, digits, _ and -")
+    if reader.has("function") == (reader.has("x") or reader.has("y")):
+        reader.fail("either 'x' and 'y' or 'function' is needed")
+    function = _function(reader, "function", folder)
+    x, y = (None, None) if function else (reader.take("x", str), reader.take("y", str))
+    curve = Curve(name, x, y, function, reader.take("by", str, None), _log(reader),
+                  _function(reader, "beside", folder))
+    reader.done()
+    return curve
 
 
 def _convergence(reader: Reader | None) -> Convergence | None:
