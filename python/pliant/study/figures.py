@@ -14,8 +14,9 @@ from matplotlib.axes import Axes
 
 from pliant.study.curves import draw_curve, mean_curves
 from pliant.study.folder import Folder
+from pliant.study.gather import CannotGather, called
 from pliant.study.spec import number_of, units_of
-from pliant.study.table import mean_of_replicas
+from pliant.study.table import mean_of_replicas, means_of_replicas
 
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f7f7f", "#000000"]
 MARKERS = "osD^vP"
@@ -35,6 +36,13 @@ def draw_all(folder: Folder) -> list[dict[str, str]]:
         figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
         draw_curve(axes, curve, mean_curves(folder, curve), COLOURS)
         drawn.append(_save(folder, figure, f"curve_{curve.name}", curve.name))
+    for wanted in about["figures"]:
+        figure, axes = plt.subplots(figsize=(6.4, 4.2), layout="constrained")
+        try:
+            called(wanted["function"], axes, means_of_replicas(table["rows"], table["quantities"], about["parameters"]))
+        except CannotGather as error:
+            axes.text(0.5, 0.5, str(error), transform=axes.transAxes, ha="center", fontsize=7, wrap=True)
+        drawn.append(_save(folder, figure, wanted["name"], wanted["name"]))
     if "orders" in table:
         for output in about["convergence"]["of"]:
             if all(o["limit"] is None for o in table["orders"] if o["quantity"] == output):

@@ -122,6 +122,7 @@ class Folder:
             "runs": [point.name for point in points], "parameters": [p.name for p in study.parameters],
             "replicas": study.replicas.name if study.replicas else None,
             "plots": [asdict(plot) for plot in study.plots],
+            "figures": [asdict(figure) for figure in study.figures],
             "convergence": asdict(study.convergence) if study.convergence else None,
             "regression": {"baseline": study.regression.baseline.read_text("utf-8-sig"),
                            "tolerances": study.regression.tolerances} if study.regression else None,

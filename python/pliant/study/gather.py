@@ -104,7 +104,7 @@ def gather_curve(curve: Curve, run: Run) -> dict[str, Any]:
         raise CannotGather("the run has no probes")
     else:
         try:
-            columns = [run.probes.column(name or "") for name in (curve.x, curve.y)]
+            columns = [run.probes.column(name) for name in (curve.x, curve.y)]
         except KeyError as error:
             raise CannotGather(error.args[0]) from error
         x, y = (column.values for column in columns)

@@ -19,7 +19,8 @@ BEGINNING = "1e-25 s"  # of a run: one step, whatever the scene
 def rehearse(study: Study, scene_file: Path, scratch: Path) -> None:
     """BadStudy: a run has no such probe, or no such key in its summary. A scene that fails at once tells nothing."""
     named = [quantity for quantity in study.quantities if quantity.function is None]
-    columns = [(curve.name, column) for curve in study.curves for column in (curve.x, curve.y) if column is not None]
+    columns = [(curve.name, column) for curve in study.curves if curve.function is None
+               for column in (curve.x, curve.y)]
     folder = scratch / "beginning"
     if not named + columns or call("run", scene_file, "--out", folder, "--until", BEGINNING, "--quiet").returncode != 0:
         return

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+AVERAGES = ["x", "points"]  # of the curves of replicas: at the same x, or of their points in order
 TAKES = ["mean", "last", "max", "min", "peak", "plateau", "slope"]
 
 
@@ -45,12 +46,21 @@ class Curve:
     """A curve of each run, of two columns of its probes or of what a function returns; means over replicas."""
 
     name: str
-    x: str | None
-    y: str | None
+    x: str  # column, or the title of what the function returns
+    y: str
     function: str | None  # file:name
     by: str | None
     log: list[str]
+    average: str  # AVERAGES
     beside: str | None  # file:name, of a curve that is drawn beside each mean
+
+
+@dataclass
+class Figure:
+    """Drawn by a function of the user's: of axes and the means over replicas."""
+
+    name: str
+    function: str  # file:name
 
 
 @dataclass
@@ -84,6 +94,7 @@ class Study:
     quantities: list[Quantity]
     plots: list[Plot]
     curves: list[Curve]
+    figures: list[Figure]
     convergence: Convergence | None
     regression: Regression | None
 
@@ -95,7 +106,7 @@ class Study:
     def functions(self) -> list[str]:
         """All that it names, as file:name."""
         named = [q.function for q in self.quantities] + [where for c in self.curves for where in (c.function, c.beside)]
-        return [where for where in named if where is not None]
+        return [where for where in [*named, *(f.function for f in self.figures)] if where is not None]
 
 
 def number_of(value: Any) -> float | None:

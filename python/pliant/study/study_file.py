@@ -13,7 +13,7 @@ from typing import Any
 from pliant import units
 from pliant.study.reading import BadStudy, Reader, quantity, unique
 from pliant.study.spec import (
-    TAKES, Convergence, Curve, Parameter, Plot, Quantity, Regression, Study, between, number_of, units_of,
+    AVERAGES, TAKES, Convergence, Curve, Figure, Parameter, Plot, Quantity, Regression, Study, between, number_of, units_of,
 )
 
 
@@ -39,11 +39,12 @@ def read_study(file: Path) -> Study:
     quantities = [_quantity(reader, file.parent) for reader in top.tables("quantities")]
     plots = [_plot(reader) for reader in top.tables("plots")]
     curves = [_curve(reader, file.parent) for reader in top.tables("curves")]
+    figures = [_figure(reader, file.parent) for reader in top.tables("figures")]
     convergence = _convergence(top.table("convergence"))
     regression = _regression(top.table("regression"), file.parent)
     top.done()
     study = Study(file, title, scene, kind, combine, samples, seed, threads, fixed, parameters, replicas, quantities,
-                  plots, curves, convergence, regression)
+                  plots, curves, figures, convergence, regression)
     _check_names(study, top)
     return study
 
@@ -66,6 +67,7 @@ def _check_names(study: Study, top: Reader) -> None:
     if study.combine == "latin hypercube" and not study.parameters:
         top.fail("a Latin hypercube needs [[parameters]]")
     unique([curve.name for curve in study.curves], "curves", top)
+    unique([figure.name for figure in study.figures], "figures", top)
     if not outputs and not study.curves:
         top.fail("no [[quantities]] and no [[curves]]: nothing would come of it")
 
@@ -220,17 +222,28 @@ def _log(reader: Reader) -> list[str]:
 
 
 def _curve(reader: Reader, folder: Path) -> Curve:
+    name = _file_name(reader)
+    function = _function(reader, "function", folder)
+    x, y = reader.take("x", str), reader.take("y", str)
+    curve = Curve(name, x, y, function, reader.take("by", str, None), _log(reader),
+                  reader.choice("average", AVERAGES, "x"), _function(reader, "beside", folder))
+    reader.done()
+    return curve
+
+
+def _figure(reader: Reader, folder: Path) -> Figure:
+    name, function = _file_name(reader), _function(reader, "function", folder)
+    if function is None:
+        reader.fail("'function' is missing")
+    reader.done()
+    return Figure(name, function)
+
+
+def _file_name(reader: Reader) -> str:
     name = reader.take("name", str)
     if not re.fullmatch(r"[A-Za-z0-9_-]+", name):
         reader.fail(f"'name' is '{name}'; a file is called by it: letters, digits, _ and -")
-    if reader.has("function") == (reader.has("x") or reader.has("y")):
-        reader.fail("either 'x' and 'y' or 'function' is needed")
-    function = _function(reader, "function", folder)
-    x, y = (None, None) if function else (reader.take("x", str), reader.take("y", str))
-    curve = Curve(name, x, y, function, reader.take("by", str, None), _log(reader),
-                  _function(reader, "beside", folder))
-    reader.done()
-    return curve
+    return name
 
 
 def _convergence(reader: Reader | None) -> Convergence | None:

@@ -1,0 +1,109 @@
+"""Quantities of the compaction studies: pressure and coordination over solid fraction, and published forms of them.
+
+Cardenas-Barrantes et al. (2020, Phys. Rev. E 102, 032904; 2021, arXiv 2012.10399): the coordination grows as the square
+root of the solid fraction above jamming, and the bulk modulus diverges where the solid fraction has its largest value.
+Here Z = Z_J + a sqrt(phi - phi_J) and p = -b ln((phi_m - phi)/(phi_m - phi_J)), all constants fitted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pliant import Run
+
+YOUNG = 200e3  # Pa, of the scene
+BEARING = 1e-3  # pressure over Young's modulus from which forms are fitted: the inertial number is below 0.005
+DENSEST = 0.98  # solid fraction up to which they are
+
+
+def column(run: Run, name: str) -> np.ndarray:
+    assert run.probes is not None
+    return run.probes.column(name).values
+
+
+def pressure(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Solid fraction, and pressure over Young's modulus, from jamming on."""
+    fraction, over_young = column(run, "packing.solid_fraction"), column(run, "cell.pressure") / YOUNG
+    first = int(np.argmax(over_young >= BEARING))
+    return fraction[first:], over_young[first:]
+
+
+def coordination(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Solid fraction, and contacts of a disc that has at least two, from jamming on."""
+    fraction, _ = pressure(run)
+    return fraction, column(run, "coordination.coordination_without_rattlers")[-len(fraction):]
+
+
+def at(run: Run, fraction: float) -> float:
+    return float(np.interp(fraction, *pressure(run)))
+
+
+def pressure_at_90(run: Run) -> float:
+    return at(run, 0.90)
+
+
+def pressure_at_95(run: Run) -> float:
+    return at(run, 0.95)
+
+
+def pressure_at_98(run: Run) -> float:
+    return at(run, 0.98)
+
+
+def fit_logarithm(fraction: np.ndarray, over_young: np.ndarray) -> tuple[float, float, float]:
+    """phi_J, phi_m and b/E: for each phi_m, in steps of 1e-4, the others follow from linear least squares."""
+    inside = (over_young >= BEARING) & (fraction <= DENSEST)
+    phi, p = fraction[inside], over_young[inside]
+    best = (np.inf, 0.0, 0.0, 0.0)
+    for densest in np.arange(phi.max() + 1e-3, 1.2, 1e-4):
+        basis = np.stack([np.ones_like(phi), -np.log(densest - phi)], axis=1)
+        (level, factor), *_ = np.linalg.lstsq(basis, p, rcond=None)
+        square = float(((basis @ [level, factor] - p) ** 2).sum())
+        best = min(best, (square, densest - np.exp(level / factor), densest, factor))
+    return float(best[1]), float(best[2]), float(best[3])
+
+
+def logarithm(fraction: np.ndarray, over_young: np.ndarray) -> np.ndarray:
+    jammed, densest, factor = fit_logarithm(fraction, over_young)
+    inside = (fraction > jammed) & (fraction <= DENSEST)
+    return np.where(inside, -factor * np.log(np.maximum(densest - fraction, 1e-9) / (densest - jammed)), np.nan)
+
+
+def fit_root(fraction: np.ndarray, contacts: np.ndarray) -> tuple[float, float, float]:
+    """phi_J, Z_J and a: for each phi_J, in steps of 1e-4, the others follow from linear least squares."""
+    inside = fraction <= DENSEST
+    phi, z = fraction[inside], contacts[inside]
+    best = (np.inf, 0.0, 0.0, 0.0)
+    for jammed in np.arange(0.7, phi.min(), 1e-4):
+        basis = np.stack([np.ones_like(phi), np.sqrt(phi - jammed)], axis=1)
+        (least, factor), *_ = np.linalg.lstsq(basis, z, rcond=None)
+        best = min(best, (float(((basis @ [least, factor] - z) ** 2).sum()), jammed, least, factor))
+    return float(best[1]), float(best[2]), float(best[3])
+
+
+def root(fraction: np.ndarray, contacts: np.ndarray) -> np.ndarray:
+    jammed, least, factor = fit_root(fraction, contacts)
+    return np.where(fraction <= DENSEST, least + factor * np.sqrt(np.maximum(fraction - jammed, 0)), np.nan)
+
+
+def jammed_at(run: Run) -> float:
+    return fit_logarithm(*pressure(run))[0]
+
+
+def densest(run: Run) -> float:
+    return fit_logarithm(*pressure(run))[1]
+
+
+def factor(run: Run) -> float:
+    return fit_logarithm(*pressure(run))[2]
+
+
+def least_contacts(run: Run) -> float:
+    return fit_root(*coordination(run))[1]
+
+
+def overlap(run: Run) -> float:
+    """Estimate at the end: energy of contacts over pressure, as a share of the discs' area. Of a penalty kn and a uniform
+    pressure p on contacts of length L the energy is p^2 L/(2 kn) and the area of overlaps p L/kn."""
+    area = column(run, "packing.solid_fraction") * column(run, "gradient.cell_area")
+    return float(2 * column(run, "energy.contact")[-1] / column(run, "cell.pressure")[-1] / area[-1])

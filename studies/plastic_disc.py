@@ -1,0 +1,43 @@
+"""Force on a plastic disc between plates, over their approach."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+
+from pliant import Run
+
+CALCULIX = Path(__file__).resolve().parents[1] / "verify/plasticity/oracles/disc_calculix.csv"
+
+
+def column(run: Run, name: str) -> np.ndarray:
+    assert run.probes is not None
+    return run.probes.column(name).values
+
+
+def force(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Approach over the diameter, and mean force of both plates over yield stress and diameter."""
+    both = np.abs(column(run, "floor.force_y")) + np.abs(column(run, "lid.force_y"))
+    return -column(run, "approach.displacement_y"), both / 2
+
+
+def calculix(approach: np.ndarray, _: np.ndarray) -> np.ndarray:
+    """Its force at these approaches, by CalculiX."""
+    with CALCULIX.open() as stream:
+        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
+    table = [np.array([float(row[name]) for row in rows]) for name in ("approach", "force")]
+    return np.interp(approach, *table, left=np.nan, right=np.nan)
+
+
+def difference(run: Run) -> float:
+    """Of the force from CalculiX's, rms over the second half of the approach, over its mean there."""
+    approach, found = force(run)
+    expected = calculix(approach, found)
+    late = approach >= 0.5 * approach[-1]
+    return float(np.sqrt(np.nanmean((found - expected)[late] ** 2)) / np.nanmean(expected[late]))
+
+
+def last(run: Run) -> float:
+    return float(force(run)[1][-1])
