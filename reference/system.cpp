@@ -86,7 +86,8 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
   const Points x = bodies_.outline_positions(motion.q);
   OutlineResidual outlines = loads_.outlines(x, motion.instant());
   forces.boundary = outlines.stored;
-  forces.potential += forces.strain + outlines.stored + outlines.potential;
+  // At rest the loss of a step is what its flow takes from the energy: rates do not count.
+  forces.potential += forces.strain + forces.plastic_loss + outlines.stored + outlines.potential;
   forces.contacts = contacts_.evaluate(x);
   forces.contact = forces.contacts.stored;
   forces.potential += forces.contact;
