@@ -1,7 +1,5 @@
 #include "reference/bodies.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <map>
@@ -65,9 +63,6 @@ void Bodies::place(Body body, int dofs) {
 }
 
 void Bodies::add_compliant(Body body, std::map<std::string, int>& known) {
-  if (material_of(body).law == MaterialLaw::drucker_prager)
-    throw InputError(
-        fmt::format("[materials.{}] law = \"drucker-prager\": not in the reference solver", material_of(body).name));
   const ShapeSpec& shape = scene_.shapes[body.placed.shape];
   const auto [found, is_new] = known.try_emplace(shape.name, static_cast<int>(spaces_.size()));
   const auto shared = meshes_.find(shape.name);

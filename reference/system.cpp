@@ -65,7 +65,7 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
     const int first = body.first_dof;
     const InternalState internal = internal_[number].evaluate(motion.q.segment(first, body.dofs), tangent, elapsed);
     histories_[number] = internal.history;
-    forces.symmetric &= !internal_[number++].has_branch();
+    forces.symmetric &= internal_[number++].has_potential();
     forces.creep_power += internal.power;
     forces.plastic_loss += internal.loss;
     if (internal.least_jacobian < forces.least_jacobian) {

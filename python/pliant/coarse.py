@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pliant.frames import Box, Frames
+from pliant.frames import BadFolder, Box, Frames
 from pliant.network import of_frame
 
 SAMPLES = 16  # of an arm, each with its share of the force's moment
@@ -112,6 +112,8 @@ def profile(frames: Frames, window: tuple[float, float], height: float, box: Box
 
 
 def _cells(frames: Frames, index: int, cell: float, box: Box | None) -> Cells:
+    if frames.in_cell:
+        raise BadFolder(f"{frames.path}: fields over a box are for domains of one period at most; this one has two")
     if box is None:
         points = frames.positions("bodies", index)
         (left, low), (right, high) = points.min(axis=0), points.max(axis=0)

@@ -1,13 +1,14 @@
 """Order of a packing: who neighbours whom, how hexagonal it is, how mixed are its kinds.
 
     frames, grains = run.frames, run.frames.bodies("grain")
-    of = neighbours(frames.centres(10)[grains], 1.3e-6, frames.period)
+    of = neighbours(frames.centres(10)[grains], 1.3e-6, frames.periods(10))
     np.nanmean(bond_order(of)), clusters(of, frames.kinds[grains] == COMPLIANT)
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -28,27 +29,36 @@ class Neighbours:
         return np.bincount(self.first, minlength=self.grains)
 
 
-def neighbours(centres: np.ndarray, distance: float, period: float | None = None) -> Neighbours:
-    """Of centres [grains x 2], m, nearer to each other than a distance, m; periodic in x if there is a period, of which
-    the distance must be less than half."""
-    if period is not None and not distance < period / 2:
-        raise ValueError(f"a distance of {distance:g} m in a period of {period:g} m; allowed: less than half of it")
-    placed = centres if period is None else np.column_stack([centres[:, 0] % period, centres[:, 1]])
-    # A place at the period itself, by rounding, is refused; no period: 0.
-    tree = cKDTree(np.minimum(placed, [np.nextafter(period, 0), np.inf]) if period else placed,
-                   boxsize=[period, 0] if period else None)
-    pairs = tree.query_pairs(distance, output_type="ndarray")
-    first, second = _both_ways(pairs)
-    branch = centres[second] - centres[first]
-    if period is not None:
-        branch[:, 0] -= period * np.round(branch[:, 0] / period)
-    return Neighbours(first, second, branch, len(centres))
-
-
-def _both_ways(pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    first, second = np.concatenate([pairs, pairs[:, ::-1]]).T
+def neighbours(centres: np.ndarray, distance: float, periods: float | np.ndarray | None = None) -> Neighbours:
+    """Of centres [grains x 2], m, nearer to each other than a distance, m. `periods`: the length of one along x, m, or
+    vectors [0 to 2 x 2] as Frames.periods gives; the distance must be less than half the shortest period."""
+    vectors = _vectors(periods)
+    shortest = np.linalg.norm(vectors, axis=1).min(initial=np.inf)
+    if not distance < shortest / 2:
+        raise ValueError(f"a distance of {distance:g} m in a period of {shortest:g} m; allowed: less than half of it")
+    places = centres @ np.linalg.pinv(vectors)
+    placed = centres - np.floor(places) @ vectors
+    images = np.array(list(product((-1, 0, 1), repeat=len(vectors))), dtype=float) @ vectors
+    near = cKDTree(placed).query_ball_point((placed[:, None] + images).reshape(-1, 2), distance)
+    seen = np.repeat(np.arange(len(near)), [len(found) for found in near])
+    first, second = np.concatenate([*near, []]).astype(int), seen // len(images)
+    branch = placed[second] + images[seen % len(images)] - placed[first]
     order = np.lexsort([second, first])
-    return first[order], second[order]
+    order = order[(first != second)[order]]
+    return Neighbours(first[order], second[order], branch[order], len(centres))
+
+
+def _vectors(periods: float | np.ndarray | None) -> np.ndarray:
+    """[0 to 2 x 2] m; two are the shortest of their lattice (Gauss's reduction)."""
+    if periods is None:
+        return np.empty((0, 2))
+    vectors = np.array([[periods, 0.0]]) if np.isscalar(periods) else np.array(periods, dtype=float)
+    if len(vectors) < 2:
+        return vectors
+    a, b = sorted(vectors, key=np.linalg.norm)
+    while (turns := np.round(a @ b / (a @ a))) != 0:
+        a, b = sorted((a, b - turns * a), key=np.linalg.norm)
+    return np.array([a, b])
 
 
 def bond_order(of: Neighbours) -> np.ndarray:

@@ -75,10 +75,10 @@ struct Symmetric {
 };
 
 /// Internal variables of a point: inverse of a viscous or plastic metric in the plane; for a Maxwell branch the value
-/// towards which it creeps, for plastic laws the equivalent plastic strain.
+/// towards which it creeps, for plastic laws the equivalent plastic strain and the logarithm of the plastic volume.
 struct PointHistory {
   Symmetric<double> metric, goal;
-  double plastic_strain = 0;
+  double plastic_strain = 0, plastic_volume = 0;
 };
 
 /// Inverse of F^T F.

@@ -176,10 +176,10 @@ std::vector<PointStress> InternalForces::stresses(const Eigen::VectorXd& q) cons
   for (Eigen::Index g = 0; g < weight_.size(); ++g) {
     // Derivative by the F of the law, which for small strains is also that of the stress.
     const Deformation<double> F = measured(entries_at(all, g));
-    Jet<5> energy = is_plastic()
-                        ? elastic_energy(moduli(material_),
-                                         LogarithmicStrain<Jet<5>>(as_variables<5>(F), history_[std::size_t(g)].metric))
-                        : strain_energy(material_, as_variables<5>(F));
+    Jet<5> energy =
+        is_plastic()
+            ? elastic_energy(moduli(material_), LogarithmicStrain<Jet<5>>(as_variables<5>(F), history_[std::size_t(g)]))
+            : strain_energy(material_, as_variables<5>(F));
     if (has_branch()) {
       const Symmetric<double>& G = history_[std::size_t(g)].metric;
       energy += branch_energy(material_, as_variables<5>(F), Symmetric<Jet<5>>{G.xx, G.xy, G.yy});

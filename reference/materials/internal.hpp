@@ -13,7 +13,7 @@ namespace pliant::reference {
 struct InternalState {
   double energy = 0;                    ///< elastic, J/m
   Eigen::VectorXd residual;             ///< [2 nodes], minus the forces, N/m
-  Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual, symmetric; empty unless requested
+  Eigen::SparseMatrix<double> tangent;  ///< [2 nodes x 2 nodes] of the residual; empty unless requested
   double least_jacobian = 0;
   int least_point = 0;
   double power = 0;                   ///< dissipated by Maxwell branches, W/m
@@ -43,12 +43,16 @@ class InternalForces {
   InternalForces(const Space& space, const Material& material, double size, double angle);
 
   /// Internal forces at positions q, m, from any origin, after a time increment `elapsed`, s; if that is infinite,
-  /// branches have relaxed, and plastic flow has no rate. With a branch the tangent is not symmetric.
+  /// branches have relaxed, and plastic flow has no rate.
   InternalState evaluate(const Eigen::VectorXd& q, bool tangent, double elapsed = 0) const;
   /// Sets the internal variables of the points.
   void accept(std::vector<PointHistory> history) { history_ = std::move(history); }
   bool has_branch() const { return material_.law == MaterialLaw::neo_hookean_maxwell; }
-  bool is_plastic() const { return material_.law == MaterialLaw::von_mises; }
+  bool is_plastic() const {
+    return material_.law == MaterialLaw::von_mises || material_.law == MaterialLaw::drucker_prager;
+  }
+  /// Whether forces are the gradient of a potential, so that the tangent is symmetric.
+  bool has_potential() const { return !has_branch() && material_.law != MaterialLaw::drucker_prager; }
   const std::vector<PointHistory>& history() const { return history_; }
   /// Damping at positions q, m, and velocities v, m/s.
   ViscousState damping(const Eigen::VectorXd& q, const Eigen::VectorXd& v, bool tangent) const;

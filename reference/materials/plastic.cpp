@@ -7,11 +7,6 @@ namespace {
 
 const double root = std::sqrt(1.5);
 
-template <int N>
-Deformation<Jet<N>> variables(const Deformation<double>& F) {
-  return {Jet<N>(F.xx, 0), Jet<N>(F.xy, 1), Jet<N>(F.yx, 2), Jet<N>(F.yy, 3)};
-}
-
 /// Slope of the potential of flow, R'(x), with its derivative.
 YieldStress resistance(const Material& material, double from, double x, double times) {
   const YieldStress yield = yield_stress(material, from + x);
@@ -43,35 +38,39 @@ double plastic_work(const Material& material, double from, double x) {
   return sum * x / (6 * parts);
 }
 
-/// F^-1 b F^-T with the principal strains of b, whose deviator shrinks by r.
-Symmetric<double> returned_metric(const Deformation<double>& F, const Symmetric<double>& B, double volume, double r) {
+}  // namespace
+
+PlasticIncrement elastic_increment(const Moduli& moduli, const Deformation<double>& F, const PointHistory& old) {
+  const Jet<4> W = elastic_energy(moduli, LogarithmicStrain<Jet<4>>(as_plane_variables<4>(F), old));
+  return {W.gradient, W.hessian, W.value, 0, old};
+}
+
+/// F^-1 b F^-T with other principal strains of b.
+Symmetric<double> returned_metric(const Deformation<double>& F, const Symmetric<double>& B, double volume, double kept,
+                                  double r) {
   Eigen::Matrix2d f, metric;
   f << F.xx, F.xy, F.yx, F.yy;
   metric << B.xx, B.xy, B.xy, B.yy;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> b(f * metric * f.transpose());
   const Eigen::Array2d strain = 0.5 * b.eigenvalues().array().log();
-  const Eigen::Array2d kept = volume / 3 + r * (strain - volume / 3);
+  const Eigen::Array2d left = kept / 3 + r * (strain - volume / 3);
   const Eigen::Matrix2d n = f.inverse() * b.eigenvectors();
-  const Eigen::Matrix2d now = n * (2 * kept).exp().matrix().asDiagonal() * n.transpose();
+  const Eigen::Matrix2d now = n * (2 * left).exp().matrix().asDiagonal() * n.transpose();
   return {now(0, 0), 0.5 * (now(0, 1) + now(1, 0)), now(1, 1)};
 }
-
-}  // namespace
 
 PlasticIncrement plastic_increment(const Material& material, const Deformation<double>& F, const PointHistory& old,
                                    double elapsed) {
   const Moduli m = moduli(material);
-  const LogarithmicStrain<double> trial(F, old.metric);
+  if (elapsed == 0) return elastic_increment(m, F, old);
+  if (material.law == MaterialLaw::drucker_prager) return drucker_prager_increment(material, F, old);
+  const LogarithmicStrain<double> trial(F, old);
   const double norm = std::sqrt(trial.deviator_squared), times = material.viscoplastic_time / elapsed;
+  if (2 * m.mu * root * norm <= yield_stress(material, old.plastic_strain).stress) return elastic_increment(m, F, old);
   PlasticIncrement result;
   result.now = old;
-  if (elapsed == 0 || 2 * m.mu * root * norm <= yield_stress(material, old.plastic_strain).stress) {
-    const Jet<4> W = elastic_energy(m, LogarithmicStrain<Jet<4>>(variables<4>(F), old.metric));
-    result.stress = W.gradient, result.stiffness = W.hessian, result.energy = W.value;
-    return result;
-  }
   const double x = find_flow(material, norm, old.plastic_strain, times);
-  const LogarithmicStrain<Jet<5>> e(variables<5>(F), old.metric);
+  const LogarithmicStrain<Jet<5>> e(as_plane_variables<5>(F), old);
   const Jet<5> flow(x, 4), left = sqrt(e.deviator_squared) - root * flow;
   Jet<5> W = 0.5 * m.bulk * e.volume * e.volume + m.mu * left * left;
   result.energy = W.value;
@@ -82,7 +81,7 @@ PlasticIncrement plastic_increment(const Material& material, const Deformation<d
                      W.hessian.topRightCorner<4, 1>() * W.hessian.bottomLeftCorner<1, 4>() / W.hessian(4, 4);
   const double yield = yield_stress(material, old.plastic_strain + x).stress;
   result.loss = plastic_work(material, old.plastic_strain, x) + (resists.stress - yield) * x;
-  result.now.metric = returned_metric(F, old.metric, trial.volume, 1 - root * x / norm);
+  result.now.metric = returned_metric(F, old.metric, trial.volume, trial.volume, 1 - root * x / norm);
   result.now.plastic_strain += x;
   return result;
 }

@@ -45,13 +45,14 @@ Jet<N> squared_artanh(const Jet<N>& w) {
   return w.chained(f.value, f.first, f.second);
 }
 
-/// Elastic logarithmic strain with the plastic metric held.
+/// Elastic logarithmic strain with the plastic metric held. Out of the plane the metric follows from the plastic volume.
 template <class Scalar>
 struct LogarithmicStrain {
   Scalar volume, deviator_squared;
 
-  LogarithmicStrain(const Deformation<Scalar>& F, const Symmetric<double>& B) {
+  LogarithmicStrain(const Deformation<Scalar>& F, const PointHistory& held) {
     using std::log;
+    const Symmetric<double>& B = held.metric;
     const double det = B.xx * B.yy - B.xy * B.xy;
     const auto pull = [&](const Scalar& a, const Scalar& b, const Scalar& c, const Scalar& d) {
       return B.xx * a * c + B.xy * (a * d + b * c) + B.yy * b * d;
@@ -59,8 +60,8 @@ struct LogarithmicStrain {
     const Scalar xx = pull(F.xx, F.xy, F.xx, F.xy), xy = pull(F.xx, F.xy, F.yx, F.yy),
                  yy = pull(F.yx, F.yy, F.yx, F.yy);
     const Scalar mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy), in_plane = F.xx * F.yy - F.xy * F.yx;
-    const Scalar level = 0.5 * log(in_plane) + 0.25 * std::log(det);  // mean principal strain in the plane
-    const Scalar along = log(F.zz) - 0.5 * std::log(det);             // and the one out of it
+    const Scalar level = 0.5 * log(in_plane) + 0.25 * std::log(det);             // mean principal strain in the plane
+    const Scalar along = log(F.zz) - 0.5 * std::log(det) - held.plastic_volume;  // and the one out of it
     const Scalar spread = 0.25 * squared_artanh((half * half + xy * xy) / (mean * mean));  // (half difference)^2
     volume = 2.0 * level + along;
     const Scalar in = level - (1.0 / 3) * volume, out = along - (1.0 / 3) * volume;
@@ -73,7 +74,7 @@ Scalar elastic_energy(const Moduli& m, const LogarithmicStrain<Scalar>& e) {
   return 0.5 * m.bulk * e.volume * e.volume + m.mu * e.deviator_squared;
 }
 
-/// Yield stress with its derivative, and its integral from 0 on while it is above 0.
+/// Yield stress, at least 0, with its derivative.
 struct YieldStress {
   double stress, slope;
 };
@@ -96,8 +97,24 @@ struct PlasticIncrement {
   PointHistory now;
 };
 
+template <int N>
+Deformation<Jet<N>> as_plane_variables(const Deformation<double>& F) {
+  return {Jet<N>(F.xx, 0), Jet<N>(F.xy, 1), Jet<N>(F.yx, 2), Jet<N>(F.yy, 3)};
+}
+
+/// Response to F with the internal variables held.
+PlasticIncrement elastic_increment(const Moduli& moduli, const Deformation<double>& F, const PointHistory& old);
+/// Plastic metric when the elastic strain of the trial, of volume `volume`, gets the volume `kept` and the deviator
+/// shrinks by r.
+Symmetric<double> returned_metric(const Deformation<double>& F, const Symmetric<double>& B, double volume, double kept,
+                                  double r);
+
 /// Response to F after an increment of `elapsed`, s; infinite: without a rate; 0: internal variables are held.
 PlasticIncrement plastic_increment(const Material& material, const Deformation<double>& F, const PointHistory& old,
                                    double elapsed);
+
+/// The same of `drucker-prager`, which has no rate and, in general, no potential: the stiffness is not symmetric.
+PlasticIncrement drucker_prager_increment(const Material& material, const Deformation<double>& F,
+                                          const PointHistory& old);
 
 }  // namespace pliant::reference

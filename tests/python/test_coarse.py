@@ -121,6 +121,13 @@ def chain(folder: Path) -> Frames:
     return Frames(write(folder, CHAIN_BODIES, CHAIN, CHAIN_KINDS), None)
 
 
+def test_a_cell_with_two_periods_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    frames = Frames(write(tmp_path, [square(0, 0)]), None)
+    monkeypatch.setattr(Frames, "in_cell", True)
+    with pytest.raises(BadFolder, match="one period at most"):
+        coarse_fields(frames, 0, 1.0)
+
+
 def test_forces_along_and_across_the_line_of_centres(tmp_path: Path) -> None:
     network = of_frame(chain(tmp_path), 0)
     assert network.normals == pytest.approx(np.array([[1, 0], [0, -1]]))

@@ -38,6 +38,23 @@ def test_neighbours_are_all_pairs_that_are_near(period: float | None) -> None:
     assert np.array_equal(of.counts(), np.bincount(of.first, minlength=150))
 
 
+def test_neighbours_in_a_sheared_cell() -> None:
+    """INDEPENDENT: all images of all pairs tried, of a cell that leans by several widths."""
+    vectors = np.array([[3.0, 0.2], [7.4, 2.5]])
+    centres = np.random.default_rng(2).uniform(-4, 4, (60, 2))
+    expected = {}
+    for a, p in enumerate(centres):
+        for b, q in enumerate(centres):
+            for i in range(-20, 21):
+                for j in range(-20, 21):
+                    branch = q + i * vectors[0] + j * vectors[1] - p
+                    if a != b and np.hypot(*branch) < 0.6:
+                        expected[a, b] = branch
+    of = neighbours(centres, 0.6, vectors)
+    assert sorted(expected) == list(zip(of.first.tolist(), of.second.tolist(), strict=True))
+    np.testing.assert_allclose(of.branch, [expected[pair] for pair in sorted(expected)], atol=1e-12)
+
+
 def test_too_large_a_distance_is_refused() -> None:
     with pytest.raises(ValueError, match="less than half"):
         neighbours(hexagonal(), PERIOD / 2, PERIOD)

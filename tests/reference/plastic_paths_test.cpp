@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "materials/drucker_prager.hpp"
 #include "materials/von_mises.hpp"
 #include "reference/materials/plastic.hpp"
+#include "support/random.hpp"
 
 namespace pliant {
 namespace {
@@ -84,6 +87,90 @@ TEST(PlasticPaths, reference_agrees_with_scipy) {
     EXPECT_NEAR(history.metric.yy, one.now[2], error);
     EXPECT_NEAR(history.plastic_strain, one.now[3], error);
   }
+}
+
+/// Soil that is compressed and sheared, turned, and then torn: onto the cone, and to the apex.
+std::vector<Tensor<double>> path_of_soil(int increments) {
+  std::vector<Tensor<double>> path;
+  for (int i = 1; i <= 2 * increments; ++i) {
+    const double t = double(i) / increments, load = std::min(t, 1.0), tear = std::max(t - 1, 0.0);
+    const double xx = 1 + 0.3 * tear, yy = 1 - 0.1 * load + 0.4 * tear, xy = 0.15 * load, c = std::cos(t),
+                 s = std::sin(t);
+    path.push_back({c * xx, c * xy - s * yy, s * xx, s * xy + c * yy});
+  }
+  return path;
+}
+
+struct Losses {
+  double engine = 0, reference = 0;
+};
+
+/// Sums over the path; compares stresses and plastic strains after each increment.
+Losses follow_soil(int increments) {
+  Material material = law_of_table();
+  material.law = MaterialLaw::drucker_prager;
+  material.cohesion = 0.02, material.friction_angle = 0.5, material.dilatancy_angle = 0.2, material.hardening = 0.03;
+  const auto law = DruckerPrager<double>::of(material).over(1);
+  DruckerPrager<double>::Record record{1, 0, 1, 1, 0, 0, 0}, now{};
+  reference::PointHistory history;
+  Losses sum;
+  bool reached_apex = false;
+  for (const Tensor<double>& F : path_of_soil(increments)) {
+    const Response<double> engine = law.respond(F, record, now);
+    const reference::PlasticIncrement own =
+        reference::plastic_increment(material, {F.xx, F.xy, F.yx, F.yy}, history, 1);
+    record = now, history = own.now;
+    const double stress[] = {engine.P.xx, engine.P.xy, engine.P.yx, engine.P.yy};
+    for (int i = 0; i < 4; ++i) EXPECT_NEAR(own.stress[i], stress[i], error);
+    EXPECT_NEAR(history.plastic_strain, record[4], error);
+    EXPECT_NEAR(own.energy, law.energy(F, record), error);
+    EXPECT_NEAR(history.metric.xy, record[1], error);
+    reached_apex |= own.now.plastic_strain > 0 && std::abs(record[5]) < 1e-15;
+    sum.engine += engine.loss, sum.reference += own.loss;
+  }
+  EXPECT_TRUE(reached_apex);
+  return sum;
+}
+
+// INDEPENDENT, RATE: Drucker and Prager's law of both programs, one by formulas of the return, the other from derivatives
+// of the strain's invariants. Losses of a step are of first order: the mean of the stresses before and after, and the
+// yield stress at the end.
+TEST(PlasticPaths, drucker_prager_agrees) {
+  const Losses coarse = follow_soil(100), fine = follow_soil(200);
+  const double difference = fine.engine - fine.reference;
+  EXPECT_NEAR((coarse.engine - coarse.reference) / difference, 2, 0.3);
+  EXPECT_LT(std::abs(difference), 0.02 * fine.engine);
+}
+
+// EXACT: the stiffness of an increment is the difference quotient of its stress: elastic, on the cone and at the apex, with
+// rounding of 1e-16 over h = 1e-7 and h^2 of third derivatives. No sample lies within h of a limit between the three.
+TEST(PlasticPaths, stiffness_of_drucker_prager_is_the_derivative) {
+  Material material = law_of_table();
+  material.law = MaterialLaw::drucker_prager;
+  material.cohesion = 0.01, material.friction_angle = 0.5, material.dilatancy_angle = 0.2, material.hardening = 0.03;
+  testing::Random random(1);
+  int elastic = 0, cone = 0, apex = 0;
+  for (int sample = 0; sample < 200; ++sample) {
+    Tensor<double> F{1 + random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05),
+                     1 + random.uniform(-0.05, 0.05)};
+    const auto stress_at = [&] {
+      return reference::plastic_increment(material, {F.xx, F.xy, F.yx, F.yy}, {}, 1).stress;
+    };
+    const reference::PlasticIncrement at = reference::plastic_increment(material, {F.xx, F.xy, F.yx, F.yy}, {}, 1);
+    const double widens = at.now.plastic_strain > 0 ? at.now.plastic_volume / at.now.plastic_strain : 0;
+    ++(at.loss == 0 ? elastic : widens > 0.6 ? apex : cone);  // dilatancy 0.34, friction 0.80
+    double* const entries[] = {&F.xx, &F.xy, &F.yx, &F.yy};
+    for (int j = 0; j < 4; ++j) {
+      const double h = 1e-7, held = *entries[j];
+      *entries[j] = held + h;
+      const Eigen::Vector4d up = stress_at();
+      *entries[j] = held - h;
+      const Eigen::Vector4d change = (up - stress_at()) / (2 * h);
+      *entries[j] = held;
+      EXPECT_LT((change - at.stiffness.col(j)).cwiseAbs().maxCoeff(), 1e-7);
+    }
+  }
+  EXPECT_GT(std::min({elastic, cone, apex}), 20);
 }
 
 }  // namespace
