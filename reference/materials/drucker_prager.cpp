@@ -20,8 +20,8 @@ struct Cone {
 
 }  // namespace
 
-/// With the volume V and the squared deviator D of the trial's logarithmic strain and their derivatives by F, the stress
-/// is P = G r dD + s dV: r and s follow from V and D, and the stiffness by the chain rule.
+/// With the volume V and the squared deviator D of the trial's logarithmic strain and their derivatives by F, the
+/// stress is P = G r dD + s dV: r and s follow from V and D, and the stiffness by the chain rule.
 PlasticIncrement drucker_prager_increment(const Material& material, const Deformation<double>& F,
                                           const PointHistory& old) {
   const Moduli m = moduli(material);
@@ -52,8 +52,8 @@ PlasticIncrement drucker_prager_increment(const Material& material, const Deform
   result.stiffness =
       m.mu * (r * D.hessian + D.gradient * dr.transpose()) + left * V.hessian + V.gradient * dleft.transpose();
   result.energy = 0.5 * left * left / m.bulk + m.mu * r * r * D.value;
-  // On the yield surface flow dissipates q + widens s, and q is the limit less friction s. Within a step the limit grows
-  // with x, and s is that of its end.
+  // On the yield surface flow dissipates q + widens s, and q is the limit less friction s. Within a step the limit
+  // grows with x, and s is that of its end.
   result.loss = x * (limit + 0.5 * cone.hardening * x + (widens - cone.friction) * left);
   result.now = old;
   result.now.metric = returned_metric(F, old.metric, V.value, left / m.bulk, r);

@@ -45,7 +45,7 @@ Jet<N> squared_artanh(const Jet<N>& w) {
   return w.chained(f.value, f.first, f.second);
 }
 
-/// Elastic logarithmic strain with the plastic metric held. Out of the plane the metric follows from the plastic volume.
+/// Elastic logarithmic strain with the plastic metric held. Out of the plane it follows from the plastic volume.
 template <class Scalar>
 struct LogarithmicStrain {
   Scalar volume, deviator_squared;

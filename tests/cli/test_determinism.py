@@ -25,9 +25,17 @@ def third_body() -> str:
     return text.replace('end = "4 us"', 'end = "0.001 us"')
 
 
+def plastic_cell() -> str:
+    """The compact of plastic discs, squeezed at once."""
+    text = (ROOT / "cases/plastic_compact.toml").read_text().replace('end = "1400 ms"', 'end = "8 ms"')
+    return "\n".join(f'{line[:2]} = [["0 ms", 1], ["8 ms", 0.84]]' if line.startswith(("xx = ", "yy = ")) else line
+                     for line in text.splitlines())
+
+
 SCENES = {"gear": lambda: hard("gear", "mls", "1.5"), "torn_cluster": lambda: hard("torn_cluster", "es-t3", "1.5"),
           "closing_ring": lambda: hard("closing_ring", "mls-gauss", "1"),
-          "to_and_fro": lambda: hard("to_and_fro", "t3", "1"), "third_body_mini": third_body}
+          "to_and_fro": lambda: hard("to_and_fro", "t3", "1"), "third_body_mini": third_body,
+          "plastic_cell": plastic_cell}
 
 
 @pytest.fixture(autouse=True)

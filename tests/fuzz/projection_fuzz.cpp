@@ -16,7 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t cou
     outline.y[static_cast<std::size_t>(i)] = point.y();
   }
   MasterWindow window;
-  window.fill(shape, outline.x.data(), outline.y.data(), Arc{input.byte() % shape.count, shape.count}, Vec2::Zero(), 0.05);
+  const Arc arc{input.byte() % shape.count, shape.count};
+  window.fill(shape, outline.x.data(), outline.y.data(), arc, Vec2::Zero(), 0.05);
   const double outward = input.byte() / 256.0;
   while (!input.empty()) {
     Lanes px{}, py{};

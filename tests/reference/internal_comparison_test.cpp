@@ -280,9 +280,10 @@ Scene plastic_grains(MaterialLaw law) {
   return scene;
 }
 
-// INDEPENDENT: forces, stresses, elastic energies, plastic losses and plastic strains of four increments, each program with its
-// own history: one from an energy in principal strains, the other by formulas without them. Losses are integrals of the
-// yield stress there, and by the trapezoidal rule here: they differ by x^2/12 of its curvature, 64 x 0.01 / 0.02 of it.
+// INDEPENDENT: forces, stresses, elastic energies, plastic losses and plastic strains of four increments, each program
+// with its own history: one from an energy in principal strains, the other by formulas without them. Losses are
+// integrals of the yield stress there, and by the trapezoidal rule here: they differ by x^2/12 of its curvature,
+// 64 x 0.01 / 0.02 of it.
 void compare_plastic_increments(MaterialLaw law) {
   for (const bool nodewise : {false, true}) {
     const Both both(plastic_grains(law), nodewise ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
@@ -334,8 +335,9 @@ TEST(ReferenceAgainstEngine, plastic_increments_agree) {
   compare_plastic_increments(MaterialLaw::drucker_prager);  // losses: PlasticPaths
 }
 
-// EXACT: the tangent of a plastic body is the difference quotient of its forces. Central differences by h = 1e-6 are off
-// by h^2/6 of third derivatives, 1e-9 with strains of 0.02, and by rounding over h, 1e-8; no point begins to flow within h.
+// EXACT: the tangent of a plastic body is the difference quotient of its forces. Central differences by h = 1e-6 are
+// off by h^2/6 of third derivatives, 1e-9 with strains of 0.02, and by rounding over h, 1e-8. No point begins to flow
+// within h.
 TEST(ReferenceAgainstEngine, plastic_tangent_is_the_derivative) {
   const Both both(plastic_grains(MaterialLaw::von_mises));
   const Body& body = both.model.bodies[0];

@@ -132,9 +132,9 @@ Losses follow_soil(int increments) {
   return sum;
 }
 
-// INDEPENDENT, RATE: Drucker and Prager's law of both programs, one by formulas of the return, the other from derivatives
-// of the strain's invariants. Losses of a step are of first order: the mean of the stresses before and after, and the
-// yield stress at the end.
+// INDEPENDENT, RATE: Drucker and Prager's law of both programs, one by formulas of the return, the other from
+// derivatives of the strain's invariants. Losses of a step are of first order: the mean of the stresses before and
+// after, and the yield stress at the end.
 TEST(PlasticPaths, drucker_prager_agrees) {
   const Losses coarse = follow_soil(100), fine = follow_soil(200);
   const double difference = fine.engine - fine.reference;
@@ -142,8 +142,8 @@ TEST(PlasticPaths, drucker_prager_agrees) {
   EXPECT_LT(std::abs(difference), 0.02 * fine.engine);
 }
 
-// EXACT: the stiffness of an increment is the difference quotient of its stress: elastic, on the cone and at the apex, with
-// rounding of 1e-16 over h = 1e-7 and h^2 of third derivatives. No sample lies within h of a limit between the three.
+// EXACT: the stiffness of an increment is the difference quotient of its stress: elastic, on the cone and at the apex,
+// with rounding of 1e-16 over h = 1e-7 and h^2 of third derivatives. No sample lies within h of a limit of the three.
 TEST(PlasticPaths, stiffness_of_drucker_prager_is_the_derivative) {
   Material material = law_of_table();
   material.law = MaterialLaw::drucker_prager;

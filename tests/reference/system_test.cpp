@@ -105,9 +105,9 @@ TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {
   EXPECT_LT(tangent_error(system, motion, false, 1e-3), 1e-9);
 }
 
-// EXACT: at rest the residual of yielding bodies is the gradient of their potential, with the work that flow takes since
-// the last accepted state. Central differences by h are off by h^2/6 of third derivatives and, where points begin to
-// flow within a step, by h of second ones: 1e-6 of a stiffness over strains of 0.01.
+// EXACT: at rest the residual of yielding bodies is the gradient of their potential, with the work that flow takes
+// since the last accepted state. Central differences by h are off by h^2/6 of third derivatives and, where points begin
+// to flow within a step, by h of second ones: 1e-6 of a stiffness over strains of 0.01.
 TEST(ReferenceSystem, potential_of_plastic_bodies_at_rest) {
   Scene scene = free_disc(40, 1);
   Material& material = scene.materials[0];
