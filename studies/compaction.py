@@ -12,7 +12,7 @@ import numpy as np
 from pliant import Run
 
 YOUNG = 200e3  # Pa, of the scene
-BEARING = 1e-3  # pressure over Young's modulus from which forms are fitted: the inertial number is below 0.005
+BEARING = 1e-3  # pressure over Young's modulus from which the inertial number is below 0.005
 DENSEST = 0.98  # solid fraction up to which they are
 
 
@@ -22,9 +22,9 @@ def column(run: Run, name: str) -> np.ndarray:
 
 
 def pressure(run: Run) -> tuple[np.ndarray, np.ndarray]:
-    """Solid fraction, and pressure over Young's modulus, from jamming on."""
+    """Solid fraction, and pressure over Young's modulus, from where it stays above BEARING."""
     fraction, over_young = column(run, "packing.solid_fraction"), column(run, "cell.pressure") / YOUNG
-    first = int(np.argmax(over_young >= BEARING))
+    first = int(np.flatnonzero(over_young < BEARING)[-1]) + 1
     return fraction[first:], over_young[first:]
 
 
@@ -52,7 +52,7 @@ def pressure_at_98(run: Run) -> float:
 
 def fit_logarithm(fraction: np.ndarray, over_young: np.ndarray) -> tuple[float, float, float]:
     """phi_J, phi_m and b/E: for each phi_m, in steps of 1e-4, the others follow from linear least squares."""
-    inside = (over_young >= BEARING) & (fraction <= DENSEST)
+    inside = fraction <= DENSEST
     phi, p = fraction[inside], over_young[inside]
     best = (np.inf, 0.0, 0.0, 0.0)
     for densest in np.arange(phi.max() + 1e-3, 1.2, 1e-4):

@@ -21,7 +21,7 @@ function drawOverlay(canvas, model, frame, view, shown, hover, marks) {
 
 function outline(context, model, view, shown, body, colour, width) {
   context.beginPath();
-  for (const [seen, dx] of shown.seen) if (seen === body) trace(context, model, body, shown.pixels, dx);
+  for (const [seen, dx, dy] of shown.seen) if (seen === body) trace(context, model, body, shown.pixels, dx, dy);
   for (const wall of shown.walls) {
     if (wall.body !== body) continue;
     context.moveTo(view.px(wall.ax), view.py(wall.ay));
@@ -41,8 +41,8 @@ function stroked(context, colour, width) {
 /// At the material point that was clicked, with the body's number.
 function cross(context, model, frame, view, mark, ratio) {
   const [x, y] = placeOf(model, frame, mark), size = 4 * ratio;
-  for (const shift of shifts(frame.boxes, mark.body)) {
-    const px = view.px(x + shift), py = view.py(y);
+  for (const [right, up] of shifts(frame, mark.body)) {
+    const px = view.px(x + right), py = view.py(y + up);
     context.beginPath();
     for (const side of [-1, 1]) {
       context.moveTo(px - size, py - side * size);

@@ -12,7 +12,7 @@ import numpy as np
 from markupsafe import Markup
 from matplotlib.colors import to_hex
 
-from plots.drawing import EDGE, KIND_COLOURS
+from plots.drawing import CELL, EDGE, KIND_COLOURS
 from plots.fields import NEUTRAL
 from pliant import units
 from pliant.results import Column, Run, Table
@@ -62,11 +62,21 @@ def facts(run: Run, packing: Packing) -> list[tuple[str, str]]:
 
 
 def _box(run: Run, packing: Packing) -> list[float]:
-    """Left, right, low, high of all frames; of a periodic scene one period."""
+    """Left, right, low, high of all frames; of a periodic scene one period, or all its cells."""
     (left, low), (right, high) = packing.box
+    assert run.frames is not None
+    if run.frames.in_cell:
+        corners = np.concatenate([[[0, 0], a, b, a + b] for a, b in map(run.frames.periods, packing.chosen)])
+        (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
     if run.period is not None:
         left, right = 0.0, run.period
     return [float(left), float(right), float(low), float(high)]
+
+
+def _cell(run: Run, index: int) -> list[float]:
+    """ax, ay, bx, by of its sides, m."""
+    assert run.frames is not None
+    return [float(x) for x in run.frames.periods(index).ravel()]
 
 
 def _field(field: Field) -> dict[str, Any]:
@@ -135,10 +145,11 @@ def about(run: Run, packing: Packing) -> dict[str, Any]:
     latest = max(float(np.abs(times).max()), float(run.probes.time.max()) if run.probes is not None else 0.0)
     return {
         "title": run.title, "times": [float(t) for t in times], "frames": packing.chosen, "period": run.period,
+        "cells": [_cell(run, index) for index in packing.chosen] if run.frames.in_cell else None,
         "box": box, "step": step, "fine": step / FINE, "error_text": readable(ERROR * step, "m", 3),
         "fields": fields,
         "palettes": {name: _palette(name) for name in {field["palette"] for field in fields}},
-        "colours": {"kinds": KIND_COLOURS, "edge": EDGE, "neutral": NEUTRAL, "bodies": BODIES},
+        "colours": {"kinds": KIND_COLOURS, "edge": EDGE, "neutral": NEUTRAL, "bodies": BODIES, "cell": CELL},
         "probes": [_probe(column) for column in _shown(run.probes)], "time": measure(latest, "s"),
         "length": measure(max(box[1] - box[0], box[3] - box[2]), "m"),
         "outlines": packing.points.outlines is not None,

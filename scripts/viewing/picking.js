@@ -5,10 +5,11 @@ function pick(model, frame, walls, x, y) {
   if (about.period !== null && (x < 0 || x > about.period)) return null;
   const { boxes } = frame;
   for (let body = model.bodies - 1; body >= 0; body--) {
-    if (model.kind[body] === WALL || y < boxes[4 * body + 2] || y > boxes[4 * body + 3]) continue;
-    for (const shift of shifts(boxes, body)) {
-      if (x - shift < boxes[4 * body] || x - shift > boxes[4 * body + 1]) continue;
-      const hit = cellAt(model, frame, body, x - shift, y);
+    if (model.kind[body] === WALL) continue;
+    for (const [right, up] of shifts(frame, body)) {
+      if (y - up < boxes[4 * body + 2] || y - up > boxes[4 * body + 3]) continue;
+      if (x - right < boxes[4 * body] || x - right > boxes[4 * body + 1]) continue;
+      const hit = cellAt(model, frame, body, x - right, y - up);
       if (hit) return hit;
     }
   }

@@ -13,7 +13,7 @@ class View {
   }
 
   fit() {
-    const [left, right, low, high] = about.box, margin = about.period === null ? 1.05 : 1.1;
+    const [left, right, low, high] = about.box, margin = about.period !== null || about.cells ? 1.1 : 1.05;
     this.x = (left + right) / 2;
     this.y = (low + high) / 2;
     this.smallest = Math.min(this.width / (right - left || 1), this.height / (high - low || 1)) / margin;
@@ -45,7 +45,7 @@ class View {
   }
 }
 
-/// Bodies in sight: [body, shift] of each picture, and all points in pixels.
+/// Bodies in sight: [body, shift right, shift down] of each picture, and all points in pixels.
 function projected(model, frame, view) {
   const pixels = new Float64Array(frame.place.length), { place, boxes } = frame;
   for (let i = 0; i < place.length; i += 2) {
@@ -54,22 +54,23 @@ function projected(model, frame, view) {
   }
   const seen = [];
   for (let body = 0; body < model.bodies; body++) {
-    if (model.kind[body] === WALL || view.py(boxes[4 * body + 3]) > view.height) continue;
-    if (view.py(boxes[4 * body + 2]) < 0) continue;
-    for (const shift of shifts(boxes, body))
-      if (view.px(boxes[4 * body + 1] + shift) > 0 && view.px(boxes[4 * body] + shift) < view.width)
-        seen.push([body, shift * view.scale]);
+    if (model.kind[body] === WALL) continue;
+    for (const [x, y] of shifts(frame, body)) {
+      if (view.py(boxes[4 * body + 3] + y) > view.height || view.py(boxes[4 * body + 2] + y) < 0) continue;
+      if (view.px(boxes[4 * body + 1] + x) > 0 && view.px(boxes[4 * body] + x) < view.width)
+        seen.push([body, x * view.scale, -y * view.scale]);
+    }
   }
   return { pixels, seen };
 }
 
 function paintCells(raster, model, shown, field, values, scale) {
   const { cells, cellStart, kind } = model, { pixels, seen } = shown, half = values ? values.length / 2 : 0;
-  for (const [body, dx] of seen) {
+  for (const [body, dx, dy] of seen) {
     for (let cell = cellStart[body]; cell < cellStart[body + 1]; cell++) {
       const a = cells[3 * cell], b = cells[3 * cell + 1], c = cells[3 * cell + 2];
       const ax = pixels[2 * a] + dx, bx = pixels[2 * b] + dx, cx = pixels[2 * c] + dx;
-      const ay = pixels[2 * a + 1], by = pixels[2 * b + 1], cy = pixels[2 * c + 1];
+      const ay = pixels[2 * a + 1] + dy, by = pixels[2 * b + 1] + dy, cy = pixels[2 * c + 1] + dy;
       if (field && field.at === "points") {
         const [u, v, w] = [a, b, c].map((point) => [values[point], values[half + point]]);
         raster.vectors(ax, ay, bx, by, cx, cy, u, v, w, scale);
@@ -114,18 +115,18 @@ function middleOfGrains(model, boxes) {
 }
 
 /// Adds a body's outline to the path; points closer than a pixel's part to the last one are left out.
-function trace(context, model, body, pixels, dx) {
+function trace(context, model, body, pixels, dx, dy) {
   const { segments, segmentStart, outlinePoints } = model;
   let last = -1, px = 0, py = 0;
   for (let s = segmentStart[body]; s < segmentStart[body + 1]; s++) {
     const a = outlinePoints[segments[2 * s]], b = outlinePoints[segments[2 * s + 1]];
     if (a !== last) {
       px = pixels[2 * a] + dx;
-      py = pixels[2 * a + 1];
+      py = pixels[2 * a + 1] + dy;
       context.moveTo(px, py);
     }
     last = b;
-    const x = pixels[2 * b] + dx, y = pixels[2 * b + 1];
+    const x = pixels[2 * b] + dx, y = pixels[2 * b + 1] + dy;
     if (s + 1 < segmentStart[body + 1] && Math.abs(x - px) + Math.abs(y - py) < 0.7) continue;
     context.lineTo(px = x, py = y);
   }
@@ -134,7 +135,7 @@ function trace(context, model, body, pixels, dx) {
 function strokeOutlines(context, model, shown, view, ratio) {
   const { pixels, seen, walls } = shown, size = grainSize * view.scale;
   context.beginPath();
-  for (const [body, dx] of seen) trace(context, model, body, pixels, dx);
+  for (const [body, dx, dy] of seen) trace(context, model, body, pixels, dx, dy);
   for (const { ax, ay, bx, by } of walls) {
     context.moveTo(view.px(ax), view.py(ay));
     context.lineTo(view.px(bx), view.py(by));
@@ -142,6 +143,16 @@ function strokeOutlines(context, model, shown, view, ratio) {
   context.lineWidth = Math.min(Math.max(0.025 * size, 0.35), 1.3 * ratio);
   context.strokeStyle = about.colours.edge;
   context.lineJoin = "round";
+  context.stroke();
+}
+
+/// The cell, with a corner at the origin.
+function strokeCell(context, [ax, ay, bx, by], view, ratio) {
+  context.beginPath();
+  for (const [x, y] of [[0, 0], [ax, ay], [ax + bx, ay + by], [bx, by]]) context.lineTo(view.px(x), view.py(y));
+  context.closePath();
+  context.lineWidth = 1.5 * ratio;
+  context.strokeStyle = about.colours.cell;
   context.stroke();
 }
 
@@ -156,10 +167,10 @@ function paintBands(raster, model, shown, field, values, scale, view, ratio) {
     raster.triangle(ax, ay, bx, by, bx + dx, by + dy, colour);
     raster.triangle(ax, ay, bx + dx, by + dy, ax + dx, ay + dy, colour);
   };
-  for (const [body, dx] of seen) {
+  for (const [body, dx, dy] of seen) {
     for (let s = segmentStart[body]; s < segmentStart[body + 1]; s++) {
       const i = segments[2 * s], j = segments[2 * s + 1], a = outlinePoints[i], b = outlinePoints[j];
-      paint(i, j, pixels[2 * a] + dx, pixels[2 * a + 1], pixels[2 * b] + dx, pixels[2 * b + 1]);
+      paint(i, j, pixels[2 * a] + dx, pixels[2 * a + 1] + dy, pixels[2 * b] + dx, pixels[2 * b + 1] + dy);
     }
   }
   for (const { ax, ay, bx, by, points, below } of walls) {
@@ -204,6 +215,7 @@ function drawPicture(canvas, model, frame, view, field, values) {
   context.rect(left, top, right - left, bottom - top);
   context.clip();
   strokeOutlines(context, model, shown, view, ratio);
+  if (frame.cell) strokeCell(context, frame.cell, view, ratio);
   context.restore();
   return shown;
 }

@@ -67,12 +67,13 @@ function kept(name, make) {
   return found;
 }
 
-/// Positions of all points (x, y, x, y, ...) and boxes of all bodies (left, right, low, high), m.
+/// Positions of all points (x, y, x, y, ...) and boxes of all bodies (left, right, low, high), m; the cell's
+/// sides [ax, ay, bx, by], m, or null.
 function loadFrame(model, index) {
   return kept(`frame-${index}`, async () => {
     const motion = new Float32Array((await bytes(`motion-${index}`)).buffer);
     const apart = unpacked(await bytes(`apart-${index}`));
-    return placed(model, motion, apart);
+    return { ...placed(model, motion, apart), cell: about.cells?.[index] ?? null };
   });
 }
 
@@ -117,11 +118,23 @@ function loadField(field, index) {
   });
 }
 
-/// Period shifts with which a body stands in the period or enters it: whole bodies, and copies at the edges.
-function shifts(boxes, body) {
-  const period = about.period;
-  if (period === null) return [0];
+/// Shifts [x, y] with which a body stands in the period or the cell, or enters it: whole bodies, and copies at edges.
+function shifts(frame, body) {
+  const period = about.period, { boxes, cell } = frame;
+  if (cell) return shiftsInCell(cell, ...boxes.subarray(4 * body, 4 * body + 4));
+  if (period === null) return [[0, 0]];
   const found = [], first = Math.floor(-boxes[4 * body + 1] / period) + 1;
-  for (let k = first; boxes[4 * body] + k * period < period; k++) found.push(k * period);
+  for (let k = first; boxes[4 * body] + k * period < period; k++) found.push([k * period, 0]);
+  return found;
+}
+
+/// Of a box in a cell with the sides a and b: in coordinates along them, the cell is a unit square.
+function shiftsInCell([ax, ay, bx, by], left, right, low, high) {
+  const det = ax * by - ay * bx, x = (left + right) / 2, y = (low + high) / 2, found = [];
+  const u = (x * by - y * bx) / det, v = (ax * y - ay * x) / det;
+  const du = (Math.abs(by) * (right - left) + Math.abs(bx) * (high - low)) / (2 * Math.abs(det));
+  const dv = (Math.abs(ay) * (right - left) + Math.abs(ax) * (high - low)) / (2 * Math.abs(det));
+  for (let i = Math.floor(-u - du) + 1; u + i - du < 1; i++)
+    for (let j = Math.floor(-v - dv) + 1; v + j - dv < 1; j++) found.push([i * ax + j * bx, i * ay + j * by]);
   return found;
 }

@@ -5,17 +5,20 @@ from __future__ import annotations
 import json
 import math
 import re
+import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import h5py
 import matplotlib
 import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from viewed_run import GRAINS, PERIOD, ROWS, TITLE, about, field_of, in_browser, write_viewed_run
+from viewed_run import FRAMES, GRAINS, PERIOD, ROWS, TITLE, about, field_of, in_browser, write_viewed_run
 
+import view
 from browser import BROWSER, pictured
 from pliant.frames import Frames
 from synthetic_run import DIAMETER, ROW_PITCH
@@ -259,6 +262,36 @@ def test_whole_bodies_in_one_period_and_copies_at_its_edges(run: Path) -> None:
         expected = images[(left[grain] + images < PERIOD) & (right[grain] + images > 0)]
         assert shifts == pytest.approx(expected)
     assert len(found["seen"]) > GRAINS
+
+
+def test_images_in_a_cell_with_two_periods(run: Path, tmp_path: Path) -> None:
+    """INDEPENDENT: all images of which some place lies in the cell are there, and none further off than its size."""
+    folder = Path(shutil.copytree(run, tmp_path / "cell"))
+    sides = np.array([[PERIOD, 0.1 * PERIOD], [0.4 * PERIOD, 0.8 * PERIOD]])
+    with h5py.File(folder / "frames.h5", "a") as file:
+        for index in range(FRAMES):
+            for name, side in zip("ab", sides):
+                file[f"cell/{index:06}/{name}"] = side[None]
+    assert view.main([str(folder)]) == 0
+    assert about(folder / "view.html")["cells"] == pytest.approx(np.tile(sides.ravel(), (FRAMES, 1)))
+    found = in_browser(folder / "view.html", "frame=2", """
+        await shown(2);
+        return { boxes: [...now.frame.boxes],
+          of: Array.from({ length: model.bodies }, (_, body) => shifts(now.frame, body)) };""")
+    corners = np.array([[0, 0], sides[0], sides[1], sides.sum(axis=0)])
+    random, back = np.random.default_rng(4), np.linalg.inv(sides)
+    images = np.array([(i, j) for i in range(-3, 4) for j in range(-3, 4)]) @ sides
+    for box, given in zip(np.array(found["boxes"]).reshape(-1, 4)[:GRAINS], found["of"]):
+        places = random.uniform(box[[0, 2]], box[[1, 3]], (400, 2))
+        coordinates = (places[:, None] + images) @ back
+        needed = images[((coordinates > 0) & (coordinates < 1)).all(axis=2).any(axis=0)]
+        for shift in needed:
+            assert np.abs(np.array(given) - shift).sum(axis=1).min() < 1e-9 * PERIOD
+        size = max(box[1] - box[0], box[3] - box[2])
+        for x, y in given:
+            assert box[0] + x - size < corners[:, 0].max() and box[1] + x + size > corners[:, 0].min()
+            assert box[2] + y - size < corners[:, 1].max() and box[3] + y + size > corners[:, 1].min()
+    assert sum(map(len, found["of"][:GRAINS])) > GRAINS
 
 
 def test_names_are_text(run: Path) -> None:
