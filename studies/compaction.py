@@ -35,7 +35,8 @@ def coordination(run: Run) -> tuple[np.ndarray, np.ndarray]:
 
 
 def at(run: Run, fraction: float) -> float:
-    return float(np.interp(fraction, *pressure(run)))
+    """NaN: the run does not reach it."""
+    return float(np.interp(fraction, *pressure(run), right=np.nan))
 
 
 def pressure_at_90(run: Run) -> float:

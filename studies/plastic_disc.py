@@ -9,6 +9,7 @@ import numpy as np
 
 from pliant import Run
 
+GAP = 0.002  # at the start, of a circle
 CALCULIX = Path(__file__).resolve().parents[1] / "verify/plasticity/oracles/disc_calculix.csv"
 
 
@@ -20,7 +21,7 @@ def column(run: Run, name: str) -> np.ndarray:
 def force(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Approach over the diameter, and mean force of both plates over yield stress and diameter."""
     both = np.abs(column(run, "floor.force_y")) + np.abs(column(run, "lid.force_y"))
-    return -column(run, "approach.displacement_y"), both / 2
+    return -column(run, "approach.displacement_y") - GAP, both / 2
 
 
 def calculix(approach: np.ndarray, _: np.ndarray) -> np.ndarray:

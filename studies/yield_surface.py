@@ -79,6 +79,6 @@ def draw(axes: Axes, means: list[dict]) -> None:
     axes.set_xlabel("pressure over the yield stress of the discs")
     axes.set_ylabel("shear stress over the yield stress of the discs")
     axes.set_xlim(left=0)
-    axes.set_ylim(bottom=0)
+    axes.axhline(0, color="#7f7f7f", linewidth=0.8)
     axes.legend(fontsize=8, frameon=False)
     axes.grid(True, alpha=0.25)
