@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/errors.hpp"
+#include "reference/cell_motion.hpp"
 
 namespace pliant::reference {
 namespace {
@@ -287,6 +288,7 @@ std::vector<double> Loads::switch_times() const {
   };
   const auto prescribed = [&](const AxisCondition& one) { window(one.window), history(one.history); };
   for (const History& gravity : bodies_.scene().gravity_history) history(gravity);
+  for (const double time : history_times_of_cell(bodies_.scene())) times.insert(time);
   for (const RigidLoad& load : rigid_) prescribed(load.prescribed);
   for (const OutlineLoad& load : outline_) {
     const BoundaryCondition& condition = load.condition;

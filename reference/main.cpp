@@ -51,8 +51,6 @@ int main_program(int argc, char** argv) {
   if (options.quiet) spdlog::set_level(spdlog::level::err);
   Scene scene = read_scene(file);
   for (const std::string& text : scene.warnings) spdlog::warn(text);
-  if (scene.cell)
-    throw InputError(fmt::format("{}: [domain] periods: the reference solver has one period at most", file));
   if (!scene.start_from.empty())
     throw InputError(fmt::format("{}: [start]: the reference solver starts no scene from another run's end", file));
   if (!until.empty()) scene.time.end = parse_time("--until", until);

@@ -18,6 +18,11 @@ SparseMatrix assembled(const Triplets& entries, int size) {
   return matrix;
 }
 
+/// Residual of an image on the vectors of the periods that lead to it.
+Eigen::Matrix2d pull_of_image(const ContactLever& lever) {
+  return lever.residual * Vec2(lever.image.x, lever.image.y).transpose();
+}
+
 }  // namespace
 
 System::System(const Scene& scene)
@@ -88,13 +93,14 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
   forces.boundary = outlines.stored;
   // At rest the loss of a step is what its flow takes from the energy: rates do not count.
   forces.potential += forces.strain + forces.plastic_loss + outlines.stored + outlines.potential;
-  forces.contacts = contacts_.evaluate(x);
+  forces.contacts = contacts_.evaluate(x, periods(motion.time));
   forces.contact = forces.contacts.stored;
   forces.potential += forces.contact;
   forces.dissipated = forces.contacts.dissipated;
   Vector magnitude = outlines.residual.cwiseAbs();
   for (const ContactElement& element : forces.contacts.elements) {
     forces.deepest = std::max(forces.deepest, element.depth);
+    forces.on_periods += pull_of_image(element.lever);
     for (int i = 0; i < 6; ++i) {
       const int row = 2 * element.node[i / 2] + i % 2;
       outlines.residual[row] += element.force[i];
@@ -108,6 +114,7 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
   }
   for (const ContactPatch& patch : forces.contacts.patches) {
     forces.deepest = std::max(forces.deepest, patch.depth);
+    forces.on_periods += pull_of_image(patch.lever);
     const auto place = [&](Eigen::Index i) {
       return 2 * patch.node[static_cast<std::size_t>(i / 2)] + static_cast<int>(i % 2);
     };

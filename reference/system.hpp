@@ -35,6 +35,9 @@ struct Forces {
   double least_jacobian = 1e300;
   int worst_body = -1;  ///< body with the least Jacobian
   double deepest = 0;   ///< penetration over the segment's length
+  /// Derivative of the contact energy, or minus the work of contacts, by the vectors of the periods: column i by vector
+  /// i, N/m.
+  Eigen::Matrix2d on_periods = Eigen::Matrix2d::Zero();
   ContactResult contacts;
 };
 
@@ -49,6 +52,7 @@ class System {
   Forces evaluate(const Motion& motion, bool tangent);
   /// Accepts the history variables of the last motion evaluated.
   void accept();
+  Periods periods(double time) const { return Periods(bodies_.scene(), time); }
   /// [compliant bodies] in their order.
   const std::vector<InternalForces>& internal() const { return internal_; }
 

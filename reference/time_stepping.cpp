@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "reference/cell_motion.hpp"
 #include "reference/relaxation.hpp"
 #include "reference/selection.hpp"
 
@@ -56,11 +57,15 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
       beta_(0.25 * (1 - options.hht) * (1 - options.hht)),
       gamma_(0.5 - options.hht),
       mass_(system.bodies().mass(options.mass)),
-      switch_times_(system.loads().switch_times()) {
+      switch_times_(system.loads().switch_times()),
+      held_(held_in_cell(system.bodies())) {
   const Bodies& bodies = system.bodies();
   motion_ = {bodies.initial_positions(), bodies.initial_velocities(), 0};
   motion_.moves = !options.statics;
-  if (options.statics) motion_.v.setZero();
+  if (options.statics)
+    motion_.v.setZero();
+  else
+    turn_cell();
   for (int i = 0; i < bodies.dofs(); ++i)
     if (system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
   acceleration_ = Vector::Zero(bodies.dofs());
@@ -82,8 +87,10 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
 
 std::vector<int> TimeStepping::free_dofs(double time) const {
   std::vector<int> free;
-  for (int i = 0; i < system_.bodies().dofs(); ++i)
-    if (!system_.loads().imposed(i, time)) free.push_back(i);
+  for (int i = 0; i < system_.bodies().dofs(); ++i) {
+    const bool held = options_.statics && std::ranges::find(held_, i) != held_.end();
+    if (!held && !system_.loads().imposed(i, time)) free.push_back(i);
+  }
   return free;
 }
 
@@ -178,9 +185,11 @@ Linearisation TimeStepping::equations(double until, const SparseMatrix& select, 
 
 bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
   const double dt = until - motion_.time;
-  Vector q = motion_.q;
-  // The search starts at the present positions.
-  Vector ahead = options_.statics ? q : Vector(-dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_);
+  // The search starts at the present positions, which follow the cell.
+  const CellMotion cell(system_.bodies().scene(), motion_.time, until);
+  Vector q = cell.carried(system_.bodies(), motion_.q);
+  Vector ahead =
+      options_.statics ? q : Vector(-dt * motion_.v - dt * dt * (0.5 - beta_) * acceleration_ + (q - motion_.q));
   const Vector origin = predicted(dt);
   for (int i = 0; i < q.size(); ++i)
     if (system_.loads().imposed(i, motion_.time)) {
@@ -189,14 +198,14 @@ bool TimeStepping::try_step(double until, Trial& trial, StepRecord& record) {
     }
   const SparseMatrix select = selection(free_dofs(motion_.time), system_.bodies().dofs());
   record.dt = std::min(record.dt, dt);
-  if (moves_too_far(q, record)) return false;
+  if (moves_too_far(q, cell, record)) return false;
   Vector free = select.transpose() * ahead;
   const Vector start = free, imposed = ahead - select * free;
   const Equations system = [&](const Vector& x, bool tangent) {
     return equations(until, select, imposed + select * x, tangent, trial);
   };
   NewtonResult result = solve_newton(system, options_.newton, solver_, free);
-  bool found = note(result, record) && !moves_too_far(trial.motion.q, record);
+  bool found = note(result, record) && !moves_too_far(trial.motion.q, cell, record);
   if (options_.statics && options_.pseudo_inertia > 0 && !(found && result.stable)) {
     free = start;
     const RelaxationOptions settling{.tolerance = options_.newton.tolerance,
@@ -220,21 +229,23 @@ bool TimeStepping::note(const NewtonResult& result, StepRecord& record) const {
   return result.converged;
 }
 
-bool TimeStepping::moves_too_far(const Vector& q, StepRecord& record) const {
-  const double moved = largest_motion(q);
+bool TimeStepping::moves_too_far(const Vector& q, const CellMotion& cell, StepRecord& record) const {
+  const double moved = largest_motion(q, cell);
   if (moved <= system_.bodies().finest_spacing()) return false;
   record.trouble = fmt::format("outlines move by {:.3g} m, more than a segment: contacts could be missed", moved);
   return true;
 }
 
-/// Largest displacement of the outlines from the present motion; 0 if there is nothing to touch.
-double TimeStepping::largest_motion(const Vector& next) const {
+/// Largest displacement of the outlines from the present motion, relative to each other in a cell that is deformed; 0
+/// if there is nothing to touch.
+double TimeStepping::largest_motion(const Vector& next, const CellMotion& cell) const {
   const Bodies& bodies = system_.bodies();
   if (bodies.all().size() < 2 || bodies.scene().contacts.empty()) return 0;
-  const Points before = bodies.outline_positions(motion_.q), after = bodies.outline_positions(next);
+  const Points before = bodies.outline_positions(cell.carried(bodies, motion_.q)),
+               after = bodies.outline_positions(next);
   double largest = 0;
   for (std::size_t k = 0; k < before.size(); ++k) largest = std::max(largest, (after[k] - before[k]).norm());
-  return largest;
+  return largest + cell.parting(bodies);
 }
 
 void TimeStepping::update_balance(const Trial& trial) {
@@ -258,6 +269,7 @@ void TimeStepping::update_balance(const Trial& trial) {
     if (loads.imposed(i, before.time))
       balance_.work_of_loads += 0.5 * mass_.coeff(i, i) * (after.v[i] * after.v[i] - before.v[i] * before.v[i]) +
                                 0.5 * (forces_.residual[i] + trial.forces.residual[i]) * moved[i];
+  balance_.work_of_loads += work_on_images(trial);
   balance_.dissipated_by_contact += trial.forces.dissipated;
   balance_.dissipated_by_plasticity += trial.forces.plastic_loss;
   balance_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
@@ -269,6 +281,12 @@ void TimeStepping::update_balance(const Trial& trial) {
   balance_.boundary = trial.forces.boundary;
 }
 
+/// Work of the cell on the images of bodies, by the mean of the forces, J/m.
+double TimeStepping::work_on_images(const Trial& trial) const {
+  const CellMotion cell(system_.bodies().scene(), motion_.time, trial.motion.time);
+  return 0.5 * (forces_.on_periods + trial.forces.on_periods).cwiseProduct(cell.change()).sum();
+}
+
 void TimeStepping::accept(const Trial& trial) {
   update_balance(trial);
   system_.accept();
@@ -278,11 +296,26 @@ void TimeStepping::accept(const Trial& trial) {
   if (std::binary_search(switch_times_.begin(), switch_times_.end(), motion_.time)) pass_switch();
 }
 
+/// Gives a cell the rate of its histories from now on, and all matter the jump of its velocity gradient.
+void TimeStepping::turn_cell() {
+  const Bodies& bodies = system_.bodies();
+  const Eigen::Matrix2d rate = gradient_rate(bodies.scene(), motion_.time), jump = rate - cell_rate_;
+  if (jump.isZero(0)) return;
+  motion_.v += velocities_of_flow(bodies, motion_.q, velocity_gradient(bodies.scene(), motion_.time, jump));
+  cell_rate_ = rate;
+}
+
 /// Loads jump at ends of windows: the next step starts from the values after that. Springs that begin or end to act add
 /// or remove their energy.
 void TimeStepping::pass_switch() {
   if (options_.statics) return;
   motion_.ends_step = false;
+  if (system_.bodies().scene().cell) {
+    turn_cell();
+    const double kinetic = 0.5 * motion_.v.dot(mass_ * motion_.v);
+    balance_.work_of_loads += kinetic - balance_.kinetic;
+    balance_.kinetic = kinetic;
+  }
   const double stored = forces_.boundary;
   forces_ = evaluate(motion_, false);
   find_acceleration();

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "reference/cell_motion.hpp"
 #include "reference/newton.hpp"
 #include "reference/system.hpp"
 
@@ -59,6 +60,9 @@ class TimeStepping {
   const Vector& acceleration() const { return acceleration_; }
   const SparseMatrix& mass() const { return mass_; }
   const EnergyBalance& balance() const { return balance_; }
+  bool is_static() const { return options_.statics; }
+  /// Velocity gradient of a cell, 1/s; 0 in static runs.
+  Eigen::Matrix2d cell_flow() const { return velocity_gradient(system_.bodies().scene(), motion_.time, cell_rate_); }
   const LinearSolver::Counts& solver_counts() const { return solver_.counts(); }
 
  private:
@@ -68,14 +72,16 @@ class TimeStepping {
   void accept(const Trial& trial);
   void update_balance(const Trial& trial);
   void pass_switch();
+  void turn_cell();
   Forces evaluate(const Motion& motion, bool tangent);
   Vector predicted(double dt) const;
   Motion motion_at(double until, const Vector& ahead) const;
   Vector acceleration_at(double dt, const Vector& ahead) const { return ahead / (beta_ * dt * dt); }
   Linearisation equations(double until, const SparseMatrix& select, const Vector& ahead, bool tangent, Trial& trial);
   bool note(const NewtonResult& result, StepRecord& record) const;
-  bool moves_too_far(const Vector& q, StepRecord& record) const;
-  double largest_motion(const Vector& next) const;
+  bool moves_too_far(const Vector& q, const CellMotion& cell, StepRecord& record) const;
+  double largest_motion(const Vector& next, const CellMotion& cell) const;
+  double work_on_images(const Trial& trial) const;
   void find_acceleration();
   std::vector<int> free_dofs(double time) const;
 
@@ -84,10 +90,12 @@ class TimeStepping {
   double beta_, gamma_;
   SparseMatrix mass_;
   std::vector<double> switch_times_;
-  Vector holding_;  ///< static runs: [dofs], masses scaled to the largest stiffness, N/m2 (N)
-  Vector arms_;     ///< static runs: [dofs], displacement of the outline per unit, 1 or m
+  std::vector<int> held_;  ///< static runs: degrees of freedom that hold the grains of a cell in place
+  Vector holding_;         ///< static runs: [dofs], masses scaled to the largest stiffness, N/m2 (N)
+  Vector arms_;            ///< static runs: [dofs], displacement of the outline per unit, 1 or m
   LinearSolver solver_;
   Motion motion_;
+  Eigen::Matrix2d cell_rate_ = Eigen::Matrix2d::Zero();  ///< of the deformation gradient of a cell, 1/s
   Vector acceleration_;
   Forces forces_;
   EnergyBalance balance_;

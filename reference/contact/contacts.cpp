@@ -21,8 +21,9 @@ constexpr double deepest = 1.5;  ///< detection depth over the master's longest 
 
 /// Key of a history: a node of one body and a periodic image of another, or of its own.
 struct Encounter {
-  int slave = 0, node = 0;    ///< node: in the slave's own outline
-  int master = 0, image = 0;  ///< image: 0 for a wall, whose segments are numbered over all turns instead
+  int slave = 0, node = 0;  ///< node: in the slave's own outline
+  int master = 0;
+  Image image;  ///< 0 for a wall, whose segments are numbered over all turns instead
   auto operator<=>(const Encounter&) const = default;
 };
 using Memories = std::map<Encounter, ContactMemory>;
@@ -57,7 +58,7 @@ void refuse_settings(const ContactSettings& settings) {
 
 struct Contacts::Implementation {
   Implementation(const Scene& scene, std::vector<ContactOutline> given)
-      : outlines(std::move(given)), laws(scene, outlines), period(scene.period.value_or(0)) {
+      : outlines(std::move(given)), laws(scene, outlines), start(scene), periods(start) {
     refuse_settings(scene.contact);
     find_integrated(scene.contact.quadrature);
     if (scene.contact.length == ContactLength::current && !all_are_integrated())
@@ -94,9 +95,10 @@ struct Contacts::Implementation {
     return true;
   }
 
-  ContactResult evaluate(const Points& x) {
+  ContactResult evaluate(const Points& x, const Periods& present) {
+    periods = present;
     trial.clear();
-    result = integrals->evaluate(x);
+    result = integrals->evaluate(x, periods);
     bodies.clear();
     for (const ContactOutline& outline : outlines) bodies.emplace_back(outline, x);
     const int count = static_cast<int>(outlines.size());
@@ -125,18 +127,18 @@ struct Contacts::Implementation {
     // Heights grow slower than distances beyond an end. At tips sharper than 29 degrees nodes may be missed beyond this
     // margin, far from any contact.
     const double margin = 4 * outward;
-    if (a.low.y() > b.high.y() + margin || b.low.y() > a.high.y() + margin) return;
-    if (period == 0) return meet_image(slave, master, 0, law, outward, margin);
-    if (outlines[master].wall) return meet_wall(slave, master, law, outward);
-    const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - margin) / period));
-    const int last = static_cast<int>(std::floor((a.high.x() - b.low.x() + margin) / period));
-    for (int image = first; image <= last; ++image)
-      if (slave != master || image != 0) meet_image(slave, master, image, law, outward, margin);
+    if (outlines[master].wall) {
+      if (a.low.y() <= b.high.y() + margin && b.low.y() <= a.high.y() + margin) meet_wall(slave, master, law, outward);
+      return;
+    }
+    const Vec2 around = Vec2::Constant(margin);
+    for (const Image& image : periods.between(a.low - b.high - around, a.high - b.low + around))
+      if (slave != master || image != Image{}) meet_image(slave, master, image, law, outward, margin);
   }
 
-  void meet_image(int slave, int master, int image, const Law& law, double outward, double margin) {
+  void meet_image(int slave, int master, const Image& image, const Law& law, double outward, double margin) {
     const PresentBody& on = bodies[master];
-    const Vec2 shift(image * period, 0);
+    const Vec2 shift = periods.shift(image);
     for (int i = 0; i < outlines[slave].count; ++i) {
       const Vec2 point = bodies[slave].outline.node(i) - shift;
       if (!on.box.contains(point, margin)) continue;
@@ -155,7 +157,7 @@ struct Contacts::Implementation {
       const int turn = static_cast<int>(std::lround((point.x() - middle) / on.outline.turn_shift())),
                 count = on.outline.count();
       if (const auto nearest = nearest_segment(on.outline, (turn - 1) * count, 3 * count, point, outward))
-        stand_beside({slave, i, master, 0}, *nearest, point, law, outward);
+        stand_beside({slave, i, master, {}}, *nearest, point, law, outward);
     }
   }
 
@@ -196,6 +198,10 @@ struct Contacts::Implementation {
     const PresentOutline& slave = bodies[encounter.slave].outline;
     element.node = {slave.index(encounter.node), on.outline.index(segment), on.outline.index(segment + 1)};
     element.body = {encounter.slave, encounter.master};
+    element.lever.image = encounter.image;
+    const Vec2 point = slave.node(encounter.node) - periods.shift(encounter.image);
+    for (const int end : {0, 1})
+      element.lever.add(element.force.segment<2>(2 + 2 * end), on.outline.node(segment + end) - point);
     element.depth = std::max(0.0, -at.gap.value) / on.longest;
     if (initial && element.depth > 0)
       element.compression = length * (response.stored - respond(law, before, 0, 0, true).stored);
@@ -224,7 +230,8 @@ struct Contacts::Implementation {
   PairLaws laws;
   std::vector<bool> integrated;  ///< [bodies x bodies] whether contact is integrated, not collocated at nodes
   std::optional<IntegratedContacts> integrals;
-  double period = 0, skin = 0;               ///< m
+  Periods start, periods;                    ///< at the start of the scene, of the current evaluation
+  double skin = 0;                           ///< m
   std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
   Memories accepted, trial;
   bool initial = true;  ///< nothing accepted yet
@@ -249,7 +256,11 @@ Contacts::Contacts(const Scene& scene, std::vector<ContactOutline> outlines)
 
 Contacts::~Contacts() = default;
 
-ContactResult Contacts::evaluate(const Points& x) { return implementation_->evaluate(x); }
+ContactResult Contacts::evaluate(const Points& x, const Periods& periods) {
+  return implementation_->evaluate(x, periods);
+}
+
+ContactResult Contacts::evaluate(const Points& x) { return evaluate(x, implementation_->start); }
 
 void Contacts::accept() {
   implementation_->integrals->accept();

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "core/vec2.hpp"
+#include "reference/contact/periods.hpp"
 #include "scene/scene.hpp"
 
 namespace pliant::reference {
@@ -36,6 +37,21 @@ struct ContactMemory {
   double opening = 0;        ///< of a bond, m
 };
 
+/// What a contact does to an image of the master, and across its gap.
+struct ContactLever {
+  Image image;          ///< of the master
+  Vec2 residual{0, 0};  ///< on all of the master's nodes, N/m
+  /// Sum of the residual on each of the master's nodes (x) its position from the slave's point in contact, J/m. It is
+  /// the derivative of the energy of the contact by a homogeneous deformation of everything.
+  Eigen::Matrix2d moment = Eigen::Matrix2d::Zero();
+
+  /// Adds the residual at a master's node that lies `from` the slave's point.
+  void add(const Vec2& at_node, const Vec2& from) {
+    residual += at_node;
+    moment += at_node * from.transpose();
+  }
+};
+
 /// Contact of one node with one segment: conservative and frictional part together.
 struct ContactElement {
   std::array<int, 3> node;            ///< slave, first and second node of the segment in the list of all outline nodes
@@ -45,6 +61,7 @@ struct ContactElement {
   double depth = 0;                         ///< penetration over the master's longest segment
   double compression = 0;                   ///< at the initial state: energy of penetration, J/m
   std::array<int, 2> body{};                ///< owner of the node, owner of the segment: numbers of outlines
+  ContactLever lever;
   /// Additional columns of the tangent, for nodes that the slave passed since the last accepted state, on which the
   /// path length depends as well; empty while it stays on one segment. A node may occur more than once: columns add up.
   std::vector<std::pair<int, Eigen::Matrix<double, 6, 2>>> further;
@@ -56,9 +73,10 @@ struct ContactPatch {
   Eigen::VectorXd force;      ///< [2 nodes] residual, N/m
   Eigen::MatrixXd tangent;    ///< [2 nodes x 2 nodes] of `force`, unsymmetric where it slips
   std::array<int, 2> body{};  ///< owner of the segments, owner of the outline: numbers of outlines
-  double deepest = 0;         ///< penetration of a Gauss point, m
-  double depth = 0;           ///< the same over the master's longest segment
-  double compression = 0;     ///< as in ContactElement
+  ContactLever lever;
+  double deepest = 0;      ///< penetration of a Gauss point, m
+  double depth = 0;        ///< the same over the master's longest segment
+  double compression = 0;  ///< as in ContactElement
 };
 
 struct ContactResult {
@@ -73,7 +91,7 @@ struct ContactResult {
 Points forces_on_nodes(const ContactResult& result, std::size_t nodes);
 
 /// All contacts of a scene by brute force: every node of every body, or every segment for integrated contact, against
-/// every segment of every other body, and of its own periodic images (docs/method.md 4).
+/// every segment of every other body, and of all periodic images (docs/method.md 4).
 class Contacts {
  public:
   /// Throws InputError for features that this solver does not have (self-contact, dashpots, current lengths at nodes),
@@ -84,7 +102,8 @@ class Contacts {
 
   /// Evaluates contacts at outline positions x [all outline nodes], m. Trial histories are kept beside the accepted
   /// ones. Every evaluation before the first accept() is of the initial state: it finds bonded nodes, without slip.
-  ContactResult evaluate(const Points& x);
+  ContactResult evaluate(const Points& x, const Periods& periods);
+  ContactResult evaluate(const Points& x);  ///< with the periods at the start of the scene
   /// Accepts the trial histories of the last evaluation.
   void accept();
 

@@ -69,7 +69,7 @@ bool are_apart(const Extent& a, const Extent& b, double by) {
 
 IntegratedContacts::IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines,
                                        const PairLaws& laws, std::function<bool(int, int)> has)
-    : outlines_(outlines), laws_(laws), has_(std::move(has)), period_(scene.period.value_or(0)) {
+    : outlines_(outlines), laws_(laws), has_(std::move(has)), periods_(scene), past_periods_(scene) {
   for (const ContactOutline& outline : outlines) {
     const ReferenceOutline shape(outline);
     longest_.push_back(shape.longest());
@@ -79,8 +79,9 @@ IntegratedContacts::IntegratedContacts(const Scene& scene, const std::vector<Con
   }
 }
 
-ContactResult IntegratedContacts::evaluate(const Points& x) {
+ContactResult IntegratedContacts::evaluate(const Points& x, const Periods& periods) {
   x_ = x;
+  periods_ = periods;
   trial_.clear();
   ContactResult result;
   const int count = static_cast<int>(outlines_.size());
@@ -99,18 +100,17 @@ ContactResult IntegratedContacts::evaluate(const Points& x) {
 void IntegratedContacts::accept() {
   accepted_ = trial_;
   past_ = x_;
+  past_periods_ = periods_;
 }
 
 /// Contact with all periodic images of the master. A wall is periodic itself and counts as one body, beside each other
 /// body.
 void IntegratedContacts::meet(int slave, int master, ContactResult& result) {
-  if (period_ == 0 || outlines_[slave].wall || outlines_[master].wall) return meet_image({slave, master, 0}, result);
-  const double reach = laws_.between(slave, master)->reach;
+  if (outlines_[slave].wall || outlines_[master].wall) return meet_image({slave, master, {}}, result);
+  const Vec2 reach = Vec2::Constant(laws_.between(slave, master)->reach);
   const Extent a = extent_of({outlines_[slave], x_}), b = extent_of({outlines_[master], x_});
-  const int first = static_cast<int>(std::ceil((a.low.x() - b.high.x() - reach) / period_)),
-            last = static_cast<int>(std::floor((a.high.x() - b.low.x() + reach) / period_));
-  for (int image = first; image <= last; ++image)
-    if (slave != master || image != 0) meet_image({slave, master, image}, result);
+  for (const Image& image : periods_.between(a.low - b.high - reach, a.high - b.low + reach))
+    if (slave != master || image != Image{}) meet_image({slave, master, image}, result);
 }
 
 void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& result) {
@@ -118,10 +118,10 @@ void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& r
   const PresentOutline from(outlines_[slave], x_), to(outlines_[master], x_), past_from(outlines_[slave], past_),
       past_to(outlines_[master], past_);
   const Law& law = *laws_.between(slave, master);
-  const Vec2 shift(image * period_, 0);
+  const Vec2 shift = periods_.shift(image);
   const Range seen = segments_beside(to, extent_of(from));
   PassSetting setting{{from, to, shift, seen.first, seen.count, kinks(law), law.reach}, law, {}, lengths_[slave], {}};
-  if (!past_.empty()) setting.past.emplace(past_from, past_to);
+  if (!past_.empty()) setting.past.emplace(past_from, past_to, past_periods_.shift(image));
   const Extent extent = solid_of(to, shift);
   // For two walls one turn of the slave suffices.
   const Range own = to.closed() ? segments_beside(from, extent) : Range{0, from.count()};
@@ -131,6 +131,7 @@ void IntegratedContacts::meet_image(const Encounter& encounter, ContactResult& r
   PassResult pass = integrated_pass(setting, found == accepted_.end() ? NodeSlips{} : found->second);
   if (pass.patch.node.empty()) return;
   pass.patch.body = {slave, master};
+  pass.patch.lever.image = image;
   pass.patch.depth = pass.patch.deepest / longest_[master];
   if (!past_.empty()) pass.patch.compression = 0;
   result.stored += pass.stored;

@@ -6,6 +6,7 @@
 
 #include "reference/contact/integrated_pass.hpp"
 #include "reference/contact/pair_laws.hpp"
+#include "reference/contact/periods.hpp"
 
 namespace pliant::reference {
 
@@ -17,11 +18,11 @@ class IntegratedContacts {
   IntegratedContacts(const Scene& scene, const std::vector<ContactOutline>& outlines, const PairLaws& laws,
                      std::function<bool(int, int)> has);
 
-  ContactResult evaluate(const Points& x);  ///< as in Contacts
+  ContactResult evaluate(const Points& x, const Periods& periods);  ///< as in Contacts
   void accept();
 
  private:
-  using Encounter = std::tuple<int, int, int>;  ///< slave, master, image; image 0 for walls
+  using Encounter = std::tuple<int, int, Image>;  ///< slave, master, image; image 0 for walls
   using Memories = std::map<Encounter, NodeSlips>;
 
   void meet(int slave, int master, ContactResult& result);
@@ -30,7 +31,7 @@ class IntegratedContacts {
   const std::vector<ContactOutline>& outlines_;
   const PairLaws& laws_;
   std::function<bool(int, int)> has_;
-  double period_ = 0;                         ///< m, 0: none
+  Periods periods_, past_periods_;            ///< now, and at the last accepted state
   std::vector<std::vector<double>> lengths_;  ///< [bodies][segments] reference lengths, m; empty: current lengths count
   std::vector<double> longest_;               ///< [bodies] longest segment, m
   Memories accepted_, trial_;

@@ -43,6 +43,7 @@ struct NodeSums {
   Sum length, limit, moved;  ///< m, N/m, m2
   VectorXd way;              ///< integral of the rates of motion: force of a unit of shear, m
   MatrixXd way_by;
+  ContactLever lever;  ///< of a unit of shear
 };
 
 class Pass {
@@ -105,9 +106,9 @@ class Pass {
   /// Slip increment, from the former position of the same point of the slave over the same segment of the master: in
   /// that segment's present length, or around its first node.
   Jet<6> motion_of(const ContactSample& sample, int segment) const {
-    const auto& [slave, master] = *of_.past;
+    const auto& [slave, master, shift] = *of_.past;
     const int j = sample.nearby.segment;
-    const Vec2 point = (1 - sample.s) * slave.node(segment) + sample.s * slave.node(segment + 1) - of_.where.shift;
+    const Vec2 point = (1 - sample.s) * slave.node(segment) + sample.s * slave.node(segment + 1) - shift;
     const Vec2 from = point - master.node(j), t = master.tangent(j);
     const double along = from.dot(t), height = from.dot(Vec2(t.y(), -t.x()));
     const Projection& now = sample.at;
@@ -139,6 +140,15 @@ class Pass {
     for (int i = 0; i < 8; ++i)
       for (int j = 0; j < 8; ++j) to(place(touch, i), place(touch, j)) += factor * part(i, j);
   }
+  /// Adds a force on the four nodes to a lever.
+  void add(const Touch& touch, double factor, const PointVector& part, ContactLever& to) const {
+    const PresentOutline &slave = of_.where.slave, &master = of_.where.master;
+    const ContactSample& sample = *touch.sample;
+    const Vec2 point =
+        (1 - sample.s) * slave.node(touch.segment) + sample.s * slave.node(touch.segment + 1) - of_.where.shift;
+    for (const int end : {0, 1})
+      to.add(factor * part.segment<2>(4 + 2 * end), master.node(sample.nearby.segment + end) - point);
+  }
   /// Derivatives of the position of a limit.
   VectorXd move(const Touch& touch) const {
     VectorXd by = VectorXd::Zero(size());
@@ -155,6 +165,7 @@ class Pass {
       const PointVector force = -law.pressure * touch.gap_by;
       result_.stored += touch.weight * law.stored;
       add(touch, touch.weight, force, patch.force);
+      add(touch, touch.weight, force, patch.lever);
       add(touch, touch.weight,
           PointMatrix(-law.pressure * touch.gap_by_twice -
                       law.pressure_by[0] * touch.gap_by * touch.gap_by.transpose() +
@@ -184,7 +195,8 @@ class Pass {
       // Nodes of a wall are numbered over all turns, unless the other is a wall too.
       const bool counts_on = !of_.where.slave.closed() && of_.where.master.closed();
       const int number = touch.segment + end, node = counts_on ? number : static_cast<int>(within(number));
-      return nodes.try_emplace(node, NodeSums{{0, zero}, {0, zero}, {0, zero}, zero, MatrixXd::Zero(size(), size())})
+      return nodes
+          .try_emplace(node, NodeSums{{0, zero}, {0, zero}, {0, zero}, zero, MatrixXd::Zero(size(), size()), {}})
           .first->second;
     };
     for (const Touch& touch : points_)
@@ -195,6 +207,7 @@ class Pass {
         gather(touch, hat, touch.limit, sums.limit);
         gather(touch, hat, touch.moved, sums.moved);
         add(touch, touch.weight * hat, touch.rate, sums.way);
+        add(touch, touch.weight * hat, touch.rate, sums.lever);
         add(touch, touch.weight * hat, PointMatrix(touch.rate_by + touch.rate * touch.stretching.transpose()),
             sums.way_by);
       }
@@ -239,6 +252,8 @@ class Pass {
                               kt / 2 * std::max(old.length - w, 0.0) * old.slip * motion +
                               kt / 2 * w * (start + slip) * (tried - slip);
       result_.patch.force += kt * slip * sums.way;
+      result_.patch.lever.residual += kt * slip * sums.lever.residual;
+      result_.patch.lever.moment += kt * slip * sums.lever.moment;
       result_.patch.tangent += kt * (slip * sums.way_by + sums.way * slip_by.transpose());
     }
   }

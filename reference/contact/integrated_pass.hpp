@@ -19,6 +19,7 @@ using NodeSlips = std::map<int, NodeSlip>;  ///< by nodes of the slave; those of
 struct PastOutlines {
   const PresentOutline& slave;
   const PresentOutline& master;
+  Vec2 shift;  ///< of the master's image, m
 };
 
 /// One half pass of an integrated contact: segments of the slave against one image of the master.

@@ -134,7 +134,7 @@ PairLaws::PairLaws(const Scene& scene, const std::vector<ContactOutline>& outlin
   for (int a = 0; a < bodies_; ++a)
     for (int b = 0; b < bodies_; ++b) {
       // A body meets itself only as a periodic image, and a wall has none.
-      if (a == b && (!scene.period || outlines[a].wall)) continue;
+      if (a == b && (!scene.is_periodic() || outlines[a].wall)) continue;
       const ContactRule* rule = match_rule(scene, group_of(scene, outlines[a]), group_of(scene, outlines[b])).rule;
       if (rule == nullptr) continue;
       const Stiffness pair = Stiffness::of(scene, outlines[a]).with(Stiffness::of(scene, outlines[b]));

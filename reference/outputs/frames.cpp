@@ -3,6 +3,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "scene/quantities.hpp"
 
@@ -90,6 +91,16 @@ std::vector<double> contact_pressures(const View& view) {
   return pressures;
 }
 
+constexpr const char* periods_name = "cell";
+
+/// Vectors of the periods of a cell, m: a table of one row.
+FrameTable periods_table(const Periods& periods) {
+  FrameTable table{periods_name, {{"a", 2, {}}, {"b", 2, {}}}};
+  for (const int i : {0, 1})
+    append(Points{periods.vectors().col(i)}, table.columns[static_cast<std::size_t>(i)].values);
+  return table;
+}
+
 float kind_of(const Body& body) { return body.placed.wall ? 2 : body.compliant() ? 0 : 1; }
 
 }  // namespace
@@ -131,8 +142,11 @@ FrameOutput::FrameOutput(const Bodies& bodies, const std::filesystem::path& fold
       left_out_.push_back(name);
   }
   const NewGrid grains = bodies_grid(), outlines = outlines_grid();
+  std::vector<std::string> tables;
+  if (bodies.scene().cell) tables.emplace_back(periods_name);
   file_ = std::make_unique<FrameFile>(folder, std::vector{grains.grid, outlines.grid},
-                                      std::vector{whole(grains.topology), whole(outlines.topology)});
+                                      std::vector{whole(grains.topology), whole(outlines.topology)}, Opening::create,
+                                      std::move(tables));
 }
 
 const FieldMesh& FrameOutput::mesh_of(std::size_t body) const {
@@ -188,7 +202,10 @@ void FrameOutput::record_due(const View& view) {
     const std::vector<double> pressures = contact_pressures(view);
     outlines.values.emplace_back(pressures.begin(), pressures.end());
   }
-  file_->append(view.run().motion().time, {whole(grains), whole(outlines)});
+  const double time = view.run().motion().time;
+  std::vector<FrameTable> tables;
+  if (bodies_.scene().cell) tables.push_back(periods_table(view.system().periods(time)));
+  file_->append(time, {whole(grains), whole(outlines)}, tables);
   ++count_;
 }
 

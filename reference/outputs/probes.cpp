@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "reference/outputs/cell_stress.hpp"
 #include "scene/quantities.hpp"
 
 namespace pliant::reference {
@@ -191,6 +192,32 @@ Measurement at_points(double (*value)(const PointStress&), bool present) {
   };
 }
 
+Rows stress_of_cell(const View& view, const Probe&, const std::vector<const Body*>&) {
+  const CellStress stress = cell_stress(view);
+  const Eigen::Matrix2d &k = stress.kinetic, s = stress.contact + k;
+  Rows rows;
+  rows.add({s(0, 0), s(0, 1), s(1, 0), s(1, 1), k(0, 0), k(0, 1), k(1, 0), k(1, 1), -s.trace() / 2});
+  return rows;
+}
+
+Rows gradient_of_cell(const View& view, const Probe&, const std::vector<const Body*>&) {
+  const Periods now = view.system().periods(view.run().motion().time);
+  const Vec2 start = view.bodies().scene().cell->periods;
+  const Eigen::Matrix2d f = now.vectors() * start.cwiseInverse().asDiagonal();
+  Rows rows;
+  rows.add({f(0, 0), f(0, 1), f(1, 0), f(1, 1), now.area()});
+  return rows;
+}
+
+/// In the whole of a cell.
+Rows solid_fraction(const View& view, const Probe& probe, const std::vector<const Body*>& bodies) {
+  double solid = 0;
+  for (const Values& one : area(view, probe, bodies).values) solid += one[0];
+  Rows rows;
+  rows.add({solid / view.system().periods(view.run().motion().time).area()});
+  return rows;
+}
+
 const std::map<std::string, Measurement>& measures() {
   static const std::map<std::string, Measurement> all{
       {"position", position},
@@ -205,10 +232,19 @@ const std::map<std::string, Measurement>& measures() {
       {"strain_energy", strain_energy},
       {"area", area},
       {"diameter", diameter},
+      {"cell_stress", stress_of_cell},
+      {"cell_gradient", gradient_of_cell},
+      {"solid_fraction", solid_fraction},
       {"von_mises", at_points(von_mises, true)},
       {"plastic_strain", at_points([](const PointStress& s) { return s.plastic_strain; }, false)},
       {"jacobian", at_points([](const PointStress& s) { return s.jacobian; }, false)}};
   return all;
+}
+
+/// Whether a probe is measured: a solid fraction that of a whole cell.
+bool is_measured(const Probe& probe, const Scene& scene) {
+  if (probe.quantity == "solid_fraction" && (!scene.cell || probe.box || !probe.between.empty())) return false;
+  return measures().contains(probe.quantity);
 }
 
 /// Whether a body is among those that a probe names.
@@ -229,7 +265,7 @@ ProbeFile::ProbeFile(const Bodies& bodies, const std::filesystem::path& folder)
 std::vector<std::string> ProbeFile::choose(const Bodies& bodies) {
   std::vector<std::string> columns{"time [s]"};
   for (const Probe& probe : bodies.scene().probes) {
-    if (!measures().contains(probe.quantity)) {
+    if (!is_measured(probe, bodies.scene())) {
       left_out_.push_back(probe.name);
       continue;
     }

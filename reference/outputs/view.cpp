@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 
+#include "reference/cell_motion.hpp"
+
 namespace pliant::reference {
 namespace {
 
@@ -18,13 +20,7 @@ Points turned(const Body& body, const Vec2& centre, double angle) {
 
 }  // namespace
 
-Vec2 View::mean(const Body& body, const Vector& values) const {
-  if (!body.compliant()) return values.segment<2>(body.first_dof);
-  const Vector& mass = bodies().space_of(body).lumped;
-  Vec2 sum(0, 0);
-  for (int i = 0; i < mass.size(); ++i) sum += mass[i] * values.segment<2>(body.first_dof + 2 * i);
-  return sum / mass.sum();
-}
+Vec2 View::mean(const Body& body, const Vector& values) const { return centre_of(bodies(), body, values); }
 
 Points View::at_nodes(const Body& body, const Vector& values) const {
   Points points;

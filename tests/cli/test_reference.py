@@ -268,3 +268,58 @@ def test_failure_is_told_with_exit_code_3(desk) -> None:
     desk.write(SHORT.replace('[["3.02 um", "0.1 um"]]', '[["2.1 um", "0.1 um"]]'))
     result = desk.reference("--out", "out", "--dt", "1 ns")
     assert result.returncode == 3 and "penetration" in result.stderr, result.stderr
+
+
+# A disc that touches its own images along both periods. Units mu = R = rho = 1.
+CELL = """\
+[time]
+end = 1
+[domain]
+periods = [2.02, 2.2]
+[domain.cell]
+xx = [[0, 1], [1, 0.98]]
+yy = [[0, 1], [1, 0.9]]
+[materials]
+soft = { law = "neo-hookean", density = 1, young = 2.8, poisson = 0.4 }
+[shapes.disc]
+kind = "disc"
+diameter = 2
+nodes = 30
+[[grains]]
+name = "disc"
+shape = "disc"
+body = "compliant"
+material = "soft"
+packing = { kind = "positions", positions = [[0.2, 0.1]] }
+[[contacts]]
+between = "all"
+law = "frictionless"
+stiffness = 100
+[frames]
+period = 1
+"""
+PROBES = "".join(
+    f'[[probes]]\nname = "{name}"\nquantity = "{quantity}"\nperiod = 1\n{more}' for name, quantity, more in (
+        ("cell", "cell_stress", ""), ("strain", "cell_gradient", ""), ("packing", "solid_fraction", 'of = "all"\n'),
+        ("part", "solid_fraction", 'of = "all"\nbox = [[0, 0], [1, 1]]\n')))
+
+
+def test_measures_a_cell(desk) -> None:
+    desk.write(CELL + PROBES)
+    result = desk.reference("--out", "out", "--static", "--dt", "0.1")
+    assert result.returncode == 0 and "probe 'part'" in result.stderr, result.stderr
+    last = {name: desk.table("out/probes.csv").column(name).values[-1] for name in (
+        "cell.pressure", "strain.gradient_yy", "strain.cell_area", "packing.solid_fraction")}
+    assert last["cell.pressure"] > 0
+    # EXACT: the gradient of the scene; the area of the disc is that of a circle but for its compression by 5 % at most.
+    assert last["strain.gradient_yy"] == pytest.approx(0.9) and last["strain.cell_area"] == pytest.approx(1.9796 * 1.98)
+    assert last["packing.solid_fraction"] == pytest.approx(3.1416 / (1.9796 * 1.98), rel=0.05)
+    with h5py.File(desk.folder / "out/frames.h5") as frames:
+        assert frames["cell/000001/b"][()].ravel().tolist() == pytest.approx([0, 1.98])
+
+
+def test_refuses_a_cell_under_a_given_stress(desk) -> None:
+    desk.write(CELL.replace("xx = [[0, 1], [1, 0.98]]", "stress_xx = -0.1"))
+    result = desk.reference("--out", "out", "--static")
+    assert result.returncode == 2 and "follows given gradients alone" in result.stderr, result.stderr
+    assert not (desk.folder / "out").exists()

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reference/tangent_error.hpp"
 #include "setup/build_model.hpp"
 #include "support/random.hpp"
 #include "support/simulations.hpp"
@@ -74,22 +75,6 @@ Motion shaken(const System& system, std::uint64_t seed, double amount) {
     for (int i = 1; i < body.dofs && !body.placed.wall; i += body.compliant() ? 2 : 3)
       motion.q[body.first_dof + i] *= 0.99;
   return motion;
-}
-
-/// Largest difference of matrix columns from central differences of the residual, over the largest entry.
-double tangent_error(System& system, const Motion& motion, bool by_positions, double step) {
-  const Forces at = system.evaluate(motion, true);
-  const Eigen::MatrixXd exact = by_positions ? at.stiffness : at.viscosity;
-  double worst = 0;
-  for (int j = 0; j < exact.cols(); ++j) {
-    Motion up = motion, down = motion;
-    (by_positions ? up.q : up.v)[j] += step;
-    (by_positions ? down.q : down.v)[j] -= step;
-    const Vector difference =
-        (system.evaluate(up, false).residual - system.evaluate(down, false).residual) / (2 * step);
-    worst = std::max(worst, (difference - exact.col(j)).cwiseAbs().maxCoeff());
-  }
-  return worst / exact.cwiseAbs().maxCoeff();
 }
 
 TEST(ReferenceSystem, tangent_is_the_derivative_of_the_residual) {

@@ -1,5 +1,5 @@
 """Squares that fill a cell with two periods and hold to each other: the stress of the cell, its work, and its motion
- under a given stress, against the law of its material."""
+ under a given stress, against the law of its material. Discs: damped motion against the reference's statics."""
 
 from __future__ import annotations
 
@@ -27,6 +27,18 @@ STRAINS = {
     "turned": ((0.97, 0.04), (-0.04, 0.97)),
 }
 
+# Discs, deformed slowly (a wave crosses one in 0.5) and left to come to rest; static steps of a fortieth of that.
+NODES, RAMP, REST, STATIC_STEP = 60, 40.0, 80.0, 1.0
+SHORTENING = 0.05
+DISCS = {
+    "pressed": ((1 - SHORTENING, 0.0), (0.0, 1 - SHORTENING)),
+    "pressed and sheared": ((1 - SHORTENING, 0.03), (0.0, 1 - SHORTENING)),
+}
+# Both solvers turn the discs by other parts of a facet. The width of a contact of two discs then lies within twice the
+# sagitta R (pi/n)^2/2 of a facet, R = 1/2. Half of that range, over the approach, is the error of forces. The approach
+# is the shortening times the diameter.
+FACETS = (np.pi / NODES)**2 / 2 / SHORTENING / 2
+
 
 def neo_hookean(gradient: np.ndarray) -> np.ndarray:
     """Cauchy stress."""
@@ -34,9 +46,9 @@ def neo_hookean(gradient: np.ndarray) -> np.ndarray:
     return (MU * (gradient @ gradient.T - np.eye(2)) + LAMBDA * np.log(j) * np.eye(2)) / j
 
 
-def histories(gradient: np.ndarray) -> str:
+def histories(gradient: np.ndarray, loaded: float = LOADED) -> str:
     names = (("xx", "xy"), ("yx", "yy"))
-    return "\n".join(f"{names[i][k]} = [[0, {float(i == k)}], [{LOADED}, {gradient[i][k]}]]"
+    return "\n".join(f"{names[i][k]} = [[0, {float(i == k)}], [{loaded}, {gradient[i][k]}]]"
                      for i in range(2) for k in range(2))
 
 
@@ -107,3 +119,29 @@ def test_given_stress() -> None:
                (CORNERS + (LAMBDA + 2 * MU) / (SIDE * STIFFNESS)) / share,
                "neo-Hookean law; half of the traction missing near corners, contact stiffness")
     CASE.check(Label.EXACT, "given stretch beside it", float(gradient[-1, 1, 1]), 0.97, 1e-12, "the history")
+
+
+@pytest.mark.parametrize("name", DISCS)
+def test_discs_at_rest(name: str) -> None:
+    gradient = np.array(DISCS[name])
+    text = CASE.scene("discs.toml", end=REST, nodes=NODES, cell=histories(gradient, RAMP))
+    run_name = name.replace(" ", "_")
+    engine = CASE.engine(f"discs_{run_name}", text)
+    reference = CASE.reference(f"discs_{run_name}_reference", text, "--static", "--dt", str(STATIC_STEP))
+    pressures = [float(one.probe("cell.pressure")[-1]) for one in (engine, reference)]
+    source = "damped motion and statics; turns of the discs by parts of a facet, as a share of the approach"
+    CASE.check(Label.INDEPENDENT, f"{name} discs: pressure over the reference's", pressures[0] / pressures[1], 1, FACETS,
+               source)
+    stresses = [tensor(one, "cell.stress")[-1] for one in (engine, reference)]
+    CASE.check(Label.INDEPENDENT, f"{name} discs: difference of stresses over the pressure",
+               float(np.abs(stresses[0] - stresses[1]).max()) / pressures[1], 0, 2 * FACETS,
+               source + "; each contact counts most in one component")
+    energies = [float(one.probe("energy.strain")[-1] + one.probe("energy.contact")[-1]) for one in (engine, reference)]
+    CASE.check(Label.INDEPENDENT, f"{name} discs: stored energy over the reference's", energies[0] / energies[1], 1,
+               2 * FACETS, source + ", of which energies are the square")
+    for column in ("gradient_xx", "gradient_xy", "cell_area"):
+        ours, theirs = (float(one.probe(f"strain.{column}")[-1]) for one in (engine, reference))
+        CASE.check(Label.EXACT, f"{name} discs: {column}", ours, theirs, 1e-12, "the history; sums over steps round")
+    solid = [float(one.probe("packing.solid_fraction")[-1]) for one in (engine, reference)]
+    CASE.check(Label.INDEPENDENT, f"{name} discs: solid fraction", solid[0], solid[1], FACETS * SHORTENING,
+               "areas of the outlines; strains are off by the same share as forces")
