@@ -77,7 +77,7 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),
         "probes.png": (lambda: curves.probes(run), "other probes in probes.csv"),
         **(_of_contacts(run, chosen) if frames and run.frames.contacts(0) is not None else {}),
-        **({"coarse.png": (lambda: coarse(run, chosen), "frames of 50 grains or more")}
+        **({"coarse.png": (lambda: coarse(run, chosen), "frames of 50 grains or more, or has two periods")}
            if frames and len(run.frames.bodies("grain")) >= FEWEST_GRAINS else {}),
         **({"failure.png": (lambda: failure(run), "failure.json with outlines")} if (run.folder / "failure.json").exists()
            else {}),

@@ -2,7 +2,7 @@
 
 Cardenas-Barrantes et al. (2020, Phys. Rev. E 102, 032904; 2021, arXiv 2012.10399): the coordination grows as the square
 root of the solid fraction above jamming, and the bulk modulus diverges where the solid fraction has its largest value.
-Here Z = Z_J + a sqrt(phi - phi_J) and p = -b ln((phi_m - phi)/(phi_m - phi_J)), all constants fitted.
+Here Z = Z_0 + a sqrt(phi - phi_0) and p = -b ln((phi_m - phi)/(phi_m - phi_J)), with fitted constants.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ import numpy as np
 from pliant import Run
 
 YOUNG = 200e3  # Pa, of the scene
-BEARING = 1e-3  # pressure over Young's modulus from which the inertial number is below 0.005
-DENSEST = 0.98  # solid fraction up to which they are
+BEARING = 1e-3  # pressure p over Young's modulus above which d sqrt(rho/p) times the strain rate of a side is below 0.007
+DENSEST = 0.98  # solid fraction up to which the forms are fitted
 
 
 def column(run: Run, name: str) -> np.ndarray:
@@ -70,21 +70,17 @@ def logarithm(fraction: np.ndarray, over_young: np.ndarray) -> np.ndarray:
     return np.where(inside, -factor * np.log(np.maximum(densest - fraction, 1e-9) / (densest - jammed)), np.nan)
 
 
-def fit_root(fraction: np.ndarray, contacts: np.ndarray) -> tuple[float, float, float]:
-    """phi_J, Z_J and a: for each phi_J, in steps of 1e-4, the others follow from linear least squares."""
+def fit_root(fraction: np.ndarray, contacts: np.ndarray) -> tuple[float, float]:
+    """Z_0 and a by linear least squares; phi_0 is the first solid fraction."""
     inside = fraction <= DENSEST
-    phi, z = fraction[inside], contacts[inside]
-    best = (np.inf, 0.0, 0.0, 0.0)
-    for jammed in np.arange(0.7, phi.min(), 1e-4):
-        basis = np.stack([np.ones_like(phi), np.sqrt(phi - jammed)], axis=1)
-        (least, factor), *_ = np.linalg.lstsq(basis, z, rcond=None)
-        best = min(best, (float(((basis @ [least, factor] - z) ** 2).sum()), jammed, least, factor))
-    return float(best[1]), float(best[2]), float(best[3])
+    basis = np.stack([np.ones(inside.sum()), np.sqrt(fraction[inside] - fraction[0])], axis=1)
+    (least, factor), *_ = np.linalg.lstsq(basis, contacts[inside], rcond=None)
+    return float(least), float(factor)
 
 
 def root(fraction: np.ndarray, contacts: np.ndarray) -> np.ndarray:
-    jammed, least, factor = fit_root(fraction, contacts)
-    return np.where(fraction <= DENSEST, least + factor * np.sqrt(np.maximum(fraction - jammed, 0)), np.nan)
+    least, factor = fit_root(fraction, contacts)
+    return np.where(fraction <= DENSEST, least + factor * np.sqrt(fraction - fraction[0]), np.nan)
 
 
 def jammed_at(run: Run) -> float:
@@ -100,7 +96,7 @@ def factor(run: Run) -> float:
 
 
 def least_contacts(run: Run) -> float:
-    return fit_root(*coordination(run))[1]
+    return fit_root(*coordination(run))[0]
 
 
 def overlap(run: Run) -> float:

@@ -105,7 +105,8 @@ def test_curves_of_a_study(desk: Desk) -> None:  # noqa: F811
     assert {"curve_strain.png", "curve_both.png", "drawn.png"} == {file.name for file in (desk.out / "figures").iterdir()}
     before = desk.times()
     (desk.folder / "own.py").write_text(OWN.replace("2 * y", "y[:1]"))
-    assert desk.call().returncode == 0
+    result = desk.call()
+    assert result.returncode == 0 and "curve both: " in result.stderr and "two arrays" in result.stderr
     assert desk.times() == before
     rows = list(csv.DictReader((desk.out / "curves/both.csv").open()))
     assert "beside" in rows[0] and not rows[0]["beside"], "a function that fails leaves its curve out"

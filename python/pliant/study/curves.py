@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import shutil
+import sys
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
@@ -32,7 +33,7 @@ class MeanCurve:
     runs: int
     units: list[str]  # of x and y
     beside: np.ndarray | None = None  # at the same x; NaN where there is none
-    problem: str = ""  # of what is beside
+    problem: str = ""  # why there is no mean, or nothing beside it
 
 
 def advancing(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -76,9 +77,9 @@ def mean_curves(folder: Folder, curve: Curve) -> list[MeanCurve]:
             inputs[curve.by] = values[curve.by]
         if found is not None:
             groups.setdefault(str(inputs), (inputs, []))[1].append(found)
-    means = [mean for inputs, members in groups.values() if (mean := _mean_curve(curve, inputs, members)) is not None]
+    means = [_mean_curve(curve, inputs, members) for inputs, members in groups.values()]
     for mean in means:
-        if curve.beside is not None:
+        if curve.beside is not None and not mean.problem:
             try:
                 mean.beside = points_of(curve.beside, (mean.x, called(curve.beside, mean.x, mean.y)))[1]
             except CannotGather as error:
@@ -86,20 +87,26 @@ def mean_curves(folder: Folder, curve: Curve) -> list[MeanCurve]:
     return means
 
 
-def _mean_curve(curve: Curve, inputs: dict[str, Any], members: list[dict[str, Any]]) -> MeanCurve | None:
-    """None: the members have no x in common."""
+def _mean_curve(curve: Curve, inputs: dict[str, Any], members: list[dict[str, Any]]) -> MeanCurve:
     units = members[0]["units"]
     if len(members) == 1:
         return MeanCurve(inputs, np.array(members[0]["x"]), np.array(members[0]["y"]), None, 1, units)
     mean = mean_of_points(members) if curve.average == "points" else mean_at_x(members, "x" in curve.log)
-    return None if mean is None else MeanCurve(inputs, *mean, len(members), units)
+    if mean is None:
+        problem = f"{inputs}: replicas have no {curve.x} in common{' above 0' * ('x' in curve.log)}"
+        return MeanCurve(inputs, np.array([]), np.array([]), None, len(members), units, None, problem)
+    return MeanCurve(inputs, *mean, len(members), units)
 
 
 def write_curves(folder: Folder) -> None:
-    """curves/NAME.csv of each."""
+    """curves/NAME.csv of each. Says what is missing."""
     shutil.rmtree(folder.path / "curves", ignore_errors=True)
     for curve in folder.curves():
-        replace(folder.path / "curves" / f"{curve.name}.csv", _as_csv(curve, mean_curves(folder, curve)))
+        means = mean_curves(folder, curve)
+        replace(folder.path / "curves" / f"{curve.name}.csv", _as_csv(curve, means))
+        for mean in means:
+            if mean.problem:
+                print(f"curve {curve.name}: {mean.problem}", file=sys.stderr)
 
 
 def _titles(curve: Curve, units: list[str]) -> list[str]:
@@ -121,8 +128,8 @@ def _as_csv(curve: Curve, means: list[MeanCurve]) -> str:
 
 
 def draw_curve(axes: Axes, curve: Curve, means: list[MeanCurve], colours: list[str]) -> None:
-    """A colour for each value of `by`, a style of line for the other inputs, bands of a standard error, and dashed what is
-    beside."""
+    """One colour per value of `by`, one line style per combination of the other inputs, a band of one standard error;
+    `beside` is dashed."""
     def value_of(mean: MeanCurve) -> str:
         return f"{curve.by} = {mean.inputs[curve.by]}" if curve.by else ""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import matplotlib
@@ -41,6 +42,7 @@ def draw_all(folder: Folder) -> list[dict[str, str]]:
         try:
             called(wanted["function"], axes, means_of_replicas(table["rows"], table["quantities"], about["parameters"]))
         except CannotGather as error:
+            print(f"figure {wanted['name']}: {error}", file=sys.stderr)
             axes.text(0.5, 0.5, str(error), transform=axes.transAxes, ha="center", fontsize=7, wrap=True)
         drawn.append(_save(folder, figure, wanted["name"], wanted["name"]))
     if "orders" in table:

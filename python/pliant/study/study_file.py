@@ -13,7 +13,8 @@ from typing import Any
 from pliant import units
 from pliant.study.reading import BadStudy, Reader, quantity, unique
 from pliant.study.spec import (
-    AVERAGES, TAKES, Convergence, Curve, Figure, Parameter, Plot, Quantity, Regression, Study, between, number_of, units_of,
+    AVERAGES, TAKES, Convergence, Curve, Figure, Parameter, Plot, Quantity, Regression, Study, between, number_of,
+    units_of,
 )
 
 
