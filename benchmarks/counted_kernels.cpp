@@ -122,7 +122,8 @@ void renew_candidates(Simulation& simulation) {
 void contact_bound(Simulation& simulation) {
   const ContactSystem& contact = simulation.forces().contact();
   TimeStepBound bound(simulation.model(), contact.laws());
-  pliant_counted([&] { bound.update_contact(contact); });  // a second time there is nothing new to see
+  // A second time there is nothing new to see.
+  pliant_counted([&] { bound.update_contact(contact, simulation.forces().bonds()); });
 }
 
 void internal_bound(Simulation& simulation) {

@@ -118,9 +118,12 @@ Vector Bodies::initial_velocities() const {
   for (const Body& body : bodies_) {
     if (body.placed.wall) continue;
     const InitialVelocity& field = scene_.grains[body.placed.grains].velocity;
-    if (!body.compliant()) v.segment<3>(body.first_dof) << field.uniform, field.rotation;
+    // The centre of a cell's motion is that of its grain.
+    const Vec2 grain_centre = body.placed.centre - body.placed.offset;
+    if (!body.compliant())
+      v.segment<3>(body.first_dof) << field.uniform + field.rotation * turned_left(body.placed.offset), field.rotation;
     for (int i = 0; body.compliant() && i < body.dofs; i += 2) {
-      const Vec2 r = q.segment<2>(body.first_dof + i) - body.placed.centre;
+      const Vec2 r = q.segment<2>(body.first_dof + i) - grain_centre;
       v.segment<2>(body.first_dof + i) = field.uniform + field.rotation * turned_left(r) + field.gradient * r;
     }
   }

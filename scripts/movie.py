@@ -133,9 +133,11 @@ def chosen_frames(run: Run, times: list[float] | None) -> list[int]:
     return [int(index) for index in chosen]
 
 
-def chosen_colours(run: Run, name: str, indices: list[int]) -> fields.Kinds | fields.Field:
+def chosen_colours(run: Run, name: str, indices: list[int]) -> fields.Kinds | fields.Field | fields.Fragments:
     if name == fields.KINDS:
         return fields.Kinds(run.frames)
+    if name == fields.FRAGMENT and name in run.frames.names("bodies"):
+        return fields.Fragments(run.frames)
     known = fields.names(run)
     if name not in known:
         raise BadInput(f"{run.folder}: no field '{name}' in the frames{nearest(name, known, listed=True)}")

@@ -43,7 +43,7 @@ void bound_of_contact(benchmark::State& state) {
     state.PauseTiming();
     TimeStepBound bound(simulation.model(), contact.laws());
     state.ResumeTiming();
-    bound.update_contact(contact);
+    bound.update_contact(contact, simulation.forces().bonds());
   }
   const Work forces = work::contact_forces(simulation.model(), contact);
   report(state, "record", records(contact), {forces.flops, forces.bytes - 4 * sizeof(double) * records(contact)});

@@ -53,7 +53,7 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
     const BodyOffsets offsets(model, body);
     const BodyView positions(model, body, q);
     for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
-      const Vec2 r = positions[static_cast<std::size_t>(i)];
+      const Vec2 r = positions[static_cast<std::size_t>(i)] + body.offset / body.scale;
       const Vec2 velocity = field.uniform / body.scale + field.rotation * Vec2(-r.y(), r.x()) + field.gradient * r;
       set_node(offsets, static_cast<std::size_t>(i), velocity, v);
     }
@@ -62,7 +62,9 @@ Dofs initial_velocities(const Model& model, const Dofs& q) {
     const RigidBody& rigid = model.rigid_bodies[r];
     if (const Body& body = model.bodies[rigid.body]; !body.wall) {
       const InitialVelocity& field = model.scene.grains[body.grains].velocity;
-      v.rigid[3 * r] = field.uniform.x(), v.rigid[3 * r + 1] = field.uniform.y(), v.rigid[3 * r + 2] = field.rotation;
+      v.rigid[3 * r] = field.uniform.x() - field.rotation * body.offset.y();
+      v.rigid[3 * r + 1] = field.uniform.y() + field.rotation * body.offset.x();
+      v.rigid[3 * r + 2] = field.rotation;
     }
   }
   set_imposed_velocities(model, v);

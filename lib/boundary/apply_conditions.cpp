@@ -170,6 +170,7 @@ class SwitchTimes {
       for (const auto& row : scene.cell->stress)
         for (const std::optional<History>& component : row)
           if (component) add(*component);
+    for (const BondRule& rule : scene.bonds) add(rule.from);
     for (const BoundaryCondition& condition : scene.boundary) {
       add(condition.window), add(condition.pressure);
       add(condition.x), add(condition.y), add(condition.angle);

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/bond_estimates.hpp"
 #include "cli/dry_run.hpp"
 #include "cli/estimates.hpp"
 #include "cli/expected_errors.hpp"
@@ -166,6 +167,14 @@ void print_contacts(const Model& model, const ContactSystem& contact) {
   print_row(heading, fmt::format("pairs of bodies close at the start: {}; skin {}", close, si(contact.skin(), "m")));
 }
 
+void print_bonds(const Simulation& simulation) {
+  const char* heading = "bonds";
+  for (const std::string& line : describe_bonds(simulation.model(), simulation.forces().bonds())) {
+    print_row(heading, line);
+    heading = "";
+  }
+}
+
 void print_overlap(const Simulation& simulation) {
   const std::string text = describe(simulation.overlap(), simulation.model());
   if (!text.empty()) print_row("overlap", text);
@@ -282,6 +291,7 @@ void print_check(const Scene& scene, int threads) {
   Simulation simulation = start_simulation(model, from.get());
   if (from) print_row("start", fmt::format("from '{}' at its t = {:.6g} s", from->scene_name(), from->time()));
   print_contacts(model, simulation.forces().contact());
+  print_bonds(simulation);
   print_overlap(simulation);
   print_errors(model);
   print_cautions(model);

@@ -27,7 +27,10 @@ Stability stability(const Model& model) {
   contact.find_candidates(outlines, history);
   TimeStepBound bound(model, contact.laws());
   bound.update_internal(position, initial_memory(model));
-  bound.update_contact(contact);
+  BondSystem bonds(model, contact.laws());
+  BondHistory bond_history;
+  bonds.make(outlines.position, 0, bond_history);
+  bound.update_contact(contact, bonds);
   return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
 }
 

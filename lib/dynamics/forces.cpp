@@ -34,6 +34,7 @@ double least_of(Lanes jacobian) { return -largest(-jacobian); }
 Forces::Forces(const Model& model)
     : model_(model),
       contact_(model),
+      bonds_(model, contact_.laws()),
       least_jacobian_(static_cast<std::size_t>(model.lane_batches) + model.point_chunks.size(), 1e300) {
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b)
     stresses_.emplace_back(static_cast<std::size_t>(model.nodewise_shape_of(model.batches[b]).points()));
@@ -44,7 +45,8 @@ Forces::Forces(const Model& model)
 Forces::ListCheck Forces::ensure_candidates(State& accepted, const OutlineField& trial, double time) {
   phases_.enter(Phase::candidates);
   const RunClock clock{time, accepted.steps};
-  if (contact_.candidates_hold(trial, clock)) return {};
+  const bool bonded = bonds_.make(accepted.outlines.position, accepted.time, accepted.memory.bonds);
+  if (contact_.candidates_hold(trial, clock)) return {bonded};
   bool hold = false;
   phases_.apart(Phase::candidates,
                 [&] { hold = contact_.renew_candidates(accepted.outlines, accepted.memory.contact, clock, &trial); });
@@ -61,6 +63,8 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
   } else {
     result.contact = contact_.forces(outlines, from.memory.contact, to.memory.contact, to.contact_force);
   }
+  if (!bonds_.is_empty())
+    result.bonds = bonds_.add_forces(outlines.position, from.memory.bonds, to.memory.bonds, to.contact_force);
   result.damping_power = result.contact.damping_power;
   to.force.lattice = to.contact_force.lattice;
   phases_.enter(Phase::internal);

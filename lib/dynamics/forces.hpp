@@ -6,6 +6,7 @@
 #include "bodies/model.hpp"
 #include "bodies/nodewise_forces.hpp"
 #include "bodies/outline_fields.hpp"
+#include "bonds/bond_system.hpp"
 #include "contact/contact.hpp"
 #include "core/phase_times.hpp"
 #include "dynamics/state.hpp"
@@ -15,6 +16,7 @@ namespace pliant {
 /// Sums and checks of one force evaluation.
 struct Evaluation {
   PairTotals contact;
+  BondTotals bonds;
   double damping_power = 0;  ///< power of viscosity, Maxwell branches and the dashpots of contacts and supports, W/m
   double material_loss = 0;  ///< dissipated in the step by plastic flow, J/m
   double least_jacobian = 1e300;
@@ -37,10 +39,11 @@ class Forces {
 
   /// Result of the check of the contact candidates.
   struct ListCheck {
-    bool rebuilt = false;
-    bool valid = true;  ///< false for a trial that exceeds the skin in a single step
+    bool rebuilt = false;  ///< candidates or bonds are others than before
+    bool valid = true;     ///< false for a trial that exceeds the skin in a single step
   };
-  /// Makes sure that the candidates are valid for the outlines of a trial that ends at `time`. If they are not, they
+  /// Makes the bonds whose time has come, and makes sure that the candidates are valid for the outlines of a trial that
+  /// ends at `time`. If they are not, they
   /// are rebuilt at the accepted state. Its history is stored in a new order and keeps its records, so that a rejected
   /// trial loses none.
   ListCheck ensure_candidates(State& accepted, const OutlineField& trial, double time);
@@ -63,16 +66,20 @@ class Forces {
   /// Warns once per run of deep contacts, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 
-  /// As ContactSystem::inherit.
-  void inherit(const InheritedContact& from, ContactHistory& history) { contact_.inherit(from, history); }
+  /// As ContactSystem::inherit and BondSystem::inherit.
+  void inherit(const InheritedContact& contact, const InheritedBonds& bonds, Memory& memory) {
+    contact_.inherit(contact, memory.contact), bonds_.inherit(bonds, memory.bonds);
+  }
 
   const Model& model() const { return model_; }
   const ContactSystem& contact() const { return contact_; }
+  const BondSystem& bonds() const { return bonds_; }
   PhaseTimes& phases() { return phases_; }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("contact", contact_);
+    visitor("bonds", bonds_);
     visitor("warned_deep", warned_deep_);
   }
 
@@ -87,6 +94,7 @@ class Forces {
 
   const Model& model_;
   ContactSystem contact_;
+  BondSystem bonds_;
   OutlineField outline_force_;          ///< sum of contact forces and loads on outlines; empty without such loads
   std::vector<double> least_jacobian_;  ///< [batches of several bodies, chunks of points]
   /// Of materials, as least_jacobian_, W/m: one lane a body, or all one body; empty without rates and internal

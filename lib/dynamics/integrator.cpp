@@ -18,7 +18,7 @@ namespace {
 /// Stores the sums of the evaluation that gave a state its forces.
 void take_over_sums(const Evaluation& found, State& state) {
   state.damping_power = found.damping_power;
-  state.contact_energy = found.contact.stored;
+  state.contact_energy = found.contact.stored + found.bonds.stored;
   state.contacts = found.contact.contacts;
 }
 
@@ -83,9 +83,11 @@ void take_over(const Model& model, State& state, Trial& trial, const StepReport&
                          outline_work(model, state.outlines, before.instant(), trial.outlines, after.instant());
   if (model.scene.cell) state.external_work += work_on_images(state, trial);
   state.gravity_work += gravity_work(model, before, after);
-  state.dissipated += report.evaluation.contact.dissipated + report.damping_work + report.evaluation.material_loss;
+  state.dissipated += report.evaluation.contact.dissipated + report.evaluation.bonds.loss + report.damping_work +
+                      report.evaluation.material_loss;
   state.damped += report.damping_work;
   state.plastic_loss += report.evaluation.material_loss;
+  state.bond_loss += report.evaluation.bonds.loss;
   swap_motion(state, trial);
   state.time = end_time;
   ++state.steps;

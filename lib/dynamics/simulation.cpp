@@ -50,12 +50,16 @@ void Simulation::begin(const StartPoint& start) {
   if (!model_.scene.cell) state_.position.lattice = initial_lattice(model_.scene);
   state_.memory.material = start.material;
   set_imposed_velocities(model_, state_.reduced_momentum);
-  forces_.inherit(start.contact, state_.memory.contact);
+  forces_.inherit(start.contact, start.bonds, state_.memory);
 }
 
 StartPoint Simulation::start_point() const {
-  return {control_, state_.position, state_.reduced_momentum, state_.memory.material,
-          forces_.contact().leave(state_.memory.contact)};
+  return {control_,
+          state_.position,
+          state_.reduced_momentum,
+          state_.memory.material,
+          forces_.contact().leave(state_.memory.contact),
+          forces_.bonds().leave(state_.memory.bonds)};
 }
 
 StepReport Simulation::step(double until, const Observer* observer) {

@@ -7,6 +7,7 @@
 #include "bodies/model.hpp"
 #include "bodies/outline_fields.hpp"
 #include "bodies/point_law.hpp"
+#include "bonds/bond.hpp"
 #include "contact/energy_correction.hpp"
 #include "contact/history.hpp"
 
@@ -16,12 +17,14 @@ namespace pliant {
 /// accepted steps only.
 struct Memory {
   ContactHistory contact;
+  BondHistory bonds;
   std::vector<Lanes> material;  ///< of integration points, see Batch::memory
   std::vector<double> heat;     ///< [bodies] from dissipation, J/m (dynamics/body_heat.hpp); empty if nothing has one
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("contact", contact);
+    visitor("bonds", bonds);
     visitor("material", material);
     visitor("heat", heat);
   }
@@ -59,11 +62,12 @@ struct StateNumbers {
   double time = 0;            ///< s
   double external_work = 0;   ///< of loads and imposed motions, J/m
   double gravity_work = 0;    ///< of a gravity with a history, J/m; 0 for a constant one, which has a potential
-  double dissipated = 0;      ///< by contact laws and by damping, J/m
+  double dissipated = 0;      ///< by contact laws, bonds, damping and plastic flow, J/m
   double damped = 0;          ///< part of it by forces that depend on velocities, J/m
   double plastic_loss = 0;    ///< part of it by plastic flow, J/m
+  double bond_loss = 0;       ///< part of it by damage of bonds, J/m
   double damping_power = 0;   ///< of viscosity and of the dashpots of contacts and supports, for `force`, W/m
-  double contact_energy = 0;  ///< stored in contacts, J/m; for `contact_force`
+  double contact_energy = 0;  ///< stored in contacts and bonds, J/m; for `contact_force`
   std::int64_t contacts = 0;  ///< active slave nodes; slave segments if integrated
   std::int64_t steps = 0, rejections = 0, evaluations = 0;
 };
@@ -99,6 +103,7 @@ struct State : StateNumbers {
     visitor("dissipated", dissipated);
     visitor("damped", damped);
     visitor("plastic_loss", plastic_loss);
+    visitor("bond_loss", bond_loss);
     visitor("damping_power", damping_power);
     visitor("steps", steps);
     visitor("rejections", rejections);

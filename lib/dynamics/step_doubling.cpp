@@ -110,7 +110,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   report.evaluation.valid &= is_covered;
   if (!report.evaluation.valid) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power,
-               material_loss = report.evaluation.material_loss;
+               material_loss = report.evaluation.material_loss, bond_loss = report.evaluation.bonds.loss;
   if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
@@ -120,6 +120,7 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.evaluation.material_loss += material_loss;
+  report.evaluation.bonds.loss += bond_loss;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return Halves::done;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -194,11 +195,18 @@ void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, 
   limit_ = limit(1);
 }
 
-void TimeStepBound::update_contact(const ContactSystem& contact) {
-  const std::vector<int> changed = stiffness_.update(contact, compliance_);
-  find_contact_frequencies(
-      model_, changed, [&](int body, double* to, int stride) { stiffness_.add_of_body(contact, body, to, stride); },
-      contact_);
+void TimeStepBound::update_contact(const ContactSystem& contact, const BondSystem& bonds) {
+  std::vector<int> changed = stiffness_.update(contact, compliance_);
+  if (bonds_seen_ != bonds.version()) {
+    changed.resize(model_.bodies.size());
+    std::iota(changed.begin(), changed.end(), 0);
+    bonds_seen_ = bonds.version();
+  }
+  const auto add_stiffness = [&](int body, double* to, int stride) {
+    stiffness_.add_of_body(contact, body, to, stride);
+    bonds.add_stiffness(body, compliance_, to, stride);
+  };
+  find_contact_frequencies(model_, changed, add_stiffness, contact_);
   const std::vector<double> damping = contact.damping_ratios();
   for (const int b : changed) {
     contact_[b] = std::max(contact_floor_[b], contact_[b]);

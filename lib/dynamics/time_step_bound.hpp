@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bodies/dofs.hpp"
+#include "bonds/bond_system.hpp"
 #include "contact/contact.hpp"
 #include "contact/stiffness_bound.hpp"
 #include "dynamics/state.hpp"
@@ -18,8 +19,8 @@ class TimeStepBound {
 
   /// Two more power iterations on the internal forces of every compliant body.
   void update_internal(const Dofs& position, const Memory& memory, int iterations = 2);
-  /// Updates the a-priori contact bound with the candidates found since the last call.
-  void update_contact(const ContactSystem& contact);
+  /// Updates the a-priori bound of contacts and bonds with the candidates and bonds found since the last call.
+  void update_contact(const ContactSystem& contact, const BondSystem& bonds);
 
   /// Largest step, s, with the safety factor; infinite without stiffness. `contact_factor`: factor on the stiffness of
   /// all contacts.
@@ -34,6 +35,7 @@ class TimeStepBound {
     visitor("internal", internal_);
     visitor("contact", contact_);
     visitor("stiffness", stiffness_);
+    visitor("bonds_seen", bonds_seen_);
     visitor("viscous_direction", viscous_direction_);
     visitor("viscous", viscous_);
   }
@@ -55,9 +57,10 @@ class TimeStepBound {
 
   const Model& model_;
   StiffnessBound stiffness_;
+  long bonds_seen_ = 0;                ///< version of the bonds that are counted
   std::vector<Lanes> direction_;       ///< power iteration vectors, as Dofs::compliant, each in its body's frame
   std::vector<Lanes> internal_;        ///< [batches] w_b^2, 1/s2
-  std::vector<double> contact_;        ///< [bodies] w_c^2, 1/s2
+  std::vector<double> contact_;        ///< [bodies] w_c^2 of contacts and bonds, 1/s2
   std::vector<double> contact_floor_;  ///< [bodies] w_c^2 of one partner all around: possible before the next rebuild
   std::vector<double> compliance_;     ///< [bodies] w^2 per unit contact stiffness
   std::vector<double> support_;        ///< [bodies] w^2 of soft supports, 1/s2

@@ -49,7 +49,7 @@ Verlet::Verlet(Forces& forces, const State& state)
       end_velocity_(needs_velocities_ ? zero_dofs(model_) : Dofs()),
       change_(model_.regions.size() + model_.rigid_bodies.size()) {
   bound_.update_internal(state.position, state.memory);
-  bound_.update_contact(forces_.contact());
+  bound_.update_contact(forces_.contact(), forces_.bonds());
 }
 
 double Verlet::first_dt() const { return first_step * std::min(largest_dt(), model_.scene.time.end); }
@@ -75,7 +75,8 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   Forces::ListCheck candidates;
   if (!proposal.is_output_sample)
     candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
-  if (candidates.rebuilt) forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact()); });
+  if (candidates.rebuilt)
+    forces_.phases().apart(Phase::bound, [&] { bound_.update_contact(forces_.contact(), forces_.bonds()); });
   report.evaluation = forces_and_velocities(state, motion, proposal.dt);
   report.evaluation.valid &= candidates.valid;
   ++report.evaluations;

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <random>
 
 #include "core/errors.hpp"
 #include "core/located.hpp"
 #include "core/random.hpp"
+#include "geometry/grain_cells.hpp"
 #include "geometry/mesh.hpp"
 #include "geometry/placement.hpp"
+#include "geometry/polygon.hpp"
 #include "geometry/species_in_turn.hpp"
 
 namespace pliant {
@@ -40,6 +44,39 @@ std::vector<int> assign_species(const Grains& grains, int count, std::mt19937_64
   return choice;
 }
 
+/// Nodal distance of compliant bodies of a shape, m.
+double nodal_distance(const ShapeSpec& shape, const Points& outline) {
+  if (shape.spacing) return *shape.spacing;
+  // Equilateral triangles, two a node.
+  if (shape.nodes) return std::sqrt(2 / std::sqrt(3.0) * polygon_properties(outline).area / *shape.nodes);
+  return perimeter(outline) / static_cast<double>(outline.size());
+}
+
+/// The cells of a breakable grain, each with a shape of its own, which is added to the scene.
+std::vector<PlacedBody> cut(Scene& scene, const Grains& grains, const PlacedBody& grain) {
+  const ShapeSpec whole = scene.shapes[grain.shape];
+  const Points outline = make_outline(whole);
+  const double spacing = perimeter(outline) / static_cast<double>(outline.size());
+  std::vector<PlacedBody> cells;
+  for (const Points& points :
+       cut_into_cells(outline, grains.cells, spacing, grains.seed + static_cast<std::uint64_t>(grain.grain))) {
+    ShapeSpec shape;
+    shape.name = fmt::format("{}.cell{}", whole.name, scene.shapes.size());  // unique name in the scene
+    shape.kind = ShapeKind::polygon;
+    shape.points = points;
+    shape.spacing = nodal_distance(whole, outline);
+    shape.outline_nodes = static_cast<int>(points.size());
+    shape.where = whole.where;
+    PlacedBody cell = grain;
+    cell.shape = static_cast<int>(scene.shapes.size());
+    cell.centre = placed_outline({polygon_properties(points).centroid}, {grain.centre, grain.angle, grain.scale})[0];
+    cell.offset = cell.centre - grain.centre;
+    cells.push_back(std::move(cell));
+    scene.shapes.push_back(std::move(shape));
+  }
+  return cells;
+}
+
 void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {
   const Grains& grains = scene.grains[index];
   const int count = static_cast<int>(grains.packing.grain_count());
@@ -47,11 +84,12 @@ void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {
   const std::vector<int> choice = assign_species(grains, count, random);
   Packed packed = place_grains(scene, grains, random);
   for (ShapeSpec& shape : packed.fitted) scene.shapes.push_back(std::move(shape));
+  std::vector<PlacedBody> placed;
   for (int i = 0; i < count; ++i) {
     const Species& entry = grains.species[choice[i]];
     const Placement& grain = packed.grains[i];
     PlacedBody body;
-    body.name = count == 1 ? grains.name : fmt::format("{} {}", grains.name, i);
+    body.grain = i;
     body.kind = entry.body;
     body.grains = index;
     body.shape = grain.shape;
@@ -59,8 +97,14 @@ void add_grains(Scene& scene, int index, std::vector<PlacedBody>& bodies) {
     body.centre = grain.centre;
     body.angle = grain.angle;
     body.scale = grain.scale;
-    bodies.push_back(std::move(body));
+    if (grains.cells.empty())
+      placed.push_back(std::move(body));
+    else
+      located(grains.where, [&] { std::ranges::move(cut(scene, grains, body), std::back_inserter(placed)); });
   }
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    placed[i].name = placed.size() == 1 ? grains.name : fmt::format("{} {}", grains.name, i);
+  std::ranges::move(placed, std::back_inserter(bodies));
 }
 
 }  // namespace

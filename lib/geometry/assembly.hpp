@@ -14,10 +14,12 @@ struct PlacedBody {
   BodyKind kind = BodyKind::rigid;
   bool wall = false;
   int grains = -1;          ///< index in Scene::grains; -1 for a wall
+  int grain = -1;           ///< number of the grain in its set, which all cells of a breakable grain share
   int number_of_wall = -1;  ///< index in Scene::walls; -1 for a grain
   int shape = -1;           ///< index in Scene::shapes; -1 for a wall
   int material = 0;         ///< index in Scene::materials
   Vec2 centre{0, 0};        ///< m; for a wall (0, level)
+  Vec2 offset{0, 0};        ///< of a cell from the centre of its grain, m; 0 for whole grains
   double angle = 0;         ///< rad
   double scale = 1;         ///< size over that of its shape in the scene
 };

@@ -179,6 +179,9 @@ std::vector<SceneTable> grain_tables() {
            {"seed", Integer{0, std::numeric_limits<std::int64_t>::max()}, required_if("with anything random"),
             "Seed of all random choices of the set"},
            {"velocity", one_table, "none", "Initial velocity"},
+           {"cells", Integer{2, SceneLimits::cells}, "none", "Number of cells that each grain is cut into"},
+           {"cells", List<Quantity>{{"1", positive}, 2, SceneLimits::cells}, "none",
+            "Relative areas of the cells that each grain is cut into"},
        }},
       {"shapes of [[grains]]",
        {

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "input/scene_keys.hpp"
 
 namespace pliant {
@@ -113,6 +115,39 @@ SceneTable rule_table() {
       }};
 }
 
+SceneTable bond_table() {
+  const QuantityOr stiffness{"auto", {"Pa/m", positive}};
+  const Quantity positive_energy{"J/m2", positive};
+  return {"[[bonds]]",
+          {
+              {"between", List<OneOf>{{"material, grains or wall", {}}, 2, 2}, required, "Both sides of the pairs"},
+              {"between", OneOf{"word", {"all"}}, required, "All pairs"},
+              {"from", Quantity{"s", non_negative}, "0 s", "Time when the bonds are made"},
+              {"gap", Quantity{"m", non_negative}, "0 m",
+               "Widest gap that cement bridges; 0: only surfaces that touch are bonded"},
+              {"strength", Quantity{"Pa", positive}, required, "Tensile strength"},
+              {"cohesion", QuantityOr{"auto", {"Pa", positive}}, R"("auto")",
+               "Shear strength without pressure; auto: the tensile one"},
+              {"friction", QuantityOr{"auto", {"1", non_negative}}, R"("auto")",
+               "Increase of the shear strength with pressure; auto: the friction of contact"},
+              {"fracture_energy", positive_energy, required, "Energy of a new crack in tension"},
+              {"shear_fracture_energy", QuantityOr{"auto", positive_energy}, R"("auto")",
+               "Energy of a new crack in shear; auto: that in tension"},
+              {"stiffness", stiffness, R"("auto")", "Normal stiffness; auto: that of contact"},
+              {"shear_stiffness", stiffness, R"("auto")", "Tangential stiffness; auto: the normal one"},
+              {"fatigue_rate", Quantity{"Pa-1", non_negative}, "0 Pa-1",
+               "Damage per tensile stress above the threshold, at the strength"},
+              {"shear_fatigue_rate", Quantity{"Pa-1", non_negative}, derived("`fatigue_rate`"),
+               "Damage per shear stress above the threshold, at the strength"},
+              {"fatigue_threshold", Quantity{"Pa", non_negative}, required_if("with a rate", "0 Pa"),
+               "Stress above which each loading damages, below `strength`"},
+              {"weibull_modulus", Quantity{"1", positive}, "none",
+               "Modulus of Weibull's distribution of strengths, by pairs of bodies; otherwise all are equal"},
+              {"seed", Integer{0, std::numeric_limits<std::int32_t>::max()}, required, "Seed of the strengths",
+               "weibull_modulus"},
+          }};
+}
+
 }  // namespace
 
 std::vector<SceneTable> load_and_contact_tables() {
@@ -137,6 +172,7 @@ std::vector<SceneTable> load_and_contact_tables() {
             R"(the integrator "verlet")"},
        }});
   all.push_back(rule_table());
+  all.push_back(bond_table());
   return all;
 }
 

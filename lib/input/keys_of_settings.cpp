@@ -42,6 +42,7 @@ std::vector<SceneTable> setting_tables() {
            {"contact", one_table, "none", "Settings of contact for the whole scene"},
            {"contacts", array_of_tables, required_if("where bodies can meet", "none"),
             "Contact laws between pairs of bodies"},
+           {"bonds", array_of_tables, "none", "Bonds between bodies, or between the cells of breakable grains"},
            {"probes", array_of_tables, "none", "Measurements over time"},
            {"frames", one_table, "none", "Fields over all bodies at equal times"},
            {"start", one_table, "none", "State of an earlier run as initial state"},

@@ -71,12 +71,14 @@ void read_seed(TableReader& table, const Scene& scene, Grains& grains) {
   const bool sizes = grains.size.kind != SizeDistribution::Kind::list || grains.size.factors.size() > 1;
   const bool shapes = grains.packing.shapes.empty() && scene.shape_shares(grains).size() > 1;
   const bool mixed = grains.species.size() > 1 && grains.species_order == SpeciesOrder::random;
-  const bool random = mixed || !grains.angle || sizes || fills_a_region(grains.packing) || shapes;
+  const bool random =
+      mixed || !grains.angle || sizes || fills_a_region(grains.packing) || shapes || !grains.cells.empty();
   if (random) table.required("seed", grains.seed);
   if (!random && table.has("seed"))
-    table.fail("seed",
-               "nothing is random here; remove it (species in random order, shapes, sizes, a packing or a random "
-               "angle use it)");
+    table.fail(
+        "seed",
+        "nothing is random here; remove it (species in random order, shapes, sizes, cells, a packing or a random "
+        "angle use it)");
 }
 
 void read_angle(TableReader& table, Grains& grains) {
@@ -90,9 +92,19 @@ void read_angle(TableReader& table, Grains& grains) {
   grains.angle = std::nullopt;
 }
 
+/// A number of equal cells, or their relative areas.
+void read_cells(TableReader& table, Grains& grains) {
+  if (table.has("cells") && table.value("cells").node.is_array()) {
+    table.optional("cells", grains.cells);
+    return;
+  }
+  std::optional<int> count;
+  if (table.optional("cells", count)) grains.cells.assign(static_cast<std::size_t>(*count), 1.0);
+}
+
 void check_size(const TableReader& table, const Grains& grains, const Scene& scene) {
   const std::int64_t count = grains.packing.grain_count();
-  std::int64_t bodies = count, most_nodes = 0;
+  std::int64_t bodies = grains.body_count(), most_nodes = 0;
   for (const auto& [index, share] : scene.shape_shares(grains)) {
     const ShapeSpec& shape = scene.shapes[static_cast<std::size_t>(index)];
     const double extent = largest_size(grains.size) * extent_of(shape);
@@ -108,7 +120,7 @@ void check_size(const TableReader& table, const Grains& grains, const Scene& sce
     }
     most_nodes = std::max<std::int64_t>(most_nodes, shape.nodes.value_or(0));
   }
-  for (const Grains& others : scene.grains) bodies += others.packing.grain_count();
+  for (const Grains& others : scene.grains) bodies += others.body_count();
   if (bodies > SceneLimits::bodies) {
     table.fail("packing", fmt::format("{} bodies in the scene; allowed: at most {}", bodies, SceneLimits::bodies));
   }
@@ -229,6 +241,7 @@ Grains read_grains(TableReader table, const Scene& scene) {
   grains.species = read_species(table, scene);
   read_species_order(table, grains);
   read_angle(table, grains);
+  read_cells(table, grains);
   read_seed(table, scene, grains);
   if (table.has("velocity")) grains.velocity = read_velocity(table.optional_table("velocity"), grains);
   check_size(table, grains, scene);

@@ -31,7 +31,7 @@ void read_target(TableReader& table, Condition& condition, const Scene& scene) {
   }
   const Value value = table.value("of");
   if (condition.number && grains_of(condition, scene).name == condition.grains) {
-    const std::int64_t count = grains_of(condition, scene).packing.grain_count();
+    const std::int64_t count = grains_of(condition, scene).body_count();
     if (number < 0 || number >= count)
       value.reject(fmt::format("a number from 0 to {} after the name '{}'", count - 1, condition.grains));
     return;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <tuple>
 
 #include "input/read_tables.hpp"
 
@@ -19,20 +20,6 @@ std::vector<std::string> group_names(const Scene& scene) {
 void refuse_ambiguous(const TableReader& table, const std::string& name, const std::vector<std::string>& names) {
   if (std::count(names.begin(), names.end(), name) < 2) return;
   table.fail("between", fmt::format("'{}' is a material and also grains or a wall; rename one of them", name));
-}
-
-void read_between(TableReader& table, ContactRule& rule, const Scene& scene) {
-  if (table.has("between") && table.value("between").node.is_string()) {
-    table.required("between", rule.first);
-    rule.second = rule.first;
-    return;
-  }
-  const std::vector<std::string> names = group_names(scene);
-  std::vector<std::string> pair;
-  table.required("between", pair, names);
-  for (const std::string& name : pair) refuse_ambiguous(table, name, names);
-  rule.first = pair[0];
-  rule.second = pair[1];
 }
 
 void check_unique(const TableReader& table, const ContactRule& rule, const std::vector<ContactRule>& others) {
@@ -96,9 +83,22 @@ void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
 
 }  // namespace
 
+std::pair<std::string, std::string> read_between(TableReader& table, const Scene& scene) {
+  if (table.has("between") && table.value("between").node.is_string()) {
+    std::string all;
+    table.required("between", all);
+    return {all, all};
+  }
+  const std::vector<std::string> names = group_names(scene);
+  std::vector<std::string> pair;
+  table.required("between", pair, names);
+  for (const std::string& name : pair) refuse_ambiguous(table, name, names);
+  return {pair[0], pair[1]};
+}
+
 ContactRule read_contact(TableReader table, const Scene& scene) {
   ContactRule rule;
-  read_between(table, rule, scene);
+  std::tie(rule.first, rule.second) = read_between(table, scene);
   check_unique(table, rule, scene.contacts);
   table.required("law", rule.law);
   table.optional("stiffness", rule.stiffness);

@@ -56,7 +56,7 @@ struct Target {
           std::find_if(scene.grains.begin(), scene.grains.end(), [&](const Grains& one) { return one.name == group; });
       if (space != std::string::npos && known && grains != scene.grains.end()) {
         check_number(value, *grains, text->substr(space + 1));
-        return grains->packing.grain_count() == 1 ? group : *text;
+        return grains->body_count() == 1 ? group : *text;
       }
     }
     return OneOf{"wall or grains", names}(value);
@@ -67,7 +67,7 @@ struct Target {
   static void check_number(const Value& value, const Grains& grains, const std::string& text) {
     std::int64_t number = -1;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const std::int64_t count = grains.packing.grain_count();
+    const std::int64_t count = grains.body_count();
     const bool whole = error == std::errc() && end == text.data() + text.size() && !text.starts_with('0');
     if ((whole || text == "0") && number >= 0 && number < count) return;
     value.reject(count == 1 ? fmt::format("\"{0}\" or \"{0} 0\": {0} has one body", grains.name)
@@ -81,7 +81,7 @@ bool is_single(const std::string& of, const Scene& scene) {
   const auto named = [&](const auto& one) { return one.name == of; };
   if (std::any_of(scene.walls.begin(), scene.walls.end(), named)) return true;
   const auto grains = std::find_if(scene.grains.begin(), scene.grains.end(), named);
-  return grains != scene.grains.end() && grains->packing.grain_count() == 1;
+  return grains != scene.grains.end() && grains->body_count() == 1;
 }
 
 void read_reduction(TableReader& table, const ProbeQuantity& quantity, Probe& probe) {

@@ -81,6 +81,7 @@ Scene read_scene(const fs::path& file, KeyUse* use) {
   read_bodies(root, scene);
   for (const TableReader& table : root.tables("boundary")) scene.boundary.push_back(read_condition(table, scene));
   read_contacts(root, scene);
+  for (const TableReader& table : root.tables("bonds")) scene.bonds.push_back(read_bond(table, scene));
   read_outputs(root, scene);
   if (root.has("start")) read_start(root.optional_table("start"), scene);
   read_checkpoint(root.optional_table("checkpoint"), scene);

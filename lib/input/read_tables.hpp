@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "input/table_reader.hpp"
@@ -32,7 +33,10 @@ Packing read_packing(TableReader table, const Scene& scene, const Grains& grains
 Grains read_grains(TableReader table, const Scene& scene);
 Wall read_wall(TableReader table, const Scene& scene);
 BoundaryCondition read_condition(TableReader table, const Scene& scene);
+/// The names of both sides of a rule, or twice "all".
+std::pair<std::string, std::string> read_between(TableReader& table, const Scene& scene);
 ContactRule read_contact(TableReader table, const Scene& scene);
+BondRule read_bond(TableReader table, const Scene& scene);
 /// [contact] and all [[contacts]]; every pair of bodies gets exactly one rule. After grains and walls.
 void read_contacts(TableReader& root, Scene& scene);
 

@@ -18,6 +18,7 @@ struct SceneLimits {
   static constexpr std::int64_t nodes_per_shape = 200'000;
   static constexpr std::int64_t polygon_points = 10'000;
   static constexpr std::int64_t variants = 1000;
+  static constexpr std::int64_t cells = 10'000;
   static constexpr std::int64_t bodies = 1'000'000;
   static constexpr std::int64_t field_nodes = 100'000'000;
   static constexpr std::int64_t wall_nodes = 1'000'000;

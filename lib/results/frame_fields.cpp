@@ -1,5 +1,6 @@
 #include "results/frame_fields.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -47,6 +48,13 @@ Principal principal_of(const PointState& p) { return principal(p.stress.xx, p.st
 void contact_count(FramedBody& frame, std::vector<float>& values) {
   const int count = frame.snapshot.contact_counts()[frame.index];
   values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(count));
+}
+
+void number_of_fragment(FramedBody& frame, std::vector<float>& values) {
+  int number = -1;
+  for (const Fragment& fragment : frame.snapshot.fragments())
+    if (std::ranges::binary_search(fragment.bodies, frame.index)) number = fragment.bodies[0];
+  values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(number));
 }
 
 void temperature_of_body(FramedBody& frame, std::vector<float>& values) {
@@ -100,6 +108,11 @@ std::vector<double> contact_damage(const Snapshot& snapshot) {
   return snapshot.contact().least_internal_variable(snapshot.state().memory.contact, "damage", 1);
 }
 
+/// Mean damage of each node's bonds, NaN at nodes without.
+std::vector<double> bond_damage(const Snapshot& snapshot) {
+  return damage_at_nodes(snapshot.model(), snapshot.bonds(), snapshot.state().memory.bonds);
+}
+
 template <class Function>
 Function function_of(const std::map<std::string, Function>& all, const std::string& name) {
   const auto found = all.find(name);
@@ -140,6 +153,7 @@ BodyField body_field(const std::string& name) {
       {"strain_xy", in_cells<[](const P& p) { return p.strain[2]; }>},
       {"temperature_rise", temperature_of_body},
       {"contact_count", contact_count},
+      {"fragment", number_of_fragment},
   };
   return function_of(all, name);
 }
@@ -147,7 +161,7 @@ BodyField body_field(const std::string& name) {
 OutlineFunction outline_field(const std::string& name) {
   static const std::map<std::string, OutlineFunction> all{
       {"contact_pressure", traction<true>}, {"contact_shear", traction<false>}, {"contact_gap", contact_gap},
-      {"contact_slip", contact_slip},       {"contact_damage", contact_damage},
+      {"contact_slip", contact_slip},       {"contact_damage", contact_damage}, {"bond_damage", bond_damage},
   };
   return function_of(all, name);
 }

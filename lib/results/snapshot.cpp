@@ -25,6 +25,11 @@ const std::vector<int>& Snapshot::contact_counts() const {
   return *contact_counts_;
 }
 
+const std::vector<Fragment>& Snapshot::fragments() const {
+  if (!fragments_) fragments_ = find_fragments(model(), bonds(), state().memory.bonds);
+  return *fragments_;
+}
+
 const Dofs& Snapshot::velocities() const {
   if (!model().corrected_mass) return state().reduced_momentum;
   if (!velocities_) velocities_ = material_velocity(model(), state().reduced_momentum);

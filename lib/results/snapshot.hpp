@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "bonds/fragments.hpp"
 #include "contact/contact_points.hpp"
 #include "dynamics/simulation.hpp"
 
@@ -16,6 +17,7 @@ class Snapshot {
   const Model& model() const { return simulation_.model(); }
   const State& state() const { return simulation_.state(); }
   const ContactSystem& contact() const { return simulation_.forces().contact(); }
+  const BondSystem& bonds() const { return simulation_.forces().bonds(); }
   const OutlineField& outlines() const { return state().outlines.position; }   ///< m
   const OutlineField& contact_force() const { return state().contact_force; }  ///< on outline nodes, N/m
 
@@ -23,9 +25,10 @@ class Snapshot {
 
   const std::vector<TouchingPair>& contacts() const;
   const std::vector<int>& contact_counts() const;  ///< [bodies] others that each touches; images count apiece
-  const Dofs& velocities() const;                  ///< see bodies/mass_correction.hpp
-  const Dofs& accelerations() const;               ///< total force over mass; imposed ones by their histories
-  const Dofs& internal_forces() const;             ///< on compliant degrees of freedom, N/m
+  const std::vector<Fragment>& fragments() const;
+  const Dofs& velocities() const;       ///< see bodies/mass_correction.hpp
+  const Dofs& accelerations() const;    ///< total force over mass; imposed ones by their histories
+  const Dofs& internal_forces() const;  ///< on compliant degrees of freedom, N/m
   const EnergyBalance& energy_balance() const;
   double balance_error() const { return simulation_.balance_error(energy_balance().energy); }
 
@@ -33,6 +36,7 @@ class Snapshot {
   Simulation& simulation_;
   mutable std::optional<std::vector<TouchingPair>> contacts_;
   mutable std::optional<std::vector<int>> contact_counts_;
+  mutable std::optional<std::vector<Fragment>> fragments_;
   mutable std::optional<Dofs> velocities_, accelerations_, internal_forces_;
   mutable std::optional<EnergyBalance> audit_;
 };

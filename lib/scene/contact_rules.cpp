@@ -43,7 +43,7 @@ bool meets_itself(const Scene& scene, const ContactGroup& group) {
   for (const Grains& grains : scene.grains)
     for (const Species& entry : grains.species) {
       if (contact_group(scene, entry.material, grains.name, false) != group) continue;
-      bodies += grains.packing.grain_count();
+      bodies += grains.body_count();
       may_return |= scene.is_periodic() || (scene.contact.self_contact && entry.body == BodyKind::compliant);
     }
   for (const Wall& wall : scene.walls) bodies += contact_group(scene, wall.material, wall.name, true) == group;

@@ -165,7 +165,7 @@ std::vector<ProbeQuantity> energies() {
             "of the whole scene, with the errors of its balances"),
       whole("works",
             with_unit({"work_of_loads", "work_of_gravity", "dissipated_by_contact", "dissipated_by_damping",
-                       "dissipated_by_plasticity"},
+                       "dissipated_by_plasticity", "dissipated_by_bonds"},
                       "J/m"),
             "external work of loads and imposed motions, and of gravity, and dissipation, by their origin since the "
             "start"),
@@ -200,6 +200,17 @@ std::vector<ProbeQuantity> contacts() {
        .reductions = sum_first,
        .with = true,
        .meaning = "tributary lengths of a body's outline nodes in touch, each node once"},
+  };
+}
+
+std::vector<ProbeQuantity> bonds() {
+  return {
+      whole("bonds", with_unit({"whole_bonds", "softening_bonds", "torn_bonds"}, "-"),
+            "numbers of bonded segments by their damage"),
+      whole(
+          "fragments", {"fragments [-]", "largest_mass [kg/m]", "d10 [m]", "d50 [m]", "d90 [m]", "aspect_ratio [-]"},
+          "grains and cells that bonds hold together; diameters below which 10, 50 and 90 % of the mass lie; mass mean "
+          "of the ratio of principal radii of gyration"),
   };
 }
 
@@ -252,11 +263,13 @@ std::vector<FrameField> all_fields() {
       field(bodies, cell, "plastic_strain", "-", "equivalent plastic strain, 0 for laws without"),
       field(bodies, cell, "temperature_rise", "K", "since the start; NaN without `heat_capacity`"),
       field(bodies, cell, "contact_count", "-", "bodies that the grain touches"),
+      field(bodies, cell, "fragment", "-", "number of the first body of the fragment, -1 for walls"),
       field(bodies, cell, "material", "-", "number of the material in the scene file, from 0", 1, true),
       field(bodies, cell, "scale", "-", "size over that of the shape", 1, true),
       field(outlines, point, "contact_pressure", "Pa", "normal part of the contact force over the tributary length"),
       field(outlines, point, "contact_shear", "Pa", "its tangential part, along the outline"),
       field(outlines, point, "contact_damage", "-", "least of the node's bonds, 0 whole to 1 torn; 1 without"),
+      field(outlines, point, "bond_damage", "-", "mean over the node's bonds, 0 whole to 1 torn; NaN without"),
       field(outlines, point, "contact_gap", "m", "least of the node's contacts; NaN without"),
       field(outlines, point, "contact_slip", "m",
             "largest elongation of the tangential springs of its contacts, with its sign; 0 without"),
@@ -311,7 +324,7 @@ std::string settings(const ProbeQuantity& quantity) {
 const std::vector<ProbeQuantity>& probe_quantities() {
   static const std::vector<ProbeQuantity> all = [] {
     std::vector<ProbeQuantity> result;
-    for (const auto& part : {motions(), forces(), stresses(), cells(), energies(), contacts(), packing()})
+    for (const auto& part : {motions(), forces(), stresses(), cells(), energies(), contacts(), bonds(), packing()})
       result.insert(result.end(), part.begin(), part.end());
     return result;
   }();

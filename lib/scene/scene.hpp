@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -170,7 +171,7 @@ enum class SpeciesOrder {
   in_turn,  ///< up each column of a lattice, column after column; given positions as listed
 };
 
-/// v(r) = uniform + rotation x r + gradient r, r from the body's own centre.
+/// v(r) = uniform + rotation x r + gradient r, r from the grain's own centre.
 struct InitialVelocity {
   Vec2 uniform{0, 0};                                  ///< m/s
   double rotation = 0;                                 ///< rad/s, counter-clockwise
@@ -188,7 +189,11 @@ struct Grains {
   std::uint64_t seed = 0;
   std::optional<double> angle = 0.0;  ///< rad; nullopt: each grain turned by a random angle
   InitialVelocity velocity;
-  std::string where{};  ///< file, line and column of its table, for messages
+  std::vector<double> cells{};  ///< relative areas of the cells that each grain is cut into; empty: it is one body
+  std::string where{};          ///< file, line and column of its table, for messages
+  std::int64_t body_count() const {
+    return packing.grain_count() * static_cast<std::int64_t>(std::max<std::size_t>(cells.size(), 1));
+  }
 };
 
 /// What moves one degree of freedom of a wall or a rigid grain, or what the soft support of an outline follows.
@@ -275,6 +280,26 @@ struct ContactRule {
   double shear_fatigue_rate = 0;          ///< the same in shear, 1/Pa
 };
 
+/// Bonds between the outlines of bodies (docs/method.md 11). Names as in ContactRule.
+struct BondRule {
+  std::string first, second;
+  double from = 0;                              ///< time when they are made, s
+  double gap = 0;                               ///< widest gap that cement bridges, m; 0: what touches is bonded
+  std::optional<double> stiffness;              ///< kn, Pa/m; nullopt: that of contact
+  std::optional<double> shear_stiffness;        ///< kt, Pa/m; nullopt: equal to kn
+  double strength = 0;                          ///< tensile strength, Pa
+  std::optional<double> cohesion;               ///< shear strength without pressure, Pa; nullopt: the tensile strength
+  std::optional<double> friction;               ///< tan(phi) of whole bonds; nullopt: that of contact
+  double fracture_energy = 0;                   ///< G_I, J/m2
+  std::optional<double> shear_fracture_energy;  ///< G_II, J/m2; nullopt: G_I
+  double fatigue_threshold = 0;                 ///< stress above which each loading damages, Pa
+  double fatigue_rate = 0;                      ///< damage per tensile stress at the strength, 1/Pa
+  double shear_fatigue_rate = 0;                ///< the same in shear, 1/Pa
+  std::optional<double> weibull_modulus;        ///< of the strengths, by pairs of bodies; nullopt: all are equal
+  std::uint64_t seed = 0;
+  std::string where{};  ///< file, line and column of its table, for messages
+};
+
 /// Settings of contact that hold for the whole scene; the skin stands in Scene.
 struct ContactSettings {
   ContactQuadrature quadrature = ContactQuadrature::automatic;
@@ -348,6 +373,7 @@ struct Scene {
   std::vector<Wall> walls;
   std::vector<BoundaryCondition> boundary;
   std::vector<ContactRule> contacts;
+  std::vector<BondRule> bonds{};
   std::vector<Probe> probes;
   Frames frames;
   std::optional<double> checkpoint_period = 600.0;  ///< wall time between checkpoints, s; nullopt: "never"

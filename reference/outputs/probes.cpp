@@ -132,7 +132,7 @@ Rows works(const View& view, const Probe&, const std::vector<const Body*>&) {
   const EnergyBalance& balance = view.run().balance();
   Rows rows;
   rows.add({balance.work_of_loads, balance.work_of_gravity, balance.dissipated_by_contact,
-            balance.dissipated_by_damping, balance.dissipated_by_plasticity});
+            balance.dissipated_by_damping, balance.dissipated_by_plasticity, 0});
   return rows;
 }
 

@@ -20,15 +20,15 @@ from pliant.frames import COMPLIANT, RIGID, WALL, BadFolder, Frames
 from pliant.results import Run
 
 NEUTRAL = "#c9c9c9"
-KINDS = "kinds"
+KINDS, FRAGMENT = "kinds", "fragment"
 UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "strain_energy_density": "J/m3", "temperature_rise": "K",
          **dict.fromkeys(("von_mises", "tresca", "pressure", "stress_xx", "stress_yy", "stress_xy", "stress_zz",
                           "principal_stress_1", "principal_stress_2", "contact_pressure", "contact_shear"), "Pa"),
          **dict.fromkeys(("contact_gap", "contact_slip"), "m")}
 _TITLES = {"von_mises": "von Mises stress", "tresca": "Tresca stress", "jacobian": "volume over that at the start",
            "plastic_strain": "equivalent plastic strain", "temperature_rise": "rise of temperature since the start",
-           "contact_damage": "damage of bonds: 0 whole, 1 torn"}
-_COLOURS = {"velocity": "cividis", "displacement": "cividis", "acceleration": "cividis", "contact_damage": "turbo",
+           "contact_damage": "damage of bonds: 0 whole, 1 torn", "bond_damage": "damage of bonds: 0 whole, 1 torn"}
+_COLOURS = {"velocity": "cividis", "displacement": "cividis", "acceleration": "cividis", "contact_damage": "turbo", "bond_damage": "turbo",
             "contact_count": "viridis", "material": "viridis", "scale": "viridis"}
 _OF_ANY_GRAIN = {"temperature_rise", "contact_count", "material", "scale"}  # other fields of cells are of what deforms
 # Colours of a quantity that is not linear over a triangle are exact at this share of the picture's width.
@@ -48,6 +48,23 @@ class Kinds:
 
     def paint(self, scene: Scenery, index: int, box: Box) -> Painting:
         return Painting(scene.triangles, to_rgba_array(KIND_COLOURS)[scene.kind])
+
+
+class Fragments:
+    """Grains, and cells that bonds hold together: a colour for each number."""
+
+    title = "fragments"
+    _TURN = (5**0.5 - 1) / 2  # golden section: hues of consecutive numbers are far apart
+
+    def __init__(self, frames: Frames) -> None:
+        self.frames = frames
+
+    def paint(self, scene: Scenery, index: int, box: Box) -> Painting:
+        number = self.frames.field("bodies", index, FRAGMENT)[scene.cells]
+        colours = plt.get_cmap("hsv")(number * self._TURN % 1)
+        colours[:, :3] = 0.35 + 0.65 * colours[:, :3]
+        colours[number < 0] = to_rgba_array(NEUTRAL)
+        return Painting(scene.triangles, colours)
 
 
 @dataclass
@@ -106,7 +123,7 @@ class Field:
         vector = self._raw(sample[0]).ndim == 2
         self.title = _TITLES.get(name, name.replace("_", " ") + " norm" * vector)
         colours = _COLOURS.get(name, "inferno" if self.grid == "bodies" else "YlOrRd")
-        if self.bonded is not None:
+        if self.bonded is not None or name == "bond_damage":
             self.scale = Scale(ScalarMappable(Normalize(0, 1), plt.get_cmap(colours)), 1.0, "-", "neither")
         else:
             found = np.concatenate([self._shown(index) for index in sample])
@@ -147,8 +164,10 @@ class Field:
         return _norm(raw) if raw.ndim == 2 else raw
 
     def _is_shown(self, index: int) -> np.ndarray:
-        """Of points of outlines: those in touch. Bonds are those of the first frame, they never form later."""
+        """Of points of outlines: those in touch, or bonded. Bonds of contacts are those of the first frame."""
         values = self._values(index)
+        if self.name == "bond_damage":
+            return np.isfinite(values)
         return np.isfinite(values) & (values != 0) if self.bonded is None else self.bonded
 
     def _shown(self, index: int) -> np.ndarray:

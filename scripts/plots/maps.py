@@ -1,11 +1,11 @@
-"""Maps of bodies: kinds, velocity norm, von Mises stress, damage of bonds."""
+"""Maps of bodies: kinds, velocity norm, von Mises stress, damage of bonds, fragments."""
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from pliant import units
 from plots.drawing import draw, finish_sheet, outline_width, place, sheet, whole_and_window
-from plots.fields import Field, Kinds
+from plots.fields import FRAGMENT, Field, Fragments, Kinds
 from plots.scenery import Scenery, scenery, whole_box
 from plots.wrapping import Box
 from pliant.frames import COMPLIANT, WALL, Frames
@@ -22,7 +22,7 @@ def grains(run: Run, indices: list[int]) -> Figure:
     return figure
 
 
-def _sheet(run: Run, indices: list[int], shown: Kinds | Field) -> Figure:
+def _sheet(run: Run, indices: list[int], shown: Kinds | Field | Fragments) -> Figure:
     """Several times on one scale."""
     box = whole_box(run, indices)
     bar = isinstance(shown, Field)
@@ -51,11 +51,18 @@ def velocity(run: Run, indices: list[int]) -> Figure | None:
 
 
 def damage(run: Run, indices: list[int]) -> Figure | None:
-    """Bonds of the first frame, on the outlines that they join: from whole to torn."""
+    """Bonds on the outlines that they join, from whole to torn. Those of contacts are the bonds of the first frame."""
+    if _has(run.frames, "bond_damage"):
+        return _sheet(run, indices, Field(run.frames, "bond_damage", indices))
     if not _has(run.frames, "contact_damage"):
         return None
     shown = Field(run.frames, "contact_damage", indices)
     return _sheet(run, indices, shown) if shown.bonded.any() else None
+
+
+def fragments(run: Run, indices: list[int]) -> Figure | None:
+    """Grains, and cells that bonds hold together, each in its colour."""
+    return _sheet(run, indices, Fragments(run.frames)) if _has(run.frames, FRAGMENT) else None
 
 
 def _window(box: Box, grain_size: float) -> Box:

@@ -74,7 +74,7 @@ double fastest(Loaded& loaded) {
 double bound_of(Loaded& loaded) {
   TimeStepBound bound(loaded.model, loaded.forces.contact().laws());
   bound.update_internal(loaded.state.position, loaded.state.memory);
-  bound.update_contact(loaded.forces.contact());
+  bound.update_contact(loaded.forces.contact(), loaded.forces.bonds());
   const double w = loaded.model.scene.time.safety * 2 / bound.largest_dt();
   return w * w;
 }

@@ -242,7 +242,7 @@ TEST(Bound, follows_the_rates_of_a_deformed_viscous_disc) {
     bench.evaluate_here();
     TimeStepBound bound(bench.model, bench.forces.contact().laws());
     bound.update_internal(bench.state.position, bench.state.memory);
-    bound.update_contact(bench.forces.contact());
+    bound.update_contact(bench.forces.contact(), bench.forces.bonds());
     const double dt = bound.largest_dt() / bench.model.scene.time.safety, truth = true_largest_dt(bench);
     EXPECT_LE(dt, truth) << "INDEPENDENT: dense eigenvalues";
     EXPECT_GE(dt, truth / 1.05) << "INDEPENDENT: the margin of 1.05";

@@ -50,6 +50,15 @@ TEST_P(Determinism, same_bits_with_damping_and_boundary_conditions) {
   EXPECT_EQ(hash_after(model, 3, 2), one) << "EXACT: threads";
 }
 
+TEST_P(Determinism, same_bits_while_bonds_tear) {
+  Scene scene = bursting_disc(3);
+  scene.time.integrator = GetParam();
+  const Model model = build_model(scene);
+  const std::uint64_t one = hash_after(model, 1, 3);
+  EXPECT_EQ(hash_after(model, 2, 3), one) << "EXACT: threads";
+  EXPECT_EQ(hash_after(model, 3, 3), one) << "EXACT: threads";
+}
+
 INSTANTIATE_TEST_SUITE_P(Integrators, Determinism, ::testing::Values(Integrator::verlet, Integrator::step_doubling));
 
 TEST(StateHash, sees_the_last_bit_of_every_part) {

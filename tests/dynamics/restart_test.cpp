@@ -80,6 +80,13 @@ Scene own_images() {
   return scene;
 }
 
+/// Its pieces meet across the period.
+Scene bursting_across_a_period() {
+  Scene scene = bursting_disc(1000);
+  scene.period = 2;
+  return scene;
+}
+
 /// The same discs of which one flows plastically.
 Scene plastic_images() {
   Scene scene = own_images();
@@ -110,7 +117,8 @@ const std::vector<std::pair<std::string, std::function<Scene()>>> scenes = {
     {"fast_blocks", fast_blocks},
     {"own_images", own_images},
     {"plastic_images", plastic_images},
-    {"stressed_cell", stressed_cell}};
+    {"stressed_cell", stressed_cell},
+    {"bursting_disc", bursting_across_a_period}};
 
 std::string saved(Simulation& simulation) {
   std::string bytes;

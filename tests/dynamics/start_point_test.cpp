@@ -52,6 +52,11 @@ Scene with_bonds() {
   rule.fatigue_threshold = 1e-3;
   return rubbing(rule);
 }
+Scene torn_bonds() {
+  Scene scene = bursting_disc(1000);
+  scene.contact.energy_consistent = false;
+  return scene;
+}
 Scene with_a_branch() {
   Scene scene = with_friction();
   Material& soft = scene.materials[0];
@@ -89,6 +94,8 @@ TEST_P(AStart, goes_on_as_the_run_did) {
   EXPECT_EQ(next.overlap().pairs, 0) << "contact at the start is no overlap of a packing";
   EXPECT_NEAR(next.energy_balance().energy.mechanical(), whole.energy_balance().energy.mechanical(), 1e-13) << "EXACT";
   start.contact.contact_pairs = {}, start.contact.history = {};
+  for (auto& ends : start.bonds.history.ends)
+    for (BondEnd& end : ends) end.damage = broadcast(1);
   Simulation forgetful(model, &start);
   step_evenly(whole, after), step_evenly(next, after), step_evenly(forgetful, after);
   EXPECT_EQ(whole.state().time, (before + after) * dt);
@@ -103,6 +110,7 @@ TEST_P(AStart, goes_on_as_the_run_did) {
 INSTANTIATE_TEST_SUITE_P(All, AStart,
                          ::testing::Values(Case{"friction", with_friction, Integrator::verlet},
                                            Case{"bonds", with_bonds, Integrator::verlet},
+                                           Case{"torn_bonds", torn_bonds, Integrator::verlet},
                                            Case{"branch", with_a_branch, Integrator::verlet},
                                            Case{"doubling", with_friction, Integrator::step_doubling}),
                          [](const auto& info) { return info.param.name; });

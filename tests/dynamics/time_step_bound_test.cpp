@@ -26,7 +26,7 @@ double square_frequency(const TimeStepBound& bound, const Scene& scene) {
 double bound_of(Bench& bench) {
   TimeStepBound bound(bench.model, bench.forces.contact().laws());
   bound.update_internal(bench.state.position, bench.state.memory);
-  bound.update_contact(bench.forces.contact());
+  bound.update_contact(bench.forces.contact(), bench.forces.bonds());
   return square_frequency(bound, bench.model.scene);
 }
 

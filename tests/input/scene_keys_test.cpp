@@ -72,7 +72,8 @@ TEST(SceneKeys, DefaultsThatReadersDeriveAreThese) {
             "until in y of [[boundary]]: end of the run\n"
             "from in angle of [[boundary]]: start of the run\n"
             "until in angle of [[boundary]]: end of the run\n"
-            "shear_fatigue_rate in [[contacts]]: `fatigue_rate`\n");
+            "shear_fatigue_rate in [[contacts]]: `fatigue_rate`\n"
+            "shear_fatigue_rate in [[bonds]]: `fatigue_rate`\n");
 }
 
 TEST(SceneKeys, DerivedDefaultsHold) {

@@ -15,7 +15,7 @@ from pathlib import Path
 from order_of_draws import disordered_lines
 
 # A folder of lib/ may include itself and the folders after it: arrows point down only.
-ORDER = ["cli", "run", "results", "dynamics", "contact", "setup", "boundary", "bodies", "materials", "discretisation",
+ORDER = ["cli", "run", "results", "dynamics", "bonds", "contact", "setup", "boundary", "bodies", "materials", "discretisation",
          "input", "geometry", "files", "scene", "core"]
 SOURCE_FOLDERS = ["lib", "reference", "verify", "benchmarks", "tests", "scripts", "python"]
 TEXT_SUFFIXES = {".hpp", ".cpp", ".py", ".sh", ".md", ".toml", ".txt", ".cmake", ".json", ".cff", ""}

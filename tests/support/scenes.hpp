@@ -284,6 +284,21 @@ inline void without_error_control(Scene& scene, double safety) {
   scene.time.safety = safety;
 }
 
+/// A compliant disc of six cells that flies and spins so fast that its bonds tear, with friction between the pieces.
+inline Scene bursting_disc(double end) {
+  Scene scene = empty_scene(end);
+  scene.shapes = {disc_shape("disc", 2, 300)};
+  scene.grains = {grains("disc", "disc", BodyKind::compliant, {{0, 0}}, moving({0.1, 0}, 0.5))};
+  scene.grains[0].cells.assign(6, 1.0), scene.grains[0].seed = 1;
+  scene.contacts = {mohr_coulomb(100, 0.3)};
+  BondRule bonds;
+  bonds.first = bonds.second = "all";
+  bonds.strength = 0.05, bonds.fracture_energy = 0.001;
+  bonds.weibull_modulus = 5, bonds.seed = 1;
+  scene.bonds = {bonds};
+  return scene;
+}
+
 /// Compliant and rigid discs of radius 1, cohesive, in a periodic layer between a fixed wall and one that presses and
 /// shears.
 inline Scene small_third_body(double end) {

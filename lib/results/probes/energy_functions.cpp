@@ -19,9 +19,10 @@ Samples energy(const Snapshot& snapshot, const Selection&) {
 /// The state holds the work of walls and loads alone; the audit adds gravity's.
 Samples works(const Snapshot& snapshot, const Selection&) {
   const State& state = snapshot.state();
-  Samples samples(5);
+  Samples samples(6);
   samples.add(1, {state.external_work, snapshot.energy_balance().energy.external_work - state.external_work,
-                  state.dissipated - state.damped - state.plastic_loss, state.damped, state.plastic_loss});
+                  state.dissipated - state.damped - state.plastic_loss - state.bond_loss, state.damped,
+                  state.plastic_loss, state.bond_loss});
   return samples;
 }
 

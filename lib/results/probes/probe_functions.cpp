@@ -9,7 +9,7 @@ const std::vector<ProbeFunction>& probe_functions() {
   static const std::vector<ProbeFunction> all = [] {
     std::vector<ProbeFunction> result;
     for (const auto& part : {motion_functions(), force_functions(), stress_functions(), cell_functions(),
-                             energy_functions(), contact_functions(), packing_functions()})
+                             energy_functions(), contact_functions(), bond_functions(), packing_functions()})
       result.insert(result.end(), part.begin(), part.end());
     return result;
   }();

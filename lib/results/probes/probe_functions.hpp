@@ -23,6 +23,7 @@ std::vector<ProbeFunction> stress_functions();
 std::vector<ProbeFunction> cell_functions();
 std::vector<ProbeFunction> energy_functions();
 std::vector<ProbeFunction> contact_functions();
+std::vector<ProbeFunction> bond_functions();
 std::vector<ProbeFunction> packing_functions();
 
 const std::vector<ProbeFunction>& probe_functions();
