@@ -53,8 +53,6 @@ int main_program(int argc, char** argv) {
   for (const std::string& text : scene.warnings) spdlog::warn(text);
   if (!scene.start_from.empty())
     throw InputError(fmt::format("{}: [start]: the reference solver starts no scene from another run's end", file));
-  if (!scene.bonds.empty())
-    throw InputError(fmt::format("{}: [[bonds]]: the reference solver has no bonds", scene.bonds[0].where));
   if (!until.empty()) scene.time.end = parse_time("--until", until);
   if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
   options.solver.mass =

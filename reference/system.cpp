@@ -26,15 +26,24 @@ Eigen::Matrix2d pull_of_image(const ContactLever& lever) {
 }  // namespace
 
 System::System(const Scene& scene)
-    : bodies_(scene), loads_(bodies_), contacts_(bodies_.scene(), bodies_.contact_outlines()) {
+    : bodies_(scene),
+      loads_(bodies_),
+      contacts_(bodies_.scene(), bodies_.contact_outlines()),
+      bonds_(bodies_.scene(), bodies_.contact_outlines()) {
   for (const Body& body : bodies_.all())
     if (body.compliant())
       internal_.emplace_back(bodies_.space_of(body), bodies_.material_of(body), body.placed.scale, body.placed.angle);
   histories_.resize(internal_.size());
+  make_bonds({.q = bodies_.initial_positions(), .v = {}});
+}
+
+void System::make_bonds(const Motion& accepted) {
+  bonds_.make(bodies_.outline_positions(accepted.q), periods(accepted.time), accepted.time);
 }
 
 void System::accept() {
   contacts_.accept();
+  bonds_.accept();
   for (std::size_t i = 0; i < internal_.size(); ++i) internal_[i].accept(histories_[i]);
   accepted_ = evaluated_;
 }
@@ -85,7 +94,7 @@ void System::add_internal(const Motion& motion, bool tangent, Forces& forces, Tr
   }
 }
 
-/// Adds contacts, pressures and supports, which act on outlines and through them on the bodies.
+/// Adds contacts, bonds, pressures and supports, which act on outlines and through them on the bodies.
 void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bool tangent, Forces& forces,
                           Triplets& entries) {
   const Points x = bodies_.outline_positions(motion.q);
@@ -94,10 +103,24 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
   // At rest the loss of a step is what its flow takes from the energy: rates do not count.
   forces.potential += forces.strain + forces.plastic_loss + outlines.stored + outlines.potential;
   forces.contacts = contacts_.evaluate(x, periods(motion.time));
-  forces.contact = forces.contacts.stored;
+  forces.bonds = bonds_.evaluate(x, periods(motion.time));
+  forces.contact = forces.contacts.stored + forces.bonds.stored;
   forces.potential += forces.contact;
   forces.dissipated = forces.contacts.dissipated;
+  forces.bond_loss = forces.bonds.dissipated;
   Vector magnitude = outlines.residual.cwiseAbs();
+  add_contacts(tangent, outlines, magnitude, forces);
+  add_bonds(tangent, outlines, magnitude, forces);
+  forces.symmetric &= outlines.symmetric;
+  const SparseMatrix back = jacobian.transpose();
+  forces.residual += back * outlines.residual;
+  forces.magnitude += back.cwiseAbs() * magnitude;
+  if (!tangent) return;
+  append(back * assembled(outlines.tangent, 2 * bodies_.outline_nodes()) * jacobian, 0, entries);
+  bodies_.add_turning(motion.q, outlines.residual, entries);
+}
+
+void System::add_contacts(bool tangent, OutlineResidual& outlines, Vector& magnitude, Forces& forces) const {
   for (const ContactElement& element : forces.contacts.elements) {
     forces.deepest = std::max(forces.deepest, element.depth);
     forces.on_periods += pull_of_image(element.lever);
@@ -126,13 +149,19 @@ void System::add_outlines(const Motion& motion, const SparseMatrix& jacobian, bo
     }
     forces.symmetric &= patch.tangent.isApprox(patch.tangent.transpose(), 1e-12);
   }
-  forces.symmetric &= outlines.symmetric;
-  const SparseMatrix back = jacobian.transpose();
-  forces.residual += back * outlines.residual;
-  forces.magnitude += back.cwiseAbs() * magnitude;
-  if (!tangent) return;
-  append(back * assembled(outlines.tangent, 2 * bodies_.outline_nodes()) * jacobian, 0, entries);
-  bodies_.add_turning(motion.q, outlines.residual, entries);
+}
+
+void System::add_bonds(bool tangent, OutlineResidual& outlines, Vector& magnitude, Forces& forces) const {
+  for (const BondElement& element : forces.bonds.elements) {
+    forces.on_periods += pull_of_image(element.lever);
+    const auto place = [&](int i) { return 2 * element.node[static_cast<std::size_t>(i / 2)] + i % 2; };
+    for (int i = 0; i < 12; ++i) {
+      outlines.residual[place(i)] += element.force[i];
+      magnitude[place(i)] += std::abs(element.force[i]);
+      for (int j = 0; tangent && j < 12; ++j) outlines.tangent.emplace_back(place(i), place(j), element.tangent(i, j));
+    }
+  }
+  forces.symmetric &= !forces.bonds.damages;
 }
 
 void System::add_applied(const Motion& motion, Forces& forces) const {

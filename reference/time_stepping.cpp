@@ -28,6 +28,15 @@ std::string trouble_of(const Forces& forces, const Bodies& bodies) {
   return {};
 }
 
+/// Times at which loads jump or bonds are made: ascending, s.
+std::vector<double> switch_times(const System& system) {
+  std::vector<double> times = system.loads().switch_times();
+  for (const double time : system.bonds().times()) times.push_back(time);
+  std::ranges::sort(times);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
 /// Body with the largest residual of a degree of freedom, [dofs]. Reactions of imposed ones do not count.
 std::string worst_body(const Vector& residual, const Bodies& bodies) {
   Eigen::Index worst = 0;
@@ -57,7 +66,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
       beta_(0.25 * (1 - options.hht) * (1 - options.hht)),
       gamma_(0.5 - options.hht),
       mass_(system.bodies().mass(options.mass)),
-      switch_times_(system.loads().switch_times()),
+      switch_times_(switch_times(system)),
       held_(held_in_cell(system.bodies())) {
   const Bodies& bodies = system.bodies();
   motion_ = {bodies.initial_positions(), bodies.initial_velocities(), 0};
@@ -67,7 +76,7 @@ TimeStepping::TimeStepping(System& system, const SolverOptions& options)
   else
     turn_cell();
   for (int i = 0; i < bodies.dofs(); ++i)
-    if (system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
+    if (!options.statics && system.loads().imposed(i, 0)) motion_.v[i] = system.loads().imposed_velocity(i, 0);
   acceleration_ = Vector::Zero(bodies.dofs());
   forces_ = evaluate(motion_, true);
   if (const std::string trouble = trouble_of(forces_, bodies); !trouble.empty())
@@ -272,6 +281,7 @@ void TimeStepping::update_balance(const Trial& trial) {
   balance_.work_of_loads += work_on_images(trial);
   balance_.dissipated_by_contact += trial.forces.dissipated;
   balance_.dissipated_by_plasticity += trial.forces.plastic_loss;
+  balance_.dissipated_by_bonds += trial.forces.bond_loss;
   balance_.dissipated_by_damping += 0.5 * (forces_.damping + trial.forces.damping).dot(moved);
   if (after.moves)
     balance_.dissipated_by_damping +=
@@ -290,6 +300,7 @@ double TimeStepping::work_on_images(const Trial& trial) const {
 void TimeStepping::accept(const Trial& trial) {
   update_balance(trial);
   system_.accept();
+  system_.make_bonds(trial.motion);
   motion_ = trial.motion;
   acceleration_ = trial.acceleration;
   forces_ = trial.forces;

@@ -23,12 +23,14 @@ struct SolverOptions {
 /// Energy balance of a run, J/m, as in the engine (docs/method.md 6).
 struct EnergyBalance {
   double kinetic = 0, strain = 0, contact = 0, boundary = 0;
-  double dissipated_by_contact = 0, dissipated_by_damping = 0, dissipated_by_plasticity = 0;
+  double dissipated_by_contact = 0, dissipated_by_damping = 0, dissipated_by_plasticity = 0, dissipated_by_bonds = 0;
   double work_of_loads = 0, work_of_gravity = 0;
   double at_start = 0;  ///< kinetic, strain, contact and boundary energy
 
   double mechanical() const { return kinetic + strain + contact + boundary; }
-  double dissipated() const { return dissipated_by_contact + dissipated_by_damping + dissipated_by_plasticity; }
+  double dissipated() const {
+    return dissipated_by_contact + dissipated_by_damping + dissipated_by_plasticity + dissipated_by_bonds;
+  }
   double external_work() const { return work_of_loads + work_of_gravity; }
   double made() const;           ///< energy without a source; negative: lost, J/m
   double scale() const;          ///< largest of external work, initial energy and dissipation, J/m
@@ -50,9 +52,9 @@ class TimeStepping {
  public:
   TimeStepping(System& system, const SolverOptions& options);
 
-  /// Advances to a later time, with a step to each point of a history and each end of a window before it; halves steps
-  /// that do not converge. Throws PhysicsError with the worst body, the residual and the last valid time if even a
-  /// thousandth of the step does not converge.
+  /// Advances to a later time, with a step to each point of a history, each end of a window and each time when bonds
+  /// are made before it; halves steps that do not converge. Throws PhysicsError with the worst body, the residual and
+  /// the last valid time if even a thousandth of the step does not converge.
   StepRecord step(double until);
 
   const Motion& motion() const { return motion_; }

@@ -68,12 +68,11 @@ struct BondLaw {
   }
 
   /// Shear strength of the bond alone: that of bond and contact together, cohesion + tan(phi) p, less what the contact
-  /// beside it bears by friction.
+  /// beside it bears by friction. It is at least the cohesion, as tan(phi) is not less than the friction of contact.
   N shear_strength(N depth, N slip) const {
     const N pressure = contact_stiffness * depth;
     const N by_contact = min(contact_friction * pressure, select(depth > 0.0, contact_shear * slip, N{}));
-    constexpr double least = 1e-3;  // of the cohesion: friction beyond tan(phi) leaves nothing to the bond
-    return max(cohesion + friction * pressure - by_contact, least * cohesion);
+    return cohesion + friction * pressure - by_contact;
   }
 };
 

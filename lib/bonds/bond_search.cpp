@@ -1,6 +1,7 @@
 #include "bonds/bond_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 
@@ -59,9 +60,10 @@ class Partner {
   /// The first of equally near ones counts.
   NearestPoint nearest(const Vec2& x) const {
     NearestPoint best;
-    // A wall has images of its own, along x.
-    const int turns = shape_.turn_shift == 0 ? 0 : 1;
-    for (int turn = -turns; turn <= turns; ++turn) {
+    // A wall has images of its own, along x. Both it and the grain may be periods away from where they began.
+    const double turned = shape_.turn_shift == 0 ? 0 : (x.x() - position_.at(first_).x()) / shape_.turn_shift;
+    const int nearby = static_cast<int>(std::lround(turned)), turns = shape_.turn_shift == 0 ? 0 : 2;
+    for (int turn = nearby - turns; turn <= nearby + turns; ++turn) {
       const Images images = images_ + Images{shape_.turn_shift < 0 ? -turn : turn, 0};
       const Vec2 at = x - position_.lattice.shift(images);
       for (int k = 0; k < shape_.count; ++k) consider(k, at, images, best);
@@ -101,12 +103,21 @@ std::optional<Bond> bond_of(const Model& model, const OutlineField& position, co
   const OutlineShape& shape = model.outline_of(sides.carrier);
   const double near = std::max(gap, same_place * shape.spacing), far = std::max(near, deepest * shape.spacing);
   if (partners[0].distance > far || partners[1].distance > far) return {};
-  // The ends of a segment at the border of a wall's period may have partners in two images: that of the first counts.
-  if (partners[0].images != partners[1].images) return {};
   Bond bond;
   bond.carrier = sides.carrier, bond.partner = sides.partner, bond.images = partners[0].images;
   bond.segment = segment;
   for (int end = 0; end < 2; ++end) bond.partner_segment[end] = partners[end].segment, bond.xi[end] = partners[end].xi;
+  // The ends of a segment at the border of a wall's period may have partners in two turns of the wall. The nodes behind
+  // the last one are copies of those of the next turn, so the later partner is counted on from the earlier turn.
+  if (partners[0].images != partners[1].images) {
+    const OutlineShape& wall = model.outline_of(sides.partner);
+    const int on = (partners[1].images.x - partners[0].images.x) * (wall.turn_shift < 0 ? -1 : 1);
+    if (wall.turn_shift == 0 || std::abs(on) != 1) return {};
+    const int later = on > 0 ? 1 : 0;
+    bond.images = partners[1 - later].images;
+    bond.partner_segment[later] += wall.count;
+    if (bond.partner_segment[later] + 1 >= wall.count + lane_count) return {};
+  }
   bond.length = shape.segment_length[segment];
   const BondGeometry at = geometry_of(model, position, bond);
   const int first = model.outline_offset[sides.carrier] + segment;

@@ -110,7 +110,7 @@ BondLaw<double> BondSystem::law_of(const Bond& bond) const {
   return law;
 }
 
-void BondSystem::refuse_brittle(const BondRule& rule, const BondLaw<double>& law) const {
+void BondSystem::refuse_unfit(const BondRule& rule, const BondLaw<double>& law) const {
   const auto check = [&](const char* key, double energy, double strength, double stiffness) {
     if (const double stored = strength * strength / (2 * stiffness); energy <= stored)
       throw InputError(fmt::format(
@@ -120,6 +120,9 @@ void BondSystem::refuse_brittle(const BondRule& rule, const BondLaw<double>& law
           key, stored, stiffness));
   };
   located(rule.where, [&] {
+    if (law.friction < law.contact_friction)
+      throw InputError(fmt::format("'friction' in [[bonds]] is {}; allowed: at least that of the contacts, {}",
+                                   law.friction, law.contact_friction));
     check("fracture_energy", law.energy_1, law.strength, law.normal_stiffness);
     check("shear_fracture_energy", law.energy_2, law.cohesion, law.shear_stiffness);
   });
@@ -141,7 +144,7 @@ bool BondSystem::make(const OutlineField& position, double time, BondHistory& hi
           "of another one; move bodies together, give a 'gap', or take finer outlines",
           rule.where.empty() ? model_.scene.file.string() : rule.where, rule.first, rule.second,
           rule.gap > 0 ? fmt::format("{} m", rule.gap) : "rounding"));
-    for (const Bond& bond : found) refuse_brittle(rule, law_of(bond));
+    for (const Bond& bond : found) refuse_unfit(rule, law_of(bond));
     if (rule.weibull_modulus) spread_strengths(*rule.weibull_modulus, rule.seed, found);
     bonds_.insert(bonds_.end(), found.begin(), found.end());
   }
@@ -172,7 +175,7 @@ void BondSystem::inherit(const InheritedBonds& from, BondHistory& history) {
 
 /// Sets what follows from the list of bonds.
 void BondSystem::index() {
-  eights_.assign((bonds_.size() + lane_count - 1) / lane_count, {});
+  eights_.assign((bonds_.size() + lane_count - 1) / lane_count, Eight{});
   buffer_.assign(eights_.size() * forces_per_bond, Lanes{});
   totals_.assign(eights_.size(), {});
   for (std::size_t i = 0; i < eights_.size() * lane_count; ++i) add_to_eight(i);

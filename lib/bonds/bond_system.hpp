@@ -36,7 +36,7 @@ class BondSystem {
 
   bool is_empty() const { return bonds_.empty(); }
   /// Makes the bonds of all rules whose time has come. Returns whether there are new ones. Throws InputError for a rule
-  /// of the start that finds nothing to bond, and for one whose fracture energy is too small for its strength.
+  /// of the start that finds nothing to bond, and for one whose values do not fit the strength or the contacts.
   bool make(const OutlineField& position, double time, BondHistory& history);
   /// Adds the forces on outline nodes, N/m, and on the vectors of the periods; reads the history `from` and writes
   /// `to`.
@@ -79,7 +79,7 @@ class BondSystem {
     std::int32_t other;  ///< body at the other side
   };
 
-  void refuse_brittle(const BondRule& rule, const BondLaw<double>& law) const;
+  void refuse_unfit(const BondRule& rule, const BondLaw<double>& law) const;
   void index();
   void add_to_eight(std::size_t number);
   BondTotals forces_of_eight(std::size_t number, const OutlineField& position, const BondHistory& from,

@@ -68,9 +68,11 @@ Projection project(const Vec2& point, const Vec2& first, const Vec2& second) {
   result.gap = result.height = dot(x - a, n);
   result.xi = dot(x - a, t) / result.length;
   result.beyond = result.xi.value < 0 || result.xi.value > 1;
+  const JetVector from_end = result.xi.value < 0 ? x - a : x - b;
+  // A point at the end itself has no direction from there. By rounding it may be beyond.
+  result.beyond &= from_end.x.value != 0 || from_end.y.value != 0;
   if (!result.beyond) return result;
   result.xi = result.xi.value < 0 ? 0 : 1;
-  const JetVector from_end = result.xi.value == 0 ? x - a : x - b;
   const Jet<6> distance = sqrt(dot(from_end, from_end));
   result.gap = result.height.value < 0 ? -distance : distance;
   result.angle = atan(dot(from_end, t) / dot(from_end, n));

@@ -46,6 +46,7 @@ CellStress cell_stress(const View& view) {
   }
   for (const ContactElement& element : view.forces().contacts.elements) stress.contact += element.lever.moment;
   for (const ContactPatch& patch : view.forces().contacts.patches) stress.contact += patch.lever.moment;
+  for (const BondElement& bond : view.forces().bonds.elements) stress.contact += bond.lever.moment;
   const double area = view.system().periods(view.run().motion().time).area();
   stress.contact /= area, stress.kinetic /= area;
   return stress;

@@ -9,7 +9,7 @@ struct CellStress {
   /// Its virtual work is that of a homogeneous deformation of everything, the inside of bodies and the gaps between
   /// them. With the area A of the cell,
   ///   A contact = integral of the Cauchy stress over compliant bodies + sum over rigid bodies of force (x) arm
-  ///               + sum over contacts of force (x) gap.
+  ///               + sum over contacts and bonds of force (x) gap.
   /// In equilibrium it equals the sum of Love and Weber over forces and the vectors between centres, from which the
   /// engine takes it, but it uses neither these nor the periods. In motion the integral would include the inertia of
   /// the inside of bodies: forces and their arms from the centre of mass stand for it.

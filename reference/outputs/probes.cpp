@@ -132,7 +132,15 @@ Rows works(const View& view, const Probe&, const std::vector<const Body*>&) {
   const EnergyBalance& balance = view.run().balance();
   Rows rows;
   rows.add({balance.work_of_loads, balance.work_of_gravity, balance.dissipated_by_contact,
-            balance.dissipated_by_damping, balance.dissipated_by_plasticity, 0});
+            balance.dissipated_by_damping, balance.dissipated_by_plasticity, balance.dissipated_by_bonds});
+  return rows;
+}
+
+Rows bonds(const View& view, const Probe&, const std::vector<const Body*>&) {
+  const BondCounts counts = view.system().bonds().counts();
+  Rows rows;
+  rows.add(
+      {static_cast<double>(counts.whole), static_cast<double>(counts.softening), static_cast<double>(counts.torn)});
   return rows;
 }
 
@@ -228,6 +236,7 @@ const std::map<std::string, Measurement>& measures() {
       {"friction_factor", friction_factor},
       {"energy", energy},
       {"works", works},
+      {"bonds", bonds},
       {"kinetic_energy", kinetic_energy},
       {"strain_energy", strain_energy},
       {"area", area},

@@ -77,7 +77,9 @@ std::vector<PointStress> View::stresses_of(const Body& body) const {
 const Vector& View::weights_of(const Body& body) const { return internal_of(body).weights(); }
 
 Points View::contact_forces() const {
-  return forces_on_nodes(this->forces().contacts, static_cast<std::size_t>(bodies().outline_nodes()));
+  Points sum = forces_on_nodes(this->forces().contacts, static_cast<std::size_t>(bodies().outline_nodes()));
+  add_forces(this->forces().bonds, sum);
+  return sum;
 }
 
 double View::kinetic_energy(const Body& body) const {

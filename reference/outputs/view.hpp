@@ -27,7 +27,7 @@ class View {
   /// Elastic stresses at the points of a compliant body, and the points' weights.
   std::vector<PointStress> stresses_of(const Body& body) const;
   const Vector& weights_of(const Body& body) const;
-  Points contact_forces() const;  ///< [outline nodes], N/m
+  Points contact_forces() const;  ///< [outline nodes], with those of bonds, N/m
   double kinetic_energy(const Body& body) const;
 
  private:

@@ -18,7 +18,7 @@ import view
 from pliant.frames import Frames
 from synthetic_run import DIAMETER, write_run
 from viewing.fields import LOOKS, Spread
-from viewing.page import thinned
+from viewing.page import BEYOND, thinned
 
 
 @pytest.fixture(scope="module")
@@ -127,6 +127,10 @@ def test_the_table_of_fields_is_that_of_the_engine() -> None:
     rows = re.findall(r"^\| `(\w+)` \| (\S+) \| (bodies|outlines) \| (points|cells)", text, re.MULTILINE)
     assert {name: (unit, grid, at) for name, unit, grid, at in rows} == {
         name: (look.unit, look.grid, "cells" if look.at == "cells" else "points") for name, look in LOOKS.items()}
+
+
+def test_colours_of_all_fields_have_ends() -> None:
+    assert {look.colours for look in LOOKS.values()} <= BEYOND.keys(), "EXACT"
 
 
 @pytest.mark.parametrize("low, high, sides", [(0, 1, (0, 1)), (-1, 1, (-1, 1)), (-1, 0, (-1, 0)), (-0.01, 1, (0, 1))])
