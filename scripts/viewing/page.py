@@ -27,7 +27,7 @@ BODIES = "#dddddd"  # where colours are along outlines: the middle of coolwarm, 
 # Below and above a scale: colours that it has not.
 BEYOND = {"inferno": ("#57d400", "#00d5ff"), "cividis": ("#57d400", "#ff2d95"), "viridis": ("#ff8c00", "#ff2d95"),
           "YlOrRd": ("#57d400", "#0a84ff"), "turbo": ("#ffffff", "#ffffff"), "RdBu_r": ("#57d400", "#ffb000"),
-          "coolwarm": ("#57d400", "#ffb000")}
+          "coolwarm": ("#57d400", "#ffb000"), "prism": ("#c9c9c9", "#c9c9c9")}
 # A column of more rows keeps, of each of so many stretches, the least and the largest, and those nearest to the frames.
 ROWS, STRETCHES = 4000, 1500
 
