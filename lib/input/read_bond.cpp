@@ -1,32 +1,9 @@
 #include <tuple>
 
+#include "input/read_fatigue.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
-namespace {
-
-/// With a given stiffness, the energy that a bond stores at its strength is known.
-void check_fracture_energy(const TableReader& table, const char* key, double energy, double strength,
-                           double stiffness) {
-  if (const double stored = strength * strength / (2 * stiffness); energy <= stored)
-    table.fail(key, fmt::format("{} J/m2; allowed: more than strength^2 / (2 stiffness) = {} J/m2, the energy that the "
-                                "bond stores at its strength",
-                                energy, stored));
-}
-
-/// The threshold holds in shear too, in the ratio of the strengths.
-void read_fatigue(TableReader& table, BondRule& rule) {
-  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate);
-  rule.shear_fatigue_rate = rule.fatigue_rate;
-  const bool grows_in_shear = table.optional("shear_fatigue_rate", rule.shear_fatigue_rate);
-  const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
-  if (grows || grows_in_shear)
-    table.required("fatigue_threshold", rule.fatigue_threshold, below_strength);
-  else
-    table.optional("fatigue_threshold", rule.fatigue_threshold, below_strength);
-}
-
-}  // namespace
 
 BondRule read_bond(TableReader table, const Scene& scene) {
   BondRule rule;
@@ -43,8 +20,6 @@ BondRule read_bond(TableReader table, const Scene& scene) {
   table.optional("shear_stiffness", rule.shear_stiffness);
   read_fatigue(table, rule);
   if (table.optional("weibull_modulus", rule.weibull_modulus)) table.required("seed", rule.seed);
-  if (rule.stiffness)
-    check_fracture_energy(table, "fracture_energy", rule.fracture_energy, rule.strength, *rule.stiffness);
   table.finish();
   return rule;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "input/read_fatigue.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
@@ -71,14 +72,7 @@ void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
   table.optional("friction", rule.friction);
   const Range up_to_strength{.low = 0, .high = rule.strength};
   table.optional("residual_strength", rule.residual_strength, up_to_strength);
-  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate);
-  rule.shear_fatigue_rate = rule.fatigue_rate;
-  const bool grows_in_shear = table.optional("shear_fatigue_rate", rule.shear_fatigue_rate);
-  const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
-  if (grows || grows_in_shear)
-    table.required("fatigue_threshold", rule.fatigue_threshold, below_strength);
-  else
-    table.optional("fatigue_threshold", rule.fatigue_threshold, below_strength);
+  read_fatigue(table, rule);
 }
 
 }  // namespace

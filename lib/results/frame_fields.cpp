@@ -1,6 +1,5 @@
 #include "results/frame_fields.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -51,9 +50,7 @@ void contact_count(FramedBody& frame, std::vector<float>& values) {
 }
 
 void number_of_fragment(FramedBody& frame, std::vector<float>& values) {
-  int number = -1;
-  for (const Fragment& fragment : frame.snapshot.fragments())
-    if (std::ranges::binary_search(fragment.bodies, frame.index)) number = fragment.bodies[0];
+  const int number = frame.snapshot.fragment_numbers()[frame.index];
   values.insert(values.end(), frame.mesh.triangles.size(), static_cast<float>(number));
 }
 

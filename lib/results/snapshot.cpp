@@ -30,6 +30,11 @@ const std::vector<Fragment>& Snapshot::fragments() const {
   return *fragments_;
 }
 
+const std::vector<int>& Snapshot::fragment_numbers() const {
+  if (!fragment_numbers_) fragment_numbers_ = pliant::fragment_numbers(model(), fragments());
+  return *fragment_numbers_;
+}
+
 const Dofs& Snapshot::velocities() const {
   if (!model().corrected_mass) return state().reduced_momentum;
   if (!velocities_) velocities_ = material_velocity(model(), state().reduced_momentum);

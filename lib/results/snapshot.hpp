@@ -26,9 +26,10 @@ class Snapshot {
   const std::vector<TouchingPair>& contacts() const;
   const std::vector<int>& contact_counts() const;  ///< [bodies] others that each touches; images count apiece
   const std::vector<Fragment>& fragments() const;
-  const Dofs& velocities() const;       ///< see bodies/mass_correction.hpp
-  const Dofs& accelerations() const;    ///< total force over mass; imposed ones by their histories
-  const Dofs& internal_forces() const;  ///< on compliant degrees of freedom, N/m
+  const std::vector<int>& fragment_numbers() const;  ///< [bodies] -1 for walls
+  const Dofs& velocities() const;                    ///< see bodies/mass_correction.hpp
+  const Dofs& accelerations() const;                 ///< total force over mass; imposed ones by their histories
+  const Dofs& internal_forces() const;               ///< on compliant degrees of freedom, N/m
   const EnergyBalance& energy_balance() const;
   double balance_error() const { return simulation_.balance_error(energy_balance().energy); }
 
@@ -37,6 +38,7 @@ class Snapshot {
   mutable std::optional<std::vector<TouchingPair>> contacts_;
   mutable std::optional<std::vector<int>> contact_counts_;
   mutable std::optional<std::vector<Fragment>> fragments_;
+  mutable std::optional<std::vector<int>> fragment_numbers_;
   mutable std::optional<Dofs> velocities_, accelerations_, internal_forces_;
   mutable std::optional<EnergyBalance> audit_;
 };

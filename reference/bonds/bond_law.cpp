@@ -5,9 +5,6 @@
 namespace pliant::reference {
 namespace {
 
-/// Of the cohesion. The bond keeps it where contact bears more than both together should.
-constexpr double least_shear_strength = 1e-3;
-
 BondJet positive(const BondJet& x) { return x.value > 0 ? x : BondJet(); }
 BondJet magnitude(const BondJet& x) { return x.value < 0 ? -x : x; }
 
@@ -35,8 +32,7 @@ BondJet BondLaw::shear_strength(const BondJet& slip, const BondJet& gap) const {
   const BondJet pressure = contact_kn * positive(-gap);
   if (pressure.value == 0) return cohesion;
   const BondJet by_contact = std::min(contact_friction * pressure, contact_kt * magnitude(slip));
-  const BondJet strength_left = cohesion + friction * pressure - by_contact;
-  return std::max(strength_left, BondJet(least_shear_strength * cohesion));
+  return cohesion + friction * pressure - by_contact;
 }
 
 }  // namespace pliant::reference

@@ -83,6 +83,9 @@ struct Bonds::Implementation {
     law.energy_1 = rule.fracture_energy;
     law.energy_2 = rule.shear_fracture_energy.value_or(rule.fracture_energy);
     law.bears_pressure = rule.gap > 0;
+    if (law.friction < law.contact_friction)
+      throw InputError(fmt::format("'friction' in [[bonds]] is {}; allowed: at least that of the contacts, {}",
+                                   law.friction, law.contact_friction));
     check_energy("fracture_energy", law.energy_1, law.strength, law.kn);
     check_energy("shear_fracture_energy", law.energy_2, law.cohesion, law.kt);
     return law;

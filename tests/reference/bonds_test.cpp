@@ -303,6 +303,7 @@ TEST(ReferenceBonds, cells_touch_without_force) {
     add_grain(scene, "disc", BodyKind::compliant, {0.3, 0.2});
     scene.grains[0].cells.assign(6, 1.0), scene.grains[0].seed = seed;
     scene.bonds = {bond_rule()};
+    scene.bonds[0].friction = 0.3;
     System system(scene);
     Motion motion = stirred(system, 0, 0);
     const Forces forces = system.evaluate(motion, true);
