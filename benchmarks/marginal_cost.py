@@ -121,7 +121,7 @@ FEATURES = [
     Feature("plain scene", lambda scene: scene),
     Feature("friction", law('law = "mohr-coulomb"\nfriction = 0.3')),
     Feature("cohesion", law('law = "cohesive"\nstrength = "200 MPa"')),
-    Feature("cohesive fatigue", law('law = "cohesive-fatigue"\nstrength = "200 MPa"\nbond_gap = "2 nm"\nfatigue_rate = "1 GPa-1"\nfatigue_threshold = "50 MPa"')),
+    Feature("bonds", appended('\n[[bonds]]\nbetween = "all"\ngap = "2 nm"\nstrength = "200 MPa"\nfracture_energy = "1 J/m2"\n')),
     Feature("restitution of rigid pairs", law('law = "frictionless"\nrestitution = 0.9')),
     Feature("smooth start of pressure", law('law = "frictionless"\nsmoothing = 0.02')),
     Feature("rules for three pairs", appended(PAIR_RULES)),

@@ -1,17 +1,24 @@
 // Kernels of contact in the third body: forces of three laws, everything from degrees of freedom to degrees of freedom,
 // and candidates.
+#include <algorithm>
+
 #include "benchmarks/kernels/meter.hpp"
 #include "benchmarks/kernels/plain_scene.hpp"
 #include "benchmarks/kernels/scenes.hpp"
 #include "benchmarks/kernels/work.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
+#include "bonds/bond_system.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant::kernels {
 namespace {
 
 using enum ContactLawKind;
+
+double least_spacing(const Model& model) {
+  return std::ranges::min(model.outlines, {}, &OutlineShape::spacing).spacing;
+}
 
 void count_contacts(benchmark::State& state, const ContactSystem& contact, int contacts) {
   state.counters["contacts"] = contacts;
@@ -45,6 +52,30 @@ BENCHMARK_CAPTURE(integrated_forces, mohr_coulomb, mohr_coulomb)
 BENCHMARK_CAPTURE(integrated_forces, cohesive, cohesive)
     ->Name("contact/cohesive_integrated")
     ->Apply(one_and_two_threads);
+
+/// Whole bonds, softening ones and torn ones alike, as all lanes compute all of the law. Cement joins all that is near in
+/// the third body.
+void bond_forces(benchmark::State& state) {
+  const ContactScene& scene = third_body_with(mohr_coulomb);
+  static const Model model = [&] {
+    Model cemented = scene.model;
+    BondRule rule;
+    rule.first = rule.second = "all";
+    rule.gap = 0.2 * least_spacing(scene.model);
+    rule.strength = 1e8, rule.fracture_energy = 1;
+    cemented.scene.bonds = {rule};
+    return cemented;
+  }();
+  const Threads threads(state);
+  const LawTable laws(model);
+  BondSystem bonds(model, laws);
+  BondHistory history, trial;
+  bonds.make(scene.at_first.position, 0, history);
+  OutlineField force = scene.force;
+  for (auto _ : state) bonds.add_forces(scene.outlines.position, history, trial, force);
+  report(state, "bond", static_cast<double>(bonds.bonds().size()), work::bond_forces(bonds));
+}
+BENCHMARK(bond_forces)->Name("bonds/whole")->Apply(one_and_two_threads);
 
 void plain_contact_forces(benchmark::State& state, ContactLawKind law) {
   const ContactScene& scene = third_body_with(law);

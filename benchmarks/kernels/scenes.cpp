@@ -210,8 +210,6 @@ const char* name_of(ContactLawKind law) {
       return "mohr-coulomb";
     case ContactLawKind::cohesive:
       return "cohesive";
-    case ContactLawKind::cohesive_fatigue:
-      return "cohesive-fatigue";
   }
   return "";
 }

@@ -131,5 +131,13 @@ Work contact_forces(const Model& model, const ContactSystem& contact) {
   return work;
 }
 
+/// A bond: 22 flops for its frame and the couple on it, and 73 at either end for the gap, the law and the traction. Its
+/// nodes, constants and history are read, the history and eight numbers of forces are written, and these are gathered.
+Work bond_forces(const BondSystem& bonds) {
+  constexpr double constants = 14 + 7, nodes = 6, history = 6, forces = 8;
+  return static_cast<double>(bonds.bonds().size()) *
+         Work{22 + 2 * 73, number * (constants + nodes + 2 * history + 2 * forces) + nodes * vector};
+}
+
 }  // namespace work
 }  // namespace pliant::kernels

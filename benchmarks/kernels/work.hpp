@@ -2,6 +2,7 @@
 
 #include "benchmarks/kernels/meter.hpp"
 #include "bodies/model.hpp"
+#include "bonds/bond_system.hpp"
 #include "contact/contact.hpp"
 
 namespace pliant::kernels {
@@ -19,6 +20,7 @@ Work place_outlines(const Model& model);
 Work gather_outline_forces(const Model& model);
 Work update(const Model& model);
 Work contact_forces(const Model& model, const ContactSystem& contact);
+Work bond_forces(const BondSystem& bonds);
 }  // namespace work
 
 }  // namespace pliant::kernels

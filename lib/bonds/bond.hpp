@@ -12,20 +12,20 @@ namespace pliant {
 /// Segment of one outline whose two ends are bonded to points of another outline (docs/method.md 11). Common edges of
 /// two cells have common nodes: there the points are nodes.
 struct Bond {
-  std::int32_t carrier = 0, partner = 0;          ///< bodies
-  std::int32_t segment = 0;                       ///< of the carrier
-  std::array<std::int32_t, 2> partner_segment{};  ///< of the partner, with the point of either end
+  std::int32_t slave = 0, master = 0;             ///< bodies
+  std::int32_t segment = 0;                       ///< of the slave
+  std::array<std::int32_t, 2> master_segment{};   ///< of the master, with the point of either end
   std::array<double, 2> xi{};                     ///< where on it, [0, 1)
-  Images images;                                  ///< of the partner as seen from the carrier
+  Images images;                                  ///< of the master as seen from the slave
   std::int32_t rule = 0;                          ///< index in Scene::bonds
-  double length = 0;                              ///< of the carrier's segment in the reference configuration, m
+  double length = 0;                              ///< of the slave's segment in the reference configuration, m
   std::array<double, 2> rest_gap{}, rest_slip{};  ///< of either end where the bond was made, m
   double strength_factor = 1;                     ///< from Weibull's distribution
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("carrier", carrier), visitor("partner", partner), visitor("segment", segment);
-    visitor("partner_segment", partner_segment), visitor("xi", xi), visitor("images", images), visitor("rule", rule);
+    visitor("slave", slave), visitor("master", master), visitor("segment", segment);
+    visitor("master_segment", master_segment), visitor("xi", xi), visitor("images", images), visitor("rule", rule);
     visitor("length", length), visitor("rest_gap", rest_gap), visitor("rest_slip", rest_slip);
     visitor("strength_factor", strength_factor);
   }

@@ -21,7 +21,7 @@ struct BondLaw {
   N contact_stiffness, contact_shear, contact_friction;  ///< of the contact law beside it
 
   struct Response {
-    N pull, shear;  ///< on the partner towards the carrier and against the slip, Pa
+    N pull, shear;  ///< on the master towards the slave and against the slip, Pa
     N energy;       ///< stored, J/m2
     N loss;         ///< by damage since the last accepted step, J/m2
   };

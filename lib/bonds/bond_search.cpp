@@ -15,7 +15,7 @@ namespace {
 constexpr double same_place = 1e-6;
 /// Deepest overlap of surfaces that are bonded, over the same spacing: where contact warns of its depth.
 constexpr double deepest = 0.5;
-/// Least distance of the partners of a segment's ends, over its length. Nearer ones are no surface along the segment.
+/// Least distance of the masters of a segment's ends, over its length. Nearer ones are no surface along the segment.
 constexpr double least_share = 0.5;
 
 bool is_named(const Model& model, int body, const std::string& name) {
@@ -29,9 +29,9 @@ bool applies(const Model& model, const BondRule& rule, int a, int b) {
          (is_named(model, b, rule.first) && is_named(model, a, rule.second));
 }
 
-/// The carrier and its partner, with the partner's images.
+/// The slave and its master, with the master's images.
 struct Sides {
-  int carrier, partner;
+  int slave, master;
   Images images;
 };
 
@@ -41,7 +41,7 @@ Sides sides_of(const Model& model, const BodyPair& pair) {
   return swapped ? Sides{pair.second, pair.first, -pair.images} : Sides{pair.first, pair.second, pair.images};
 }
 
-/// Point of the partner's outline that is nearest to a node.
+/// Point of the master's outline that is nearest to a node.
 struct NearestPoint {
   double distance = std::numeric_limits<double>::infinity();
   int segment = 0;
@@ -49,12 +49,12 @@ struct NearestPoint {
   Images images;
 };
 
-class Partner {
+class Master {
  public:
-  Partner(const Model& model, const OutlineField& position, const Sides& sides)
-      : shape_(model.outline_of(sides.partner)),
+  Master(const Model& model, const OutlineField& position, const Sides& sides)
+      : shape_(model.outline_of(sides.master)),
         position_(position),
-        first_(model.outline_offset[sides.partner]),
+        first_(model.outline_offset[sides.master]),
         images_(sides.images) {}
 
   /// The first of equally near ones counts.
@@ -99,28 +99,28 @@ Vec2 place_of(const Model& model, const OutlineField& position, int body, int se
 }
 
 std::optional<Bond> bond_of(const Model& model, const OutlineField& position, const Sides& sides, int segment,
-                            const NearestPoint (&partners)[2], double gap) {
-  const OutlineShape& shape = model.outline_of(sides.carrier);
+                            const NearestPoint (&masters)[2], double gap) {
+  const OutlineShape& shape = model.outline_of(sides.slave);
   const double near = std::max(gap, same_place * shape.spacing), far = std::max(near, deepest * shape.spacing);
-  if (partners[0].distance > far || partners[1].distance > far) return {};
+  if (masters[0].distance > far || masters[1].distance > far) return {};
   Bond bond;
-  bond.carrier = sides.carrier, bond.partner = sides.partner, bond.images = partners[0].images;
+  bond.slave = sides.slave, bond.master = sides.master, bond.images = masters[0].images;
   bond.segment = segment;
-  for (int end = 0; end < 2; ++end) bond.partner_segment[end] = partners[end].segment, bond.xi[end] = partners[end].xi;
-  // The ends of a segment at the border of a wall's period may have partners in two turns of the wall. The nodes behind
-  // the last one are copies of those of the next turn, so the later partner is counted on from the earlier turn.
-  if (partners[0].images != partners[1].images) {
-    const OutlineShape& wall = model.outline_of(sides.partner);
-    const int on = (partners[1].images.x - partners[0].images.x) * (wall.turn_shift < 0 ? -1 : 1);
+  for (int end = 0; end < 2; ++end) bond.master_segment[end] = masters[end].segment, bond.xi[end] = masters[end].xi;
+  // The ends of a segment at the border of a wall's period may have masters in two turns of the wall. The nodes behind
+  // the last one are copies of those of the next turn, so the later master is counted on from the earlier turn.
+  if (masters[0].images != masters[1].images) {
+    const OutlineShape& wall = model.outline_of(sides.master);
+    const int on = (masters[1].images.x - masters[0].images.x) * (wall.turn_shift < 0 ? -1 : 1);
     if (wall.turn_shift == 0 || std::abs(on) != 1) return {};
     const int later = on > 0 ? 1 : 0;
-    bond.images = partners[1 - later].images;
-    bond.partner_segment[later] += wall.count;
-    if (bond.partner_segment[later] + 1 >= wall.count + lane_count) return {};
+    bond.images = masters[1 - later].images;
+    bond.master_segment[later] += wall.count;
+    if (bond.master_segment[later] + 1 >= wall.count + lane_count) return {};
   }
   bond.length = shape.segment_length[segment];
   const BondGeometry at = geometry_of(model, position, bond);
-  const int first = model.outline_offset[sides.carrier] + segment;
+  const int first = model.outline_offset[sides.slave] + segment;
   const Vec2 edge = position.at(first + 1) - position.at(first);
   if ((edge + at.apart[1] - at.apart[0]).dot(edge) < least_share * edge.squaredNorm()) return {};
   for (int end = 0; end < 2; ++end) {
@@ -131,11 +131,11 @@ std::optional<Bond> bond_of(const Model& model, const OutlineField& position, co
 }
 
 std::vector<Bond> bonds_of_pair(const Model& model, const OutlineField& position, const Sides& sides, double gap) {
-  const OutlineShape& shape = model.outline_of(sides.carrier);
-  const Partner partner(model, position, sides);
+  const OutlineShape& shape = model.outline_of(sides.slave);
+  const Master master(model, position, sides);
   std::vector<NearestPoint> nearest;
   for (int i = 0; i < shape.count; ++i)
-    nearest.push_back(partner.nearest(position.at(model.outline_offset[sides.carrier] + i)));
+    nearest.push_back(master.nearest(position.at(model.outline_offset[sides.slave] + i)));
   std::vector<Bond> found;
   for (int i = 0; i < shape.count; ++i) {
     const NearestPoint ends[2] = {nearest[i], nearest[(i + 1) % shape.count]};
@@ -147,12 +147,11 @@ std::vector<Bond> bonds_of_pair(const Model& model, const OutlineField& position
 }  // namespace
 
 BondGeometry geometry_of(const Model& model, const OutlineField& position, const Bond& bond) {
-  const int first = model.outline_offset[bond.carrier] + bond.segment;
+  const int first = model.outline_offset[bond.slave] + bond.segment;
   BondGeometry geometry;
   for (int end = 0; end < 2; ++end)
-    geometry.apart[end] =
-        place_of(model, position, bond.partner, bond.partner_segment[end], bond.xi[end], bond.images) -
-        position.at(first + end);
+    geometry.apart[end] = place_of(model, position, bond.master, bond.master_segment[end], bond.xi[end], bond.images) -
+                          position.at(first + end);
   const Vec2 middle = position.at(first + 1) - position.at(first) + 0.5 * (geometry.apart[1] - geometry.apart[0]);
   geometry.length = middle.norm();
   geometry.tangent = middle / geometry.length;

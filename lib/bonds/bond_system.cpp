@@ -19,7 +19,7 @@
 namespace pliant {
 namespace {
 
-/// Numbers of one bond in the force buffer: x and y of the forces on the ends of its segment and on the partners.
+/// Numbers of one bond in the force buffer: x and y of the forces on the ends of its segment and on the masters.
 constexpr std::size_t forces_per_bond = 8;
 constexpr std::uint64_t random_purpose = 7;  ///< of the strengths, see random_stream
 
@@ -45,7 +45,7 @@ double shear_stiffness_of(const ContactLaw& law) {
       law);
 }
 
-std::pair<int, int> key_of(const Bond& bond) { return std::minmax(bond.carrier, bond.partner); }
+std::pair<int, int> key_of(const Bond& bond) { return std::minmax(bond.slave, bond.master); }
 
 /// Strength factors of pairs of bodies, of mean 1, in the order of the pairs.
 void spread_strengths(double modulus, std::uint64_t seed, std::vector<Bond>& bonds) {
@@ -88,7 +88,7 @@ BondSystem::BondSystem(const Model& model, const LawTable& laws)
 
 BondLaw<double> BondSystem::law_of(const Bond& bond) const {
   const BondRule& rule = model_.scene.bonds[bond.rule];
-  const ContactLaw contact = laws_.between(bond.carrier, bond.partner);
+  const ContactLaw contact = laws_.between(bond.slave, bond.master);
   const double w = bond.strength_factor;
   BondLaw<double> law{};
   law.contact_stiffness = normal_stiffness_of(contact);
@@ -136,8 +136,8 @@ bool BondSystem::make(const OutlineField& position, double time, BondHistory& hi
     made_[r] = 1;
     std::vector<Bond> found = find_bonds(model_, position, static_cast<int>(r));
     std::set<std::tuple<int, int, int>> bonded;
-    for (const Bond& bond : bonds_) bonded.insert({bond.carrier, bond.partner, bond.segment});
-    std::erase_if(found, [&](const Bond& bond) { return bonded.contains({bond.carrier, bond.partner, bond.segment}); });
+    for (const Bond& bond : bonds_) bonded.insert({bond.slave, bond.master, bond.segment});
+    std::erase_if(found, [&](const Bond& bond) { return bonded.contains({bond.slave, bond.master, bond.segment}); });
     if (found.empty() && rule.from == 0)
       throw InputError(fmt::format(
           "{}: [[bonds]] between '{}' and '{}' find nothing to bond: no segment of an outline has both ends within {} "
@@ -162,7 +162,7 @@ bool BondSystem::make(const OutlineField& position, double time, BondHistory& hi
 void BondSystem::inherit(const InheritedBonds& from, BondHistory& history) {
   if (from.made.size() > made_.size()) throw ArchiveError("bonds have other rules");
   for (const Bond& bond : from.bonds)
-    if (std::max(bond.carrier, bond.partner) >= static_cast<int>(model_.bodies.size()) ||
+    if (std::max(bond.slave, bond.master) >= static_cast<int>(model_.bodies.size()) ||
         bond.rule >= static_cast<int>(made_.size()))
       throw ArchiveError("bonds have other bodies");
   std::copy(from.made.begin(), from.made.end(), made_.begin());
@@ -191,9 +191,9 @@ void BondSystem::index() {
           {base, static_cast<std::int32_t>(first + 2 * vector * lane_count), share, share * stiffness, other});
     };
     for (int end = 0; end < 2; ++end) {
-      add(bond.carrier, bond.segment + end, end, 1, bond.partner);
-      add(bond.partner, bond.partner_segment[end], 2 + end, 1 - bond.xi[end], bond.carrier);
-      if (bond.xi[end] > 0) add(bond.partner, bond.partner_segment[end] + 1, 2 + end, bond.xi[end], bond.carrier);
+      add(bond.slave, bond.segment + end, end, 1, bond.master);
+      add(bond.master, bond.master_segment[end], 2 + end, 1 - bond.xi[end], bond.slave);
+      if (bond.xi[end] > 0) add(bond.master, bond.master_segment[end] + 1, 2 + end, bond.xi[end], bond.slave);
     }
   }
   receipts_.clear(), receipt_begin_.assign(1, 0);
@@ -209,10 +209,10 @@ void BondSystem::add_to_eight(std::size_t number) {
   Eight& eight = eights_[number / lane_count];
   const int lane = static_cast<int>(number % lane_count);
   for (int end = 0; end < 2; ++end) {
-    const int partner = model_.outline_offset[bond.partner] + bond.partner_segment[end];
-    eight.nodes.end[end][lane] = model_.outline_offset[bond.carrier] + bond.segment + end;
-    eight.nodes.partner[end][lane] = partner;
-    eight.nodes.next[end][lane] = partner + 1;
+    const int master = model_.outline_offset[bond.master] + bond.master_segment[end];
+    eight.nodes.end[end][lane] = model_.outline_offset[bond.slave] + bond.segment + end;
+    eight.nodes.master[end][lane] = master;
+    eight.nodes.next[end][lane] = master + 1;
     eight.xi[end][lane] = bond.xi[end];
     eight.rest_gap[end][lane] = bond.rest_gap[end];
     eight.rest_slip[end][lane] = bond.rest_slip[end];
@@ -232,7 +232,7 @@ BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& p
   PointLanes at[2], apart[2];
   for (int end = 0; end < 2; ++end) {
     at[end] = gather(position, eight.nodes.end[end]);
-    const PointLanes first = gather(position, eight.nodes.partner[end]), next = gather(position, eight.nodes.next[end]);
+    const PointLanes first = gather(position, eight.nodes.master[end]), next = gather(position, eight.nodes.next[end]);
     apart[end] = first + eight.xi[end] * (next - first) + shift - at[end];
   }
   const PointLanes middle = at[1] - at[0] + broadcast(0.5) * (apart[1] - apart[0]);
@@ -252,7 +252,7 @@ BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& p
     turning += eight.weight * (response.pull * along - response.shear * gap);
     stored += eight.weight * response.energy, loss += eight.weight * response.loss;
   }
-  // The frame turns with the middle line: half of it with the carrier's segment, half with the partners.
+  // The frame turns with the middle line: half of it with the slave's segment, half with the masters.
   const PointLanes couple = (0.5 * inverse_length * turning) * normal;
   for (int side = 0; side < 2; ++side) {
     Lanes* of_side = force + 4 * side;

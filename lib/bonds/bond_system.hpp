@@ -59,14 +59,14 @@ class BondSystem {
   void loaded() { index(); }
 
  private:
-  /// Nodes of eight bonds in a field: the ends of the carrier's segment, and the two nodes around either partner point.
+  /// Nodes of eight bonds in a field: the ends of the slave's segment, and the two nodes around either master point.
   struct Nodes {
-    LaneBits end[2], partner[2], next[2];
+    LaneBits end[2], master[2], next[2];
   };
   struct Eight {
     Nodes nodes;
     Lanes xi[2], rest_gap[2], rest_slip[2];
-    Lanes shift[2];  ///< numbers of the partner's images along the two periods
+    Lanes shift[2];  ///< numbers of the master's images along the two periods
     Lanes weight;    ///< half of the length, m; 0 in padding
     BondLaw<Lanes> law;
   };

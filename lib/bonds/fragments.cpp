@@ -24,9 +24,9 @@ std::vector<std::vector<Neighbour>> links(const Model& model, const BondSystem& 
   std::vector<std::vector<Neighbour>> of_body(model.bodies.size());
   for (std::size_t i = 0; i < bonds.bonds().size(); ++i) {
     const Bond& bond = bonds.bonds()[i];
-    if (!holds(history, i) || model.bodies[bond.partner].wall) continue;
-    of_body[bond.carrier].push_back({bond.partner, bond.images});
-    of_body[bond.partner].push_back({bond.carrier, -bond.images});
+    if (!holds(history, i) || model.bodies[bond.master].wall) continue;
+    of_body[bond.slave].push_back({bond.master, bond.images});
+    of_body[bond.master].push_back({bond.slave, -bond.images});
   }
   return of_body;
 }
@@ -118,8 +118,8 @@ std::vector<double> damage_at_nodes(const Model& model, const BondSystem& bonds,
   for (std::size_t i = 0; i < bonds.bonds().size(); ++i) {
     const Bond& bond = bonds.bonds()[i];
     for (int end = 0; end < 2; ++end) {
-      add(bond.carrier, bond.segment + end, history.damage(i, end));
-      add(bond.partner, bond.partner_segment[end] + (bond.xi[end] > 0.5 ? 1 : 0), history.damage(i, end));
+      add(bond.slave, bond.segment + end, history.damage(i, end));
+      add(bond.master, bond.master_segment[end] + (bond.xi[end] > 0.5 ? 1 : 0), history.damage(i, end));
     }
   }
   for (std::size_t i = 0; i < sum.size(); ++i)

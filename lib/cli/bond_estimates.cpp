@@ -12,16 +12,11 @@ namespace {
 /// Segments that a process zone needs (Turon et al. 2007, Eng. Fract. Mech. 74, 1665: three to ten in the literature).
 constexpr double least_segments = 3;
 
-/// Plane strain modulus E/(1 - nu^2) of the softer compliant side, Pa; infinite between rigid bodies.
-double modulus_of(const Model& model, const Bond& bond) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const int b : {bond.carrier, bond.partner}) {
-    const Body& body = model.bodies[b];
-    const Material& material = model.scene.materials[body.material];
-    if (body.kind == BodyKind::compliant)
-      least = std::min(least, material.young / (1 - material.poisson * material.poisson));
-  }
-  return least;
+/// Plane strain modulus E/(1 - nu^2), Pa; infinite for rigid bodies.
+double modulus_of(const Model& model, int body) {
+  const Material& material = model.scene.materials[model.bodies[body].material];
+  return model.bodies[body].kind == BodyKind::compliant ? material.young / (1 - material.poisson * material.poisson)
+                                                        : std::numeric_limits<double>::infinity();
 }
 
 struct BondEstimate {
@@ -38,11 +33,13 @@ std::vector<std::string> describe_bonds(const Model& model, const BondSystem& bo
   for (const Bond& bond : bonds.bonds()) {
     BondEstimate& estimate = rules[bond.rule];
     ++estimate.count;
-    const double modulus = modulus_of(model, bond);
+    const double modulus = std::min(modulus_of(model, bond.slave), modulus_of(model, bond.master));
     if (std::isinf(modulus)) continue;
     const BondLaw<double> law = bonds.law_of(bond);
-    const double size = std::sqrt(std::min(model.bodies[bond.carrier].area, model.bodies[bond.partner].area));
-    estimate.compliance = std::max(estimate.compliance, modulus / (law.normal_stiffness * size));
+    for (const int body : {bond.slave, bond.master})
+      if (model.bodies[body].kind == BodyKind::compliant)
+        estimate.compliance = std::max(
+            estimate.compliance, modulus_of(model, body) / (law.normal_stiffness * std::sqrt(model.bodies[body].area)));
     const double zone = modulus * law.energy_1 / (law.strength * law.strength);
     estimate.zone = std::min(estimate.zone, zone);
     estimate.segments = std::min(estimate.segments, zone / bond.length);

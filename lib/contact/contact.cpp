@@ -53,9 +53,8 @@ ContactSystem::ContactSystem(const Model& model)
       table_(model),
       largest_correction_(largest_correction(model.scene.time.safety)) {}
 
-/// Bonds belong to nodes, so laws with internal variables are collocated.
-bool ContactSystem::integrates(int first, int second, const ContactLaw& law) const {
-  if (!may_integrate_ || !internal_variables_of(law).empty()) return false;
+bool ContactSystem::integrates(int first, int second) const {
+  if (!may_integrate_) return false;
   return model_.scene.contact.quadrature == ContactQuadrature::segments || has_corners(first) || has_corners(second);
 }
 
@@ -90,8 +89,6 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   const bool start = !fresh_;  // an empty history may also mean that bodies were far apart
   rebuild_list(outlines, outlines.position, history, clock);
   if (start && !starts_from_a_state()) refuse_self_overlap();
-  const auto begin = [&](const ContactPair& p) { return keeps_law(p) ? void() : start_records(view(p), history); };
-  if (start) parallel_for(table_.count(), [&](int p) { begin(contact_pairs()[p]); });
   fresh_ = true;
 }
 
@@ -153,7 +150,7 @@ std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
     ContactPair& contact_pair = found[i];
     contact_pair.first = pair.first, contact_pair.second = pair.second, contact_pair.images = pair.images;
     contact_pair.law = laws_.between(pair.first, pair.second, refreshed_.time);
-    contact_pair.integrated = integrates(pair.first, pair.second, contact_pair.law);
+    contact_pair.integrated = integrates(pair.first, pair.second);
     contact_pair.found = refreshes_;
     const double gap = find_arcs(model_, found_at_.position, contact_pair, reach_of(contact_pair.law) + skin_, skin_,
                                  thread_scratch(), verlet_list_.margin());
@@ -175,7 +172,7 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   const std::vector<ContactPair> old = contact_pairs();
   const StepForces before = std::move(history.last);
-  table_.lay_out(std::move(all), laws_.internal_variables(), history);
+  table_.lay_out(std::move(all), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
@@ -296,7 +293,7 @@ void ContactSystem::add_self_pairs(std::vector<ContactPair>& all) {
     ContactPair of_body;
     of_body.first = of_body.second = b;
     of_body.law = laws_.between(b, b, refreshed_.time);
-    of_body.integrated = integrates(b, b, of_body.law);
+    of_body.integrated = integrates(b, b);
     of_body.found = refreshes_;
     find_self_pairs(model_, found_at_.position, of_body, reach_of(of_body.law) + skin_, skin_, all, thread_scratch());
   }
@@ -317,26 +314,6 @@ std::vector<double> ContactSystem::damping_ratios() const {
     ratio[b] = laws_.largest_damping_ratio(static_cast<int>(b)) * std::sqrt(std::max(1, contacts[b]) * (1 + lever));
   }
   return ratio;
-}
-
-std::vector<double> ContactSystem::least_internal_variable(const ContactHistory& history, std::string_view name,
-                                                           double none) const {
-  std::vector<double> least(static_cast<std::size_t>(model_.outline_offset.back()), none);
-  for (const ContactPair& contact_pair : contact_pairs()) {
-    const std::span<const InternalVariable> all = internal_variables_of(contact_pair.law);
-    const auto found = std::find_if(all.begin(), all.end(), [&](const InternalVariable& r) { return r.name == name; });
-    if (found == all.end()) continue;
-    const int column = ContactHistory::first_of_law + static_cast<int>(found - all.begin());
-    for (int side = 0; side < 2; ++side) {
-      const int body = side == 0 ? contact_pair.first : contact_pair.second, n = model_.outline_of(body).count;
-      for (int i = 0; i < contact_pair.nodes[side].count; ++i) {
-        const int node = contact_pair.nodes[side].begin + i;
-        double& value = least[model_.outline_offset[body] + node - turn_of(node, n) * n];
-        value = std::min(value, history.number(contact_pair.record[side] + i, column));
-      }
-    }
-  }
-  return least;
 }
 
 }  // namespace pliant

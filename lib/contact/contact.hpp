@@ -68,10 +68,6 @@ class ContactSystem {
   /// stiffness; 0: no dashpot.
   std::vector<double> damping_ratios() const;
 
-  /// [outline nodes] least value of the internal variable with this name over each node's contacts; `none` where no law
-  /// has it.
-  std::vector<double> least_internal_variable(const ContactHistory& history, std::string_view name, double none) const;
-
   /// [contact pairs] sums of the last evaluation, which wrote the history `of`.
   const std::vector<PairTotals>& totals(const ContactHistory& of) const {
     return corrects_energy() ? of.last.totals : unkept_.totals;
@@ -117,7 +113,7 @@ class ContactSystem {
   std::vector<ContactPair> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
   void make_room(StepForces& evaluated) const;
-  bool integrates(int first, int second, const ContactLaw& law) const;
+  bool integrates(int first, int second) const;
   const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
   bool corrects_energy() const { return largest_correction_ > 0 && model_.scene.corrects_energy(); }
   PairTotals corrected_forces(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <span>
 #include <variant>
 
 #include "contact/laws/cohesive.hpp"
-#include "contact/laws/cohesive_fatigue.hpp"
 #include "contact/laws/damped.hpp"
 #include "contact/laws/frictionless.hpp"
 #include "contact/laws/mohr_coulomb.hpp"
@@ -19,8 +17,8 @@ template <CompleteContactLaw... Laws>
 using AnyOf = std::variant<Laws...>;
 
 /// Contact law of one pair of bodies.
-using ContactLaw = AnyOf<Frictionless, MohrCoulomb, Cohesive, CohesiveFatigue, Smoothed<Frictionless>,
-                         Smoothed<MohrCoulomb>, Damped<Frictionless>, Damped<MohrCoulomb>>;
+using ContactLaw = AnyOf<Frictionless, MohrCoulomb, Cohesive, Smoothed<Frictionless>, Smoothed<MohrCoulomb>,
+                         Damped<Frictionless>, Damped<MohrCoulomb>>;
 
 inline double reach_of(const ContactLaw& law) {
   return std::visit([](const auto& l) { return l.reach; }, law);
@@ -36,15 +34,6 @@ inline double stiffness_of(const ContactLaw& law) {
 /// Whether the law has a dashpot.
 inline bool is_damped(const ContactLaw& law) {
   return std::visit([]<class Law>(const Law&) { return has_dashpot<Law>; }, law);
-}
-/// Internal variables that the law stores per node.
-inline std::span<const InternalVariable> internal_variables_of(const ContactLaw& law) {
-  return std::visit(
-      []<class Law>(const Law&) -> std::span<const InternalVariable> {
-        if constexpr (has_internal_variables<Law>) return Law::internal_variables;
-        return {};
-      },
-      law);
 }
 
 }  // namespace pliant

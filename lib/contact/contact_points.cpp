@@ -1,7 +1,5 @@
 #include "contact/contact_points.hpp"
 
-#include <limits>
-
 #include "contact/half_pass.hpp"
 #include "contact/segment_pass.hpp"
 #include "contact/slip.hpp"
@@ -9,16 +7,12 @@
 namespace pliant {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-/// Response of the law without dashpot and energy correction, and the internal variables after it.
+/// Response of the law without dashpot and energy correction.
 template <class Law>
 Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
-               const ContactHistory& history, int record, Record<Law>& now) {
-  const Lanes* before = history.at(record);
-  const GapAndSlip at = gap_and_slip(law, window, p, touching, before[ContactHistory::place], place_of(p));
-  return respond(law, at, law(p.gap), before[ContactHistory::slip],
-                 load_record<internal_variable_count<Law>>(history, record), now);
+               const Lanes* before) {
+  const Lanes moved = slip_increment(law, window, p, touching, before[ContactHistory::place], place_of(p));
+  return respond(law, law(p.gap), touching, before[ContactHistory::slip], moved);
 }
 
 std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const ContactHistory& history) {
@@ -27,19 +21,13 @@ std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const Conta
   const auto add_points = [&]<class Law>(const Law& law, const HalfPass& pass, int side, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     const SlaveNodes nodes = load_slaves(pass, i);
-    Record<Law> now;
-    const Contact c = answer(law, view.window, p, touching, history, pass.record + i, now);
-    const auto damage_of = [](const Record<Law>& record, int lane) {
-      if constexpr (constexpr int k = index_of_internal_variable<Law>("damage"); k >= 0) return record[k][lane];
-      return none;
-    };
+    const Contact c = answer(law, view.window, p, touching, history.at(pass.record + i));
     for (int lane = 0; lane < lane_count; ++lane) {
       if (!touching[lane]) continue;
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;
       points.push_back({view.body(side), view.body(1 - side), index - turn_of(index, count) * count, p.gap[lane],
-                        c.slip[lane], c.pressure[lane], c.shear[lane], damage_of(now, lane),
-                        nodes.tributary_length[lane], Vec2(p.normal_x[lane], p.normal_y[lane]), side,
-                        Vec2(nodes.x[lane], nodes.y[lane])});
+                        c.slip[lane], c.pressure[lane], c.shear[lane], nodes.tributary_length[lane],
+                        Vec2(p.normal_x[lane], p.normal_y[lane]), side, Vec2(nodes.x[lane], nodes.y[lane])});
     }
   };
   std::visit(

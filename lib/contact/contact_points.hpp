@@ -14,7 +14,6 @@ struct ContactPoint {
   double slip = 0;            ///< elastic tangential displacement, m
   double pressure = 0;        ///< Pa, of the law, without dashpot and energy correction
   double shear = 0;           ///< Pa, on the slave along (-ny, nx)
-  double damage = 0;          ///< 0 intact to 1 broken; NaN for a law without damage
   double length = 0;          ///< tributary length, m; each half pass carries half of the force
   Vec2 normal{0, 0};          ///< outward normal of the master
   int side = 0;               ///< side of the slave in the pair: 0 the first; tells a body from its own image

@@ -48,17 +48,8 @@ void ContactSystem::inherit(const InheritedContact& from, ContactHistory& histor
                        [&](const ContactPair& contact_pair) { return keeps_law(contact_pair); });
   table_.take(std::move(kept), from.history.records());
   history = {};
-  history.set_columns(static_cast<int>(laws_.internal_variables()));
-  history.resize(from.history.records());
-  history.clear(0, history.records());
+  history.numbers = from.history.numbers;
   if (corrects_energy()) history.start_energy_errors(contact_pairs().size()), make_room(history.last);
-  const int fields = std::min(history.fields(), from.history.fields());
-  for (int record = 0; record < history.records(); record += lane_count) {
-    Lanes* to = history.at(record);
-    const Lanes* old = from.history.at(record);
-    for (const int column : {ContactHistory::place, ContactHistory::slip}) to[column] = old[column];
-    std::copy_n(old + ContactHistory::first_of_law, fields, to + ContactHistory::first_of_law);
-  }
 }
 
 bool ContactSystem::keeps_law(const ContactPair& contact_pair) const {

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// Energy correction of contact pairs (docs/method.md 6, equations (46) to (50)). In a step of velocity Verlet the
+/// Energy correction of contact pairs (docs/method.md 6, equations (44) to (48)). In a step of velocity Verlet the
 /// kinetic energy grows by the mean of the forces at its ends times the displacements, except for a reversible term. If
 /// contact forces change smoothly, contacts lose just as much energy. They do not if a node passes to a segment with
 /// another normal, or passes a kink of its law, as at the onset or the end of contact. The difference is the energy

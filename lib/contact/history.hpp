@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -33,12 +31,11 @@ struct ContactHistory {
     place,           ///< surface coordinate on the master at the last accepted step, see slip.hpp; NaN: no projection
     weight = place,  ///< length that an integrated contact assigns to the node, see segment_pass.hpp, m
     slip,            ///< elastic tangential displacement at the last accepted step, m
-    first_of_law,    ///< first of the law's internal variables (laws/response.hpp)
+    columns,         ///< number of columns
   };
   static constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
 
-  std::vector<Lanes> numbers;  ///< [eights of records][columns]
-  std::int32_t columns = first_of_law;
+  std::vector<Lanes> numbers;        ///< [eights of records][columns]
   std::vector<double> energy_error;  ///< [contact pairs] energy error to be corrected, J/m; empty without correction
   /// [contact pairs] relative change -chi W1 of the forces; after separation, factor of the forces of parting_law().
   std::vector<double> correction;
@@ -47,11 +44,6 @@ struct ContactHistory {
   /// same position.
   std::int64_t layout = 0;
 
-  /// Sets the number of internal variables and removes all records.
-  void set_columns(int fields) {
-    columns = first_of_law + fields;
-    numbers.clear();
-  }
   void start_energy_errors(std::size_t contact_pairs) {
     energy_error.assign(contact_pairs, 0.0), correction.assign(contact_pairs, 0.0);
   }
@@ -61,7 +53,6 @@ struct ContactHistory {
   }
   void resize(int records) { numbers.resize(static_cast<std::size_t>(records / lane_count * columns)); }
   int records() const { return static_cast<int>(numbers.size()) / columns * lane_count; }
-  int fields() const { return columns - first_of_law; }
 
   /// Columns of the eight records that begin at `record`.
   Lanes* at(int record) { return numbers.data() + record / lane_count * columns; }
@@ -70,34 +61,20 @@ struct ContactHistory {
   void copy_record(const ContactHistory& from, int old_record, int record) {
     for (int c = 0; c < columns; ++c) at(record)[c][record % lane_count] = from.number(old_record, c);
   }
-  /// Resets records to nodes without contact, with internal variables 0.
+  /// Resets records to nodes without contact.
   void clear(int record, int count) {
-    for (int i = record; i < record + count; i += lane_count)
-      for (int c = 0; c < columns; ++c) at(i)[c] = c == place ? broadcast(nowhere) : Lanes{};
+    for (int i = record; i < record + count; i += lane_count) at(i)[place] = broadcast(nowhere), at(i)[slip] = Lanes{};
   }
 
   template <class Visitor>
   void visit(Visitor&& visitor) {
-    visitor("numbers", numbers), visitor("columns", columns);
+    visitor("numbers", numbers);
     visitor("energy_error", energy_error), visitor("correction", correction), visitor("layout", layout);
   }
   void loaded() const {
-    const bool fits = columns >= first_of_law && numbers.size() % static_cast<std::size_t>(columns) == 0;
-    if (!fits) throw ArchiveError("contact records have other columns");
+    if (numbers.size() % columns != 0) throw ArchiveError("contact records have other columns");
   }
 };
-
-/// Internal variables of eight nodes, from a record on.
-template <std::size_t count>
-std::array<Lanes, count> load_record(const ContactHistory& history, int record) {
-  std::array<Lanes, count> values;
-  std::copy_n(history.at(record) + ContactHistory::first_of_law, count, values.begin());
-  return values;
-}
-template <std::size_t count>
-void store_record(ContactHistory& history, int record, const std::array<Lanes, count>& values) {
-  std::copy_n(values.begin(), count, history.at(record) + ContactHistory::first_of_law);
-}
 
 /// Kind of law between any two bodies, whether they are close or not.
 struct PairLaws {

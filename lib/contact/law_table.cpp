@@ -137,7 +137,6 @@ void LawTable::find_extremes() {
         if (!rule(first, second)) continue;
         const ContactLaw law = make_law(first, second);
         max_reach_ = std::max(max_reach_, reach_of(law));
-        internal_variables_ = std::max(internal_variables_, internal_variables_of(law).size());
         damps_ |= damping_ratio(first, second) > 0;
       }
 }
@@ -228,19 +227,6 @@ ContactLaw LawTable::make_law(const Side& a, const Side& b) const {
     case ContactLawKind::cohesive:
       check_range();
       return Cohesive{kn, kt, range, rule.strength, rule.shear_strength.value_or(rule.strength)};
-    case ContactLawKind::cohesive_fatigue:
-      check_range();
-      return CohesiveFatigue{kn,
-                             kn / (rule.shear_ratio * rule.shear_ratio),
-                             range,
-                             rule.strength,
-                             rule.shear_ratio,
-                             rule.residual_strength,
-                             rule.friction,
-                             rule.fatigue_threshold,
-                             rule.fatigue_rate,
-                             rule.shear_fatigue_rate,
-                             rule.bond_gap};
   }
   throw std::logic_error("a contact law without a maker");
 }

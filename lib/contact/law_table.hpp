@@ -34,7 +34,6 @@ class LawTable {
   double largest_stiffness(int body) const;        ///< of any pair with this body, Pa/m
   double largest_damping_ratio(int body) const;    ///< of any pair with this body; 0: no dashpot
   /// Largest number of internal variables per node of any law.
-  std::size_t internal_variables() const { return internal_variables_; }
   bool damps() const { return damps_; }                       ///< whether some law has a dashpot
   int group(int body) const { return bodies_[body].group; }   ///< number of the body's group
   double spacing(int body) const { return bodies_[body].h; }  ///< of its outline, m
@@ -82,7 +81,6 @@ class LawTable {
   std::vector<std::vector<double>> interval_inverse_masses_;
   std::vector<int> pair_rule_;  ///< [groups x groups], index in rules_; -1: the pair never meets
   double largest_auto_ = 0, max_reach_ = 0;
-  std::size_t internal_variables_ = 0;
   bool damps_ = false;
 };
 

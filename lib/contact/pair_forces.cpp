@@ -23,16 +23,6 @@ struct LaneTotals {
 
 void add(double* to, Lanes value) { store(to, load(to) + value); }
 
-/// Resets the history of nodes that do not project onto the master.
-template <class Law>
-void forget(Lanes* to) {
-  to[ContactHistory::place] = broadcast(ContactHistory::nowhere);
-  to[ContactHistory::slip] = Lanes{};
-  if constexpr (has_internal_variables<Law>)
-    for (std::size_t k = 0; k < internal_variable_count<Law>; ++k)
-      to[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(Law::internal_variables[k].initial);
-}
-
 /// Rate of the gaps of nodes in contact, m/s: of the motion on which forces on the slave and both segment nodes do
 /// work.
 Lanes gap_rate(const HalfPass& pass, int i, const Projection& p, LaneBits touching) {
@@ -97,10 +87,9 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     const Projection p = project(window, nodes.x, nodes.y, outward);
     const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
     const Lanes old_place = before[ContactHistory::place], old_slip = before[ContactHistory::slip];
-    const Record<Law> old = load_record<internal_variable_count<Law>>(from, record);
     if (!any(p.hit)) {
-      totals.dissipated += half_length * set_free(law, old_slip, old);
-      forget<Law>(after);
+      totals.dissipated += half_length * set_free(law, old_slip);
+      to.clear(record, lane_count);
       continue;
     }
     const LaneBits touching = active & p.hit & (p.gap < law.reach);
@@ -108,12 +97,10 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     Traction traction = law(p.gap);
     if constexpr (has_dashpot<Law>)
       totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
-    Record<Law> now;
     const Contact c =
-        respond(law, gap_and_slip(law, window, p, touching, old_place, place), traction, old_slip, old, now);
+        respond(law, traction, touching, old_slip, slip_increment(law, window, p, touching, old_place, place));
     after[ContactHistory::place] = select(p.hit, place, broadcast(ContactHistory::nowhere));
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
-    store_record(to, record, now);
     totals.dissipated += half_length * c.slip_work;
     if (!any(touching)) continue;
     const Lanes pressure = select(touching, c.pressure, Lanes{}), shear = select(touching, c.shear, Lanes{});

@@ -30,17 +30,6 @@ void locate_new_contacts(const PairView& view, ContactHistory& history) {
                       });
 }
 
-void start_records(const PairView& view, ContactHistory& history) {
-  const auto start = [&]<class Law>(const Law& law) {
-    if constexpr (has_internal_variables<Law>)
-      for_each_projection(view, law.start_reach(), [&](const HalfPass& pass, int, int i, const Projection& p) {
-        const LaneBits projects = first_lanes(pass.nodes.count - i) & p.hit;
-        store_record(history, pass.record + i, law.at_start(p.gap, projects));
-      });
-  };
-  std::visit(start, view.contact_pair.law);
-}
-
 bool overlaps(const PairView& view) {
   if (view.contact_pair.integrated) return touching_length(view) > 0;
   bool found = false;

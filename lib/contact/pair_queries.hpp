@@ -15,10 +15,6 @@ double touching_length(const PairView& view);
 /// cover up to two skins, gets none.
 void locate_new_contacts(const PairView& view, ContactHistory& history);
 
-/// Sets the internal variables of nodes near the other outline at the start of a run, such as intact bonds. Most laws
-/// have none.
-void start_records(const PairView& view, ContactHistory& history);
-
 /// Whether some node of the contact pair is inside the other outline.
 bool overlaps(const PairView& view);
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <span>
 #include <utility>
 
-#include "contact/law_table.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
 
@@ -15,20 +13,10 @@ namespace {
 /// Capacity with spare room, for contact pairs that outgrow their places before the next layout.
 int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
 
-/// Resets the records of one side to nodes without contact.
-void forget_all(const ContactPair& contact_pair, int side, ContactHistory& history) {
-  const int begin = contact_pair.record[side], count = padded(contact_pair.nodes[side].count);
-  history.clear(begin, count);
-  const std::span<const InternalVariable> internal_variables = internal_variables_of(contact_pair.law);
-  for (int record = begin; record < begin + count; record += lane_count)
-    for (std::size_t k = 0; k < internal_variables.size(); ++k)
-      history.at(record)[ContactHistory::first_of_law + static_cast<int>(k)] = broadcast(internal_variables[k].initial);
-}
-
 /// Transfers the records of one side's nodes from another contact pair of the same bodies.
 void carry(const Model& model, const ContactPair& from, const ContactHistory& old, const ContactPair& to, int side,
            ContactHistory& history) {
-  forget_all(to, side, history);
+  history.clear(to.record[side], padded(to.nodes[side].count));
   for_each_shared(model, to, side, from.nodes[side], to.nodes[side], [&](int old_at, int at, int count) {
     for (int i = 0; i < count; ++i) history.copy_record(old, from.record[side] + old_at + i, to.record[side] + at + i);
   });
@@ -36,13 +24,12 @@ void carry(const Model& model, const ContactPair& from, const ContactHistory& ol
 
 /// Copies whole groups of eight records.
 void copy_eights(const ContactHistory& from, int first, int count, ContactHistory& to, int at) {
-  std::copy_n(from.at(first), count / lane_count * from.columns, to.at(at));
+  std::copy_n(from.at(first), count / lane_count * ContactHistory::columns, to.at(at));
 }
 
 /// Moves the records of a contact pair aside, because others may take their place, and clears them there.
 void take_aside(ContactHistory& history, ContactPair& contact_pair, ContactHistory& aside) {
   const int size[2] = {padded(contact_pair.nodes[0].count), padded(contact_pair.nodes[1].count)};
-  aside.columns = history.columns;
   aside.resize(size[0] + size[1]);
   for (int side = 0; side < 2; ++side) {
     const int from = contact_pair.record[side], to = side * size[0];
@@ -71,7 +58,7 @@ const ContactPair* PairTable::find(const BodyPair& pair, int part) const {
   return at == contact_pairs_.end() || at->pair() != pair || at->part != part ? nullptr : &*at;
 }
 
-void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fields, ContactHistory& history) {
+void PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history) {
   std::sort(contact_pairs.begin(), contact_pairs.end(), comes_before);
   records_ = entries_ = 0;
   for (ContactPair& contact_pair : contact_pairs)
@@ -81,20 +68,15 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, std::size_t fiel
     }
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
   ContactHistory next;
-  next.set_columns(static_cast<int>(fields));
   next.resize(record_room_);
   next.clear(0, record_room_);
   if (model_.scene.corrects_energy()) next.start_energy_errors(contact_pairs.size());
   parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
     const ContactPair* from = find(contact_pair.pair(), contact_pair.part);
-    for (int side = 0; side < 2; ++side)
-      if (from)
-        carry(model_, *from, history, contact_pair, side, next);
-      else
-        forget_all(contact_pair, side, next);
-    if (from && !next.energy_error.empty())
-      next.copy_energy_error(history, static_cast<int>(from - contact_pairs_.data()), p);
+    if (!from) return;
+    for (int side = 0; side < 2; ++side) carry(model_, *from, history, contact_pair, side, next);
+    if (!next.energy_error.empty()) next.copy_energy_error(history, static_cast<int>(from - contact_pairs_.data()), p);
   });
   history = std::move(next);
   history.layout = laid_out_ = ++layout_;

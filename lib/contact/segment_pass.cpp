@@ -269,20 +269,18 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
                           PairForceBuffer& forces) {
   Totals totals;
   const auto both_passes = [&]<class Law>(const Law& law) {
-    if constexpr (!has_internal_variables<Law>) {
-      double damping = 0;
-      if constexpr (has_dashpot<Law>)
-        if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
-      thread_local PairMotion moved, speeds;
-      for_each_half_pass(view, runs, [&](HalfPass& pass, int slave_side) {
-        pass.damping = damping, pass.dt = view.dt;
-        SegmentHalfPass at{pass, view.window, nullptr, nullptr, forces};
-        if constexpr (Law::has_shear)
-          if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
-        if constexpr (has_dashpot<Law>) speeds.fill(view, view.outlines.velocity, slave_side), at.speeds = &speeds;
-        integrate_half_pass(law, at, from, to, totals);
-      });
-    }
+    double damping = 0;
+    if constexpr (has_dashpot<Law>)
+      if (const double length = integrated_length(view); length > 0) damping = law.root_damping / std::sqrt(length);
+    thread_local PairMotion moved, speeds;
+    for_each_half_pass(view, runs, [&](HalfPass& pass, int slave_side) {
+      pass.damping = damping, pass.dt = view.dt;
+      SegmentHalfPass at{pass, view.window, nullptr, nullptr, forces};
+      if constexpr (Law::has_shear)
+        if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
+      if constexpr (has_dashpot<Law>) speeds.fill(view, view.outlines.velocity, slave_side), at.speeds = &speeds;
+      integrate_half_pass(law, at, from, to, totals);
+    });
   };
   std::visit(both_passes, view.contact_pair.law);
   PairTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};

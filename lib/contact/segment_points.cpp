@@ -83,7 +83,6 @@ void add_points(const PairView& view, const HalfPass& pass, int side, const Node
     ContactPoint point{view.body(side), view.body(1 - side), node, found.gap[i] / weight};
     point.slip = history.number(pass.record + i, ContactHistory::slip);
     point.pressure = force.dot(normal) / weight, point.shear = found.shear[i] / weight;
-    point.damage = std::numeric_limits<double>::quiet_NaN();
     point.length = 2 * weight;
     point.normal = normal, point.side = side;
     point.position = Vec2(pass.slave_x[node] + pass.slave_shift.x() + turn * pass.slave->turn_shift,
@@ -98,11 +97,10 @@ std::vector<ContactPoint> inspect_integrated(const PairView& view, const Contact
   std::vector<ContactPoint> points;
   NodeTractions found;
   const auto both_passes = [&]<class Law>(const Law& law) {
-    if constexpr (!has_internal_variables<Law>)
-      for_each_half_pass(view, runs_in_table(view.contact_pair), [&](const HalfPass& pass, int side) {
-        found.find(law, pass, view.window, shears_of(law, pass, history));
-        add_points(view, pass, side, found, history, points);
-      });
+    for_each_half_pass(view, runs_in_table(view.contact_pair), [&](const HalfPass& pass, int side) {
+      found.find(law, pass, view.window, shears_of(law, pass, history));
+      add_points(view, pass, side, found, history, points);
+    });
   };
   std::visit(both_passes, view.contact_pair.law);
   return points;

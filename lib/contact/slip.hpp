@@ -48,17 +48,14 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
   return select(counted, moved, Lanes{});
 }
 
-/// Gap and slip increment of eight nodes, from their surface coordinates place_of(p) on the master at the last accepted
-/// step and now.
+/// Slip increment of eight nodes, m, from their surface coordinates place_of(p) on the master at the last accepted step
+/// and now. 0 for laws without shear.
 template <class Law>
-GapAndSlip gap_and_slip(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
-                        Lanes place) {
-  GapAndSlip at{p.gap, p.hit, touching, {}};
-  if constexpr (Law::has_shear) {
-    const LaneBits known = old_place == old_place;
-    at.moved = moved_along(window, p, touching & known, select(known, old_place, place), place);
-  }
-  return at;
+Lanes slip_increment(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
+                     Lanes place) {
+  if constexpr (!Law::has_shear) return {};
+  const LaneBits known = old_place == old_place;
+  return moved_along(window, p, touching & known, select(known, old_place, place), place);
 }
 
 }  // namespace pliant

@@ -73,10 +73,9 @@ std::vector<SceneTable> boundary_tables() {
 }
 
 SceneTable rule_table() {
-  const char *bonds = R"(law = "cohesive", "cohesive-fatigue")", *cohesive = R"(law = "cohesive")";
-  const char *fatigue = R"(law = "cohesive-fatigue")", *coulomb = R"(law = "mohr-coulomb")";
+  const char *cohesive = R"(law = "cohesive")", *coulomb = R"(law = "mohr-coulomb")";
   const QuantityOr stiffness{"auto", {"Pa/m", positive}};
-  const Quantity stress{"Pa", non_negative}, rate{"Pa-1", non_negative};
+  const Quantity stress{"Pa", non_negative};
   return {
       "[[contacts]]",
       {
@@ -85,14 +84,12 @@ SceneTable rule_table() {
           {"law",
            choice<ContactLawKind>({{"frictionless", ContactLawKind::frictionless},
                                    {"mohr-coulomb", ContactLawKind::mohr_coulomb},
-                                   {"cohesive", ContactLawKind::cohesive},
-                                   {"cohesive-fatigue", ContactLawKind::cohesive_fatigue}}),
+                                   {"cohesive", ContactLawKind::cohesive}}),
            required, "Contact law"},
           {"stiffness", stiffness, R"("auto")", "Normal stiffness (penalty)"},
           {"shear_stiffness", stiffness, R"("auto")", "Tangential stiffness; auto: the normal one",
            R"(law = "mohr-coulomb", "cohesive")"},
           {"friction", Friction{}, required, "Coefficient of friction", coulomb},
-          {"friction", Friction{}, "0", "Coefficient of friction of broken bonds", fatigue},
           {"cohesion", stress, "0 Pa", "Cohesion: shear strength without pressure", coulomb},
           {"tension", stress, "0 Pa", "Tensile strength (cut-off)", coulomb},
           {"smoothing", Quantity{"1", {.low = 0, .high = 1}}, "0",
@@ -100,18 +97,10 @@ SceneTable rule_table() {
           {"restitution", Quantity{"1", {.low = 0.01, .high = 1}}, "none",
            "Coefficient of restitution of rigid pairs; otherwise no dashpot", "laws without tension"},
           {"pull", Flag{}, "false", "Tension by the dashpot of the restitution", "restitution"},
-          {"strength", Quantity{"Pa", positive}, required, "Tensile strength of bonds", bonds},
-          {"range", QuantityOr{"auto", {"m", positive}}, R"("auto")", "Gap at which bonds break", bonds},
+          {"strength", Quantity{"Pa", positive}, required, "Tensile strength", cohesive},
+          {"range", QuantityOr{"auto", {"m", positive}}, R"("auto")", "Gap at which the tension vanishes", cohesive},
           {"shear_strength", QuantityOr{"auto", stress}, R"("auto")", "Shear strength; auto: the tensile one",
            cohesive},
-          {"bond_gap", Quantity{"m", non_negative}, required, "Initial gap below which contacts are bonded", fatigue},
-          {"shear_ratio", Quantity{"1", positive}, "1", "Ratio of tensile to shear strength", fatigue},
-          {"residual_strength", stress, "0 Pa", "Tensile strength of broken bonds, up to `strength`", fatigue},
-          {"fatigue_rate", rate, "0 Pa-1", "Damage per tensile stress above the threshold", fatigue},
-          {"shear_fatigue_rate", rate, derived("`fatigue_rate`"), "Damage per shear stress above the threshold",
-           fatigue},
-          {"fatigue_threshold", stress, required_if("with a rate", "0 Pa"),
-           "Stress above which each loading damages, below `strength`", fatigue},
       }};
 }
 

@@ -1,9 +1,23 @@
 #include <tuple>
 
-#include "input/read_fatigue.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
+namespace {
+
+/// The threshold holds in shear too, in the ratio of the strengths.
+void read_fatigue(TableReader& table, BondRule& rule) {
+  const bool grows = table.optional("fatigue_rate", rule.fatigue_rate);
+  rule.shear_fatigue_rate = rule.fatigue_rate;
+  const bool grows_in_shear = table.optional("shear_fatigue_rate", rule.shear_fatigue_rate);
+  const Range below_strength{.low = 0, .high = rule.strength, .high_open = true};
+  if (grows || grows_in_shear)
+    table.required("fatigue_threshold", rule.fatigue_threshold, below_strength);
+  else
+    table.optional("fatigue_threshold", rule.fatigue_threshold, below_strength);
+}
+
+}  // namespace
 
 BondRule read_bond(TableReader table, const Scene& scene) {
   BondRule rule;

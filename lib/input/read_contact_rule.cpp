@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <tuple>
 
-#include "input/read_fatigue.hpp"
 #include "input/read_tables.hpp"
 
 namespace pliant {
@@ -48,9 +47,11 @@ void read_mohr_coulomb(TableReader& table, ContactRule& rule) {
   if (rule.tension == 0) read_impact(table, rule);
 }
 
-void read_strength(TableReader& table, ContactRule& rule) {
+void read_cohesive(TableReader& table, ContactRule& rule) {
+  table.optional("shear_stiffness", rule.shear_stiffness);
   table.required("strength", rule.strength);
   table.optional("range", rule.range);
+  table.optional("shear_strength", rule.shear_strength);
   if (!rule.range || !rule.stiffness) return;
   const double peak = rule.strength / *rule.stiffness;
   if (*rule.range <= peak) {
@@ -59,20 +60,12 @@ void read_strength(TableReader& table, ContactRule& rule) {
   }
 }
 
-void read_cohesive(TableReader& table, ContactRule& rule) {
-  table.optional("shear_stiffness", rule.shear_stiffness);
-  read_strength(table, rule);
-  table.optional("shear_strength", rule.shear_strength);
-}
-
-void read_cohesive_fatigue(TableReader& table, ContactRule& rule) {
-  read_strength(table, rule);
-  table.required("bond_gap", rule.bond_gap);
-  table.optional("shear_ratio", rule.shear_ratio);
-  table.optional("friction", rule.friction);
-  const Range up_to_strength{.low = 0, .high = rule.strength};
-  table.optional("residual_strength", rule.residual_strength, up_to_strength);
-  read_fatigue(table, rule);
+/// Throws for a law of earlier versions.
+void refuse_former(TableReader& table) {
+  if (!table.has("law") || table.value("law").node.value_or(std::string()) != "cohesive-fatigue") return;
+  table.fail("law",
+             "'cohesive-fatigue' is now a rule of its own, [[bonds]], beside a law such as \"mohr-coulomb\": its "
+             "fracture_energy is strength x range / 2, its gap is bond_gap, its cohesion strength / shear_ratio");
 }
 
 }  // namespace
@@ -94,6 +87,7 @@ ContactRule read_contact(TableReader table, const Scene& scene) {
   ContactRule rule;
   std::tie(rule.first, rule.second) = read_between(table, scene);
   check_unique(table, rule, scene.contacts);
+  refuse_former(table);
   table.required("law", rule.law);
   table.optional("stiffness", rule.stiffness);
   switch (rule.law) {
@@ -105,9 +99,6 @@ ContactRule read_contact(TableReader table, const Scene& scene) {
       break;
     case ContactLawKind::cohesive:
       read_cohesive(table, rule);
-      break;
-    case ContactLawKind::cohesive_fatigue:
-      read_cohesive_fatigue(table, rule);
   }
   table.finish();
   return rule;

@@ -100,11 +100,6 @@ std::vector<double> contact_slip(const Snapshot& snapshot) {
   return values;
 }
 
-/// Least damage of each node's bonds, 1 at nodes without.
-std::vector<double> contact_damage(const Snapshot& snapshot) {
-  return snapshot.contact().least_internal_variable(snapshot.state().memory.contact, "damage", 1);
-}
-
 /// Mean damage of each node's bonds, NaN at nodes without.
 std::vector<double> bond_damage(const Snapshot& snapshot) {
   return damage_at_nodes(snapshot.model(), snapshot.bonds(), snapshot.state().memory.bonds);
@@ -158,7 +153,7 @@ BodyField body_field(const std::string& name) {
 OutlineFunction outline_field(const std::string& name) {
   static const std::map<std::string, OutlineFunction> all{
       {"contact_pressure", traction<true>}, {"contact_shear", traction<false>}, {"contact_gap", contact_gap},
-      {"contact_slip", contact_slip},       {"contact_damage", contact_damage}, {"bond_damage", bond_damage},
+      {"contact_slip", contact_slip},       {"bond_damage", bond_damage},
   };
   return function_of(all, name);
 }

@@ -33,7 +33,7 @@ enum class ShapeKind { disc, polygon, curve };
 enum class PackingKind { hexagonal, grid, positions, random, fourier_voronoi };
 enum class Mass { lumped, corrected };
 enum class DiscretisationMethod { mls, mls_gauss, t3, es_t3, rpim };
-enum class ContactLawKind { frictionless, mohr_coulomb, cohesive, cohesive_fatigue };
+enum class ContactLawKind { frictionless, mohr_coulomb, cohesive };
 enum class ContactLength { reference, current };
 /// Where the tractions of contact are evaluated: at nodes, or integrated over segments (docs/method.md 4).
 /// `automatic`: over segments where an outline of the pair has corners, else at nodes.
@@ -262,22 +262,16 @@ struct ContactRule {
   std::string first, second;  ///< names of materials, grains or walls; "all": any
   ContactLawKind law = ContactLawKind::frictionless;
   std::optional<double> stiffness;        ///< kn, Pa/m; nullopt: auto
-  std::optional<double> shear_stiffness;  ///< kt, Pa/m; nullopt: equal to kn; cohesive-fatigue: kn / shear_ratio^2
-  double friction = 0;                    ///< mohr-coulomb; cohesive-fatigue: of broken contacts
+  std::optional<double> shear_stiffness;  ///< kt, Pa/m; nullopt: equal to kn
+  double friction = 0;                    ///< mohr-coulomb
   double cohesion = 0;                    ///< mohr-coulomb, Pa
   double tension = 0;                     ///< mohr-coulomb tensile cut-off, Pa
   double smoothing = 0;                   ///< frictionless, mohr-coulomb: quadratic start of the pressure, over h
   std::optional<double> restitution;      ///< frictionless, mohr-coulomb: of rigid pairs; nullopt: elastic
   bool pull = false;                      ///< the dashpot of the restitution may pull
-  double strength = 0;                    ///< cohesive laws: normal strength, Pa
+  double strength = 0;                    ///< cohesive: normal strength, Pa
   std::optional<double> shear_strength;   ///< cohesive: nullopt: equal to strength
-  std::optional<double> range;            ///< cohesive laws: g_max, m; nullopt: auto (0.12 h)
-  double shear_ratio = 1;                 ///< cohesive-fatigue: normal over shear strength
-  double residual_strength = 0;           ///< cohesive-fatigue: normal strength of broken contacts, Pa
-  double bond_gap = 0;                    ///< cohesive-fatigue: narrower gaps at the start are bonds, m
-  double fatigue_threshold = 0;           ///< cohesive-fatigue: stress above which damage grows with every load, Pa
-  double fatigue_rate = 0;                ///< cohesive-fatigue: damage per stress, 1/Pa
-  double shear_fatigue_rate = 0;          ///< the same in shear, 1/Pa
+  std::optional<double> range;            ///< cohesive: g_max, m; nullopt: auto (0.12 h)
 };
 
 /// Bonds between the outlines of bodies (docs/method.md 11). Names as in ContactRule.

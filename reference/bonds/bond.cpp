@@ -14,13 +14,12 @@ struct Place {
 
 }  // namespace
 
-BondPoints points_of(const Bond& bond, const PresentOutline& carrier, const PresentOutline& partner,
-                     const Vec2& shift) {
+BondPoints points_of(const Bond& bond, const PresentOutline& slave, const PresentOutline& master, const Vec2& shift) {
   const auto beside = [&](const PartnerPoint& point) {
-    const Vec2 first = partner.node(point.segment), second = partner.node(point.segment + 1);
+    const Vec2 first = master.node(point.segment), second = master.node(point.segment + 1);
     return Vec2((1 - point.xi) * first + point.xi * second + shift);
   };
-  return {carrier.node(bond.segment), carrier.node(bond.segment + 1), beside(bond.points[0]), beside(bond.points[1])};
+  return {slave.node(bond.segment), slave.node(bond.segment + 1), beside(bond.points[0]), beside(bond.points[1])};
 }
 
 BondDistances distances_of(const BondPoints& points) {

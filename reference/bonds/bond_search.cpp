@@ -11,9 +11,9 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double touching = 1e-6;  ///< rounding of common nodes, over the mean segment of the carrier
-constexpr double furthest = 0.5;   ///< of a partner, over the same
-/// Share of a segment that the partner's points span at least along it. Else both are at one place, such as a corner.
+constexpr double touching = 1e-6;  ///< rounding of common nodes, over the mean segment of the slave
+constexpr double furthest = 0.5;   ///< of a master, over the same
+/// Share of a segment that the master's points span at least along it. Else both are at one place, such as a corner.
 constexpr double least_span = 0.5;
 
 bool names(const std::string& side, const ContactOutline& outline) {
@@ -29,16 +29,16 @@ struct Found {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-/// Nearest point of a partner. All turns of a wall that can be nearest are tried.
-Found nearest(const PresentOutline& partner, const Vec2& to) {
-  int first = 0, count = partner.count();
-  if (!partner.closed()) {
-    first = count * (static_cast<int>(std::lround((to.x() - partner.node(0).x()) / partner.turn_shift())) - 2);
+/// Nearest point of a master. All turns of a wall that can be nearest are tried.
+Found nearest(const PresentOutline& master, const Vec2& to) {
+  int first = 0, count = master.count();
+  if (!master.closed()) {
+    first = count * (static_cast<int>(std::lround((to.x() - master.node(0).x()) / master.turn_shift())) - 2);
     count *= 4;
   }
   Found best;
   for (int segment = first; segment < first + count; ++segment) {
-    const Vec2 from = partner.node(segment), edge = partner.node(segment + 1) - from;
+    const Vec2 from = master.node(segment), edge = master.node(segment + 1) - from;
     const double xi = std::clamp((to - from).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
     const double distance = (to - from - xi * edge).norm();
     if (distance < best.distance) best = {{segment, xi}, distance};
@@ -63,12 +63,12 @@ class Search {
   /// Bonds of two bodies, a before b in the list.
   void join(int a, int b) {
     const bool swaps = !outlines_[static_cast<std::size_t>(b)].wall && mean_spacing(of(b)) < mean_spacing(of(a));
-    const int carrier = swaps ? b : a, partner = swaps ? a : b;
-    if (of(partner).wall) return join_image(carrier, partner, {});
-    const Extent ours(PresentOutline(of(carrier), x_)), theirs(PresentOutline(of(partner), x_));
-    const Vec2 around = Vec2::Constant(std::max(gap_, mean_spacing(of(carrier))));
+    const int slave = swaps ? b : a, master = swaps ? a : b;
+    if (of(master).wall) return join_image(slave, master, {});
+    const Extent ours(PresentOutline(of(slave), x_)), theirs(PresentOutline(of(master), x_));
+    const Vec2 around = Vec2::Constant(std::max(gap_, mean_spacing(of(slave))));
     for (const Image& image : periods_.between(ours.low - theirs.high - around, ours.high - theirs.low + around))
-      join_image(carrier, partner, image);
+      join_image(slave, master, image);
   }
 
   std::vector<Bond> bonds;
@@ -76,23 +76,23 @@ class Search {
  private:
   const ContactOutline& of(int body) const { return outlines_[static_cast<std::size_t>(body)]; }
 
-  void join_image(int carrier, int partner, const Image& image) {
-    const PresentOutline ours(of(carrier), x_), theirs(of(partner), x_);
+  void join_image(int slave, int master, const Image& image) {
+    const PresentOutline ours(of(slave), x_), theirs(of(master), x_);
     const Vec2 shift = periods_.shift(image);
     for (int segment = 0; segment < ours.count(); ++segment) {
       const std::array<Found, 2> found{nearest(theirs, ours.node(segment) - shift),
                                        nearest(theirs, ours.node(segment + 1) - shift)};
       Bond bond;
-      bond.carrier = carrier, bond.partner = partner, bond.segment = segment, bond.image = image;
+      bond.slave = slave, bond.master = master, bond.segment = segment, bond.image = image;
       bond.points = {found[0].point, found[1].point};
-      bond.length = ReferenceOutline(of(carrier)).length(segment);
+      bond.length = ReferenceOutline(of(slave)).length(segment);
       if (holds(bond, found, points_of(bond, ours, theirs, shift))) bonds.push_back(bond);
     }
   }
 
   /// Sets the distances at rest. Returns whether the segment is bonded.
   bool holds(Bond& bond, const std::array<Found, 2>& found, const BondPoints& points) const {
-    const double spacing = mean_spacing(of(bond.carrier));
+    const double spacing = mean_spacing(of(bond.slave));
     const double across = std::max(gap_, touching * spacing), away = std::max(across, furthest * spacing);
     if (found[0].distance > away || found[1].distance > away) return false;
     const Vec2 edge = points[1] - points[0];

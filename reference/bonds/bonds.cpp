@@ -39,8 +39,6 @@ void refuse(const BondRule& rule) {
   if (rule.weibull_modulus)
     throw InputError(
         "'weibull_modulus' in [[bonds]]: the reference solver gives all bonds of a rule one strength; leave it out");
-  if (rule.fatigue_rate > 0 || rule.shear_fatigue_rate > 0)
-    throw InputError("'fatigue_rate' in [[bonds]]: bonds of the reference solver do not wear by fatigue; leave it out");
 }
 
 /// Throws InputError unless more energy is lost in tearing than a bond stores at its strength.
@@ -64,16 +62,14 @@ struct Bonds::Implementation {
 
   BondLaw law_of(const Bond& bond) const {
     const BondRule& rule = scene.bonds[static_cast<std::size_t>(bond.rule)];
-    const std::optional<Law>& beside = contact->between(bond.carrier, bond.partner);
+    const std::optional<Law>& beside = contact->between(bond.slave, bond.master);
     if (!beside && !rule.stiffness)
       throw InputError("'stiffness' of [[bonds]] between bodies that have no [[contacts]] rule: give it in Pa/m");
     BondLaw law;
     if (beside) {
       law.contact_kn = beside->kn;
       law.contact_kt = beside->shears() ? beside->kt : 0;
-      const bool rubs =
-          beside->kind == ContactLawKind::mohr_coulomb || beside->kind == ContactLawKind::cohesive_fatigue;
-      law.contact_friction = rubs ? beside->friction : 0;
+      law.contact_friction = beside->kind == ContactLawKind::mohr_coulomb ? beside->friction : 0;
     }
     law.kn = rule.stiffness.value_or(law.contact_kn);
     law.kt = rule.shear_stiffness.value_or(law.kn);
@@ -83,6 +79,9 @@ struct Bonds::Implementation {
     law.energy_1 = rule.fracture_energy;
     law.energy_2 = rule.shear_fracture_energy.value_or(rule.fracture_energy);
     law.bears_pressure = rule.gap > 0;
+    law.threshold = rule.fatigue_threshold;
+    law.rate_1 = rule.fatigue_rate;
+    law.rate_2 = rule.shear_fatigue_rate;
     if (law.friction < law.contact_friction)
       throw InputError(fmt::format("'friction' in [[bonds]] is {}; allowed: at least that of the contacts, {}",
                                    law.friction, law.contact_friction));
@@ -99,7 +98,7 @@ struct Bonds::Implementation {
     std::size_t added = 0;
     for (const Bond& bond : found) {
       const auto same = [&](const Bond& other) {
-        return other.carrier == bond.carrier && other.partner == bond.partner && other.segment == bond.segment;
+        return other.slave == bond.slave && other.master == bond.master && other.segment == bond.segment;
       };
       if (std::any_of(bonds.begin(), bonds.begin() + end, same)) continue;
       laws.push_back(law_of(bond));
@@ -121,9 +120,9 @@ struct Bonds::Implementation {
   void add(std::size_t number, const Points& x, const Periods& periods, BondResult& result) {
     const Bond& bond = bonds[number];
     const BondLaw& law = laws[number];
-    const PresentOutline carrier(outlines[static_cast<std::size_t>(bond.carrier)], x),
-        partner(outlines[static_cast<std::size_t>(bond.partner)], x);
-    const BondPoints points = points_of(bond, carrier, partner, periods.shift(bond.image));
+    const PresentOutline slave(outlines[static_cast<std::size_t>(bond.slave)], x),
+        master(outlines[static_cast<std::size_t>(bond.master)], x);
+    const BondPoints points = points_of(bond, slave, master, periods.shift(bond.image));
     const BondDistances distances = distances_of(points);
     BondJet::Gradient force = BondJet::Gradient::Zero();
     BondJet::Hessian tangent = BondJet::Hessian::Zero();
@@ -132,6 +131,8 @@ struct Bonds::Implementation {
       const BondJet opening = distances.gap[end] - bond.rest_gap[end], slip = distances.slip[end] - bond.rest_slip[end];
       const EndMemory& before = accepted[number][end];
       BondJet damage = law.damage(opening, slip, distances.gap[end]);
+      const BondJet worn = before.damage + law.fatigue(before.damage, before.opening, before.slip, opening, slip);
+      if (worn.value > damage.value) damage = worn.value < 1 ? worn : BondJet(1.0);
       if (damage.value > before.damage)
         result.damages = true;
       else
@@ -143,20 +144,20 @@ struct Bonds::Implementation {
       result.stored += weight * stored(law, now);
       if (now.damage > before.damage) result.dissipated += weight * loss(law, before, now);
     }
-    result.elements.push_back(at_nodes(bond, carrier, partner, points, force, tangent));
+    result.elements.push_back(at_nodes(bond, slave, master, points, force, tangent));
   }
 
   /// Forces on points to forces on nodes.
-  static BondElement at_nodes(const Bond& bond, const PresentOutline& carrier, const PresentOutline& partner,
+  static BondElement at_nodes(const Bond& bond, const PresentOutline& slave, const PresentOutline& master,
                               const BondPoints& points, const BondJet::Gradient& force,
                               const BondJet::Hessian& tangent) {
     BondElement element;
     Eigen::Matrix<double, 8, 12> share = Eigen::Matrix<double, 8, 12>::Zero();
     for (int end = 0; end < 2; ++end) {
       const auto& [segment, xi] = bond.points[static_cast<std::size_t>(end)];
-      element.node[static_cast<std::size_t>(end)] = carrier.index(bond.segment + end);
-      element.node[static_cast<std::size_t>(2 + 2 * end)] = partner.index(segment);
-      element.node[static_cast<std::size_t>(3 + 2 * end)] = partner.index(segment + 1);
+      element.node[static_cast<std::size_t>(end)] = slave.index(bond.segment + end);
+      element.node[static_cast<std::size_t>(2 + 2 * end)] = master.index(segment);
+      element.node[static_cast<std::size_t>(3 + 2 * end)] = master.index(segment + 1);
       for (int c = 0; c < 2; ++c) {
         share(2 * end + c, 2 * end + c) = 1;
         share(4 + 2 * end + c, 4 + 4 * end + c) = 1 - xi, share(4 + 2 * end + c, 6 + 4 * end + c) = xi;

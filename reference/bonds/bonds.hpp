@@ -8,12 +8,12 @@
 namespace pliant::reference {
 
 /// One bond at one state: forces on the two nodes of its segment, and on the two nodes beside either point of the
-/// partner.
+/// master.
 struct BondElement {
   std::array<int, 6> node;                ///< in the list of all outline nodes; one may occur more than once
   Eigen::Matrix<double, 12, 1> force;     ///< residual: minus the forces on the nodes, N/m
   Eigen::Matrix<double, 12, 12> tangent;  ///< of `force`, unsymmetric where damage grows
-  ContactLever lever;                     ///< of the partner
+  ContactLever lever;                     ///< of the master
 };
 
 struct BondResult {
@@ -33,13 +33,13 @@ struct BondCounts {
 
 /// All bonds of a scene (docs/method.md 11).
 ///
-/// Forces are the derivative of the energy (69) at given damage. Damage is that of the trial state, and the tangent
+/// Forces are the derivative of the energy (67) at given damage. Damage is that of the trial state, and the tangent
 /// contains its derivative. Damage in a mixed mode depends on two criteria and not on the energy alone. So a step has
 /// no potential, and the tangent is unsymmetric where damage grows. This is how flow of Drucker and Prager is treated.
 /// Damage is accepted with the step, like other history.
 class Bonds {
  public:
-  /// Throws InputError for what this solver does not have: strengths that vary, and fatigue.
+  /// Throws InputError for what this solver does not have: strengths that vary.
   Bonds(const Scene& scene, std::vector<ContactOutline> outlines);
   ~Bonds();
 

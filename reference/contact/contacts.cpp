@@ -82,7 +82,7 @@ struct Contacts::Implementation {
         const std::optional<Law>& law = laws.between(static_cast<int>(a), static_cast<int>(b));
         const bool wanted = quadrature == ContactQuadrature::segments ||
                             (quadrature == ContactQuadrature::automatic && (has_corners[a] || has_corners[b]));
-        integrated.push_back(law && !law->bonds() && wanted);
+        integrated.push_back(law && wanted);
       }
   }
   bool is_integrated(int a, int b) const {
@@ -114,7 +114,7 @@ struct Contacts::Implementation {
   /// Adds the energy that a node loses with its history when it no longer has a projection onto the other body.
   void part(const Encounter& encounter, const ContactMemory& memory) {
     result.dissipated +=
-        weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory, std::nullopt);
+        weight(encounter) * parting_loss(*laws.between(encounter.slave, encounter.master), memory.slip);
   }
 
   /// Length of a node in one of the two half passes, m.
@@ -167,8 +167,7 @@ struct Contacts::Implementation {
     if (nearest.height > outward || nearest.height < -deepest * on.longest) return;
     const Projection at = project(point, on.outline.node(nearest.segment), on.outline.node(nearest.segment + 1));
     const auto found = accepted.find(encounter);
-    ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
-    if (initial && law.bonds() && at.gap.value <= law.bond_gap) before.damage = 0;
+    const ContactMemory before = found == accepted.end() ? ContactMemory() : found->second;
     ContactMemory& memory = trial[encounter];
     memory.beside = true;
     memory.segment = nearest.segment;
@@ -177,7 +176,7 @@ struct Contacts::Implementation {
     if (at.gap.value < law.reach)
       touch(encounter, at, law, before, memory);
     else
-      result.dissipated += weight(encounter) * parting_loss(law, before, at.gap.value);
+      result.dissipated += weight(encounter) * parting_loss(law, before.slip);
   }
 
   void touch(const Encounter& encounter, const Projection& at, const Law& law, const ContactMemory& before,
@@ -186,11 +185,8 @@ struct Contacts::Implementation {
     const PresentBody& on = bodies[encounter.master];
     Motion motion;
     if (before.beside && law.shears()) motion = motion_along(on.outline, before, segment, at);
-    const Response response = respond(law, before, at.gap.value, motion.by_element.value, initial);
+    const Response response = respond(law, before.slip, at.gap.value, motion.by_element.value);
     memory.slip = response.slip;
-    memory.friction_slip = response.friction_slip;
-    memory.damage = response.damage;
-    memory.opening = response.opening;
     const double length = weight(encounter);
     result.stored += length * response.stored;
     result.dissipated += length * response.dissipated;
@@ -203,8 +199,7 @@ struct Contacts::Implementation {
     for (const int end : {0, 1})
       element.lever.add(element.force.segment<2>(2 + 2 * end), on.outline.node(segment + end) - point);
     element.depth = std::max(0.0, -at.gap.value) / on.longest;
-    if (initial && element.depth > 0)
-      element.compression = length * (response.stored - respond(law, before, 0, 0, true).stored);
+    if (initial && element.depth > 0) element.compression = length * (response.stored - respond(law, 0, 0, 0).stored);
     result.elements.push_back(std::move(element));
   }
 

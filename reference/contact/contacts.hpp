@@ -27,14 +27,11 @@ struct ContactOutline {
 
 /// History variables of a slave node and one partner, at the last accepted state.
 struct ContactMemory {
-  bool beside = false;       ///< it had a projection onto the other body, so segment, xi and angle are known
-  int segment = 0;           ///< of the partner's outline
-  double xi = 0;             ///< in [0, 1] along it
-  double angle = 0;          ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
-  double slip = 0;           ///< elastic, m; of a bond: since the start
-  double friction_slip = 0;  ///< elastic slip of a bond's broken share, m
-  double damage = 1;         ///< of a bond
-  double opening = 0;        ///< of a bond, m
+  bool beside = false;  ///< it had a projection onto the other body, so segment, xi and angle are known
+  int segment = 0;      ///< of the partner's outline
+  double xi = 0;        ///< in [0, 1] along it
+  double angle = 0;     ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
+  double slip = 0;      ///< elastic, m
 };
 
 /// What a contact does to an image of the master, and across its gap.
@@ -101,7 +98,7 @@ class Contacts {
   ~Contacts();
 
   /// Evaluates contacts at outline positions x [all outline nodes], m. Trial histories are kept beside the accepted
-  /// ones. Every evaluation before the first accept() is of the initial state: it finds bonded nodes, without slip.
+  /// ones. Every evaluation before the first accept() is of the initial state, without slip.
   ContactResult evaluate(const Points& x, const Periods& periods);
   ContactResult evaluate(const Points& x);  ///< with the periods at the start of the scene
   /// Accepts the trial histories of the last evaluation.

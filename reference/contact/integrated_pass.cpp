@@ -83,7 +83,7 @@ class Pass {
     const Eigen::Matrix<double, 6, 8> spread = sample.spread();
     const auto spread_out = [&](const Jet<6>::Gradient& by) -> PointVector { return spread.transpose() * by; };
     const Projection& at = sample.at;
-    result.normal = respond(of_.law, {}, at.gap.value, 0, true);
+    result.normal = respond(of_.law, 0, at.gap.value, 0);
     result.gap_by = spread_out(at.gap.gradient);
     result.gap_by_twice = spread.transpose() * at.gap.hessian * spread;
     if (!of_.law.shears()) return result;
@@ -159,7 +159,7 @@ class Pass {
   /// Adds the gradient of the integral of the normal energy, and its derivative.
   void press() {
     ContactPatch& patch = result_.patch;
-    const double untouched = respond(of_.law, {}, 0, 0, true).stored;
+    const double untouched = respond(of_.law, 0, 0, 0).stored;
     for (const Touch& touch : points_) {
       const Response& law = touch.normal;
       const PointVector force = -law.pressure * touch.gap_by;

@@ -74,12 +74,12 @@ void refuse_dashpots(const ContactRule& rule) {
 }
 
 void check_range(const ContactRule& rule, const Law& law) {
-  if (law.strength < law.kn * law.reach && law.residual_strength < law.kn * law.reach) return;
+  if (law.strength < law.kn * law.reach) return;
   throw InputError(
       fmt::format("strength of contacts between \"{}\" and \"{}\" is only reached at a gap of {:.4g} m, beyond the "
                   "range of {:.4g} m: "
                   "give a larger stiffness or range",
-                  rule.first, rule.second, std::max(law.strength, law.residual_strength) / law.kn, law.reach));
+                  rule.first, rule.second, law.strength / law.kn, law.reach));
 }
 
 Law make_law(const ContactRule& rule, double kn, double spacing) {
@@ -87,18 +87,12 @@ Law make_law(const ContactRule& rule, double kn, double spacing) {
   Law law;
   law.kind = rule.law;
   law.kn = kn;
-  law.kt = rule.shear_stiffness.value_or(law.bonds() ? kn / (rule.shear_ratio * rule.shear_ratio) : kn);
+  law.kt = rule.shear_stiffness.value_or(kn);
   law.start = rule.smoothing * spacing;
   law.friction = rule.friction;
   law.cohesion = rule.cohesion;
   law.strength = rule.strength;
   law.shear_strength = rule.shear_strength.value_or(rule.strength);
-  law.residual_strength = rule.residual_strength;
-  law.ratio = rule.shear_ratio;
-  law.bond_gap = rule.bond_gap;
-  law.threshold = rule.fatigue_threshold;
-  law.rate = rule.fatigue_rate;
-  law.shear_rate = rule.shear_fatigue_rate;
   switch (rule.law) {
     case ContactLawKind::frictionless:
       break;
@@ -106,7 +100,6 @@ Law make_law(const ContactRule& rule, double kn, double spacing) {
       law.reach = rule.tension / kn;
       break;
     case ContactLawKind::cohesive:
-    case ContactLawKind::cohesive_fatigue:
       law.reach = rule.range.value_or(0.12 * spacing);
       check_range(rule, law);
   }

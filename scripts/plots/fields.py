@@ -27,8 +27,8 @@ UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2", "strain
          **dict.fromkeys(("contact_gap", "contact_slip"), "m")}
 _TITLES = {"von_mises": "von Mises stress", "tresca": "Tresca stress", "jacobian": "volume over that at the start",
            "plastic_strain": "equivalent plastic strain", "temperature_rise": "rise of temperature since the start",
-           "contact_damage": "damage of bonds: 0 whole, 1 torn", "bond_damage": "damage of bonds: 0 whole, 1 torn"}
-_COLOURS = {"velocity": "cividis", "displacement": "cividis", "acceleration": "cividis", "contact_damage": "turbo", "bond_damage": "turbo",
+           "bond_damage": "damage of bonds: 0 whole, 1 torn"}
+_COLOURS = {"velocity": "cividis", "displacement": "cividis", "acceleration": "cividis", "bond_damage": "turbo",
             "contact_count": "viridis", "material": "viridis", "scale": "viridis"}
 _OF_ANY_GRAIN = {"temperature_rise", "contact_count", "material", "scale"}  # other fields of cells are of what deforms
 # Colours of a quantity that is not linear over a triangle are exact at this share of the picture's width.
@@ -119,11 +119,10 @@ class Field:
         """`sample`: the frames that the scale is made of."""
         self.frames, self.name = frames, name
         self.grid = next(grid for grid in frames.grids if name in frames.names(grid))
-        self.bonded = self._values(0) < 1 if name == "contact_damage" else None
         vector = self._raw(sample[0]).ndim == 2
         self.title = _TITLES.get(name, name.replace("_", " ") + " norm" * vector)
         colours = _COLOURS.get(name, "inferno" if self.grid == "bodies" else "YlOrRd")
-        if self.bonded is not None or name == "bond_damage":
+        if name == "bond_damage":
             self.scale = Scale(ScalarMappable(Normalize(0, 1), plt.get_cmap(colours)), 1.0, "-", "neither")
         else:
             found = np.concatenate([self._shown(index) for index in sample])
@@ -164,11 +163,9 @@ class Field:
         return _norm(raw) if raw.ndim == 2 else raw
 
     def _is_shown(self, index: int) -> np.ndarray:
-        """Of points of outlines: those in touch, or bonded. Bonds of contacts are those of the first frame."""
+        """Of points of outlines: those in touch, or bonded."""
         values = self._values(index)
-        if self.name == "bond_damage":
-            return np.isfinite(values)
-        return np.isfinite(values) & (values != 0) if self.bonded is None else self.bonded
+        return np.isfinite(values) & ((values != 0) | (self.name == "bond_damage"))
 
     def _shown(self, index: int) -> np.ndarray:
         """Values that count for the scale."""

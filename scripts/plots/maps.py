@@ -51,13 +51,8 @@ def velocity(run: Run, indices: list[int]) -> Figure | None:
 
 
 def damage(run: Run, indices: list[int]) -> Figure | None:
-    """Bonds on the outlines that they join, from whole to torn. Those of contacts are the bonds of the first frame."""
-    if _has(run.frames, "bond_damage"):
-        return _sheet(run, indices, Field(run.frames, "bond_damage", indices))
-    if not _has(run.frames, "contact_damage"):
-        return None
-    shown = Field(run.frames, "contact_damage", indices)
-    return _sheet(run, indices, shown) if shown.bonded.any() else None
+    """Bonds on the outlines that they join, from whole to torn."""
+    return _sheet(run, indices, Field(run.frames, "bond_damage", indices)) if _has(run.frames, "bond_damage") else None
 
 
 def fragments(run: Run, indices: list[int]) -> Figure | None:

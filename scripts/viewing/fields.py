@@ -66,7 +66,6 @@ LOOKS = {
     "scale": Look("size over that of the shape", "-", "viridis", of_compliant=False),
     "contact_pressure": _contact("contact pressure", "Pa"),
     "contact_shear": _contact("contact shear", "Pa"),
-    "contact_damage": Look("bond damage, 1 torn", "-", "turbo", of_compliant=False, span=(0.0, 1.0), at="outlines"),
     "bond_damage": Look("bond damage, 1 torn", "-", "turbo", of_compliant=False, span=(0.0, 1.0), at="outlines"),
     "fragment": Look("number of the fragment", "-", "prism", of_compliant=False, step=1.0),
     "contact_gap": _contact("contact gap", "m"),

@@ -15,7 +15,6 @@ from viewing.fields import LOOKS, Look, Scale, Spread
 from viewing.shapes import Points, Shapes
 
 _LEVEL = 6
-_TORN = 1  # damage of a node without bonds
 
 
 def packed(numbers: np.ndarray, missing: np.ndarray | None = None) -> bytes:
@@ -60,7 +59,6 @@ class Packing:
         self.points = Points(frames, chosen)
         self.shapes = Shapes(self.points, chosen[0])
         self.cell_order = np.argsort(self.points.cells.body, kind="stable")
-        self._unbonded: np.ndarray | None = None
         self.box = self._survey()
 
     def _survey(self) -> np.ndarray:
@@ -88,18 +86,9 @@ class Packing:
             return stored[: len(self.points.cells.point_body), :2].T.astype(float)
         if look.at == "outlines":
             assert self.points.outlines is not None
-            return self._bonded(field, stored[: len(self.points.outlines.point_body)].astype(float))[None]
+            return stored[: len(self.points.outlines.point_body)].astype(float)[None]
         values = np.where(self.points.cells.kind == COMPLIANT, stored, np.nan) if look.of_compliant else stored
         return values[self.cell_order].astype(float)[None]
-
-    def _bonded(self, field: Field, values: np.ndarray) -> np.ndarray:
-        """Damage has a meaning where a bond was in the first frame of all: none forms later."""
-        if field.name != "contact_damage":
-            return values
-        if self._unbonded is None:
-            first = self.frames.field("outlines", 0, field.name)
-            self._unbonded = np.zeros(len(values), dtype=bool) if first is None else first[: len(values)] == _TORN
-        return np.where(self._unbonded, np.nan, values)
 
     def chunks(self) -> Iterator[tuple[str, str]]:
         """Names and texts."""

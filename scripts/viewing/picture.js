@@ -183,7 +183,7 @@ function paintBands(raster, model, shown, field, values, scale, view, ratio) {
 /// Damage and gaps have a value where they are; other fields of contacts are zero away from them.
 function shownAlong(field, a, b) {
   if (Number.isNaN(a) || Number.isNaN(b)) return false;
-  return field.name === "contact_damage" || field.name === "contact_gap" || a !== 0 || b !== 0;
+  return field.name === "bond_damage" || field.name === "contact_gap" || a !== 0 || b !== 0;
 }
 
 let grainSize = 0;  // m, median extent of grains in the first frame that is drawn

@@ -176,14 +176,10 @@ TEST(ContactHistory, RefreshInPlaceChangesNothing) {
 /// EXACT: what no history can have, as in a checkpoint of something else, is refused.
 TEST(ContactHistory, refuses_other_columns) {
   ContactHistory history;
-  history.set_columns(1);
   history.resize(16);
   EXPECT_NO_THROW(history.loaded());
-  for (const int columns : {0, 1, 4, 5}) {
-    ContactHistory other = history;
-    other.columns = columns;
-    EXPECT_THROW(other.loaded(), ArchiveError) << columns;
-  }
+  history.numbers.pop_back();
+  EXPECT_THROW(history.loaded(), ArchiveError);
 }
 
 /// EXACT: so are contacts that no search leaves behind, before anything follows from them.

@@ -100,20 +100,18 @@ TEST(InitialOverlap, counts_pairs_and_names_the_deepest) {  // EXACT
 
 /// Stores energy at a gap of nothing, and at a gap that cohesion spans.
 TEST(InitialOverlap, is_not_cohesion) {  // EXACT
-  for (const ContactLawKind law : {ContactLawKind::cohesive, ContactLawKind::cohesive_fatigue}) {
-    Scene scene = with(box_shape("block", 1, 1, 0.1), {{0, 0}, {1.001, 0}});
-    ContactRule& rule = scene.contacts[0];
-    rule.law = law, rule.strength = 1, rule.range = 0.02, rule.bond_gap = 0.005;
-    const Model joined = build_model(scene);
-    EXPECT_EQ(Simulation(joined).overlap().pairs, 0);
-    EXPECT_EQ(describe(Simulation(joined).overlap(), joined), "");
-    scene.grains[0].packing.positions[1].x() = 0.99;
-    const InitialOverlap cohesive = Simulation(build_model(scene)).overlap();
-    scene.contacts = {frictionless(100)};
-    const InitialOverlap loose = Simulation(build_model(scene)).overlap();
-    EXPECT_EQ(cohesive.pairs, 1);
-    EXPECT_NEAR(cohesive.stored, loose.stored, 1e-14) << "of compression alone";
-  }
+  Scene scene = with(box_shape("block", 1, 1, 0.1), {{0, 0}, {1.001, 0}});
+  ContactRule& rule = scene.contacts[0];
+  rule.law = ContactLawKind::cohesive, rule.strength = 1, rule.range = 0.02;
+  const Model joined = build_model(scene);
+  EXPECT_EQ(Simulation(joined).overlap().pairs, 0);
+  EXPECT_EQ(describe(Simulation(joined).overlap(), joined), "");
+  scene.grains[0].packing.positions[1].x() = 0.99;
+  const InitialOverlap cohesive = Simulation(build_model(scene)).overlap();
+  scene.contacts = {frictionless(100)};
+  const InitialOverlap loose = Simulation(build_model(scene)).overlap();
+  EXPECT_EQ(cohesive.pairs, 1);
+  EXPECT_NEAR(cohesive.stored, loose.stored, 1e-14) << "of compression alone";
 }
 
 TEST(InitialOverlap, is_not_the_rounding_of_faces_that_touch) {  // EXACT

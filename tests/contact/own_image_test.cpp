@@ -57,13 +57,6 @@ ContactRule sticky() {
   return rule;
 }
 
-ContactRule bonded() {
-  ContactRule rule = testing::cohesive_fatigue(100, 0.5, 0.03, 1.25, 0.02);
-  rule.fatigue_threshold = 0.01;
-  rule.fatigue_rate = rule.shear_fatigue_rate = 0.5;
-  return rule;
-}
-
 struct Seen {
   int contacts = 0;
   double stored = 0, dissipated = 0, momentum = 0;
@@ -104,7 +97,7 @@ Seen run_both(const Scene& single, const Scene& twice) {
 class OwnImage : public ::testing::TestWithParam<BodyKind> {};
 
 TEST_P(OwnImage, is_another_body_in_twice_the_period) {
-  for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.4), sticky(), bonded()}) {
+  for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.4), sticky()}) {
     SCOPED_TRACE(static_cast<int>(rule.law));
     const Seen seen = run_both(ellipses(GetParam(), 1, rule), ellipses(GetParam(), 2, rule));
     EXPECT_GT(seen.contacts, 3) << "it must touch, or this test says nothing";

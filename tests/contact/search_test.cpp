@@ -152,12 +152,6 @@ void follow_heap(const ContactRule& rule) {
   Random random(77);
   ContactRig rig(heap(random, rule, true));
   ContactOracle oracle(rig, rule);
-  if (rule.bond_gap > 0) {
-    rig.refresh();
-    oracle.evaluate();
-    oracle.bond();
-    oracle.commit();
-  }
   int refreshes = 0;
   for (int step = 0; step < 40; ++step) {
     for (std::size_t b = 0; b + 2 < rig.model.bodies.size(); ++b) {
@@ -179,16 +173,6 @@ void follow_heap(const ContactRule& rule) {
 }
 
 TEST(ContactSearch, MissesNoContactInAMovingHeap) { follow_heap(rules[2]); }
-
-// INDEPENDENT: bonds that stretch, wear and break, and the slip and cohesion of what they leave; the energy balance
-// against the work of the tractions.
-TEST(ContactSearch, DamageEqualsBruteForceInAMovingHeap) {
-  ContactRule rule = cohesive_fatigue(stiffness, 0.5, 0.02, 1.3, 0.005);
-  follow_heap(rule);
-  rule.residual_strength = 0.2, rule.friction = 0.4;
-  rule.fatigue_threshold = 0.1, rule.fatigue_rate = 0.6, rule.shear_fatigue_rate = 1.1;
-  follow_heap(rule);
-}
 
 // Two bodies fly at each other, turning, from beyond every margin until they overlap; each step is far below the skin.
 void approach(Random& random, const ContactRule& rule) {

@@ -36,12 +36,12 @@ int expect_what_forces_store(const Scene& scene) {
 }
 
 // EXACT: what a state has of its contacts is what forces at its own positions store, from its own memory on: there
-// nothing slips. Of laws that slip, tear and forget, in a layer that is pressed and sheared, through searches for
+// nothing slips. Of laws that slip and forget, in a layer that is pressed and sheared, through searches for
 // candidates and rejected steps; at the end of a step of either scheme. Rounding of the sums.
 TEST(EnergyAccountant, contact_energy_is_that_of_the_forces) {
   int rejections = 0;
   for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.4), cohesive(100, 0.1, 0.02, 0.1),
-                                  cohesive_fatigue(100, 0.1, 0.02, 1, 0.015), smoothed(mohr_coulomb(100, 0.4), 0.3)}) {
+                                  smoothed(mohr_coulomb(100, 0.4), 0.3)}) {
     Scene scene = small_third_body(1e9);
     scene.contacts = {rule};
     scene.time.tolerance = 1e-3;

@@ -39,15 +39,13 @@ Scene bonds_and_servo() {
   scene.grains[0].packing.row_pitch = 2.0;
   scene.walls[1].level = 7.02;
   scene.walls[1].y.damping = 0.5;
-  ContactRule bonds = scene.contacts[1];
+  BondRule bonds;
   bonds.first = bonds.second = "soft";
-  bonds.law = ContactLawKind::cohesive_fatigue;
-  bonds.strength = 0.5;
-  bonds.range = 0.3;
-  bonds.bond_gap = 0.02;
+  bonds.strength = 0.5, bonds.fracture_energy = 0.075;
+  bonds.gap = 0.02;
   bonds.fatigue_rate = bonds.shear_fatigue_rate = 0.5;
   bonds.fatigue_threshold = 1e-3;
-  scene.contacts.push_back(bonds);
+  scene.bonds = {bonds};
   scene.materials[0].viscosity = 0.01;
   scene.discretisation.mass = Mass::corrected;
   scene.contact.refresh_steps = 7;
@@ -251,15 +249,13 @@ TEST_P(Restart, scenes_refresh_slip_and_cross_the_period) {
   EXPECT_GT(simulation.forces().contact().refreshes(), 3) << "candidates were rebuilt";
   const ContactHistory& history = simulation.state().memory.contact;
   int slipping = 0, worn = 0;
-  for (int i = 0; i < history.records(); ++i) {
-    slipping += history.number(i, ContactHistory::slip) != 0;
-    if (history.fields() == 0) continue;
-    const double damage = history.number(i, ContactHistory::first_of_law);
-    worn += damage > 0.01 && damage < 0.99;
-  }
+  for (int i = 0; i < history.records(); ++i) slipping += history.number(i, ContactHistory::slip) != 0;
+  const BondHistory& bonds = simulation.state().memory.bonds;
+  for (std::size_t i = 0; i < simulation.forces().bonds().bonds().size(); ++i)
+    for (int end = 0; end < 2; ++end) worn += bonds.damage(i, end) > 0;
   EXPECT_GT(slipping, 1) << "contacts have slip";
   EXPECT_GT(simulation.state().dissipated, 0);
-  EXPECT_EQ(worn > 0, history.fields() > 0) << "bonds are half worn";
+  EXPECT_EQ(worn > 0, !scene_model.scene.bonds.empty()) << "bonds are damaged";
   const std::vector<ContactPair>& contact_pairs = simulation.forces().contact().contact_pairs();
   EXPECT_TRUE(std::any_of(contact_pairs.begin(), contact_pairs.end(), [&](const ContactPair& p) {
     return p.images != Images{} || scene_model.bodies[p.first].wall || scene_model.bodies[p.second].wall;

@@ -47,10 +47,15 @@ Scene rubbing(ContactRule rule) {
 
 Scene with_friction() { return rubbing(mohr_coulomb(100, 0.4)); }
 Scene with_bonds() {
-  ContactRule rule = cohesive_fatigue(100, 0.5, 0.3, 1, 0.02);
+  Scene scene = rubbing(mohr_coulomb(100, 0.4));
+  BondRule rule;
+  rule.first = rule.second = "all";
+  rule.gap = 0.02;
+  rule.strength = 0.5, rule.fracture_energy = 0.075;
   rule.fatigue_rate = rule.shear_fatigue_rate = 0.5;
   rule.fatigue_threshold = 1e-3;
-  return rubbing(rule);
+  scene.bonds = {rule};
+  return scene;
 }
 Scene torn_bonds() {
   Scene scene = bursting_disc(1000);
@@ -146,39 +151,6 @@ TEST(StartPoint, takes_the_new_scenes_friction_and_drives) {
   EXPECT_EQ(rigid(third.state().reduced_momentum, 1)[0], 0.3) << "EXACT: imposed from the start on";
   advance(third, 0.5);
   EXPECT_NEAR(rigid(third.state().position, 1)[0] - rigid(first.state().position, 1)[0], 0.15, 1e-14) << "EXACT";
-}
-
-/// Bonds come about at a start where the law of a pair is another one, and not where it is the same.
-TEST(StartPoint, pairs_with_another_law_begin_anew) {
-  const Model plain = build_model(on_a_slope(0.5, 4));
-  Simulation loose(plain);
-  advance(loose, 20);
-  const StartPoint start = point_of(loose);
-  const auto wholeness = [&](double bond_gap, const StartPoint& from, double range = 0.1) {
-    Scene scene = on_a_slope(0.5, 4);
-    scene.contacts = {cohesive_fatigue(100, 1, range, 1, bond_gap)};
-    const Model model = build_model(scene);
-    Simulation simulation(model, &from);
-    const std::vector<double> damage =
-        simulation.forces().contact().least_internal_variable(simulation.state().memory.contact, "damage", 1);
-    return std::pair(*std::min_element(damage.begin(), damage.end()), point_of(simulation));
-  };
-  const auto [bonded, with_bonds] = wholeness(0.02, start);
-  EXPECT_EQ(bonded, 0) << "EXACT: they touch, by a law that is new to them";
-  EXPECT_EQ(wholeness(0, with_bonds).first, 0) << "EXACT: bonds are carried, whatever bond_gap";
-  const auto [apart, without_bonds] = wholeness(1e-30, [&] {
-    StartPoint lifted = start;
-    lifted.position.rigid[1] += 0.05;
-    return lifted;
-  }());
-  EXPECT_EQ(apart, 1) << "EXACT: too far for bonds";
-  EXPECT_EQ(wholeness(0.1, without_bonds).first, 1) << "EXACT: of the same law, none comes about";
-  StartPoint lifted = start;
-  lifted.position.rigid[1] += 2;
-  EXPECT_LT(wholeness(3, lifted, 3).first, 1) << "EXACT: bonds of a law that is new to them reach so far";
-  const StartPoint far_apart = wholeness(1e-30, lifted).second;
-  ASSERT_TRUE(far_apart.contact.contact_pairs.empty());
-  EXPECT_EQ(wholeness(3, far_apart, 3).first, 1) << "EXACT: nor where the pair was too far apart to be watched";
 }
 
 /// EXACT: a body in touch with itself starts with another law of itself; at no state it would be refused.

@@ -32,18 +32,9 @@ const std::vector<Bad> bad_laws{
 };
 INSTANTIATE_TEST_SUITE_P(Laws, BadContacts, ::testing::ValuesIn(bad_laws), scene_tests::name_of);
 
-const std::vector<Bad> bad_bonds{
-    {"NoBondGap", "law = 'cohesive'", "law = 'cohesive-fatigue'", "[[contacts]]\nbetween = ['soft'",
-     "missing key 'bond_gap'"},
-    {"NoThreshold", "law = 'cohesive'", "law = 'cohesive-fatigue'\nbond_gap = 1e-9\nfatigue_rate = '1 GPa-1'",
-     "[[contacts]]\nbetween = ['soft'", "missing key 'fatigue_threshold'"},
-    {"ResidualBeyondStrength", "law = 'cohesive'",
-     "law = 'cohesive-fatigue'\nbond_gap = 1e-9\nresidual_strength = '1 GPa'", "'1 GPa'\nstrength",
-     "'residual_strength' in [[contacts]] 1: found \"1 GPa\"; allowed: a quantity in Pa, >= 0 and <= 200000000"},
-    {"ShearStiffnessOfFatigue", "law = 'cohesive'", "law = 'cohesive-fatigue'\nbond_gap = 1e-9\nshear_stiffness = 1",
-     "shear_stiffness", "unknown key 'shear_stiffness'"},
-};
-INSTANTIATE_TEST_SUITE_P(Bonds, BadContacts, ::testing::ValuesIn(bad_bonds), scene_tests::name_of);
+const std::vector<Bad> former_laws{{"CohesiveFatigue", "law = 'cohesive'", "law = 'cohesive-fatigue'",
+                                    "'cohesive-fatigue'", "is now a rule of its own, [[bonds]]"}};
+INSTANTIATE_TEST_SUITE_P(Former, BadContacts, ::testing::ValuesIn(former_laws), scene_tests::name_of);
 
 const std::vector<Bad> bad_settings{
     {"RefreshOf0Steps", "skin = 0.4", "skin = 0.4\nrefresh = 0", "0\n[[probes]]", "an integer from 1"},

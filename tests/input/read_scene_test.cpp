@@ -130,10 +130,6 @@ TEST(ReadScene, ContactSettingsAndLaws) {
   text = replaced(text, "friction = 0.3", "friction = 0.3\nrestitution = 0.5\npull = true");
   text = replaced(text, "[contact]\n",
                   "[[contacts]]\nbetween = [\"soft\", \"soft\"]\nlaw = \"frictionless\"\n[contact]\n");
-  text = replaced(
-      text, "law = \"cohesive\"",
-      "law = \"cohesive-fatigue\"\nbond_gap = \"1 nm\"\nshear_ratio = 2\nresidual_strength = 1\nfriction = 0.2\n"
-      "fatigue_rate = \"1 GPa-1\"\nfatigue_threshold = \"20 MPa\"");
   const Scene scene = read_scene(SceneFile(text).path());
   EXPECT_EQ(scene.contact.length, ContactLength::current);
   EXPECT_TRUE(scene.contact.self_contact);
@@ -141,18 +137,6 @@ TEST(ReadScene, ContactSettingsAndLaws) {
   EXPECT_EQ(scene.contact.refresh_steps, 0);
   EXPECT_EQ(*scene.contacts[1].restitution, 0.5);
   EXPECT_TRUE(scene.contacts[1].pull);
-  const ContactRule& bond = scene.contacts[0];
-  EXPECT_EQ(bond.law, ContactLawKind::cohesive_fatigue);
-  EXPECT_DOUBLE_EQ(bond.bond_gap, 1e-9);
-  EXPECT_EQ(bond.shear_ratio, 2);
-  EXPECT_EQ(bond.residual_strength, 1);
-  EXPECT_EQ(bond.friction, 0.2);
-  EXPECT_DOUBLE_EQ(bond.fatigue_rate, 1e-9);
-  EXPECT_DOUBLE_EQ(bond.shear_fatigue_rate, 1e-9);
-  EXPECT_DOUBLE_EQ(bond.fatigue_threshold, 20e6);
-  const Scene without_wear = read_scene(SceneFile(replaced(text, "fatigue_rate = \"1 GPa-1\"\n", "")).path());
-  EXPECT_EQ(without_wear.contacts[0].fatigue_rate, 0);
-  EXPECT_DOUBLE_EQ(without_wear.contacts[0].fatigue_threshold, 20e6) << "known without a rate, to no effect";
   EXPECT_EQ(read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = 30")).path()).contact.refresh_steps, 30);
   const Scene plain = read_scene(SceneFile(replaced(good_scene, "skin = 0.4", "refresh = \"safe\"")).path());
   EXPECT_EQ(plain.contact.refresh_steps, 0);

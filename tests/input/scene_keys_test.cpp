@@ -72,21 +72,21 @@ TEST(SceneKeys, DefaultsThatReadersDeriveAreThese) {
             "until in y of [[boundary]]: end of the run\n"
             "from in angle of [[boundary]]: start of the run\n"
             "until in angle of [[boundary]]: end of the run\n"
-            "shear_fatigue_rate in [[contacts]]: `fatigue_rate`\n"
             "shear_fatigue_rate in [[bonds]]: `fatigue_rate`\n");
 }
 
 TEST(SceneKeys, DerivedDefaultsHold) {
   const scene_tests::SceneFile file(scene_tests::edited({{"title = \"Good\"\n", ""},
                                                          {", row_pitch = \"1.1 um\"", ""},
-                                                         {"law = \"cohesive\"",
-                                                          "law = \"cohesive-fatigue\"\nbond_gap = 0\n"
-                                                          "fatigue_rate = 3\nfatigue_threshold = 1"}}));
+                                                         {"[contact]\n",
+                                                          "[[bonds]]\nbetween = \"all\"\nstrength = 2\n"
+                                                          "fracture_energy = 1\nfatigue_rate = 3\n"
+                                                          "fatigue_threshold = 1\n[contact]\n"}}));
   const Scene scene = read_scene(file.path());
   EXPECT_EQ(scene.title, file.path().stem().string());
   EXPECT_EQ(scene.grains[0].name, "grains");
   EXPECT_DOUBLE_EQ(scene.grains[0].packing.row_pitch, 1e-6 * 2 / std::sqrt(3.0));
-  EXPECT_EQ(scene.contacts[0].shear_fatigue_rate, 3);
+  EXPECT_EQ(scene.bonds[0].shear_fatigue_rate, 3);
   EXPECT_TRUE(scene.walls[0].x.window.always());
 }
 

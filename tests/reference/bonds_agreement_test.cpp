@@ -30,9 +30,12 @@ BondRule bond_rule(double gap = 0) {
 /// Friction of contact beside a bond: less than that of the bond, and the same.
 constexpr double frictions[] = {0.3, 0.6};
 
+/// Bonds under the higher friction fatigue.
 Scene bonded(Scene scene, double friction, double gap = 0) {
   scene.contacts = {mohr_coulomb(130, friction)};
   scene.bonds = {bond_rule(gap)};
+  BondRule& rule = scene.bonds[0];
+  if (friction == frictions[1]) rule.fatigue_threshold = 0.2, rule.fatigue_rate = 0.3, rule.shear_fatigue_rate = 0.5;
   return scene;
 }
 
@@ -91,10 +94,10 @@ class BothBonds {
     const Bond& wanted = engine_.bonds()[bond];
     for (std::size_t i = 0; i < reference_.all().size(); ++i) {
       const reference::Bond& other = reference_.all()[i];
-      if (other.carrier == wanted.carrier && other.partner == wanted.partner && other.segment == wanted.segment)
+      if (other.slave == wanted.slave && other.master == wanted.master && other.segment == wanted.segment)
         return reference_.damage(i, static_cast<std::size_t>(end));
     }
-    ADD_FAILURE() << "no bond of segment " << wanted.segment << " of body " << wanted.carrier;
+    ADD_FAILURE() << "no bond of segment " << wanted.segment << " of body " << wanted.slave;
     return 0;
   }
 

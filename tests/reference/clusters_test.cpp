@@ -11,7 +11,7 @@ using namespace dynamics_tests;
 using reference::SolverOptions;
 using reference::Vector;
 
-/// Contact forces on all outline nodes, N/m, [2 outline nodes].
+/// Forces of contacts and bonds on all outline nodes, N/m, [2 outline nodes].
 Vector engine_contact_forces(const Simulation& simulation) {
   const OutlineField& force = simulation.state().contact_force;
   const Model& model = simulation.model();
@@ -26,6 +26,8 @@ Vector reference_contact_forces(const ReferenceRun& run) {
   Vector forces = Vector::Zero(2 * run.system.bodies().outline_nodes());
   for (const reference::ContactElement& element : run.stepping.forces().contacts.elements)
     for (int i = 0; i < 6; ++i) forces[2 * element.node[i / 2] + i % 2] -= element.force[i];
+  for (const reference::BondElement& element : run.stepping.forces().bonds.elements)
+    for (int i = 0; i < 12; ++i) forces[2 * element.node[i / 2] + i % 2] -= element.force[i];
   return forces;
 }
 
@@ -85,32 +87,26 @@ TEST_P(ReferenceClusters, frictionless_equilibrium_agrees_with_the_damped_engine
   EXPECT_LT(difference.forces, 1e-4);
 }
 
-/// Bonds that hold whatever comes: what sticks does so from the start.
-ContactRule glue() {
-  ContactRule rule;
+/// Bonds that hold whatever comes: they open by 1 before they soften.
+Scene glued(Scene scene) {
+  BondRule rule;
   rule.first = rule.second = "all";
-  rule.law = ContactLawKind::cohesive_fatigue;
-  rule.stiffness = 60;
-  rule.strength = 60;  // critical opening 1
-  rule.range = 2;
-  rule.bond_gap = 0.02;
-  rule.fatigue_threshold = 50;
-  return rule;
+  rule.gap = 0.05;
+  rule.strength = 60, rule.fracture_energy = 60;
+  scene.bonds = {rule};
+  return scene;
 }
 
-// INDEPENDENT: grains that stick together, and may not turn on each other, so that all positions can be compared. Slip
-// is the sum of l d(xi) over the way, which depends on the way to second order, strain times slip: the bonds are open
-// by up to a hundredth at the start, the engine relaxes from there with a few damped oscillations and the static solver
-// in one step. Neither slower loads nor more load steps change the difference. Friction alone could not be
-// compared: where a node first stuck depends on the way to first order.
-TEST(ReferenceClusters, sticking_equilibrium_agrees_with_the_damped_engine_but_for_the_way_there) {
+// INDEPENDENT: grains that are bonded. Bonds store energy and nothing slips, so equilibrium does not depend on the way
+// to it. Tolerances as without bonds.
+TEST(ReferenceClusters, bonded_equilibrium_agrees_with_the_damped_engine) {
   for (const bool mixed : {false, true}) {
-    const Differences difference = compare_at_rest(pushed_cluster(1, 60, mixed, glue(), 0.02, 40), 20);
-    std::printf("7 sticking, %s: centres %.2e, positions %.2e of the diameter, forces %.2e\n",
+    const Differences difference = compare_at_rest(glued(pushed_cluster(1, 60, mixed, frictionless(60), 0.02, 40)), 20);
+    std::printf("7 bonded, %s: centres %.2e, positions %.2e of the diameter, forces %.2e\n",
                 mixed ? "mixed" : "compliant", difference.centres, difference.positions, difference.forces);
     EXPECT_LT(difference.centres, 1e-6);
-    EXPECT_LT(difference.positions, 2e-5);
-    EXPECT_LT(difference.forces, 1e-3);
+    EXPECT_LT(difference.positions, 1e-6);
+    EXPECT_LT(difference.forces, 1e-4);
   }
 }
 

@@ -30,19 +30,6 @@ struct Branch {
   bool notch = false;  ///< node 1 of the polygon lies in a re-entrant corner
 };
 
-ContactRule worn(double threshold, double residual) {
-  ContactRule rule = cohesive_fatigue(kn, 0.5, 0.03, 1.25, 0.001);
-  rule.fatigue_threshold = threshold, rule.fatigue_rate = 0.6, rule.shear_fatigue_rate = 1.1;
-  rule.residual_strength = residual, rule.friction = residual;
-  return rule;
-}
-
-ContactRule unworn(double residual) {
-  ContactRule rule = worn(0.1, residual);
-  rule.fatigue_rate = rule.shear_fatigue_rate = 0;
-  return rule;
-}
-
 const Branch branches[] = {
     {"pressed", frictionless(kn), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Dissipation::none},
     {"quadratic start", smoothed(frictionless(kn), 0.05), 0, 0.3, -0.02, 0, 0.4, -0.03, 0, Dissipation::none},
@@ -69,17 +56,7 @@ const Branch branches[] = {
     {"around a re-entrant corner inside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, -0.02, 1, 0.03, -0.03, 0,
      Dissipation::none, true},
     {"around a re-entrant corner outside, stick", cohesive(kn, 0.5, 0.05, 90), 0, 0.95, 0.02, 1, 0.06, 0.03, 0,
-     Dissipation::none, true},
-    {"bond around a corner", unworn(0), 0, 0.99, 0, 1, 0.005, 0.006, 0, Dissipation::none},
-    {"bond, elastic", worn(0.45, 0), 0, 0.3, 0, 0, 0.302, 0.002, 0, Dissipation::none},
-    {"bond, pressed", worn(0.1, 0), 0, 0.3, 0, 0, 0.309, -0.002, 0, Dissipation::some},
-    {"bond, worn by loads", worn(0.1, 0), 0, 0.3, 0, 0, 0.299, 0.004, 0, Dissipation::some},
-    {"bond, worn by shear", worn(0.1, 0), 0, 0.3, 0, 0, 0.296, 0.0007, 0, Dissipation::some},
-    {"bond, statically damaged", unworn(0), 0, 0.3, 0, 0, 0.31, 0.015, 0, Dissipation::some},
-    {"bond, torn by shear", unworn(0.3), 0, 0.3, 0, 0, 0.35, 0.002, 0, Dissipation::some},
-    {"never bonded, stick", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.301, 0.001, 0, Dissipation::none},
-    {"never bonded, slip", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, 0.01, 0, Dissipation::some},
-    {"never bonded, slip pressed", worn(0.1, 0.3), 0, 0.3, 0.002, 0, 0.4, -0.01, 0, Dissipation::some}};
+     Dissipation::none, true}};
 
 // The branch with all nodes shaken, the first state accepted and, on the same segment, one half way.
 Needle on_branch(const Branch& branch, int sample) {
@@ -162,8 +139,7 @@ TEST(ReferenceContactElements, MomentumAndAngularMomentumBalance) {
 
 // INDEPENDENT: differences of the stored energy, where nothing slips. Step and error as above.
 TEST(ReferenceContactElements, ForceIsMinusTheEnergyGradient) {
-  for (const ContactRule& rule :
-       {frictionless(kn), smoothed(frictionless(kn), 0.05), cohesive(kn, 0.5, 0.05, 0), worn(0.1, 0)})
+  for (const ContactRule& rule : {frictionless(kn), smoothed(frictionless(kn), 0.05), cohesive(kn, 0.5, 0.05, 0)})
     for (const double gap : {-0.03, 0.003, 0.02})
       for (const double along : {0.4, 1.0}) {
         if (gap > 0 && rule.law == ContactLawKind::frictionless) continue;
@@ -183,7 +159,7 @@ TEST(ReferenceContactElements, ForceIsMinusTheEnergyGradient) {
           coordinate = before;
           EXPECT_NEAR((above - below) / -2e-6, force[i / 2][i % 2], 1e-8) << gap << " " << along;
         }
-        EXPECT_EQ(force[12].norm() > 1e-3, rule.law != ContactLawKind::cohesive_fatigue || gap < 0);
+        EXPECT_GT(force[12].norm(), 1e-3);
       }
 }
 
@@ -239,8 +215,7 @@ double largest_imbalance(const ContactRule& rule, const Way& way, int steps) {
   return largest;
 }
 
-const ContactRule sliding_rules[] = {mohr_coulomb(kn, 0.3, 0.05, 0.9), cohesive(kn, 0.5, 0.02, 0.4), worn(0.1, 0),
-                                     worn(0.1, 0.3)};
+const ContactRule sliding_rules[] = {mohr_coulomb(kn, 0.3, 0.05, 0.9), cohesive(kn, 0.5, 0.02, 0.4)};
 
 // RATE: kinks of the laws cost the error of the step in which they lie, as does a corner, at which forces turn: order
 // 1, a factor of 16, of which half is asked for. The largest: a tensile cut-off amid the step of 2.6e-5 at s = 0.2, 0.9

@@ -53,11 +53,8 @@ void compare(ContactRig& rig, reference::Contacts& contacts, Compared& all) {
 
 TEST(OwnImageAgreement, forces_of_all_laws) {
   LargestFigures figures;
-  ContactRule wearing = cohesive_fatigue(100, 0.5, 0.03, 1.25, 0.004);
-  wearing.fatigue_threshold = 0.1, wearing.fatigue_rate = 0.6, wearing.shear_fatigue_rate = 1.1;
   Compared all;
-  for (const ContactRule& rule :
-       {frictionless(100), mohr_coulomb(100, 0.3, 0.05, 0.2), cohesive(100, 0.5, 0.02, 0.4), wearing})
+  for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.3, 0.05, 0.2), cohesive(100, 0.5, 0.02, 0.4)})
     for (int sample = 0; sample < 20 && !HasFailure(); ++sample) {
       SCOPED_TRACE(sample);
       Random random(sample + 60);

@@ -69,14 +69,6 @@ def test_frames_and_fields_are_chosen(run: Path, tmp_path: Path, capsys: pytest.
         assert chunk(out, f"von_mises-{len(frames) - 1}") and f"von_mises-{len(frames)}" not in out.read_text()
 
 
-def test_torn_bonds_are_known_from_the_first_frame_of_all(run: Path, tmp_path: Path) -> None:
-    last = repr(Frames(run / "frames.h5", None).times[-1])
-    page = tmp_path / "a.html"
-    assert view.main([str(run), "--times", last, last, "--fields", "contact_damage", "--out", str(page)]) == 0
-    field = about(page)["fields"][0]
-    assert (field["least"], field["largest"]) == (1, 1), "nodes that never had one count for nothing"
-
-
 @pytest.mark.parametrize("options, said", [
     (["--fields", "von_mise"], "did you mean 'von_mises'?"), (["--fields", "velocity", "x"], "there are: velocity"),
     (["--times", "1", "2"], "no frame between 1 and 2 s"), (["--times", "2e-6", "1e-6"], "the earlier one"),

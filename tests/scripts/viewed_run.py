@@ -52,7 +52,7 @@ def add_fields(folder: Path) -> None:
                 pressure[5:9] = 5e9
             outlines["contact_pressure"] = pressure.astype("f4")
             outlines["contact_gap"] = np.where(pressure > 0, -1e-9 * random.random(points), np.nan).astype("f4")
-            outlines["contact_damage"] = np.where(np.arange(points) % 3, 1, index / 3).astype("f4")
+            outlines["bond_damage"] = np.where(np.arange(points) % 3, np.nan, index / 3).astype("f4")
 
 
 def write_viewed_run(folder: Path) -> Path:

@@ -47,19 +47,12 @@ class ContactOracle {
     return result;
   }
   void commit() { committed_ = trial_; }
-  /// Bonds at the start: the next commit takes them over, with the places of an evaluation before.
-  void bond() {
-    for (auto& [key, memory] : trial_)
-      if (memory.gap <= law_.rule.bond_gap) memory.damage = 0, memory.opening = std::max(memory.gap, 0.0);
-  }
 
  private:
   using Key = std::tuple<int, int, int, int>;  // slave, node, master, periods added to the slave
   struct Memory {
     int segment;
     double xi, angle, slip;
-    double damage = 1, opening = 0, gap = 0;
-    double elastic = 0;  ///< slip of a bond's broken share
   };
 
   const OutlineShape& shape(int body) const { return rig_.model.outlines[rig_.model.bodies[body].outline]; }
@@ -144,10 +137,8 @@ class ContactOracle {
 
   void respond(int slave, int k, int master, int image, const std::optional<OraclePoint>& point, const Memory* old,
                Result& result) {
-    const bool bonds = law_.rule.law == ContactLawKind::cohesive_fatigue;
     const Key key{slave, k, master, image};
-    if (bonds && old && old->damage < 1) return stretch(key, point, *old, result);
-    OracleLaw law = bonds ? OracleLaw{residual_of(law_.rule)} : law_;
+    OracleLaw law = law_;
     law.h = std::min(shape(slave).spacing, shape(master).spacing);
     const double weight = weight_of(slave, k);
     const double start = old ? old->slip : 0;
@@ -167,41 +158,6 @@ class ContactOracle {
     share_force(slave, k, master, *point, weight * law.pressure(point->gap), -weight * law.kt() * slip, result);
   }
 
-  /// A bond that goes on to the point, or breaks there or before. What its tractions did and is not stored is
-  /// dissipated. Of its area the share of the damage is broken: cohesion of the residual strength, and friction.
-  void stretch(const Key& key, const std::optional<OraclePoint>& point, const Memory& old, Result& result) {
-    const auto [slave, k, master, image] = key;
-    const ContactRule& rule = law_.rule;
-    const double weight = weight_of(slave, k);
-    const OracleBond before{rule, old.damage, old.opening, old.slip};
-    const OracleLaw left{residual_of(rule)};
-    const double kt = before.kt(), stored_before = old.damage * kt / 2 * old.elastic * old.elastic;
-    if (!point) {
-      result.dissipated += weight * (before.stored() + stored_before);
-      return;
-    }
-    const double gap = point->gap, opening = std::max(gap, 0.0), pressed = std::min(gap, 0.0);
-    const double moved = gap < *rule.range ? way(master, old, *point) : 0, slip = old.slip + moved;
-    const double most = left.shear_limit(gap) / kt, elastic = std::clamp(old.elastic + moved, -most, most);
-    const bool releases = kt * elastic * elastic <= (before.kn() * opening * opening + kt * slip * slip) * (1 + 1e-9);
-    const OracleBond now{rule, releases ? before.damage_at(opening, slip) : old.damage, opening, slip};
-    const double frictional = now.damage * kt * elastic, squeezed = before.kn() * pressed * pressed / 2;
-    result.dissipated += weight * (before.work_to(now) - (now.stored() - before.stored()) +
-                                   (old.damage * kt * old.elastic + frictional) / 2 * moved -
-                                   (frictional * elastic / 2 - stored_before) -
-                                   (now.damage - old.damage) / 2 * (left.energy(old.opening) + left.energy(opening)));
-    const bool torn = now.damage >= 1;
-    remember(key, *point, torn ? elastic : slip, now.damage, opening);
-    trial_[key].elastic = torn ? 0 : elastic;
-    if (gap < *rule.range) count_contact(*point, result);
-    if (torn && gap >= *rule.range) return;
-    const double adhesion = now.damage * (left.energy(gap) - squeezed);
-    result.stored += weight * (squeezed + now.stored() + adhesion + frictional * elastic / 2);
-    const double pull = now.tension() - now.damage * (left.pressure(gap) + before.kn() * pressed);
-    share_force(slave, k, master, *point, weight * (-before.kn() * pressed - pull),
-                -weight * (now.shear() + frictional), result);
-  }
-
   /// In one of the two passes.
   double weight_of(int slave, int k) const {
     return 0.25 * (reference_length(slave, k - 1) + reference_length(slave, k));
@@ -210,8 +166,8 @@ class ContactOracle {
     ++result.contacts;
     result.deepest = std::max(result.deepest, -point.gap);
   }
-  void remember(const Key& key, const OraclePoint& point, double slip, double damage = 1, double opening = 0) {
-    trial_[key] = {point.segment, point.xi, point.angle(), slip, damage, opening, point.gap};
+  void remember(const Key& key, const OraclePoint& point, double slip) {
+    trial_[key] = {point.segment, point.xi, point.angle(), slip};
   }
 
   /// Way from an old place to a new one along the master, at the new gap: the faces in between, and the turns of the

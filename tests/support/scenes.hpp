@@ -66,16 +66,6 @@ inline ContactRule cohesive(double stiffness, double strength, double range, dou
   return rule;
 }
 
-inline ContactRule cohesive_fatigue(double stiffness, double strength, double range, double shear_ratio,
-                                    double bond_gap) {
-  ContactRule rule = contact_rule(ContactLawKind::cohesive_fatigue, stiffness);
-  rule.strength = strength;
-  rule.range = range;
-  rule.shear_ratio = shear_ratio;
-  rule.bond_gap = bond_gap;
-  return rule;
-}
-
 inline ContactRule smoothed(ContactRule rule, double share) {
   rule.smoothing = share;
   return rule;

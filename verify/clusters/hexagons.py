@@ -1,4 +1,4 @@
-"""Scenes of hexagonal clusters of grains that are glued facet to facet."""
+"""Scenes of hexagonal clusters of grains that are bonded facet to facet."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from histories import speeds
 
 # Outline nodes of the three sorts are multiples of six, so every sort has a facet towards each neighbour. Half a facet
-# has the length tan(pi / sides). Halves differ by 0.027 and 0.045, and by 0.017 and 0.030: twice the slip, some 0.008.
+# has the length tan(pi / sides).
 SIDES = {60: (18, 24, 30), 168: (30, 42, 54)}
 # Displacement gradient of the outermost ring's centres: facets are compressed and sheared equally.
 PUSH = np.array([[-0.03, 0.02], [0.005, -0.02]])
@@ -38,23 +38,6 @@ def cluster(rings: int, mixed: bool) -> list[Grain]:
             outer = max(abs(i), abs(j), abs(i + j)) == rings
             grains.append(Grain(f"grain{len(grains)}", centre, sort, mixed and sort == 1, outer))
     return grains
-
-
-def glued(grains: list[Grain]) -> list[tuple[int, int, int]]:
-    """Neighbours, the one with the longer facet first, and the direction from it to the other in sixths of a turn."""
-    pairs = []
-    for i, long in enumerate(grains):
-        for j, short in enumerate(grains):
-            way = short.centre - long.centre
-            if long.sort < short.sort and np.linalg.norm(way) < 2.1:
-                pairs.append((i, j, round(np.arctan2(way[1], way[0]) / (np.pi / 3)) % 6))
-    return pairs
-
-
-def facing(sides: int, direction: int) -> list[int]:
-    """First and last node of the facet in a direction, in sixths of a turn."""
-    last = direction * sides // 6
-    return [(last - 1) % sides, last]
 
 
 def diameter(sides: int) -> float:

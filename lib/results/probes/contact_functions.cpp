@@ -16,13 +16,10 @@ void for_each_contact(const Snapshot& snapshot, const Selection& selection, Add&
         add(point);
 }
 
-/// Contacts without such a value, as damage of laws that know none, do not count.
 template <auto value>
 Samples by_contact(const Snapshot& snapshot, const Selection& selection) {
   Samples samples(1);
-  for_each_contact(snapshot, selection, [&](const ContactPoint& point) {
-    if (!std::isnan(point.*value)) samples.add(point.length, {point.*value});
-  });
+  for_each_contact(snapshot, selection, [&](const ContactPoint& point) { samples.add(point.length, {point.*value}); });
   return samples;
 }
 
@@ -81,7 +78,6 @@ std::vector<ProbeFunction> contact_functions() {
           {"contact_slip", by_contact<&ContactPoint::slip>},
           {"contact_pressure", by_contact<&ContactPoint::pressure>},
           {"contact_shear", by_contact<&ContactPoint::shear>},
-          {"contact_damage", by_contact<&ContactPoint::damage>},
           {"contacts", contacts},
           {"contact_length", contact_length},
           {"fabric", fabric, finish_fabric}};
