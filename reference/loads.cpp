@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -104,11 +105,22 @@ Loads::Loads(const Bodies& bodies) : bodies_(bodies) {
   add_walls();
   for (const BoundaryCondition& condition : scene.boundary) {
     int number = 0;
+    std::map<int, std::string> missed;  // grains with no segment in the part, by one of their bodies
+    std::set<int> met;
     for (const Body& body : bodies.all()) {
       if (body.placed.wall || scene.grains[body.placed.grains].name != condition.grains) continue;
-      if (condition.number.value_or(number) == number) add_condition(condition, body);
+      if (condition.number.value_or(number) == number) {
+        if (add_condition(condition, body))
+          met.insert(body.placed.grain);
+        else
+          missed.emplace(body.placed.grain, body.placed.name);
+      }
       ++number;
     }
+    for (const auto& [grain, name] : missed)
+      if (!met.contains(grain))
+        throw InputError(fmt::format("{}: no segment of the outline of '{}' lies in the part that [[boundary]] names",
+                                     scene.file.string(), name));
   }
   load_of_dof_.assign(static_cast<std::size_t>(bodies.dofs()), -1);
   for (std::size_t i = 0; i < rigid_.size(); ++i)  // scenes have at most one per axis
@@ -125,21 +137,40 @@ void Loads::add_walls() {
   }
 }
 
-void Loads::add_condition(const BoundaryCondition& condition, const Body& body) {
+bool Loads::add_condition(const BoundaryCondition& condition, const Body& body) {
   if (condition.kind != Kind::axes) {
-    outline_.push_back(outline_load(condition, body));
-    return;
+    const OutlineLoad load = outline_load(condition, body);
+    if (!load.nodes.empty()) outline_.push_back(load);
+    return !load.nodes.empty();
   }
   const AxisCondition* conditions[3] = {&condition.x, &condition.y, &condition.angle};
   for (int c = 0; c < 3; ++c)
     if (conditions[c]->mode != Mode::free) rigid_.push_back({body.first_dof + c, *conditions[c], 1});
+  return true;
+}
+
+/// Whether another cell of the same grain has the segment from node a to b, in the other direction.
+bool Loads::is_within_a_grain(const Body& body, const Points& x, int a, int b) const {
+  const double near = 1e-6 * (x[b] - x[a]).norm();
+  for (const Body& other : bodies_.all()) {
+    if (other.placed.wall || other.placed.grains != body.placed.grains || other.placed.grain != body.placed.grain ||
+        &other == &body)
+      continue;
+    const int n = static_cast<int>(other.outline.size()), first = other.first_outline;
+    for (int k = 0; k < n; ++k)
+      if ((x[first + k] - x[b]).norm() < near && (x[first + (k + 1) % n] - x[a]).norm() < near) return true;
+  }
+  return false;
 }
 
 OutlineLoad Loads::outline_load(const BoundaryCondition& condition, const Body& body) const {
   const Points x = bodies_.outline_positions(bodies_.initial_positions());
   const int n = static_cast<int>(body.outline.size());
   const auto at = [&](int k) { return body.first_outline + (k + n) % n; };
-  const auto chosen = [&](int k) { return in_part(condition.part, x[at(k)], x[at(k + 1)], body.placed.centre); };
+  const Vec2 centre = body.placed.centre - body.placed.offset;  // of a whole grain, if it consists of cells
+  const auto chosen = [&](int k) {
+    return in_part(condition.part, x[at(k)], x[at(k + 1)], centre) && !is_within_a_grain(body, x, at(k), at(k + 1));
+  };
   OutlineLoad load{.condition = condition, .nodes = {}};
   for (int k = 0; k < n; ++k) {
     LoadedNode node{.node = at(k), .start = x[at(k)]};
@@ -151,9 +182,6 @@ OutlineLoad Loads::outline_load(const BoundaryCondition& condition, const Body& 
     if (chosen(k)) node.after = at(k + 1), count(node.node, node.after);
     if (node.length > 0) load.nodes.push_back(node);
   }
-  if (load.nodes.empty())
-    throw InputError(fmt::format("{}: no segment of the outline of '{}' lies in the part that [[boundary]] names",
-                                 bodies_.scene().file.string(), body.placed.name));
   load.stiffness = condition.stiffness.value_or(8 * bodies_.material_of(body).young / mean_spacing(body.outline, 0));
   return load;
 }

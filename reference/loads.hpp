@@ -83,7 +83,9 @@ class Loads {
 
  private:
   void add_walls();
-  void add_condition(const BoundaryCondition& condition, const Body& body);
+  /// Returns false if no segment of the body lies in the part.
+  bool add_condition(const BoundaryCondition& condition, const Body& body);
+  bool is_within_a_grain(const Body& body, const Points& x, int a, int b) const;
   OutlineLoad outline_load(const BoundaryCondition& condition, const Body& body) const;
   const RigidLoad* of(int dof) const;
 

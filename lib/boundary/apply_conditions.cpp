@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -52,28 +54,53 @@ bool contains(const OutlinePart& part, const Segment& segment, const Vec2& centr
   return true;
 }
 
+/// [outline nodes] whether the segment behind a node lies between two cells of one breakable grain. Both cells then have
+/// a segment with the same middle, but for the rounding of their places, which is far below a millionth of a segment.
+std::vector<char> find_inner_segments(const Model& model, const OutlineField& outlines) {
+  struct Side {
+    Vec2 middle;
+    int body, node;
+  };
+  std::vector<Side> sides;
+  double tolerance = 0;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.wall || model.scene.grains[body.grains].cells.empty()) continue;
+    tolerance = std::max(tolerance, 1e-6 * model.outline_of(b).spacing);
+    int node = model.outline_offset[b];
+    for (const Segment& segment : segments_of(model, outlines, b)) sides.push_back({segment.middle, b, node++});
+  }
+  std::vector<char> inner(outlines.x.size(), 0);
+  std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.middle.x(), side.node); });
+  for (auto a = sides.begin(); a != sides.end(); ++a)
+    for (auto b = a + 1; b != sides.end() && b->middle.x() - a->middle.x() <= tolerance; ++b) {
+      const Body &one = model.bodies[a->body], &other = model.bodies[b->body];
+      const bool same_grain = one.grains == other.grains && one.grain == other.grain;
+      if (same_grain && std::abs(b->middle.y() - a->middle.y()) <= tolerance) inner[a->node] = inner[b->node] = 1;
+    }
+  return inner;
+}
+
 /// One body with the part of its outline that a condition selects.
 class Target {
  public:
-  Target(const Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int body)
+  Target(const Model& model, const OutlineField& outlines, const std::vector<char>& inner,
+         const BoundaryCondition& condition, int body)
       : outlines_(outlines),
         first_(model.outline_offset[body]),
         body_(body),
         segments_(segments_of(model, outlines, body)) {
-    for (const Segment& segment : segments_)
-      chosen_.push_back(contains(condition.part, segment, model.bodies[body].centre));
+    const Vec2 centre = model.bodies[body].centre - model.bodies[body].offset;  // of the whole grain
+    for (int node = first_; const Segment& segment : segments_)
+      chosen_.push_back(!inner[node++] && contains(condition.part, segment, centre));
     const int count = static_cast<int>(segments_.size());
     for (int k = 0; k < count; ++k) {
       const bool before = chosen_[(k + count - 1) % count], after = chosen_[k];
       if (before || after) nodes_.push_back({k, before, after});
     }
-    if (nodes_.empty())
-      throw InputError(
-          fmt::format("no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where "
-                      "its outline stands at the start, centre ({}, {}) m",
-                      model.bodies[body].name, model.bodies[body].centre.x(), model.bodies[body].centre.y()));
   }
 
+  bool is_empty() const { return nodes_.empty(); }
   OutlinePressure pressure(const BoundaryCondition& condition) const {
     OutlinePressure result{body_, condition.window, condition.pressure, nodes_, {}};
     if (condition.following) return result;
@@ -125,28 +152,49 @@ void apply_axes(RigidBody& rigid, const BoundaryCondition& condition) {
   rigid.driven = true;
 }
 
-void apply(Model& model, const OutlineField& outlines, const BoundaryCondition& condition, int index) {
+[[noreturn]] void refuse_no_segment(const Model& model, const BoundaryCondition& condition, int grain) {
+  const auto body = std::ranges::find_if(model.bodies, [&](const Body& one) {
+    return !one.wall && one.grain == grain && model.scene.grains[one.grains].name == condition.grains;
+  });
+  throw InputError(
+      fmt::format("no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where its "
+                  "outline stands at the start, centre ({}, {}) m",
+                  body->name, body->centre.x(), body->centre.y()));
+}
+
+/// Applies the condition to a body. Returns false if no segment of the outline lies in its part.
+bool apply(Model& model, const OutlineField& outlines, const std::vector<char>& inner,
+           const BoundaryCondition& condition, int index) {
   const Body& body = model.bodies[index];
-  if (condition.kind == BoundaryCondition::Kind::axes) return apply_axes(model.rigid_bodies[body.rigid], condition);
-  const Target target(model, outlines, condition, index);
+  if (condition.kind == BoundaryCondition::Kind::axes) {
+    apply_axes(model.rigid_bodies[body.rigid], condition);
+    return true;
+  }
+  const Target target(model, outlines, inner, condition, index);
+  if (target.is_empty()) return false;
   if (condition.kind == BoundaryCondition::Kind::pressure)
     model.pressures.push_back(target.pressure(condition));
   else
     model.supports.push_back(target.support(condition, model.scene.materials[body.material].young));
+  return true;
 }
 
 void apply_scene_conditions(Model& model) {
   if (model.scene.boundary.empty()) return;
   const OutlineField outlines = placed_outlines(model, initial_positions(model));
+  const std::vector<char> inner = find_inner_segments(model, outlines);
   for (const BoundaryCondition& condition : model.scene.boundary) {
     int number = 0;
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    std::map<int, bool> met;  // [grains of the set]; one cell of a breakable grain in the part will do
+    for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
       const Body& body = model.bodies[b];
       if (body.wall || model.scene.grains[body.grains].name != condition.grains) continue;
       if (condition.number.value_or(number) == number)
-        located(condition.where, [&] { apply(model, outlines, condition, static_cast<int>(b)); });
+        located(condition.where, [&] { met[body.grain] |= apply(model, outlines, inner, condition, b); });
       ++number;
     }
+    for (const auto& [grain, found] : met)
+      if (!found) located(condition.where, [&] { refuse_no_segment(model, condition, grain); });
   }
 }
 

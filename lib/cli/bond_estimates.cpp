@@ -19,6 +19,14 @@ double modulus_of(const Model& model, int body) {
                                                         : std::numeric_limits<double>::infinity();
 }
 
+/// Of the softer side, Pa. Rigid cells with bonds between them are as soft as the bonds: stiffness x cell size. 0 where a
+/// rigid grain is bonded to a wall.
+double modulus_of(const Model& model, const Bond& bond, const BondLaw<double>& law) {
+  const double least = std::min(modulus_of(model, bond.slave), modulus_of(model, bond.master));
+  if (!std::isinf(least)) return least;
+  return law.normal_stiffness * std::sqrt(std::min(model.bodies[bond.slave].area, model.bodies[bond.master].area));
+}
+
 struct BondEstimate {
   int count = 0;
   double compliance = 0;  ///< largest share of the bonds in the compliance of a cell and a bond
@@ -33,9 +41,9 @@ std::vector<std::string> describe_bonds(const Model& model, const BondSystem& bo
   for (const Bond& bond : bonds.bonds()) {
     BondEstimate& estimate = rules[bond.rule];
     ++estimate.count;
-    const double modulus = std::min(modulus_of(model, bond.slave), modulus_of(model, bond.master));
-    if (std::isinf(modulus)) continue;
     const BondLaw<double> law = bonds.law_of(bond);
+    const double modulus = modulus_of(model, bond, law);
+    if (modulus == 0) continue;
     for (const int body : {bond.slave, bond.master})
       if (model.bodies[body].kind == BodyKind::compliant)
         estimate.compliance = std::max(
@@ -54,15 +62,15 @@ std::vector<std::string> describe_bonds(const Model& model, const BondSystem& bo
     }
     std::string text = fmt::format("{:<24} {} segments", names, rules[r].count);
     if (rules[r].compliance > 0)
-      text += fmt::format(
-          ", which add up to {:.2g} % to the compliance; process zone E' G/strength^2 {:.3g} m, {:.2g} "
-          "segments{}",
-          100 * rules[r].compliance, rules[r].zone, rules[r].segments,
-          rules[r].segments < least_segments
-              ? fmt::format(": too few, a crack then depends on the mesh; take {} or more: a finer mesh, more "
-                            "fracture_energy or less strength",
-                            least_segments)
-              : "");
+      text += fmt::format(", which add up to {:.2g} % to the compliance", 100 * rules[r].compliance);
+    if (!std::isinf(rules[r].zone))
+      text += fmt::format("; process zone {} G/strength^2 {:.3g} m, {:.2g} segments{}",
+                          rules[r].compliance > 0 ? "E'" : "stiffness x cell size x", rules[r].zone, rules[r].segments,
+                          rules[r].segments < least_segments
+                              ? fmt::format(": too few, a crack then depends on the mesh; take {} or more: a finer "
+                                            "mesh, more fracture_energy or less strength",
+                                            least_segments)
+                              : "");
     lines.push_back(text);
   }
   return lines;

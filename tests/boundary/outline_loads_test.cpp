@@ -89,6 +89,38 @@ TEST(Pressure, on_a_part_sums_to_pressure_times_its_length) {
   EXPECT_GT(total_force(Bench(square(top))).norm(), 0.6);
 }
 
+/// Loads without pressure of a square that consists of cells: sum, and sum of the norms, m.
+std::pair<Vec2, double> loads_of_cells(const OutlinePart& part) {
+  BoundaryCondition condition = pressure_on("square", 1, false);
+  condition.part = part;
+  Scene scene = square(condition);
+  scene.shapes = {box_shape("square", 2, 2, 0.1)};
+  scene.grains[0].cells.assign(6, 1);
+  const Model model = build_model(scene);
+  EXPECT_EQ(model.bodies.size(), 6u);
+  Vec2 sum(0, 0);
+  double length = 0;
+  for (const OutlinePressure& pressure : model.pressures)
+    for (const Vec2& load : pressure.dead_load) sum += load, length += load.norm();
+  return {sum, length};
+}
+
+/// EXACT: conditions on a breakable grain concern its outline, not the edges between its cells. Four corners with half
+/// a segment on both sides count by the diagonal.
+TEST(Pressure, acts_on_the_outline_of_a_breakable_grain) {
+  const auto [top, of_top] = loads_of_cells(side({0, 1}));
+  EXPECT_LT((top - Vec2(0, -2)).norm(), 1e-13);
+  EXPECT_NEAR(of_top, 2, 1e-13);
+  const auto [all, of_all] = loads_of_cells({});
+  EXPECT_LT(all.norm(), 1e-13);
+  EXPECT_NEAR(of_all, 8 - 4 * 0.1 * (1 - std::numbers::sqrt2 / 2), 1e-13);
+  const auto [right, of_right] = loads_of_cells(
+      {.kind = OutlinePart::Kind::angles, .first = -std::numbers::pi / 4, .second = std::numbers::pi / 4});
+  EXPECT_LT((right - Vec2(-2, 0)).norm(), 1e-13) << "seen from the centre of the grain";
+  EXPECT_NEAR(of_right, 2, 1e-13);
+  EXPECT_THROW(loads_of_cells({.kind = OutlinePart::Kind::box, .low = {0.4, -0.3}, .high = {0.6, -0.2}}), InputError);
+}
+
 /// A following pressure turns and grows with its part, one that does not stays what it was.
 TEST(Pressure, follows_the_present_outline_or_the_first) {
   BoundaryCondition top = pressure_on("square", 0.3, false);

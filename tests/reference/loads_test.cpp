@@ -126,6 +126,23 @@ TEST(ReferenceLoads, supports_act_as_in_the_engine) {
   expect_agreement(scene, 50, 0.1);
 }
 
+/// On the outline of a grain of cells, and not on the edges between these.
+TEST(ReferenceLoads, act_on_breakable_grains_as_in_the_engine) {
+  Scene scene = discs(1, 1);
+  scene.shapes = {disc_shape("disc", 2, 80)};
+  scene.grains[0].cells.assign(3, 1);
+  scene.grains[0].velocity.gradient.setZero();
+  BondRule bonds;
+  bonds.first = bonds.second = "all";
+  bonds.stiffness = 10, bonds.strength = 10, bonds.fracture_energy = 10;
+  scene.bonds = {bonds};
+  scene.boundary = {pressure_on(0, ramp(0.1, 0.4, 1), true, {}),
+                    support_of("discs", 1.5, 0.4, drive(Mode::velocity, ramp(0.1, 0.4, 1)), AxisCondition::none())};
+  scene.boundary[0].number.reset();
+  scene.boundary[1].part = {.kind = OutlinePart::Kind::side, .side = {0, 1}};
+  expect_agreement(scene, 160, 0.1);
+}
+
 /// All that sets in and ends during the run, one of the supports as stiff as contacts are by themselves.
 TEST(ReferenceLoads, windows_open_and_close_as_in_the_engine) {
   Scene scene = discs(2, 1);
