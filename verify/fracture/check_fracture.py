@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
+import pytest
 
 from pictures import COLOURS, legend, panels, save
-from verification import Case, Label, Run
+from verification import FULL, Case, Label, Run
 
 CASE = Case(__file__, cost=0.5)
 
@@ -21,13 +22,17 @@ ROOT = 0.663  # of the height: rotation of the arms where they join (Hashemi, Ki
 ZONE = (MODULUS * ENERGY / STRENGTH**2) ** 0.25
 
 
-@cache
-def pulled_apart() -> Run:
+def scene(period: float) -> str:
     reach = 0.6 * SPACING
-    return CASE.engine("dcb", CASE.scene(
+    return CASE.scene(
         "dcb.toml", end=END, damping=0.05, spacing=SPACING, down=[[0, 0], [END, -OPENING / 2]],
         up=[[0, 0], [END, OPENING / 2]], low=-POINT - reach, high=-POINT + reach, low_of_upper=POINT - reach,
-        high_of_upper=POINT + reach, strength=STRENGTH, energy=ENERGY, period=END / 200, frame=END / 10))
+        high_of_upper=POINT + reach, strength=STRENGTH, energy=ENERGY, period=period, frame=END / 10)
+
+
+@cache
+def pulled_apart() -> Run:
+    return CASE.engine("dcb", scene(END / 200))
 
 
 def opening(run: Run) -> np.ndarray:
@@ -83,3 +88,20 @@ def test_load() -> None:
                color=COLOURS[1])
     loads.set(xlabel="opening over the height of an arm", ylabel="load")
     save(CASE, figure, "dcb")
+
+
+@pytest.mark.skipif(not FULL, reason="the static solution takes half a minute")
+def test_static_reference() -> None:
+    run, static = pulled_apart(), CASE.reference("dcb_static", scene(END / 40), "--static", "--dt", f"{END / 40} s")
+    times = static.times("bonds.torn_bonds")
+    numbers, strain = [], []
+    for solver in (run, static):
+        at = [int(np.abs(solver.times("bonds.torn_bonds") - t).argmin()) for t in times]
+        numbers.append(solver.probe("bonds.torn_bonds")[at] + solver.probe("bonds.softening_bonds")[at] / 2)
+        strain.append(solver.probe("energy.strain")[at])
+    CASE.check(Label.INDEPENDENT, "engine - statics: length of the crack in segments, largest difference",
+               np.abs(numbers[0] - numbers[1]).max(), 0, 1, "bonds tear one by one, with vibrations a tear sooner or later")
+    early = (times >= 0.1 * END) & (numbers[1] <= 0.5)
+    CASE.check(Label.INDEPENDENT, "engine over statics: strain energy until the second bond softens, largest difference",
+               np.abs(strain[0][early] / strain[1][early] - 1).max(), 0, 1e-2,
+               "kinetic energy of the ends, 1 % of the strain energy at a tenth of the time")
