@@ -1,5 +1,10 @@
 #include "contact/segment_cuts.hpp"
 
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
 namespace pliant {
 namespace {
 
@@ -68,21 +73,42 @@ Linear squared_distance(const SlaveSegments& slaves, const NodeLanes& nodes) {
 
 Span8 only(LaneBits which, const Span8& part) { return {part.low, select(which, part.high, broadcast(-1))}; }
 
+/// Lanes one by one. A vector is taken apart once, as each access to a lane of it waits for a store.
+std::array<std::int64_t, lane_count> numbers_of(LaneBits lanes) {
+  std::array<std::int64_t, lane_count> numbers;
+  std::memcpy(numbers.data(), &lanes, sizeof lanes);
+  return numbers;
+}
+
+/// The lanes whose bits are set: the reverse of bits().
+LaneBits lanes_of(unsigned mask) {
+  const LaneBits bit = {1, 2, 4, 8, 16, 32, 64, 128};
+  return ((LaneBits{} + static_cast<std::int64_t>(mask)) & bit) != 0;
+}
+
 /// Calls visit(LaneBits rows, LaneBits lanes that have one) for the rows in the lists of eight others, one from each at
 /// a time.
 template <class Count, class Neighbour, class Visit>
 void for_each_neighbour(LaneBits rows, LaneBits hit, const Count& count, const Neighbour& neighbour, Visit&& visit) {
+  const unsigned hits = bits(hit);
+  const std::array<std::int64_t, lane_count> row = numbers_of(rows);
+  std::array<std::size_t, lane_count> counts{};
   std::size_t most = 0;
-  for (int lane = 0; lane < lane_count; ++lane)
-    if (hit[lane]) most = std::max(most, count(static_cast<int>(rows[lane])));
+  for (unsigned left = hits; left != 0; left &= left - 1) {
+    const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+    most = std::max(most, counts[lane] = count(static_cast<int>(row[lane])));
+  }
   for (std::size_t k = 0; k < most; ++k) {
-    LaneBits others = rows, have{};
-    for (int lane = 0; lane < lane_count; ++lane) {
-      const int row = static_cast<int>(rows[lane]);
-      if (!hit[lane] || k >= count(row)) continue;
-      if (const int other = neighbour(row, k); other >= 0) others[lane] = other, have[lane] = -1;
+    std::array<std::int64_t, lane_count> number = row;
+    unsigned found = 0;
+    for (unsigned left = hits; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      if (k >= counts[lane]) continue;
+      if (const int other = neighbour(static_cast<int>(row[lane]), k); other >= 0)
+        number[lane] = other, found |= 1u << lane;
     }
-    visit(others, have);
+    if (found == 0) continue;
+    visit(load(number.data()), lanes_of(found));
   }
 }
 
@@ -155,8 +181,8 @@ void SegmentCuts::add_segment_parts(const SegmentPairs& pairs, PackedParts& part
     // Cut by the bisector, unless a vertex region is between.
     LaneBits by_start = (inside ? start_turn : -start_turn) > -least_turn,
              by_end = (inside ? end_turn : -end_turn) > -least_turn;
-    const NextLanes before = has_rivals ? shorter_next(rows, -1, by_start) : NextLanes{},
-                    after = has_rivals ? shorter_next(rows, 1, by_end) : NextLanes{};
+    const NextLanes before = has_rivals ? shorter_next(rows, -1, by_start & near) : NextLanes{},
+                    after = has_rivals ? shorter_next(rows, 1, by_end & near) : NextLanes{};
     by_start &= ~before.shorter, by_end &= ~after.shorter;
     part.keep(select(by_start, start, along));
     part.keep(select(by_end, {-end.at0, -end.at1}, before_end), by_end);
@@ -182,15 +208,33 @@ void SegmentCuts::add_segment_parts(const SegmentPairs& pairs, PackedParts& part
 }
 
 SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int direction, LaneBits which) const {
-  NextLanes result{};
-  for (int lane = 0; lane < lane_count; ++lane) {
-    const int row = static_cast<int>(rows[lane]);
-    if (!which[lane] || window_.rivals(row) == 0) continue;
-    const int other = window_.rival(row, direction < 0 ? 0 : 1);
-    if (other < 0) continue;
-    result.shorter[lane] = -1, result.length[lane] = window_[other].length;
-  }
-  return result;
+  const std::array<std::int64_t, lane_count> row = numbers_of(rows);
+  std::array<double, lane_count> length{};
+  unsigned shorter = 0;
+  for_each_lane(which, [&](int lane) {
+    const int here = static_cast<int>(row[static_cast<std::size_t>(lane)]);
+    if (window_.rivals(here) == 0) return;
+    const int other = window_.rival(here, direction < 0 ? 0 : 1);
+    if (other < 0) return;
+    shorter |= 1u << lane, length[static_cast<std::size_t>(lane)] = window_[other].length;
+  });
+  if (shorter == 0) return {};
+  return {lanes_of(shorter), load(length.data())};
+}
+
+/// Which segments may come as near to a slave segment as its deepest point is to the segment of its pair: circles around
+/// both overlap, of which that of the slave is larger by its depth. Shallow contacts thus have few rivals.
+LaneBits SegmentCuts::may_be_nearer(const SegmentPairs& pairs, LaneBits rows) const {
+  const auto entries = [&](Column c) { return window_.entries(c, rows); };
+  const SlaveSegments& slaves = pairs.segments;
+  const Lanes half = 0.5 * entries(Column::length);
+  const Lanes dx = 0.5 * (slaves.x0 + slaves.x1) - entries(Column::x) - half * entries(Column::tangent_x),
+              dy = 0.5 * (slaves.y0 + slaves.y1) - entries(Column::y) - half * entries(Column::tangent_y);
+  const Lanes wx = slaves.x1 - slaves.x0, wy = slaves.y1 - slaves.y0,
+              depth = -min(min(pairs.height.at0, pairs.height.at1), Lanes{});
+  constexpr double rounding = 1 + 1e-6;
+  const Lanes reach = rounding * (half + 0.5 * sqrt(wx * wx + wy * wy) + depth);
+  return dx * dx + dy * dy < reach * reach;
 }
 
 void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans8& spans) const {
@@ -199,6 +243,8 @@ void SegmentCuts::leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans
       pairs.row, hit, [&](int row) { return window_.rivals(row); },
       [&](int row, std::size_t k) { return window_.rival(row, k); },
       [&](LaneBits others, LaneBits have) {
+        have &= may_be_nearer(pairs, others);
+        if (!any(have)) return;
         const RelativeToRow there = relative_to_row(pairs.segments, others);
         Span8 nearer = strip_of(there.along, there.length);
         const Lanes tie = select(others < pairs.row, Lanes{}, broadcast(-1e-300));  // one of the two gets it

@@ -66,6 +66,7 @@ class SegmentCuts {
     Lanes length;  ///< m
   };
   NextLanes shorter_next(LaneBits rows, int direction, LaneBits which) const;
+  LaneBits may_be_nearer(const SegmentPairs& pairs, LaneBits rows) const;
   void leave_to_rivals(const SegmentPairs& pairs, LaneBits hit, Spans8& spans) const;
   Spans8 nearest_to_node(const SegmentPairs& pairs, const NodeLanes& nodes, LaneBits rows, LaneBits hit,
                          const Span8& fan) const;
