@@ -133,8 +133,8 @@ def test_weibull() -> None:
     """Pairs of squares pulled apart. A pair tears at the opening 2 w G/strength, with the factor w of its strength."""
     modulus, pairs, last = 4, 1600, 2.5
     whole = 2 * 5e-4 / 0.01  # opening at which w = 1 tears
-    run = CASE.engine("weibull", CASE.scene("weibull.toml", end=last * whole / 1e-3, speed=1e-3, strength=0.01, energy=5e-4,
-                                            modulus=modulus, period=10 * whole))
+    run = CASE.engine("weibull", CASE.scene("weibull.toml", end=last * whole / 1e-3, speed=1e-3, strength=0.01,
+                                            energy=5e-4, modulus=modulus, period=10 * whole))
     torn, factor = run.probe("bonds.torn_bonds"), run.times("bonds.torn_bonds") * 1e-3 / whole
     mean = gamma(1 + 1 / modulus)
     expected = 1 - np.exp(-(mean * factor) ** modulus)
