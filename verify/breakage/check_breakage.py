@@ -13,7 +13,7 @@ from fields import frames_of
 from pictures import COLOURS, describe, legend, panels, save
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__, cost=12 if FULL else 4)
+CASE = Case(__file__, cost=9 if FULL else 3)
 
 RADIUS, STRENGTH, COHESION = 0.005, 4e6, 12e6  # m, Pa, Pa
 MODULUS = 1e9 / (1 - 0.25**2)  # E', Pa

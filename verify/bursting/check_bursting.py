@@ -12,7 +12,7 @@ from fields import frames_of
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from verification import FULL, Case, Label, Run, observed_order
 
-CASE = Case(__file__, cost=10 if FULL else 3)
+CASE = Case(__file__, cost=6 if FULL else 2)
 
 END = 150e-6  # s
 ENERGY = 1200.0  # of a crack, J/m2
@@ -71,7 +71,8 @@ def test_order() -> None:
     ratios = np.array(SAFETIES)
     highest = observed_order(SAFETIES, list(ratios**2 / (1 - ratios**2)))
     CASE.check_rate("error of the balance until 30 us over the time step", SAFETIES, errors(while_bursting),
-                    (highest + 2) / 2, (highest - 2) / 2, "Verlet: 2 for low frequencies; q^2/(1 - q^2) for the highest")
+                    (highest + 2) / 2, (highest - 2) / 2,
+                    "Verlet: order 2 for low frequencies; error in q^2/(1 - q^2) for the highest")
 
 
 def test_energy_of_cracks() -> None:
