@@ -38,7 +38,7 @@ def mean_of_replicas(rows: list[dict], output: str, inputs: list[str]) -> list[d
         else:
             error = members[0]["outputs"][output]["error"]
         means.append({"inputs": {name: members[0]["inputs"][name] for name in inputs}, "value": mean, "error": error,
-                      "count": len(values), "unit": members[0]["outputs"][output]["unit"]})
+                      "count": len(values), "values": values, "unit": members[0]["outputs"][output]["unit"]})
     return means
 
 
