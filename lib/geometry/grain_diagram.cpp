@@ -75,9 +75,9 @@ class GrainDiagram {
     cuts_.clear();
     PointLinks taken;
     std::vector<CellFace> kept;
-    for (const CellFace& face : all_.faces) {
+    for (CellFace& face : all_.faces) {
       if (std::none_of(face.loop.begin(), face.loop.end(), [&](int i) { return excess_[i] < 0; }))
-        kept.push_back(face);
+        kept.push_back(std::move(face));
       else
         for (PointLoop& loop : divide(face, generator, taken)) kept.push_back({face.generator, std::move(loop)});
     }
