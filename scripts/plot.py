@@ -5,16 +5,17 @@
     ./pliant plot out/third_body --times 1e-6 1.5e-6 6e-6 18.5e-6
     ./pliant plot out/coarse out/fine
 
-grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, fragments.png, chains.png (contact forces), network.png
-(their statistics), coarse.png (means over cells), steps.png, forces.png, energy.png, probes.png (what else the scene's
-probes measure), failure.png (of a run that could not go on: the place): what the run has data for; the rest is named and
-left out. Of several runs comparison.png alone, into the first one's folder: their probes, a curve a run. Exit code 2: no
-such result folder, 4: a picture cannot be written.
+grains.png (kinds at four times), velocity.png, von_mises.png, damage.png, fragments.png, a map of each other field of
+the frames, chains.png (contact forces), network.png (their statistics), coarse.png (means over cells), steps.png,
+forces.png, energy.png, probes.png (what else the scene's probes measure), failure.png (of a run that could not go on:
+the place): what the run has data for; the rest is named and left out. Of several runs comparison.png alone, into the
+first one's folder: their probes, a curve a run. Exit code 2: no such result folder, 4: a picture cannot be written.
 """
 
 import argparse
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import matplotlib
@@ -74,6 +75,8 @@ def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[]
         "damage.png": (lambda: maps.damage(run, chosen) if frames else None, "frames with bond_damage"),
         **({"fragments.png": (lambda: maps.fragments(run, chosen), "frames with fragment")}
            if frames and "fragment" in run.frames.names("bodies") else {}),
+        **({f"{name}.png": (partial(maps.field, run, chosen, name), f"frames with {name}") for name in maps.others(run.frames)}
+           if frames else {}),
         "steps.png": (lambda: curves.steps(run), "steps.csv"),
         "forces.png": (lambda: curves.forces(run), "probes of forces in probes.csv"),
         "energy.png": (lambda: curves.energy(run), "probe of energy in probes.csv"),

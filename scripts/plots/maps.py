@@ -1,4 +1,4 @@
-"""Maps of bodies: kinds, velocity norm, von Mises stress, damage of bonds, fragments."""
+"""Maps of bodies: kinds, velocity norm, von Mises stress, damage of bonds, fragments, and any other field."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -48,6 +48,17 @@ def _has(frames: Frames, name: str) -> bool:
 def velocity(run: Run, indices: list[int]) -> Figure | None:
     """Norm of the velocity."""
     return _sheet(run, indices, Field(run.frames, "velocity", indices)) if _has(run.frames, "velocity") else None
+
+
+def others(frames: Frames) -> list[str]:
+    """Fields of bodies and outlines that have no picture of their own."""
+    own = {"velocity", "von_mises", "bond_damage", FRAGMENT, "material", "scale"}
+    return [name for grid in frames.grids for name in frames.names(grid) if name not in own]
+
+
+def field(run: Run, indices: list[int], name: str) -> Figure:
+    """Any field, vectors by their norm."""
+    return _sheet(run, indices, Field(run.frames, name, indices))
 
 
 def damage(run: Run, indices: list[int]) -> Figure | None:

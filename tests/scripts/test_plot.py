@@ -38,6 +38,19 @@ def test_all_pictures(run_folder: Path) -> None:
     assert all((run_folder / name).read_bytes().startswith(b"\x89PNG") for name in PICTURES)
 
 
+def test_each_field_has_a_map(run_folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "frames.h5").write_bytes((run_folder / "frames.h5").read_bytes())
+    with h5py.File(tmp_path / "frames.h5", "a") as file:
+        for index in range(5):
+            bodies, outlines = file[f"bodies/{index:06}"], file[f"outlines/{index:06}"]
+            bodies["plastic_strain"] = bodies["von_mises"][()] / 1e9
+            bodies["displacement"] = bodies["velocity"][()]
+            outlines["contact_pressure"] = np.ones(len(outlines["position"]), "f4")
+    result = plot(tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert {"plastic_strain.png", "displacement.png", "contact_pressure.png"} <= {f.name for f in tmp_path.iterdir()}
+
+
 def test_missing_data_is_named(tmp_path: Path) -> None:
     (tmp_path / "steps.csv").write_text("time [s],dt [s]\n1e-9,1e-12\n2e-9,1e-12\n")
     result = plot(tmp_path)
