@@ -218,7 +218,7 @@ SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int direction, L
     if (other < 0) return;
     shorter |= 1u << lane, length[static_cast<std::size_t>(lane)] = window_[other].length;
   });
-  if (shorter == 0) return {};
+  if (shorter == 0) return NextLanes{LaneBits{}, Lanes{}};
   return {lanes_of(shorter), load(length.data())};
 }
 

@@ -53,7 +53,7 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
 template <class Law>
 Lanes slip_increment(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
                      Lanes place) {
-  if constexpr (!Law::has_shear) return {};
+  if constexpr (!Law::has_shear) return Lanes{};
   const LaneBits known = old_place == old_place;
   return moved_along(window, p, touching & known, select(known, old_place, place), place);
 }

@@ -21,7 +21,7 @@ ZONE = 0.1 * 2 * RADIUS  # E' G/strength^2, m
 ENERGY = ZONE * STRENGTH**2 / MODULUS
 SPACING = 2 * RADIUS / 40
 SEEDS = [1, 2, 3]
-SIZES = [20, 60] + ([180] if FULL else [])
+SIZES = [20, 60] + ([120, 180] if FULL else [])
 LOAD = np.pi * RADIUS * STRENGTH  # N/m, of a point load whose tension across the loaded diameter is the strength
 
 
@@ -92,18 +92,26 @@ def test_strength_of_cells(count: int) -> None:
     CASE.check(Label.EXACT, f"{count} cells: balance of energy", worst, 0, 1e-3, "specified")
 
 
+def side(count: int) -> float:
+    """Of hexagons with the area of the cells, m."""
+    return 2 * RADIUS * np.sqrt(np.pi / 4 / count / (1.5 * np.sqrt(3)))
+
+
 def scatter(count: int) -> float:
     """Standard error of the mean strength. Edges resist anything between both bounds, equally likely. A crack across
     the disc has D/(0.8 s) of them, with the side s of a hexagon."""
-    side = 2 * RADIUS * np.sqrt(np.pi / 4 / count / (1.5 * np.sqrt(3)))
-    return (LARGEST - 1) / np.sqrt(12) / np.sqrt(2 * RADIUS / (0.8 * side)) / np.sqrt(len(SEEDS))
+    return (LARGEST - 1) / np.sqrt(12) / np.sqrt(2 * RADIUS / (0.8 * side(count))) / np.sqrt(len(SEEDS))
 
 
-@pytest.mark.parametrize("count", SIZES[1:])
+# The process zone averages over the angles of edges only where it is longer than an edge.
+RESOLVED = [count for count in SIZES if side(count) < ZONE]
+
+
+@pytest.mark.parametrize("count", RESOLVED[1:])
 def test_strength_does_not_depend_on_the_cells(count: int) -> None:
-    tolerance = 2 * np.hypot(scatter(SIZES[0]), scatter(count))
-    CASE.check(Label.EXACT, f"strength with {count} cells less that with {SIZES[0]}",
-               strengths(count).mean() - strengths(SIZES[0]).mean(), 0, tolerance,
+    tolerance = 2 * np.hypot(scatter(RESOLVED[0]), scatter(count))
+    CASE.check(Label.EXACT, f"strength with {count} cells less that with {RESOLVED[0]}",
+               strengths(count).mean() - strengths(RESOLVED[0]).mean(), 0, tolerance,
                "same fracture energy; twice the scatter of the angles of edges")
 
 
