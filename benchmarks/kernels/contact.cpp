@@ -53,8 +53,8 @@ BENCHMARK_CAPTURE(integrated_forces, cohesive, cohesive)
     ->Name("contact/cohesive_integrated")
     ->Apply(one_and_two_threads);
 
-/// Whole bonds, softening ones and torn ones alike, as all lanes compute all of the law. Cement joins all that is near in
-/// the third body.
+/// Whole bonds, softening ones and torn ones alike, as all lanes compute all of the law. Cement joins all that is near
+/// in the third body.
 void bond_forces(benchmark::State& state) {
   const ContactScene& scene = third_body_with(mohr_coulomb);
   static const Model model = [&] {

@@ -54,8 +54,9 @@ bool contains(const OutlinePart& part, const Segment& segment, const Vec2& centr
   return true;
 }
 
-/// [outline nodes] whether the segment behind a node lies between two cells of one breakable grain. Both cells then have
-/// a segment with the same middle, but for the rounding of their places, which is far below a millionth of a segment.
+/// [outline nodes] whether the segment behind a node lies between two cells of one breakable grain. Both cells then
+/// have a segment with the same middle, but for the rounding of their places, which is far below a millionth of a
+/// segment.
 std::vector<char> find_inner_segments(const Model& model, const OutlineField& outlines) {
   struct Side {
     Vec2 middle;

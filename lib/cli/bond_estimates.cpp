@@ -19,8 +19,8 @@ double modulus_of(const Model& model, int body) {
                                                         : std::numeric_limits<double>::infinity();
 }
 
-/// Of the softer side, Pa. Rigid cells with bonds between them are as soft as the bonds: stiffness x cell size. 0 where a
-/// rigid grain is bonded to a wall.
+/// Of the softer side, Pa. Rigid cells with bonds between them are as soft as the bonds: stiffness x cell size. 0 where
+/// a rigid grain is bonded to a wall.
 double modulus_of(const Model& model, const Bond& bond, const BondLaw<double>& law) {
   const double least = std::min(modulus_of(model, bond.slave), modulus_of(model, bond.master));
   if (!std::isinf(least)) return least;

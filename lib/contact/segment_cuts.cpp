@@ -222,8 +222,8 @@ SegmentCuts::NextLanes SegmentCuts::shorter_next(LaneBits rows, int direction, L
   return {lanes_of(shorter), load(length.data())};
 }
 
-/// Which segments may come as near to a slave segment as its deepest point is to the segment of its pair: circles around
-/// both overlap, of which that of the slave is larger by its depth. Shallow contacts thus have few rivals.
+/// Which segments may come as near to a slave segment as its deepest point is to the segment of its pair: circles
+/// around both overlap, of which that of the slave is larger by its depth. Shallow contacts thus have few rivals.
 LaneBits SegmentCuts::may_be_nearer(const SegmentPairs& pairs, LaneBits rows) const {
   const auto entries = [&](Column c) { return window_.entries(c, rows); };
   const SlaveSegments& slaves = pairs.segments;

@@ -50,8 +50,8 @@ void add_pressure(const Law& law, Lanes more, Traction& traction) {
     traction.shear_limit += law.friction * (max(traction.pressure, Lanes{}) - before);
 }
 
-/// `traction`: the law's response to the gap, with its dashpot's. `touching`: lanes within the law's reach. `moved`: slip
-/// increment since the last accepted step, m.
+/// `traction`: the law's response to the gap, with its dashpot's. `touching`: lanes within the law's reach. `moved`:
+/// slip increment since the last accepted step, m.
 template <class Law>
 Contact respond(const Law& law, const Traction& traction, LaneBits touching, Lanes old_slip, Lanes moved) {
   Contact c{traction.pressure, {}, traction.energy, {}, {}};
