@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <tuple>
 #include <utility>
 
@@ -88,7 +87,7 @@ void ContactSystem::find_candidates(const Outlines& outlines, ContactHistory& hi
   verlet_list_.forget();
   const bool start = !fresh_;  // an empty history may also mean that bodies were far apart
   rebuild_list(outlines, outlines.position, history, clock);
-  if (start && !starts_from_a_state()) refuse_self_overlap();
+  if (start && !starts_from_a_state_) refuse_self_overlap();
   fresh_ = true;
 }
 

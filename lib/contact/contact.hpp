@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -121,8 +120,6 @@ class ContactSystem {
   Lattice forces_on_images(const PairForceBuffer& forces) const;
   void add_self_pairs(std::vector<ContactPair>& all);
   void refuse_self_overlap() const;
-  bool starts_from_a_state() const { return laws_before_.count > 0; }
-  bool keeps_law(const ContactPair& contact_pair) const;  ///< whether the inherited law was of the same kind
   bool has_corners(int body) const { return model_.outlines[model_.bodies[body].outline].has_corners(); }
   void prefetch(const ContactPair& contact_pair, const OutlineField& position, const StepStart* step,
                 const ContactHistory& from, const ContactHistory& to, const PairForceBuffer& forces) const;
@@ -142,7 +139,7 @@ class ContactSystem {
   bool fresh_ = false, warned_ = false;
   RunClock refreshed_;  ///< of the last rebuild
   long refreshes_ = 0, pairs_searched_ = 0;
-  PairLaws laws_before_;  ///< of the run whose state is inherited
+  bool starts_from_a_state_ = false;  ///< that of another run
 };
 
 }  // namespace pliant

@@ -41,20 +41,17 @@ InheritedContact ContactSystem::leave(const ContactHistory& history) const {
 
 void ContactSystem::inherit(const InheritedContact& from, ContactHistory& history) {
   require_fit(from.laws, model_.bodies.size());
-  laws_before_ = from.laws;
+  starts_from_a_state_ = true;
   table_.take(from.contact_pairs, from.history.records());
   std::vector<ContactPair> kept;
-  std::ranges::copy_if(from.contact_pairs, std::back_inserter(kept),
-                       [&](const ContactPair& contact_pair) { return keeps_law(contact_pair); });
+  std::ranges::copy_if(from.contact_pairs, std::back_inserter(kept), [&](const ContactPair& contact_pair) {
+    return from.laws.kind(contact_pair.first, contact_pair.second) ==
+           laws_.kind(contact_pair.first, contact_pair.second);
+  });
   table_.take(std::move(kept), from.history.records());
   history = {};
   history.numbers = from.history.numbers;
   if (corrects_energy()) history.start_energy_errors(contact_pairs().size()), make_room(history.last);
-}
-
-bool ContactSystem::keeps_law(const ContactPair& contact_pair) const {
-  return starts_from_a_state() && laws_before_.kind(contact_pair.first, contact_pair.second) ==
-                                      laws_.kind(contact_pair.first, contact_pair.second);
 }
 
 /// Throws InputError if a body overlaps itself: a limb thinner than the detection depth would press its own far side

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "contact/segment_cuts.hpp"
@@ -39,18 +38,14 @@ void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window,
   const double farthest =
       std::max(ranges.deepest(), ranges.reach);  // below a segment's line, also for a vertex region outside
   const bool whole = start.x == end.x && start.y == end.y;
-  const bool ranks = window.has_medial_neighbours();  // else bisectors alone tell what is nearest
-  const auto blocks = static_cast<std::size_t>(padded(slaves.segments) / lane_count);
-  if (ranks) distance_.assign(blocks, broadcast(std::numeric_limits<double>::infinity())), least_depth_.clear();
-  past_end_.assign(blocks, ~LaneBits{});
+  past_end_.assign(static_cast<std::size_t>(padded(slaves.segments) / lane_count), ~LaneBits{});
   for (int row = rows.begin; row <= rows.end(); ++row) {
     const MasterSegment m = window[row];
     const double tx = m.tangent_x, ty = m.tangent_y, margin = 1e-9 * m.length;  // far more than rounding
     // On a whole outline the first node has the vertex region of the last.
     const double radius = row == rows.end() && whole ? 0 : fan_radius(m, ranges);
     for (int i = 0; i < slaves.segments; i += lane_count) {
-      const auto block = static_cast<std::size_t>(i / lane_count);
-      LaneBits& past_end = past_end_[block];
+      LaneBits& past_end = past_end_[static_cast<std::size_t>(i / lane_count)];
       const LaneBits past_last = std::exchange(past_end, LaneBits{});
       const Lanes x0 = load(x + i), y0 = load(y + i), x1 = load(x + i + 1), y1 = load(y + i + 1);
       const Bounds8 height = bounds(ty, -tx, m.y * tx - m.x * ty, x0, y0, x1, y1);
@@ -63,29 +58,12 @@ void SegmentCandidates::find(const SlaveArc& slaves, const MasterWindow& window,
         if (const unsigned found = bits(past_last & near & in_box)) fans.add(found, i, row);
       }
       if (row == rows.end()) continue;
-      if (ranks)
-        distance_[block] =
-            min(distance_[block], max(-height.low, height.high) + max(max(-along.low, along.high - m.length), Lanes{}));
       const LaneBits within = (along.high > -margin) & (along.low < m.length + margin);
-      if (const unsigned found = bits(within & near)) {
-        segments.add(found, i, row);
-        if (ranks) for_each_lane(within & near, [&](int lane) { least_depth_.push_back(-height.high[lane]); });
-      }
+      if (const unsigned found = bits(within & near)) segments.add(found, i, row);
       past_end = near & (along.high > m.length - margin);
     }
   }
-  if (ranks) leave_out_deeper();
   segments.close(), fans.close();
-}
-
-/// Leaves out pairs in which all points lie deeper below the segment than they are distant from the outline. These are
-/// nearer to other segments.
-void SegmentCandidates::leave_out_deeper() {
-  constexpr double rounding = 1 + 1e-6;
-  segments.keep_if([&](std::size_t pair, std::int64_t slave) {
-    return least_depth_[pair] <=
-           rounding * distance_[static_cast<std::size_t>(slave / lane_count)][static_cast<int>(slave % lane_count)];
-  });
 }
 
 }  // namespace pliant

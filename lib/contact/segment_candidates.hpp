@@ -80,14 +80,6 @@ class PairList {
     for (; mask != 0; mask &= mask - 1, ++count_)
       slave_[count_] = first_slave + std::countr_zero(mask), row_[count_] = row;
   }
-  /// Keeps the pairs for which keep(number of the pair, slave) holds, in their order.
-  template <class Keep>
-  void keep_if(Keep&& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < count_; ++i)
-      if (keep(i, slave_[i])) slave_[kept] = slave_[i], row_[kept] = row_[i], ++kept;
-    count_ = kept;
-  }
   /// Pads the last eight, so that whole vectors can be loaded.
   void close() {
     if (count_ > 0)
@@ -113,11 +105,6 @@ class SegmentCandidates {
   void find(const SlaveArc& slaves, const MasterWindow& window, const Arc& rows, const GapRanges& ranges);
 
  private:
-  void leave_out_deeper();
-
-  /// [eights of slaves] upper bound of the distance of all points from the master, m.
-  std::vector<Lanes, LineAllocator<Lanes>> distance_;
-  std::vector<double> least_depth_;  ///< [pairs with segments] of all points below the line of the row, m
   std::vector<LaneBits, LineAllocator<LaneBits>> past_end_;  ///< slaves that reach past the end of the last row
 };
 
