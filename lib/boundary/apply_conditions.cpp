@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -153,14 +154,14 @@ void apply_axes(RigidBody& rigid, const BoundaryCondition& condition) {
   rigid.driven = true;
 }
 
-[[noreturn]] void refuse_no_segment(const Model& model, const BoundaryCondition& condition, int grain) {
-  const auto body = std::ranges::find_if(model.bodies, [&](const Body& one) {
-    return !one.wall && one.grain == grain && model.scene.grains[one.grains].name == condition.grains;
-  });
+/// `body`: one that the condition selects; without a number it stands for its grain.
+[[noreturn]] void refuse_no_segment(const Model& model, const BoundaryCondition& condition, const Body& body) {
+  const bool whole_grain = !condition.number && !model.scene.grains[body.grains].cells.empty();
+  const Vec2 centre = whole_grain ? Vec2(body.centre - body.offset) : body.centre;
   throw InputError(
       fmt::format("no segment of the outline of '{}' lies in the part that [[boundary]] names; look at where its "
                   "outline stands at the start, centre ({}, {}) m",
-                  body->name, body->centre.x(), body->centre.y()));
+                  whole_grain ? condition.grains : body.name, centre.x(), centre.y()));
 }
 
 /// Applies the condition to a body. Returns false if no segment of the outline lies in its part.
@@ -186,16 +187,22 @@ void apply_scene_conditions(Model& model) {
   const std::vector<char> inner = find_inner_segments(model, outlines);
   for (const BoundaryCondition& condition : model.scene.boundary) {
     int number = 0;
-    std::map<int, bool> met;  // [grains of the set]; one cell of a breakable grain in the part will do
+    std::map<int, const Body*> missed;  // by grain: a body without a segment in the part
+    std::set<int> met;                  // grains with one; one cell of a breakable grain will do
     for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
       const Body& body = model.bodies[b];
       if (body.wall || model.scene.grains[body.grains].name != condition.grains) continue;
       if (condition.number.value_or(number) == number)
-        located(condition.where, [&] { met[body.grain] |= apply(model, outlines, inner, condition, b); });
+        located(condition.where, [&] {
+          if (apply(model, outlines, inner, condition, b))
+            met.insert(body.grain);
+          else
+            missed.emplace(body.grain, &body);
+        });
       ++number;
     }
-    for (const auto& [grain, found] : met)
-      if (!found) located(condition.where, [&] { refuse_no_segment(model, condition, grain); });
+    for (const auto& [grain, body] : missed)
+      if (!met.contains(grain)) located(condition.where, [&] { refuse_no_segment(model, condition, *body); });
   }
 }
 

@@ -90,6 +90,17 @@ bool overlaps(const Condition& a, const Condition& b) {
   return a.grains == b.grains && (!a.number || !b.number || *a.number == *b.number);
 }
 
+/// Bodies of a breakable grain are its cells. Each would bear the whole force, and turn about its own centre.
+void refuse_of_cells(TableReader& table, const Condition& condition, const char* axis, AxisCondition::Mode mode,
+                     const Scene& scene) {
+  const bool turns = axis == axes[2] && mode != AxisCondition::Mode::fixed;
+  if (condition.number || grains_of(condition, scene).cells.empty() || (mode != AxisCondition::Mode::force && !turns))
+    return;
+  table.fail(axis, fmt::format("'{}' consists of cells, and each would bear it; name one, as in \"{} 3\", or use a "
+                               "pressure or a motion along x and y",
+                               condition.grains, condition.grains));
+}
+
 void read_axes(TableReader& table, Condition& condition, const Scene& scene) {
   AxisCondition Condition::* conditions[] = {&Condition::x, &Condition::y, &Condition::angle};
   for (int c = 0; c < 3; ++c) {
@@ -97,6 +108,7 @@ void read_axes(TableReader& table, Condition& condition, const Scene& scene) {
                                                {c == 2 ? "moment" : "force", AxisCondition::Mode::force, true}};
     condition.*conditions[c] = read_axis_condition(table, axes[c], kinds, condition.*conditions[c]);
     if ((condition.*conditions[c]).mode == AxisCondition::Mode::free) continue;
+    refuse_of_cells(table, condition, axes[c], (condition.*conditions[c]).mode, scene);
     for (const Condition& other : scene.boundary)
       if (overlaps(condition, other) && (other.*conditions[c]).mode != AxisCondition::Mode::free)
         table.fail(axes[c], "driven by an earlier [[boundary]] as well; a history can change what it does in time");

@@ -62,10 +62,11 @@ void read_cohesive(TableReader& table, ContactRule& rule) {
 
 /// Throws for a law of earlier versions.
 void refuse_former(TableReader& table) {
-  if (!table.has("law") || table.value("law").node.value_or(std::string()) != "cohesive-fatigue") return;
-  table.fail("law",
-             "'cohesive-fatigue' is now a rule of its own, [[bonds]], beside a law such as \"mohr-coulomb\": its "
-             "fracture_energy is strength x range / 2, its gap is bond_gap, its cohesion strength / shear_ratio");
+  if (table.has("law") && table.value("law").node.value_or(std::string()) == "cohesive-fatigue")
+    table.fail("law",
+               "'cohesive-fatigue' is now a rule of its own, [[bonds]], beside a law such as \"mohr-coulomb\": its "
+               "fracture_energy is strength x range / 2 (range was 0.12 of the spacing unless given), its gap is "
+               "bond_gap, its cohesion strength / shear_ratio; residual_strength has no successor");
 }
 
 }  // namespace

@@ -127,6 +127,14 @@ TEST_P(BadBoundary, IsRefusedWithReason) {
 
 const std::string boxes = "[[boundary]]\nof = \"boxes\"\n";
 const std::string stones = "[[boundary]]\nof = \"stones\"\n";
+const std::string of_cells = "cells = 4\nseed = 1\n";  // a key of the grains before
+
+// EXACT: what does the same to all cells may act on a whole grain, and one cell may bear anything.
+TEST(Boundary, MovesBreakableGrains) {
+  const std::string text = rigid_set + of_cells;
+  EXPECT_NO_THROW(with(text + stones + "x = { velocity = 1 }\ny = \"fixed\"\nangle = \"fixed\"\n"));
+  EXPECT_NO_THROW(with(text + "[[boundary]]\nof = \"stones 7\"\ny = { force = 1 }\nangle = { moment = 1 }\n"));
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Boundary, BadBoundary,
@@ -143,6 +151,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"StiffnessOfRigid", stones + "x = \"fixed\"\nstiffness = 1\n", "unknown key 'stiffness'"},
         Refused{"TwoDrivesOfAnAxis", stones + "x = \"fixed\"\n[[boundary]]\nof = \"stones 1\"\nx = { force = 1 }\n",
                 "driven by an earlier"},
+        Refused{"ForceOnCells", of_cells + stones + "y = { force = 1 }\n", "name one, as in \"stones 3\""},
+        Refused{"RotationOfCells", of_cells + stones + "angle = { velocity = 1 }\n", "name one, as in \"stones 3\""},
         Refused{"TwoParts", boxes + "pressure = 1\npart = { side = \"top\", angles = [0, 1] }\n", "one of angles"},
         Refused{"NoPart", boxes + "pressure = 1\npart = { }\n", "one of angles"},
         Refused{"EqualAngles", boxes + "pressure = 1\npart = { angles = [1, 1] }\n", "two different"},
