@@ -15,7 +15,7 @@ struct Place {
 }  // namespace
 
 BondPoints points_of(const Bond& bond, const PresentOutline& slave, const PresentOutline& master, const Vec2& shift) {
-  const auto beside = [&](const PartnerPoint& point) {
+  const auto beside = [&](const MasterPoint& point) {
     const Vec2 first = master.node(point.segment), second = master.node(point.segment + 1);
     return Vec2((1 - point.xi) * first + point.xi * second + shift);
   };

@@ -9,7 +9,7 @@
 namespace pliant::reference {
 
 /// Point on the outline of a bond's master, which moves with the two nodes beside it.
-struct PartnerPoint {
+struct MasterPoint {
   int segment = 0;  ///< numbered on over all turns of a wall
   double xi = 0;    ///< in [0, 1] along it
 };
@@ -18,7 +18,7 @@ struct PartnerPoint {
 struct Bond {
   int slave = 0, master = 0;                  ///< numbers of outlines
   int segment = 0;                            ///< of the slave
-  std::array<PartnerPoint, 2> points;         ///< of the master, nearest to either end when the bond was made
+  std::array<MasterPoint, 2> points;          ///< of the master, nearest to either end when the bond was made
   Image image;                                ///< of the master; 0 for a wall
   int rule = 0;                               ///< index in Scene::bonds
   double length = 0;                          ///< of the segment in its reference shape, m

@@ -25,7 +25,7 @@ bool joins(const BondRule& rule, const ContactOutline& a, const ContactOutline& 
 }
 
 struct Found {
-  PartnerPoint point;
+  MasterPoint point;
   double distance = std::numeric_limits<double>::infinity();
 };
 
