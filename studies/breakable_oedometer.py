@@ -22,22 +22,17 @@ SMOOTHED = 11  # samples of 0.05 ms
 BROKEN = 2  # fragments per grain at yield
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def smooth(values: np.ndarray) -> np.ndarray:
     return np.convolve(values, np.ones(SMOOTHED) / SMOOTHED, "valid")
 
 
 def pressure(run: Run) -> np.ndarray:
     """Pa"""
-    return smooth(np.abs(column(run, "floor.force_y")) + np.abs(column(run, "lid.force_y"))) / (2 * PERIOD)
+    return smooth(np.abs(run.values("floor.force_y")) + np.abs(run.values("lid.force_y"))) / (2 * PERIOD)
 
 
 def void_ratio(run: Run) -> np.ndarray:
-    return smooth(1 / column(run, "packing.solid_fraction") - 1)
+    return smooth(1 / run.values("packing.solid_fraction") - 1)
 
 
 def strength(run: Run) -> float:
@@ -46,7 +41,7 @@ def strength(run: Run) -> float:
 
 
 def per_grain(run: Run) -> np.ndarray:
-    return smooth(column(run, "fragments.fragments")) / GRAINS
+    return smooth(run.values("fragments.fragments")) / GRAINS
 
 
 def compression(run: Run) -> tuple[np.ndarray, np.ndarray]:
@@ -141,16 +136,16 @@ def inertial(run: Run) -> float:
 
 def kinetic(run: Run) -> float:
     """Largest kinetic energy since yield over the work of the lid up to there."""
-    return float((column(run, "energy.kinetic") / np.maximum(column(run, "works.work_of_loads"), 1e-9))[yielded(run):].max())
+    return float((run.values("energy.kinetic") / np.maximum(run.values("works.work_of_loads"), 1e-9))[yielded(run):].max())
 
 
 def damped(run: Run) -> float:
     """Share of the work of the lid that the damping of the cells takes."""
-    return float(column(run, "works.dissipated_by_damping")[-1] / column(run, "works.work_of_loads")[-1])
+    return float(run.values("works.dissipated_by_damping")[-1] / run.values("works.work_of_loads")[-1])
 
 
 def overlap(run: Run) -> float:
     """Largest share of the area that overlaps can take at the end: they are thin, so twice the energy of contacts over their
     pressure, which is at least that of the layer."""
     area = GRAINS * np.pi / 4 * DIAMETER**2
-    return float(2 * column(run, "energy.contact")[-1] / pressure(run)[-1] / area)
+    return float(2 * run.values("energy.contact")[-1] / pressure(run)[-1] / area)

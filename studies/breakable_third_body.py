@@ -13,11 +13,6 @@ SMOOTHED = 20  # samples of 5 ns, a shear distance of a diameter
 LATE = 5  # diameters of shear distance from which the mean is taken
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def smooth(values: np.ndarray) -> np.ndarray:
     return np.convolve(values, np.ones(SMOOTHED) / SMOOTHED, "valid")
 
@@ -28,17 +23,17 @@ def sheared(run: Run) -> np.ndarray:
 
 
 def distance(run: Run) -> np.ndarray:
-    return smooth(column(run, "upper.displacement_x")[sheared(run)]) / DIAMETER
+    return smooth(run.values("upper.displacement_x")[sheared(run)]) / DIAMETER
 
 
 def friction(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Shear over normal force on the lower wall, each a mean over SMOOTHED samples."""
-    along, across = (smooth(column(run, f"lower.force_{axis}")[sheared(run)]) for axis in "xy")
+    along, across = (smooth(run.values(f"lower.force_{axis}")[sheared(run)]) for axis in "xy")
     return distance(run), along / np.abs(across)
 
 
 def per_grain(run: Run) -> np.ndarray:
-    return (column(run, "fragments.fragments") - SOFT) / BREAKABLE
+    return (run.values("fragments.fragments") - SOFT) / BREAKABLE
 
 
 def fragments(run: Run) -> tuple[np.ndarray, np.ndarray]:
@@ -67,12 +62,12 @@ def broken(run: Run) -> float:
 
 def thickness(run: Run) -> float:
     """Change of the layer's thickness during shear, over the diameter of grains."""
-    height = column(run, "upper.displacement_y")
+    height = run.values("upper.displacement_y")
     return float((height[-1] - height[~sheared(run)][-1]) / DIAMETER)
 
 
 def bonds_share(run: Run) -> float:
     """Share of the work during shear that bonds took."""
-    work, taken = (column(run, f"works.{name}") for name in ("work_of_loads", "dissipated_by_bonds"))
+    work, taken = (run.values(f"works.{name}") for name in ("work_of_loads", "dissipated_by_bonds"))
     before = ~sheared(run)
     return float((taken[-1] - taken[before][-1]) / (work[-1] - work[before][-1]))

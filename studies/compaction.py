@@ -16,14 +16,9 @@ BEARING = 1e-3  # pressure p over Young's modulus above which d sqrt(rho/p) time
 DENSEST = 0.98  # solid fraction up to which the forms are fitted
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def pressure(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Solid fraction, and pressure over Young's modulus, from where it stays above BEARING."""
-    fraction, over_young = column(run, "packing.solid_fraction"), column(run, "cell.pressure") / YOUNG
+    fraction, over_young = run.values("packing.solid_fraction"), run.values("cell.pressure") / YOUNG
     first = int(np.flatnonzero(over_young < BEARING)[-1]) + 1
     return fraction[first:], over_young[first:]
 
@@ -31,7 +26,7 @@ def pressure(run: Run) -> tuple[np.ndarray, np.ndarray]:
 def coordination(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Solid fraction, and contacts of a disc that has at least two, from jamming on."""
     fraction, _ = pressure(run)
-    return fraction, column(run, "coordination.coordination_without_rattlers")[-len(fraction):]
+    return fraction, run.values("coordination.coordination_without_rattlers")[-len(fraction):]
 
 
 def at(run: Run, fraction: float) -> float:
@@ -102,5 +97,5 @@ def least_contacts(run: Run) -> float:
 def overlap(run: Run) -> float:
     """Estimate at the end: energy of contacts over pressure, as a share of the discs' area. Of a penalty kn and a uniform
     pressure p on contacts of length L the energy is p^2 L/(2 kn) and the area of overlaps p L/kn."""
-    area = column(run, "packing.solid_fraction") * column(run, "gradient.cell_area")
-    return float(2 * column(run, "energy.contact")[-1] / column(run, "cell.pressure")[-1] / area[-1])
+    area = run.values("packing.solid_fraction") * run.values("gradient.cell_area")
+    return float(2 * run.values("energy.contact")[-1] / run.values("cell.pressure")[-1] / area[-1])

@@ -1,8 +1,9 @@
 """Force on a breakable grain between plates, its strength, and the Weibull distribution of strengths.
 
-The strength is the peak force over the diameter (Jaeger 1967). The peak is the largest force before the grain splits. Its distribution is fitted by maximum likelihood. The
-interval of the modulus is exact: the ratio of the fitted to the true modulus has a distribution of its own, which samples
-of a Weibull distribution give (Thoman, Bain and Antle 1969, Technometrics 11, 445). Points have median ranks.
+The strength is the peak force over the diameter (Jaeger 1967). The peak is the largest force before the grain splits.
+Its distribution is fitted by maximum likelihood. The interval of the modulus is exact: the ratio of the fitted to the
+true modulus has a distribution of its own, which samples of a Weibull distribution give (Thoman, Bain and Antle 1969,
+Technometrics 11, 445). Points have median ranks.
 """
 
 from __future__ import annotations
@@ -19,19 +20,14 @@ LATER = 1.05  # approach over that at the peak from which a force is one of frag
 SAMPLES = 4000  # for the interval
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def loading(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Approach of the plates since both could touch, over the diameter, and force on the floor over the diameter."""
-    return (-column(run, "approach.displacement_y") - GAPS) / DIAMETER, -column(run, "floor.force_y") / DIAMETER
+    return (-run.values("approach.displacement_y") - GAPS) / DIAMETER, -run.values("floor.force_y") / DIAMETER
 
 
 def peak_of(run: Run) -> int:
     """Its sample."""
-    mass = column(run, "fragments.largest_mass")
+    mass = run.values("fragments.largest_mass")
     split = np.flatnonzero(mass < SPLIT * mass[0])
     return int(loading(run)[1][:split[0] + 1 if len(split) else None].argmax())
 
@@ -60,7 +56,7 @@ def rest(run: Run) -> float:
 
 def largest(run: Run) -> float:
     """Share of the largest fragment at the end."""
-    mass = column(run, "fragments.largest_mass")
+    mass = run.values("fragments.largest_mass")
     return float(mass[-1] / mass[0])
 
 

@@ -13,15 +13,10 @@ GAP = 0.002  # at the start, of a circle
 CALCULIX = Path(__file__).resolve().parents[1] / "verify/plasticity/oracles/disc_calculix.csv"
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def force(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Approach over the diameter, and mean force of both plates over yield stress and diameter."""
-    both = np.abs(column(run, "floor.force_y")) + np.abs(column(run, "lid.force_y"))
-    return -column(run, "approach.displacement_y") - GAP, both / 2
+    both = np.abs(run.values("floor.force_y")) + np.abs(run.values("lid.force_y"))
+    return -run.values("approach.displacement_y") - GAP, both / 2
 
 
 def calculix(approach: np.ndarray, _: np.ndarray) -> np.ndarray:

@@ -12,18 +12,13 @@ YIELD = 1e3  # Pa, of the discs
 LEVELS = [2e-4, 1e-3, 5e-3]  # plastic work over the yield stress and the area of the discs: their mean plastic strain
 
 
-def column(run: Run, name: str) -> np.ndarray:
-    assert run.probes is not None
-    return run.probes.column(name).values
-
-
 def stresses(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pressure and shear stress over the yield stress of the discs, and the level of plastic work; on the strain path."""
     assert run.probes is not None
     path = run.probes.time >= RELIEVED - 1e-9
-    along, across = (column(run, f"cell.stress_{axis}")[path] / YIELD for axis in ("xx", "yy"))
-    work = column(run, "works.dissipated_by_plasticity")[path]
-    area = column(run, "packing.solid_fraction")[0] * column(run, "gradient.cell_area")[0]
+    along, across = (run.values(f"cell.stress_{axis}")[path] / YIELD for axis in ("xx", "yy"))
+    work = run.values("works.dissipated_by_plasticity")[path]
+    area = run.values("packing.solid_fraction")[0] * run.values("gradient.cell_area")[0]
     return -(along + across) / 2, (across - along) / 2, (work - work[0]) / (YIELD * area)
 
 
@@ -65,7 +60,7 @@ def shear_3(run: Run) -> float:
 def relieved(run: Run) -> float:
     """Solid fraction when the strain path begins."""
     assert run.probes is not None
-    return float(np.interp(RELIEVED, run.probes.time, column(run, "packing.solid_fraction")))
+    return float(np.interp(RELIEVED, run.probes.time, run.values("packing.solid_fraction")))
 
 
 def draw(axes: Axes, means: list[dict]) -> None:

@@ -118,6 +118,12 @@ class Run:
     steps: Table | None
     frames: Frames | None
 
+    def values(self, column: str) -> np.ndarray:
+        """[rows] of a column of probes.csv, as in "energy.kinetic", in the unit of its header."""
+        if self.probes is None:
+            raise BadFolder(f"{self.folder}: holds no probes.csv")
+        return self.probes.column(column).values
+
     @cached_property
     def summary(self) -> dict:
         """summary.json: how the run ended, what it cost, its energies; {} when there is none."""
