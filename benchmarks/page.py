@@ -4,7 +4,8 @@
 
 Instructions are those that commits carry in benchmarks/instructions.json, seconds those of
 benchmarks/results/history.jsonl (./pliant bench ab --record), the roofline that of results/bench/kernels.json (./pliant
-bench kernels --json); what is missing is left out, and the page says so.
+bench kernels --json), and times with more threads those of results/bench/scaling.json (./pliant bench scaling); what is
+missing is left out, and the page says so.
 
 Exit codes: 0 written, 2 an input cannot be read, 4 the page cannot be written.
 """
@@ -126,6 +127,18 @@ def roofline(threads: int, runs: list[Measured]) -> dict | None:
     return {"threads": threads, "peak": max(peaks), "bandwidths": bandwidths, "kernels": kernels}
 
 
+def scaling(file: Path) -> list[dict]:
+    """Efficiency of each scene by numbers of threads; none without the file."""
+    if not file.exists():
+        return []
+    try:
+        return [{"scene": scene, "threads": [p["threads"] for p in found["predictions"]],
+                 "efficiency": [p["efficiency"] for p in found["predictions"]],
+                 "seconds": [p["seconds"] for p in found["predictions"]]} for scene, found in read_json(file).items()]
+    except (KeyError, TypeError) as error:
+        raise BadInput(f"{file}: is no output of ./pliant bench scaling: {error!r}") from error
+
+
 def page(data: dict, charts: str) -> str:
     """Template, style, script and data in one text; data cannot end the element that holds them."""
     parts = {"style": (TEMPLATE / "page.css").read_text(), "script": (TEMPLATE / "page.js").read_text(),
@@ -139,11 +152,14 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--history", type=Path, default=history.HISTORY, metavar="FILE",
                         help="default: benchmarks/results/history.jsonl")
     parser.add_argument("--kernels", type=Path, metavar="FILE", help="default: results/bench/kernels.json")
+    parser.add_argument("--scaling", type=Path, metavar="FILE", help="default: results/bench/scaling.json")
     parser.add_argument("--repository", type=Path, default=ROOT, metavar="DIR", help="whose commits carry counts")
     options = parser.parse_args(arguments)
-    if options.kernels and not options.kernels.exists():
-        parser.error(f"--kernels {options.kernels}: no such file")
-    options.kernels = options.kernels or ROOT / "results/bench/kernels.json"
+    for name in ("kernels", "scaling"):
+        file = getattr(options, name)
+        if file and not file.exists():
+            parser.error(f"--{name} {file}: no such file")
+        setattr(options, name, file or ROOT / f"results/bench/{name}.json")
     return options
 
 
@@ -152,7 +168,8 @@ def main(arguments: list[str]) -> int:
     try:
         lines = history.read(options.history)
         data = {"counts": counts_over_commits(options.repository, options.repository / history.COUNTS, lines),
-                "seconds": seconds_over_commits(lines), "rooflines": rooflines(options.kernels)}
+                "seconds": seconds_over_commits(lines), "rooflines": rooflines(options.kernels),
+                "scaling": scaling(options.scaling)}
         text = page(data, CHARTS.read_text())
     except (BadInput, ValueError, OSError) as error:
         print(f"page: {error}", file=sys.stderr)

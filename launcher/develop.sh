@@ -156,6 +156,11 @@ bench() {
       prepare release pliant_engine
       exec "$python" -B "$root/benchmarks/scenes.py" "${@:2}"
       ;;
+    scaling)
+      ready
+      prepare release pliant_record_loops pliant_record_loops
+      exec "$python" -B "$root/benchmarks/scaling.py" "${@:2}"
+      ;;
     error)
       prepare release pliant_engine
       prepare release pliant_reference_solver
@@ -192,7 +197,7 @@ bench() {
       exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
       ;;
     *)
-      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, error, gate, faults, ab, page; see" \
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, scaling, error, gate, faults, ab, page; see" \
         "./pliant bench --help" >&2
       exit 2
       ;;

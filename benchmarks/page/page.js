@@ -181,6 +181,30 @@ function drawRoofline(roof) {
       share(rate, roof.peak), share(rate, at(intensity, slowest))]));
 }
 
+function drawScaling(scenes) {
+  if (scenes.length === 0) return missing("scaling", "No prediction yet: ./pliant bench scaling makes it.");
+  const threads = scenes[0].threads;
+  draw("scaling", {
+    type: "line",
+    data: {
+      labels: threads,
+      datasets: scenes.map(({ scene, efficiency }, i) =>
+        ({ ...look(i), label: scene, data: efficiency.map((share) => 100 * share) })),
+    },
+    options: {
+      scales: {
+        x: { title: { display: true, text: "threads" } },
+        y: { min: 0, title: { display: true, text: "efficiency in %" } },
+      },
+      plugins: { legend: { position: "top", labels: { usePointStyle: true, boxWidth: 8, boxHeight: 7 } } },
+    },
+  }, (chart) => chart.data.datasets.map((set) => `${set.label}: ${set.data.map((y) => y.toFixed(0)).join(", ")} %`)
+    .join("; "));
+  table("scaling", ["scene", ...threads.map((n) => `ms, ${n}`)],
+    scenes.map(({ scene, seconds }) => [scene, ...seconds.map((s) => (1e3 * s).toFixed(3))]));
+}
+
 drawCounts(data.counts);
 drawSeconds(data.seconds);
 drawRooflines(data.rooflines);
+drawScaling(data.scaling);

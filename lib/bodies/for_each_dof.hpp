@@ -22,7 +22,8 @@ void for_each_rigid_dof(const Model& model, Update&& update) {
 /// Calls compliant(i, inverse_mass) for each compliant degree of freedom, i its index in Dofs::compliant, and
 /// rigid(i, dof) for each rigid one. Threads share the bodies; updates may touch index i only.
 template <class CompliantUpdate, class RigidUpdate>
-void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid) {
+void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&& rigid,
+                  const LoopPlace& place = LoopPlace::current()) {
   const auto of_region = [&](int r) {
     const Region& region = model.regions[r];
     const Batch& batch = model.batches[region.batch];
@@ -36,8 +37,9 @@ void for_each_dof(const Model& model, CompliantUpdate&& compliant, RigidUpdate&&
       }
     });
   };
-  parallel_for(static_cast<int>(model.regions.size()), of_region, static_cast<int>(model.rigid_bodies.size()),
-               [&](int r) { for_each_dof_of(model, r, rigid); });
+  parallel_for(
+      static_cast<int>(model.regions.size()), of_region, static_cast<int>(model.rigid_bodies.size()),
+      [&](int r) { for_each_dof_of(model, r, rigid); }, place);
 }
 
 }  // namespace pliant

@@ -42,17 +42,22 @@ KERNELS = [benchmark("machine/fma_peak", 1, flops=1e8),  # 100 GFLOP/s
            benchmark("no_counters", 1)]
 
 
+SCALING = {"a <scene>": {"predictions": [{"threads": 1, "seconds": 2e-3, "efficiency": 1.0},
+                                        {"threads": 2, "seconds": 1.25e-3, "efficiency": 0.8}]}}
+
+
 @pytest.fixture
 def inputs(tmp_path: Path) -> list[str]:
     (tmp_path / "history.jsonl").write_text("\n".join([
         line("b", 2, [1.9, 2.1, 2.0], {"step": 2100, "contact_forces": 30}),
         line("a", 1, [2.2, 2.4, 2.6], {"step": 2000})]))
     (tmp_path / "kernels.json").write_text(json.dumps({"benchmarks": KERNELS}))
+    (tmp_path / "scaling.json").write_text(json.dumps(SCALING))
     counts = tmp_path / history.COUNTS
     counts.parent.mkdir()
     counts.write_text(json.dumps({"counts": {"step": {"instructions": 1890}, "contact_forces": {"instructions": 33}}}))
-    return ["--history", str(tmp_path / "history.jsonl"), "--kernels", str(tmp_path / "kernels.json"), "--repository",
-            str(tmp_path), "--out", str(tmp_path / "out")]
+    return ["--history", str(tmp_path / "history.jsonl"), "--kernels", str(tmp_path / "kernels.json"), "--scaling",
+            str(tmp_path / "scaling.json"), "--repository", str(tmp_path), "--out", str(tmp_path / "out")]
 
 
 class Shown(HTMLParser):
@@ -107,6 +112,8 @@ def test_the_page_shows_what_was_measured(tmp_path: Path, inputs: list[str]) -> 
     one, two = shown.labels["roofline"]
     assert one == "forces/mls at 5.00, 4.00 GFLOP/s; outlines at 0.250, 1.00 GFLOP/s"
     assert two == "forces/mls at 10.0, 5.00 GFLOP/s"
+    assert shown.rows["scaling"] == [["scene", "ms, 1", "ms, 2"], ["a <scene>", "2.000", "1.250"]]
+    assert shown.labels["scaling"] == ["a <scene>: 100, 80 %"]
 
 
 @needs_browser
@@ -115,7 +122,7 @@ def test_what_is_missing_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     options = ["--repository", str(tmp_path), "--history", str(tmp_path / "none"), "--out", str(tmp_path)]
     assert page.main(options) == 0
     shown = Shown(dumped((tmp_path / "index.html").as_uri()))
-    assert "No counts yet" in shown.text and "No seconds yet" in shown.text
+    assert all(f"No {what} yet" in shown.text for what in ("counts", "seconds", "roofline", "prediction"))
     assert not shown.labels.keys() & {"counts", "seconds"}
 
 
@@ -137,7 +144,7 @@ def test_aggregates_alone_count_as_their_median(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name, content, said", [
-    ("kernels.json", "{", "kernels.json: cannot be read"), ("kernels.json", "[]", "is no JSON object"),
+    ("scaling.json", '{"a": {}}', "is no output of"), ("kernels.json", "{", "kernels.json: cannot be read"), ("kernels.json", "[]", "is no JSON object"),
     ("kernels.json", '{"benchmarks": [{"name": "x"}]}', "is no output of"), ("kernels.json", "{}", "fma_peak"),
     ("history.jsonl", "{}", "history.jsonl:1"),
     (history.COUNTS, '{"counts": 3}', "instructions.json: holds no counts")])
