@@ -267,6 +267,8 @@ void apply_axis_condition(RigidDof& dof, const AxisCondition& prescribed, double
 
 void apply_conditions(Model& model) {
   apply_scene_conditions(model);
+  for (int r = 0; r < static_cast<int>(model.rigid_bodies.size()); ++r)
+    if (model.rigid_bodies[r].driven) model.driven.push_back(r);
   damp_rigid_grains(model);
   model.switch_times = SwitchTimes(model.scene).sorted();
   model.outline_rates = std::any_of(model.supports.begin(), model.supports.end(),

@@ -84,11 +84,10 @@ double external_work(const Model& model, const Motion& before, const Dofs& force
                      const Dofs& next_force) {
   double work = 0;
   const Gravity g0 = gravity_of(model, before.instant()), g1 = gravity_of(model, after.instant());
-  for (std::size_t r = 0; r < model.rigid_bodies.size(); ++r) {
+  for (int r : model.driven) {
     const RigidBody& rigid = model.rigid_bodies[r];
-    if (!rigid.driven) continue;
     for (int c = 0; c < 3; ++c) {
-      const std::size_t i = 3 * r + static_cast<std::size_t>(c);
+      const std::size_t i = 3 * static_cast<std::size_t>(r) + static_cast<std::size_t>(c);
       const RigidDof& dof = rigid.dof[c];
       const double moved = after.position.rigid[i] - before.position.rigid[i];
       if (dof.imposed(before.time)) {

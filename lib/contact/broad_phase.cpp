@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
@@ -48,6 +52,21 @@ void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& 
   }
 }
 
+/// Sorts pairs: first in one pass by their first bodies, then those of each body.
+void sort_by_bodies(std::vector<BodyPair>& pairs, std::size_t bodies) {
+  std::vector<std::size_t> begin(bodies + 1, 0);
+  for (const BodyPair& pair : pairs) ++begin[pair.first + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<BodyPair> sorted(pairs.size());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (const BodyPair& pair : pairs) sorted[next[pair.first]++] = pair;
+  parallel_for(static_cast<int>(bodies), [&](int b) {
+    const auto first = sorted.begin();
+    std::sort(first + static_cast<std::ptrdiff_t>(begin[b]), first + static_cast<std::ptrdiff_t>(begin[b + 1]));
+  });
+  pairs = std::move(sorted);
+}
+
 }  // namespace
 
 Box bounding_box(const Model& model, const OutlineField& position, int body) {
@@ -65,17 +84,23 @@ Box bounding_box(const Model& model, const OutlineField& position, int body) {
 }
 
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin) {
-  std::vector<BodyPair> pairs;
   const double period = model.scene.period.value_or(0);
   const std::vector<SweepEntry> entries = sweep_entries(model, boxes);
-  for (std::size_t i = 0; i < entries.size(); ++i) sweep_from(entries, boxes, i, period, margin, pairs);
+  constexpr std::size_t block = 64;  // entries
+  std::vector<std::vector<BodyPair>> of_block((entries.size() + block - 1) / block);
+  parallel_for(static_cast<int>(of_block.size()), [&](int b) {
+    const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, entries.size());
+    for (std::size_t i = begin; i < end; ++i) sweep_from(entries, boxes, i, period, margin, of_block[b]);
+  });
+  std::vector<BodyPair> pairs;
+  for (const std::vector<BodyPair>& found : of_block) pairs.insert(pairs.end(), found.begin(), found.end());
   for (int wall = 0; wall < static_cast<int>(boxes.size()); ++wall) {
     if (!model.bodies[wall].wall) continue;
     for (int other = 0; other < static_cast<int>(boxes.size()); ++other)
       if ((!model.bodies[other].wall || other < wall) && overlap_in_y(boxes[wall], boxes[other], margin))
         pairs.push_back(ordered(other, wall, {}));
   }
-  std::sort(pairs.begin(), pairs.end());
+  sort_by_bodies(pairs, boxes.size());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   return pairs;
 }

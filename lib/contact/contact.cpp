@@ -164,33 +164,52 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
   std::vector<ContactPair> all;
   all.reserve(static_cast<std::size_t>(verlet_list_.count()));
   auto next = found.begin();
+  auto kept = contact_pairs().begin();  // in the same order
   for (int p = 0; p < verlet_list_.count(); ++p) {
     const bool just_found = next != found.end() && next->pair() == verlet_list_[p];
-    all.push_back(just_found ? *next++ : *table_.find(verlet_list_[p]));
+    while (!just_found && kept->pair() != verlet_list_[p]) ++kept;
+    all.push_back(just_found ? *next++ : *kept);
   }
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   const std::vector<ContactPair> old = contact_pairs();
-  const StepForces before = std::move(history.last);
+  std::swap(before_, history.last);
   table_.lay_out(std::move(all), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);
   if (!corrects_energy()) return make_room(unkept_);
   make_room(history.last);
-  history.last.refreshes = before.refreshes, history.last.dt = before.dt;
-  auto from = old.begin();
-  for (int p = 0; p < table_.count(); ++p) {
-    while (from != old.end() && comes_before(*from, contact_pairs()[p])) ++from;
-    if (from == old.end() || comes_before(contact_pairs()[p], *from)) continue;  // not in the old table
-    history.last.totals[p] = before.totals[from - old.begin()];
-    carry_forces(model_, *from, before.forces, contact_pairs()[p], history.last.forces);
-  }
+  history.last.refreshes = before_.refreshes, history.last.dt = before_.dt;
+  carry_step(old, history.last);
 }
 
+/// Transfers forces and totals of the last step from the contact pairs before a layout.
+void ContactSystem::carry_step(const std::vector<ContactPair>& old, StepForces& last) const {
+  std::vector<int> number(contact_pairs().size(), -1);
+  std::size_t from = 0;
+  for (int p = 0; p < table_.count(); ++p) {
+    while (from < old.size() && comes_before(old[from], contact_pairs()[p])) ++from;
+    if (from < old.size() && !comes_before(contact_pairs()[p], old[from])) number[p] = static_cast<int>(from);
+  }
+  parallel_for(table_.count(), [&](int p) {
+    const ContactPair& contact_pair = contact_pairs()[p];
+    if (number[p] < 0) return;
+    last.totals[p] = before_.totals[number[p]];
+    carry_forces(model_, old[number[p]], before_.forces, contact_pair, last.forces);
+  });
+}
+
+/// Threads share the writing: of many grains these are megabytes.
 void ContactSystem::make_room(StepForces& evaluated) const {
   const std::size_t size = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
-  evaluated.forces.x.assign(size, 0.0);
-  evaluated.forces.y.assign(size, 0.0);
+  constexpr std::size_t block = 4096;
+  for (LinedNumbers* numbers : {&evaluated.forces.x, &evaluated.forces.y}) {
+    numbers->resize(size);
+    parallel_for(static_cast<int>((size + block - 1) / block), [&](int b) {
+      const std::size_t begin = block * static_cast<std::size_t>(b);
+      std::fill_n(numbers->begin() + static_cast<std::ptrdiff_t>(begin), std::min(block, size - begin), 0.0);
+    });
+  }
   evaluated.totals.assign(contact_pairs().size(), {});
 }
 
@@ -232,7 +251,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
-  parallel_for(table_.count(), [&](int p) {
+  parallel_for_by_cost(table_.cost(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(contact_pairs()[p + 1], outlines.position, step, from, to, now.forces);
     const PairView view{model_, outlines, contact_pairs()[p], skin_, thread_scratch(), step ? step->dt : 0.0, moved};
     PairTotals& totals = now.totals[p];

@@ -111,6 +111,7 @@ class ContactSystem {
   void warn_of_missed_contacts(const OutlineField& position);
   std::vector<ContactPair> search(const std::vector<int>& pairs);
   void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
+  void carry_step(const std::vector<ContactPair>& old, StepForces& last) const;
   void make_room(StepForces& evaluated) const;
   bool integrates(int first, int second) const;
   const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
@@ -132,6 +133,7 @@ class ContactSystem {
   PairTable table_;                       ///< ordered as the Verlet list, unless there is self-contact
   double largest_correction_;             ///< limit of the energy correction, see energy_correction.hpp
   StepForces unkept_;                     ///< scratch, without energy correction
+  StepForces before_;                     ///< scratch: the last step before a layout
   std::vector<PairTotals> block_totals_;  ///< scratch
   OutlineField moved_;                    ///< scratch, displacements in a step, m
   Outlines found_at_;                     ///< [bodies] outlines at the last search of a pair with the body

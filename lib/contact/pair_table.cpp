@@ -1,7 +1,9 @@
 #include "contact/pair_table.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "core/archive.hpp"
@@ -13,10 +15,9 @@ namespace {
 /// Capacity with spare room, for contact pairs that outgrow their places before the next layout.
 int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
 
-/// Transfers the records of one side's nodes from another contact pair of the same bodies.
+/// Transfers the records of one side's nodes from another contact pair of the same bodies to cleared ones.
 void carry(const Model& model, const ContactPair& from, const ContactHistory& old, const ContactPair& to, int side,
            ContactHistory& history) {
-  history.clear(to.record[side], padded(to.nodes[side].count));
   for_each_shared(model, to, side, from.nodes[side], to.nodes[side], [&](int old_at, int at, int count) {
     for (int i = 0; i < count; ++i) history.copy_record(old, from.record[side] + old_at + i, to.record[side] + at + i);
   });
@@ -67,18 +68,19 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& 
       contact_pair.entry[side] = std::exchange(entries_, entries_ + padded(contact_pair.forces(side).count));
     }
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
-  ContactHistory next;
+  ContactHistory& next = spare_;
   next.resize(record_room_);
-  next.clear(0, record_room_);
+  next.clear(records_, record_room_ - records_);
   if (model_.scene.corrects_energy()) next.start_energy_errors(contact_pairs.size());
   parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
+    for (int side = 0; side < 2; ++side) next.clear(contact_pair.record[side], padded(contact_pair.nodes[side].count));
     const ContactPair* from = find(contact_pair.pair(), contact_pair.part);
     if (!from) return;
     for (int side = 0; side < 2; ++side) carry(model_, *from, history, contact_pair, side, next);
     if (!next.energy_error.empty()) next.copy_energy_error(history, static_cast<int>(from - contact_pairs_.data()), p);
   });
-  history = std::move(next);
+  std::swap(history, next);
   history.layout = laid_out_ = ++layout_;
   moved_from_ = none;
   contact_pairs_ = std::move(contact_pairs);
@@ -144,7 +146,10 @@ void PairTable::move_history(const ContactPair& old, const ContactPair& now, Con
   thread_local ContactHistory aside;  // memory is allocated once
   ContactPair there = old;
   take_aside(history, there, aside);
-  for (int side = 0; side < 2; ++side) carry(model_, there, aside, now, side, history);
+  for (int side = 0; side < 2; ++side) {
+    history.clear(now.record[side], padded(now.nodes[side].count));
+    carry(model_, there, aside, now, side, history);
+  }
 }
 
 ArcEntries PairTable::arc_of(const ContactPair& contact_pair, int side) const {
@@ -172,7 +177,20 @@ void PairTable::refuse_others() const {
   if (!sound || !std::ranges::all_of(contact_pairs_, is_one)) throw ArchiveError("contacts are those of other bodies");
 }
 
+/// Forces take as long as their slave nodes and the windows of their masters are large, eight by eight. What else a
+/// pair needs counts as eight. Sums that are too large for a number do not grow further.
+void PairTable::sum_cost() {
+  cost_.assign(1, 0);
+  for (const ContactPair& contact_pair : contact_pairs_) {
+    std::int64_t sum = cost_.back() + 1;
+    for (int side = 0; side < 2; ++side)
+      sum += (padded(contact_pair.nodes[side].count) + padded(contact_pair.window[side].count)) / lane_count;
+    cost_.push_back(static_cast<int>(std::min<std::int64_t>(sum, std::numeric_limits<int>::max())));
+  }
+}
+
 void PairTable::index() {
+  sum_cost();
   arc_begin_.assign(model_.bodies.size() + 1, 0);
   for (const ContactPair& contact_pair : contact_pairs_)
     ++arc_begin_[contact_pair.first + 1], ++arc_begin_[contact_pair.second + 1];

@@ -43,6 +43,8 @@ class PairTable {
 
   const std::vector<ContactPair>& contact_pairs() const { return contact_pairs_; }
   int count() const { return static_cast<int>(contact_pairs_.size()); }
+  /// [contact pairs + 1] sums of the cost of their forces, in lanes of slave nodes and master segments.
+  const std::vector<int>& cost() const { return cost_; }
   /// Returns null if there is none.
   const ContactPair* find(const BodyPair& pair, int part = 0) const;
 
@@ -113,6 +115,7 @@ class PairTable {
 
  private:
   void refuse_others() const;
+  void sum_cost();
   void index();
   bool take_room(const std::vector<int>& at, std::vector<ContactPair>& now, ContactHistory& history);
   void note_moves(const std::vector<int>& at, const std::vector<ContactPair>& now);
@@ -129,6 +132,8 @@ class PairTable {
   /// Records that the last replacement changed, and the layout before it.
   std::vector<std::array<int, 2>> moved_;  ///< first, count
   std::int64_t moved_from_ = none;
+  ContactHistory spare_;                  ///< memory for the next layout
+  std::vector<int> cost_;                 ///< [contact pairs + 1] at the last full layout
   std::vector<int> arc_begin_;            ///< [bodies + 1]
   std::vector<ArcEntries> arcs_;          ///< of each body's contact pairs, in their order
   std::vector<std::array<int, 2>> slot_;  ///< [contact pairs][sides] index in arcs_

@@ -20,6 +20,16 @@ constexpr double search_threshold = 0.75;
 /// Bound of the rounding of stored displacements of some skins, over the skin, with a wide margin.
 constexpr double rounded = 1e-4;
 
+/// Loops over bodies and pairs are cut into blocks, whose results are put together in order.
+constexpr int block = 64;
+
+int blocks_of(int count) { return (count + block - 1) / block; }
+
+template <class Visit>
+void for_each_in_block(int number, int count, Visit&& visit) {
+  for (int i = number * block, end = std::min(i + block, count); i < end; ++i) visit(i);
+}
+
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   std::vector<int> bodies;
   bodies.reserve(2 * pairs.size());
@@ -59,7 +69,9 @@ VerletList::VerletList(const Model& model, double skin, double reach)
       own_skin_(0.5 * (1 + extra_skins) * skin),
       margin_(reach + (1 + extra_skins) * skin),
       motion_(model.bodies.size()),
-      pair_displacements_(model) {
+      pair_displacements_(model),
+      spare_(model),
+      grains_(static_cast<int>(std::ranges::count(model.bodies, false, &Body::wall))) {
   forget();
 }
 
@@ -85,35 +97,25 @@ void VerletList::loaded() {
   use_.assign(pairs_.size(), search_again);
 }
 
-/// Sets motion_ and returns how far bodies have come since the last broad phase, relative to the mean of all bodies, m.
-/// Only relative displacements can bring pairs together that the broad phase excluded. The box of a wall covers all x,
-/// whatever its own displacement in x. The result does not depend on the direction of the axes. All that determines
-/// when pairs are searched must have that property, because the stable step depends on the positions at the search.
-double VerletList::measure(const OutlineField& now) {
-  parallel_for(count_of_bodies(), [&](int b) { motion_[b] = displacement_disc(model_, b, now, reference_); });
+/// Sets motion_ and drift_.
+void VerletList::measure(const OutlineField& now) {
   swept_by_.setZero();
-  double by_cell = 0;
-  if (now.lattice != swept_lattice_ && model_.scene.cell) {
+  if (now.lattice != swept_lattice_ && model_.scene.cell)
     swept_by_ = matrix_of(now.lattice) * matrix_of(swept_lattice_).inverse() - Eigen::Matrix2d::Identity();
-    by_cell = approach_by_cell();
-  }
-  double x = 0, y = 0;
-  int free = 0;
-  for (int b = 0; b < count_of_bodies(); ++b) {
-    if (model_.bodies[b].wall) continue;
-    const DisplacementDisc displacement = displacement_since_sweep(b);
-    x += displacement.x, y += displacement.y, ++free;
-  }
-  if (free > 0) x /= free, y /= free;
-  double farthest = 0;
-  for (int b = 0; b < count_of_bodies(); ++b) {
-    const DisplacementDisc displacement = displacement_since_sweep(b);
-    const bool wall = model_.bodies[b].wall;
-    const double dx = wall ? 0.0 : displacement.x - x, dy = displacement.y - y,
-                 from_mean = std::sqrt(dx * dx + dy * dy) + displacement.radius;
-    if (from_mean > farthest) farthest = std::max(farthest, come_out_of_place(b, from_mean, x, y, now));
-  }
-  return farthest + by_cell;
+  of_block_.resize(static_cast<std::size_t>(blocks_of(count_of_bodies())));
+  parallel_for(blocks_of(count_of_bodies()), [&](int number) {
+    Vec2 sum(0, 0);
+    for_each_in_block(number, count_of_bodies(), [&](int b) {
+      motion_[b] = displacement_disc(model_, b, now, reference_);
+      if (model_.bodies[b].wall) return;
+      const DisplacementDisc displacement = displacement_since_sweep(b);
+      sum += Vec2(displacement.x, displacement.y);
+    });
+    of_block_[number] = sum;
+  });
+  drift_.setZero();
+  for (const Vec2& of_block : of_block_) drift_ += of_block;
+  if (grains_ > 0) drift_ /= grains_;
 }
 
 /// Displacement of a body since the last broad phase. In a cell that is deformed it is relative to the motion of the
@@ -135,15 +137,19 @@ double VerletList::approach_by_cell() const {
   return swept_by_.norm() * (radius + 0.5 * margin_);
 }
 
-/// Distance by which a body may have left its place. A round body may spin without leaving it: the distance is from the
-/// disc inside its former outline to the disc around its present one.
-double VerletList::come_out_of_place(int body, double from_mean, double drift_x, double drift_y,
-                                     const OutlineField& now) const {
+/// Distance by which a body may have left its place relative to the mean of all. The box of a wall covers all x,
+/// whatever its own displacement in x. A round body may spin without leaving its place: the distance is from the disc
+/// inside its former outline to the disc around its present one.
+double VerletList::come_out_of_place(int body, const OutlineField& now) const {
+  const DisplacementDisc displacement = displacement_since_sweep(body);
+  const bool wall = model_.bodies[body].wall;
+  const double x = wall ? 0.0 : displacement.x - drift_.x(), y = displacement.y - drift_.y(),
+               from_mean = std::sqrt(x * x + y * y) + displacement.radius;
   const BodyPlace& then = swept_at_[body];
   if (from_mean < search_threshold * own_skin_ || then.inner < 0) return from_mean;
   const BodyPlace place = place_of(model_, body, now);
   const Vec2 with_cell = swept_by_ * Vec2(then.x, then.y);
-  const double dx = place.x - then.x - with_cell.x() - drift_x, dy = place.y - then.y - with_cell.y() - drift_y;
+  const double dx = place.x - then.x - with_cell.x() - drift_.x(), dy = place.y - then.y - with_cell.y() - drift_.y();
   return std::min(from_mean, std::sqrt(dx * dx + dy * dy) + place.outer - then.inner);
 }
 
@@ -179,17 +185,41 @@ bool VerletList::stays_within(int pair, double limit, const OutlineField& now) c
   return displacement_bound(pair, now) < limit || displacement(pair, now) < (1 - rounded) * limit;
 }
 
+/// What a pair needs at these positions, after measure(). If the disc bound is below the skin, the pair is valid and an
+/// estimate suffices.
+VerletList::Use VerletList::use_of(int pair, const OutlineField& now) const {
+  if (!watched_[pair]) return keep;
+  const double rough = displacement_bound(pair, now),
+               likely = rough < skin_ ? rough - excess_[pair] : displacement(pair, now);
+  return likely < search_threshold * skin_ ? keep : likely < (1 - rounded) * skin_ ? check : search_again;
+}
+
+/// Only relative displacements can bring pairs together that the broad phase excluded. The result does not depend on
+/// the direction of the axes. All that determines when pairs are searched must have that property, because the stable
+/// step depends on the positions at the search.
 bool VerletList::skin_is_exceeded(const OutlineField& now) {
-  come_out_ = measure(now);
+  measure(now);
   use_.resize(pairs_.size());
-  const bool some = parallel_any(count(), [&](int p) {
-    if (!watched_[p]) return use_[p] = keep, false;
-    // If the disc bound is below the skin, the pair is valid and an estimate suffices.
-    const double rough = displacement_bound(p, now), likely = rough < skin_ ? rough - excess_[p] : displacement(p, now);
-    use_[p] = likely < search_threshold * skin_ ? keep : likely < (1 - rounded) * skin_ ? check : search_again;
-    return use_[p] == search_again;
-  });
-  return some || !(come_out_ < own_skin_);
+  exceeded_.resize(static_cast<std::size_t>(blocks_of(count())));
+  farthest_.resize(static_cast<std::size_t>(blocks_of(count_of_bodies())));
+  const auto of_pairs = [&](int number) {
+    exceeded_[number] = 0;
+    for_each_in_block(number, count(), [&](int p) {
+      use_[p] = use_of(p, now);
+      if (use_[p] == search_again) exceeded_[number] = 1;
+    });
+  };
+  const auto of_bodies = [&](int number) {
+    farthest_[number] = 0;
+    for_each_in_block(number, count_of_bodies(),
+                      [&](int b) { farthest_[number] = std::max(farthest_[number], come_out_of_place(b, now)); });
+  };
+  parallel_for(blocks_of(count()), of_pairs, blocks_of(count_of_bodies()), of_bodies);
+  come_out_ = swept_by_.isZero(0) ? 0 : approach_by_cell();
+  double farthest = 0;
+  for (double of_block : farthest_) farthest = std::max(farthest, of_block);
+  come_out_ += farthest;
+  return std::ranges::any_of(exceeded_, [](char some) { return some; }) || !(come_out_ < own_skin_);
 }
 
 /// Sets a new reference for bodies that have deformed or rotated since theirs. The bounds of all their pairs would
@@ -259,17 +289,21 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   const std::vector<char> was_watched = std::exchange(watched_, std::vector<char>(pairs_.size(), 1));
   const std::vector<ImageShift> old_image =
       std::exchange(image_, std::vector<ImageShift>(model_.scene.cell ? pairs_.size() : 0));
-  const NodeDisplacements old_displacements = std::exchange(pair_displacements_, NodeDisplacements(model_));
+  std::swap(pair_displacements_, spare_);
   pair_displacements_.set_bodies(both_bodies(pairs_));
+  std::vector<int> old_number(pairs_.size(), -1);
   std::size_t old = 0;
   for (int p = 0; p < count(); ++p) {
     while (old < before.size() && before[old] < pairs_[p]) ++old;
-    if (old == before.size() || before[old] != pairs_[p] || !stays[old]) continue;
-    excess_[p] = old_excess[old], gap_[p] = old_gap[old], watched_[p] = was_watched[old];
-    if (!image_.empty()) image_[p] = old_image[old];
-    for (int side = 0; side < 2; ++side)
-      pair_displacements_.copy_entry(2 * p + side, old_displacements, 2 * static_cast<int>(old) + side);
+    if (old < before.size() && before[old] == pairs_[p] && stays[old]) old_number[p] = static_cast<int>(old);
   }
+  parallel_for(count(), [&](int p) {
+    const int from = old_number[p];
+    if (from < 0) return;
+    excess_[p] = old_excess[from], gap_[p] = old_gap[from], watched_[p] = was_watched[from];
+    if (!image_.empty()) image_[p] = old_image[from];
+    for (int side = 0; side < 2; ++side) pair_displacements_.copy_entry(2 * p + side, spare_, 2 * from + side);
+  });
 }
 
 std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {

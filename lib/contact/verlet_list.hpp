@@ -58,12 +58,15 @@ class VerletList {
   void loaded();
 
  private:
+  enum Use : char { keep, check, search_again };
+
   DisplacementsSoFar displacements(const OutlineField& now) const { return {now, reference_, motion_}; }
   int count_of_bodies() const { return static_cast<int>(motion_.size()); }
-  double measure(const OutlineField& now);
+  void measure(const OutlineField& now);
   DisplacementDisc displacement_since_sweep(int body) const;
   double approach_by_cell() const;
-  double come_out_of_place(int body, double from_mean, double drift_x, double drift_y, const OutlineField& now) const;
+  double come_out_of_place(int body, const OutlineField& now) const;
+  Use use_of(int pair, const OutlineField& now) const;
   void note_image(int pair, const OutlineField& now);
   double with_image(int pair, const DisplacementDisc& first, DisplacementDisc second, const OutlineField& now) const;
   double displacement_bound(int pair, const OutlineField& now) const;
@@ -78,10 +81,10 @@ class VerletList {
   OutlineField reference_;  ///< reference positions of each body; empty: search everything
   // At the trial positions:
   std::vector<DisplacementDisc> motion_;  ///< [bodies] discs of the outline nodes' displacements from the reference
-  double come_out_ = 0;                   ///< result of measure(), m
+  Vec2 drift_ = Vec2::Zero();             ///< mean displacement of all grains since the last broad phase, m
+  double come_out_ = 0;                   ///< how far bodies have come since then, relative to it, m
   bool just_swept_ = false;               ///< whether the last update ran the broad phase
-  enum Use : char { keep, check, search_again };
-  std::vector<Use> use_;  ///< [pairs] what the last test of the skin asks for
+  std::vector<Use> use_;                  ///< [pairs] what the last test of the skin asks for
   std::vector<BodyPair> pairs_;
   /// [pairs] overestimate of the disc bound at the last exact check, m. It is subtracted from later bounds below the
   /// skin, so that few pairs are checked node by node.
@@ -89,6 +92,7 @@ class VerletList {
   std::vector<double> gap_;               ///< [pairs] distance of the outlines at the last search, m
   std::vector<char> watched_;             ///< [pairs] 0: beyond the margin at the last broad phase
   NodeDisplacements pair_displacements_;  ///< [pairs][sides] since the last search
+  NodeDisplacements spare_;               ///< memory for those of the next list
   /// Vector from a body to its image, m.
   struct ImageShift {
     double x, y;
@@ -99,6 +103,10 @@ class VerletList {
   /// [bodies] displacements from the reference at the last broad phase
   std::vector<DisplacementDisc> since_sweep_;
   std::vector<BodyPlace> swept_at_;  ///< [bodies] at the last broad phase; unused for walls
+  int grains_;                       ///< number of bodies that are not walls
+  std::vector<Vec2> of_block_;       ///< scratch: sums over blocks of bodies
+  std::vector<double> farthest_;     ///< scratch: largest value of each block of bodies
+  std::vector<char> exceeded_;       ///< scratch: whether a pair of each block must be searched again
 };
 
 }  // namespace pliant
