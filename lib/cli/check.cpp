@@ -18,6 +18,7 @@
 #include "cli/stability.hpp"
 #include "cli/thin_parts.hpp"
 #include "core/memory.hpp"
+#include "run/default_threads.hpp"
 #include "run/start_file.hpp"
 #include "setup/build_model.hpp"
 
@@ -249,6 +250,16 @@ Forecast forecast(const Scene& scene, const DryRun& first, double bound) {
   return {done + least, "at least ", ", at the largest stable step"};
 }
 
+/// Largest power of two of threads that spend half of their time at work or more; the rest they wait for each other. A
+/// step opens seven parallel regions, each of which costs 1.7 us with two threads (docs/speed.md) and more as the
+/// logarithm of their number.
+int useful_threads(double seconds_on_one) {
+  constexpr double waiting_of_two = 7 * 1.7e-6;
+  int threads = 1;
+  while (threads < 1024 && seconds_on_one / (2 * threads) >= waiting_of_two * std::log2(2.0 * threads)) threads *= 2;
+  return threads;
+}
+
 void print_cost(const Model& model, const DryRun& first, const Forecast& run, std::int64_t frames) {
   std::string text =
       fmt::format("{}{} until {}{}", run.before, count(run.evaluations), si(model.scene.time.end, "s"), run.after);
@@ -264,6 +275,7 @@ void print_cost(const Model& model, const DryRun& first, const Forecast& run, st
             fmt::format("{}{}, {:.0f} evaluations a second on {} thread{}; and {} to write frames", run.before,
                         duration(run.evaluations * first.seconds_per_evaluation), 1 / first.seconds_per_evaluation,
                         threads, threads > 1 ? "s" : "", duration(frame_seconds * static_cast<double>(frames))));
+  print_row("threads", fmt::format("some {} can be of use", useful_threads(threads * first.seconds_per_evaluation)));
 }
 
 void print_sizes(const Model& model, const OutputSize& size) {
@@ -278,7 +290,7 @@ void print_sizes(const Model& model, const OutputSize& size) {
 }  // namespace
 
 void print_check(const Scene& scene, int threads) {
-  if (threads > 0) omp_set_num_threads(threads);
+  set_threads(threads);
   const std::unique_ptr<const StartFile> from = start_file_of(scene);
   const Model model = build_model(scene);
   print_row("scene", scene.title.empty() ? scene.name : scene.title);

@@ -27,6 +27,7 @@
 #include "results/scene_files.hpp"
 #include "run/balance_warning.hpp"
 #include "run/checkpoint.hpp"
+#include "run/default_threads.hpp"
 #include "run/failure_report.hpp"
 #include "run/start_file.hpp"
 #include "scene/line_reader.hpp"
@@ -254,7 +255,7 @@ Scene with_kept_start(const Scene& scene, const fs::path& folder) {
 
 void run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
-  if (options.threads > 0) omp_set_num_threads(options.threads);
+  set_threads(options.threads);
   if (!options.resume) return simulate(scene, options, nullptr, start);
   if (killed_before_checkpoint(options.out)) {
     if (!options.quiet) fmt::print("{}: has no checkpoint yet; starting anew\n", options.out.string());
