@@ -57,37 +57,37 @@ inline void subtract_forces(const Rows<T...>& rows, int point, const Tensor<Lane
 }
 
 /// Three points are processed at once, each at another stage, so that the processor does not wait for the long chain of
-/// operations of one point's stress. The last point is computed twice and counts once. Law and motion are copies, which
-/// no store of Lanes can alias.
+/// operations of one point's stress: gradients of the next point and forces of the one before come between. Those of a
+/// law in two parts come between its parts. Law and motion are copies, which no store of Lanes can alias.
 template <class Law, class... T>
 PointTotals add_forces(const Law law, const Rows<T...>& rows, const Batch& batch, const BatchMotion motion, Lanes* f) {
   PointTotals totals;
   const int last = rows.points - 1;
-  const auto weighted_stress = [&](int point, const Tensor<Lanes>& F, bool counts) {
+  const auto weighted_stress = [&](int point, const auto& trial, const Tensor<Lanes>& F, const Record<Law>& old) {
     Tensor<Lanes> rate{};
     if constexpr (has_rate<Law>) rate = deformation_gradient(rows, point, motion.velocity);
     Record<Law> now;
-    const Response<Lanes> response =
-        respond(law.weighted(rows.weight[point]), F, rate, load_record<Law>(batch, motion, point), now);
+    const Response<Lanes> response = respond(law.weighted(rows.weight[point]), trial, F, rate, old, now);
     store_record<Law>(batch, motion, point, now);
     totals.least_jacobian = min(response.J, totals.least_jacobian);
-    if constexpr (dissipates<Law>)
-      if (counts) totals.power += response.power;
-    if constexpr (has_loss<Law>)
-      if (counts) totals.loss += response.loss;
+    if constexpr (dissipates<Law>) totals.power += response.power;
+    if constexpr (has_loss<Law>) totals.loss += response.loss;
     return response.P;
   };
   const Upcoming<Access::read> next_position(motion.next_position, motion.next_count);
   const Upcoming<Access::write> next_forces(motion.next_forces, motion.next_count);
-  Tensor<Lanes> P = weighted_stress(0, deformation_gradient(rows, 0, motion.position), true);
-  Tensor<Lanes> F = deformation_gradient(rows, std::min(1, last), motion.position);
+  Tensor<Lanes> P{}, next_P, F = deformation_gradient(rows, 0, motion.position);
   for (int point = 0; point <= last; ++point) {
     next_position.ask(point), next_forces.ask(point);
-    const Tensor<Lanes> next_P = weighted_stress(std::min(point + 1, last), F, point < last);
-    F = deformation_gradient(rows, std::min(point + 2, last), motion.position);
-    subtract_forces(rows, point, P, f);
-    P = next_P;
+    const Record<Law> old = load_record<Law>(batch, motion, point);
+    const auto trial = trial_of(law, F, old);
+    if constexpr (!has_trial<Law>) next_P = weighted_stress(point, trial, F, old);
+    const Tensor<Lanes> next_F = deformation_gradient(rows, std::min(point + 1, last), motion.position);
+    if (point > 0) subtract_forces(rows, point - 1, P, f);
+    if constexpr (has_trial<Law>) next_P = weighted_stress(point, trial, F, old);
+    P = next_P, F = next_F;
   }
+  subtract_forces(rows, last, P, f);
   return totals;
 }
 

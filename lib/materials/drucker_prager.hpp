@@ -61,12 +61,21 @@ struct DruckerPrager {
   }
   LameConstants<T> small_strains() const { return {mu, bulk - 2.0 / 3 * mu}; }
 
-  Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
-    const PlaneMetric<T> C{old[0], old[1], old[2]};
+  struct Trial {
+    HenckyStrain<T> e;
+    T q;
+  };
+  [[gnu::always_inline]] Trial trial(const Tensor<T>& F, const Record& old) const {
     const HenckyStrain<T> e = elastic_strain(F, old);
-    const T q = square_root<T>(e.equivalent_stress_squared(mu)), s = bulk * e.volume;
+    return {e, square_root<T>(e.equivalent_stress_squared(mu))};
+  }
+
+  [[gnu::always_inline]] Response<T> respond(const Trial& trial, const Tensor<T>& F, const Record& old,
+                                             Record& now) const {
+    const auto& [e, q] = trial;
+    const T s = bulk * e.volume;
     const T excess = q + friction * s - cohesion - hardening * old[4];
-    T r = T{} + 1.0, plastic_volume{}, flow{};
+    T fall{}, plastic_volume{}, flow{};
     now = old;
     const auto yields = is_less(T{}, excess) & is_less(T{}, flows);
     if (any(yields)) {
@@ -74,17 +83,21 @@ struct DruckerPrager {
       const T on_apex = (excess - q) / (bulk * friction * friction + hardening);
       const auto at_apex = is_less(q, 3.0 * mu * on_cone);
       flow = select(yields, select(at_apex, on_apex, on_cone), T{});
-      r = select(at_apex, T{}, 1.0 - 3.0 * mu * flow / select(is_less(T{}, q), q, T{} + 1.0));
-      r = select(yields, r, T{} + 1.0);
+      fall = select(at_apex, T{} + 1.0, 3.0 * mu * flow / select(is_less(T{}, q), q, T{} + 1.0));
+      fall = select(yields, fall, T{});
       plastic_volume = flow * select(at_apex, friction, dilatancy);
-      const PlaneMetric<T> metric = select_metric(yields, e.returned(F, C, r, plastic_volume), C);
-      const T log_zz = 2.0 / 3 * (e.volume - plastic_volume) - 4.0 * r * e.mean;
+      const PlaneMetric<T> metric = e.returned(F, {old[0], old[1], old[2]}, fall, plastic_volume);
+      const T log_zz = 2.0 / 3 * (e.volume - plastic_volume) - 4.0 * (1.0 - fall) * e.mean;
       now = {metric.xx, metric.xy, metric.yy, select(yields, exponential<T>(log_zz), old[3]), old[4] + flow};
     }
     const T pressure = s - bulk * plastic_volume;
-    now[5] = r * q, now[6] = pressure;
-    const T loss = 0.5 * ((old[5] + now[5]) * (1.0 - r) * q / (3.0 * mu) + (old[6] + now[6]) * plastic_volume);
-    return {e.piola(F, weight * pressure, weight * mu * r), e.J, T{}, weight * loss};
+    now[5] = (1.0 - fall) * q, now[6] = pressure;
+    const T loss = 0.5 * ((old[5] + now[5]) * fall * q / (3.0 * mu) + (old[6] + now[6]) * plastic_volume);
+    return {e.piola(F, weight * pressure, weight * mu * (1.0 - fall)), e.J, T{}, weight * loss};
+  }
+
+  Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
+    return respond(trial(F, old), F, old, now);
   }
 
   T energy(const Tensor<T>& F, const Record& record) const {
@@ -97,11 +110,9 @@ struct DruckerPrager {
   }
 
  private:
-  static HenckyStrain<T> elastic_strain(const Tensor<T>& F, const Record& record) {
-    return {F,
-            {record[0], record[1], record[2]},
-            natural_log<T>(record[0] * record[2] - record[1] * record[1]),
-            natural_log<T>(record[3])};
+  [[gnu::always_inline]] static HenckyStrain<T> elastic_strain(const Tensor<T>& F, const Record& record) {
+    const PlaneMetric<T> C{record[0], record[1], record[2]};
+    return {F, C, (C.xx * C.yy - C.xy * C.xy) * record[3]};
   }
 };
 

@@ -18,29 +18,28 @@ struct PlaneMetric {
 ///     dev e = mean 1 + slope/2 (b - A 1) in the plane, -2 mean out of it,   slope = artanh(z)/(z A),  tanh(2 h) = z.
 template <class T>
 struct HenckyStrain {
-  T J;                 ///< det F
-  T b_xx, b_xy, b_yy;  ///< in the plane
-  T half_trace;        ///< A
+  T J;           ///< det F
+  Tensor<T> FC;  ///< b F^-T
+  T det_C;       ///< in the plane
   T inverse_J;
-  T volume;  ///< tr e
-  T mean, h_squared, slope;
+  T volume;                         ///< tr e
+  T mean, h_squared, ratio, slope;  ///< ratio = slope A
 
-  /// `log_zz`: logarithm of C_zz.
-  HenckyStrain(const Tensor<T>& F, const PlaneMetric<T>& C, T log_det, T log_zz) {
+  /// `det`: determinant of C in three dimensions.
+  [[gnu::always_inline]] HenckyStrain(const Tensor<T>& F, const PlaneMetric<T>& C, T det) {
     J = determinant(F);
-    const T x = F.xx * C.xx + F.xy * C.xy, y = F.xx * C.xy + F.xy * C.yy, u = F.yx * C.xx + F.yy * C.xy,
-            v = F.yx * C.xy + F.yy * C.yy;
-    b_xx = x * F.xx + y * F.xy, b_xy = x * F.yx + y * F.yy, b_yy = u * F.yx + v * F.yy;
-    const T in_plane = natural_log(J) + 0.5 * log_det;
-    volume = in_plane + 0.5 * log_zz;
-    mean = 0.5 * in_plane - 1.0 / 3 * volume;
-    half_trace = 0.5 * (b_xx + b_yy);
+    det_C = C.xx * C.yy - C.xy * C.xy;
+    const T log_det = natural_log<T>(J * J * det), log_in_plane = natural_log<T>(J * J * det_C);
+    volume = 0.5 * log_det;
+    mean = 0.25 * log_in_plane - 1.0 / 6 * log_det;
+    FC = {F.xx * C.xx + F.xy * C.xy, F.xx * C.xy + F.xy * C.yy, F.yx * C.xx + F.yy * C.xy, F.yx * C.xy + F.yy * C.yy};
+    const T b_xx = FC.xx * F.xx + FC.xy * F.xy, b_xy = FC.xx * F.yx + FC.xy * F.yy, b_yy = FC.yx * F.yx + FC.yy * F.yy;
+    const T half_trace = 0.5 * (b_xx + b_yy), half_difference = 0.5 * (b_xx - b_yy);
     const T inverse = 1.0 / (J * half_trace), inverse_A = J * inverse;
     inverse_J = half_trace * inverse;
-    const T half_difference = 0.5 * (b_xx - b_yy);
-    const T z2 = (half_difference * half_difference + b_xy * b_xy) * inverse_A * inverse_A;
-    const T ratio = artanh_over<T>(z2);
-    h_squared = 0.25 * z2 * ratio * ratio;
+    const T z2 = (half_difference * half_difference + b_xy * b_xy) * (inverse_A * inverse_A);
+    ratio = artanh_over<T>(z2);
+    h_squared = 0.25 * z2 * (ratio * ratio);
     slope = ratio * inverse_A;
   }
 
@@ -52,31 +51,27 @@ struct HenckyStrain {
   }
 
   /// Inverse plastic metric after an exponential return (Weber and Anand 1990, Comput. Methods Appl. Mech. Eng. 79,
-  /// 173-202) that scales dev e by r and reduces tr e by `plastic_volume`. With S(y) = sinh(y)/y
+  /// 173-202) that scales dev e by 1 - s and reduces tr e by `plastic_volume`: b_new = exp(-2 s dev e) b. With
+  /// (b - A 1)^2 = (A^2 - det b) 1 in the plane and S(y) = sinh(y)/y,
   ///
-  ///     b_new = c1 1 + c2 b,   c2 = g r S(2 r h)/S(2 h),   g = exp(2 (r - 1) mean - 2/3 plastic_volume),
+  ///     b_new = c1 1 + c2 b,   c2 = g (cosh(2 s h) - s S(2 s h) slope A),   c1 = g s S(2 s h) slope det b,
   ///
-  /// tr b_new/2 = g sqrt(det b) cosh(2 r h), and C_new = F^-1 b_new F^-T = c1 (F^T F)^-1 + c2 C.
-  PlaneMetric<T> returned(const Tensor<T>& F, const PlaneMetric<T>& C, T r, T plastic_volume) const {
-    const T g = exponential_of_small<T>(2.0 * (r - 1.0) * mean - 2.0 / 3 * plastic_volume);
-    const T root = J * square_root<T>(C.xx * C.yy - C.xy * C.xy);  // of det b in the plane; slope root = 1/S(2 h)
-    const auto [cosh, S] = hyperbolic<T>(4.0 * r * r * h_squared);
-    const T c2 = g * r * S * slope * root, c1 = (g * root * cosh - c2 * half_trace) * inverse_J * inverse_J;
+  /// g = exp(-2 s mean - 2/3 plastic_volume), and C_new = F^-1 b_new F^-T = c1 (F^T F)^-1 + c2 C. No return, s = 0 and
+  /// no plastic volume, leaves C to the bit.
+  [[gnu::always_inline]] PlaneMetric<T> returned(const Tensor<T>& F, const PlaneMetric<T>& C, T s,
+                                                 T plastic_volume) const {
+    const T g = exponential_of_small<T>(-2.0 * s * mean - 2.0 / 3 * plastic_volume);
+    const auto [cosh, S] = hyperbolic_of_small<T>(4.0 * s * s * h_squared);
+    const T share = g * s * S, c1 = share * slope * det_C, c2 = g * cosh - share * ratio;  // c1 without J^2
     return {c1 * (F.xy * F.xy + F.yy * F.yy) + c2 * C.xx, c2 * C.xy - c1 * (F.xx * F.xy + F.yx * F.yy),
             c1 * (F.xx * F.xx + F.yx * F.yx) + c2 * C.yy};
   }
 
   /// First Piola stress of the Kirchhoff stress pressure 1 + 2 shear dev e; `pressure`: tension positive.
   Tensor<T> piola(const Tensor<T>& F, T pressure, T shear) const {
-    const T s = shear * slope, p = pressure + 2.0 * shear * mean - s * half_trace;
-    const T xx = (p + s * b_xx) * inverse_J, xy = s * b_xy * inverse_J, yy = (p + s * b_yy) * inverse_J;
-    return {xx * F.yy - xy * F.xy, xy * F.xx - xx * F.yx, xy * F.yy - yy * F.xy, yy * F.xx - xy * F.yx};
+    const T p = (pressure + shear * (2.0 * mean - ratio)) * inverse_J, s = shear * slope;
+    return {s * FC.xx + p * F.yy, s * FC.xy - p * F.yx, s * FC.yx - p * F.xy, s * FC.yy + p * F.xx};
   }
 };
-
-template <class T>
-PlaneMetric<T> select_metric(auto mask, const PlaneMetric<T>& yes, const PlaneMetric<T>& no) {
-  return {select(mask, yes.xx, no.xx), select(mask, yes.xy, no.xy), select(mask, yes.yy, no.yy)};
-}
 
 }  // namespace pliant

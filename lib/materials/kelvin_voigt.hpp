@@ -21,11 +21,13 @@ struct KelvinVoigt : Law {
     return {Law::over(elapsed), viscosity};
   }
 
-  Response<T> respond(const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old, Record<Law, T>& now) const {
+  template <class Trial>
+  [[gnu::always_inline]] Response<T> respond(const Trial& trial, const Tensor<T>& F, const Tensor<T>& rate,
+                                             const Record<Law, T>& old, Record<Law, T>& now) const {
     const T xx = F.xx * rate.xx + F.yx * rate.yx, yy = F.xy * rate.xy + F.yy * rate.yy,
             xy = 0.5 * (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx);  // E_dot
     const T factor = 2.0 * viscosity;
-    Response<T> response = pliant::respond(static_cast<const Law&>(*this), F, rate, old, now);
+    Response<T> response = pliant::respond(static_cast<const Law&>(*this), trial, F, rate, old, now);
     response.P.xx += factor * (F.xx * xx + F.xy * xy);
     response.P.xy += factor * (F.xx * xy + F.xy * yy);
     response.P.yx += factor * (F.yx * xx + F.yy * xy);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <variant>
 
 #include "core/internal_variables.hpp"
 #include "materials/tensor.hpp"
@@ -20,7 +21,8 @@ struct Response {
 ///
 ///     Response<T> respond(F) const;            or respond(F, old, now) with internal variables
 ///                                              (core/internal_variables.hpp),
-///                                              or respond(F, rate, old, now) if it `has_rate`: rate = dF/dt, 1/s
+///                                              or respond(trial, F, rate, old, now) if it `has_rate`: rate = dF/dt,
+///                                              1/s
 ///     T energy(F) const;                       stored per reference volume, J/m3; or energy(F, record)
 ///     double sigma_zz(F) const;                Cauchy stress out of the plane, Pa; or sigma_zz(F, record)
 ///     Law weighted(w) const;                   of w >= 0 times as much material: stresses, energies, powers times w
@@ -33,15 +35,42 @@ struct Response {
 /// the internal variables: bounds, modes and energies are those of the elastic response from there on. Such a law says
 /// by `has_loss` how it dissipates: true, a loss of its increments; false, a power at their ends, for the trapezoidal
 /// rule. All laws with internal variables count as dissipative (`dissipates`).
+///
+/// A law whose response is a long chain of operations parts it in two, for the processor to do other work between:
+///
+///     Trial trial(F, old) const;               what follows from F before anything flows
+///     Response<T> respond(trial, F, old, now) const;
+///
+/// Inlining is forced where calls would pass dozens of Lanes through memory.
+template <class Law>
+constexpr bool has_trial = requires { typename Law::Trial; };
+
+/// Trial of a law that has one.
 template <class Law, class T>
-Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate, const Record<Law, T>& old,
-                    Record<Law, T>& now) {
-  if constexpr (requires { law.respond(F, rate, old, now); })
-    return law.respond(F, rate, old, now);
+[[gnu::always_inline]] inline auto trial_of(const Law& law, const Tensor<T>& F, const Record<Law, T>& old) {
+  if constexpr (has_trial<Law>)
+    return law.trial(F, old);
+  else
+    return std::monostate{};
+}
+
+template <class Law, class Trial, class T>
+[[gnu::always_inline]] inline Response<T> respond(const Law& law, const Trial& trial, const Tensor<T>& F,
+                                                  const Tensor<T>& rate, const Record<Law, T>& old,
+                                                  Record<Law, T>& now) {
+  if constexpr (requires { law.respond(trial, F, rate, old, now); })
+    return law.respond(trial, F, rate, old, now);
+  else if constexpr (requires { law.respond(trial, F, old, now); })
+    return law.respond(trial, F, old, now);
   else if constexpr (has_internal_variables<Law>)
     return law.respond(F, old, now);
   else
     return law.respond(F);
+}
+template <class Law, class T>
+[[gnu::always_inline]] inline Response<T> respond(const Law& law, const Tensor<T>& F, const Tensor<T>& rate,
+                                                  const Record<Law, T>& old, Record<Law, T>& now) {
+  return respond(law, trial_of(law, F, old), F, rate, old, now);
 }
 
 /// Stored energy at F with internal variables held since `old`, J/m3.

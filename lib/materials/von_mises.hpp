@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "core/internal_variables.hpp"
 #include "materials/elastic_constants.hpp"
@@ -13,7 +14,8 @@ namespace pliant {
 ///
 ///     q = sqrt(3/2) |dev tau| <= sigma(a) = yield + hardening a + (saturation - yield)(1 - exp(-saturation_rate a)),
 ///
-/// and Perzyna's rate dependence q = sigma(a) (1 + t da/dt) of one time t. The return scales dev e by r = 1 - 3 G da/q.
+/// and Perzyna's rate dependence q = sigma(a) (1 + t da/dt) of one time t. The return scales dev e by
+/// 1 - s, s = 3 G da/q.
 /// det C = 1 of the inverse plastic metric gives C_zz, so that plastic flow keeps the volume.
 template <class T>
 struct VonMises {
@@ -56,27 +58,43 @@ struct VonMises {
   }
   LameConstants<T> small_strains() const { return {mu, bulk - 2.0 / 3 * mu}; }
 
-  Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
-    const PlaneMetric<T> C{old[0], old[1], old[2]};
+  /// Yield stress, Pa, which does not fall below 0, and what saturation will still add to it.
+  struct Yield {
+    T stress, left;
+  };
+  struct Trial {
+    HenckyStrain<T> e;
+    Yield yield;
+    T q, inverse_q;
+  };
+  [[gnu::always_inline]] Trial trial(const Tensor<T>& F, const Record& old) const {
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const HenckyStrain<T> e = elastic_strain(F, old);
-    const T q_squared = e.equivalent_stress_squared(mu);
-    const Yield before = yield_at(old[3]);
-    T r = T{} + 1.0, loss{};
+    // Above 0, by the square of what rounding leaves of stresses of the order of G.
+    const T q_squared = e.equivalent_stress_squared(mu) + epsilon * epsilon * mu * mu;
+    const T inverse_q = inverse_square_root<T>(q_squared);
+    return {e, yield_at(old[3]), q_squared * inverse_q, inverse_q};
+  }
+
+  [[gnu::always_inline]] Response<T> respond(const Trial& trial, const Tensor<T>& F, const Record& old,
+                                             Record& now) const {
+    const auto& [e, before, q, inverse_q] = trial;
+    T shear = mu, loss{};
     now = old;
-    const auto yields = is_less<T>(before.stress * before.stress, q_squared) & is_less(T{}, flows);
+    const auto yields = is_less<T>(before.stress, q) & is_less(T{}, flows);
     if (any(yields)) {
-      // Where nothing flows, another stress above 0.
-      const T square = select(yields, q_squared, before.stress * before.stress + mu * mu);
-      const T inverse = inverse_square_root<T>(square), q = square * inverse;
-      const T flow = select(yields, plastic_strain(q, before), T{});
-      r = 1.0 - 3.0 * mu * flow * inverse;
-      const T now_q = q - 3.0 * mu * flow;  // the yield stress without a rate
+      const T flow = plastic_strain(select(yields, q, before.stress), before), fall = 3.0 * mu * flow;
+      const T s = fall * inverse_q, now_q = q - fall;  // now_q: the yield stress without a rate
       loss = 0.5 * flow * (before.stress + now_q);
       if (is_viscous()) loss += 0.5 * flow * (now_q - now_q / (1.0 + times * flow));
-      const PlaneMetric<T> metric = select_metric(yields, e.returned(F, C, r, T{}), C);
+      const PlaneMetric<T> metric = e.returned(F, {old[0], old[1], old[2]}, s, T{});
       now = {metric.xx, metric.xy, metric.yy, old[3] + flow};
+      shear -= s * mu;
     }
-    return {e.piola(F, weight * bulk * e.volume, weight * mu * r), e.J, T{}, weight * loss};
+    return {e.piola(F, weight * bulk * e.volume, weight * shear), e.J, T{}, weight * loss};
+  }
+  Response<T> respond(const Tensor<T>& F, const Record& old, Record& now) const {
+    return respond(trial(F, old), F, old, now);
   }
 
   T energy(const Tensor<T>& F, const Record& record) const {
@@ -89,18 +107,13 @@ struct VonMises {
   }
 
  private:
-  static HenckyStrain<T> elastic_strain(const Tensor<T>& F, const Record& record) {
-    const T log_det = natural_log<T>(record[0] * record[2] - record[1] * record[1]);
-    return {F, {record[0], record[1], record[2]}, log_det, -log_det};
+  [[gnu::always_inline]] static HenckyStrain<T> elastic_strain(const Tensor<T>& F, const Record& record) {
+    return {F, {record[0], record[1], record[2]}, T{} + 1.0};
   }
 
   bool is_viscous() const { return any(is_less(T{}, times)); }
   bool saturates() const { return any(is_less(T{}, saturation_rate)); }
 
-  /// Yield stress, Pa, which does not fall below 0, and what saturation will still add to it.
-  struct Yield {
-    T stress, left;
-  };
   Yield yield_at(T strain) const {
     T left{};
     if (saturates()) left = saturation_excess * exponential<T>(-saturation_rate * strain);
@@ -116,23 +129,34 @@ struct VonMises {
   /// Derivative of the yield stress by the strain.
   T slope(const Yield& at) const { return select(is_less(T{}, at.stress), hardening + saturation_rate * at.left, T{}); }
 
-  /// Equivalent plastic strain x of a step: q - 3 G x = sigma(a + x)(1 + times x), by Newton's method from x = 0 on.
-  /// The residual before the last iteration is below `tolerance` times q, and its square is the order of the error.
-  /// Without saturation and rate the first iteration is exact.
-  T plastic_strain(T q, const Yield& before) const {
+  /// Equivalent plastic strain x of a step: q - 3 G x = sigma(a + x)(1 + times x). Residuals below `tolerance` times q
+  /// are rounding.
+  [[gnu::always_inline]] T plastic_strain(T q, const Yield& before) const {
     constexpr int most_iterations = 30;
-    constexpr double tolerance = 1e-9;
-    const bool is_linear = !saturates() && !is_viscous();
-    Yield at = before;
-    T x{};
+    constexpr double tolerance = 1e-16;
+    const auto is_small = [&](T residual) { return !any(is_less(tolerance * tolerance * q * q, residual * residual)); };
+    const T excess = q - before.stress;
+    T inverse = 1.0 / derivative(before, T{}), x = excess * inverse;
+    if (!is_viscous()) {
+      // The inverse series of the excess in y to third order, exact without saturation. As share <= 1, the lowest order
+      // of its residual is below share excess y^3/4.
+      const T share = saturation_rate * before.left * inverse, y = saturation_rate * x;
+      x *= 1.0 + 0.5 * share * y * (1.0 + y * (share - 1.0 / 3));
+      if (is_small(0.25 * share * excess * (y * y * y))) return x;
+    }
+    // Newton's method. Its last iteration takes the reciprocal derivative of the one before, with one Newton step.
     for (int i = 0; i < most_iterations; ++i) {
-      const T viscous = 1.0 + times * x, residual = q - 3.0 * mu * x - at.stress * viscous;
-      x += residual / (3.0 * mu + slope(at) * viscous + at.stress * times);
-      if (is_linear || !any(is_less(tolerance * tolerance * q * q, residual * residual))) break;
-      at = further(before, x);
+      const Yield at = further(before, x);
+      const T residual = q - 3.0 * mu * x - at.stress * (1.0 + times * x), slope = derivative(at, x);
+      const T change = 1.0 - slope * inverse;
+      if (is_small(residual * change * change)) return x + residual * (inverse + inverse * change);
+      inverse = 1.0 / slope;
+      x += residual * inverse;
     }
     return x;
   }
+  /// Of 3 G x + sigma(1 + times x) by x.
+  T derivative(const Yield& at, T x) const { return 3.0 * mu + slope(at) * (1.0 + times * x) + at.stress * times; }
 };
 
 }  // namespace pliant

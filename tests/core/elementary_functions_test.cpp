@@ -140,21 +140,41 @@ TEST(ElementaryFunctions, ExponentialOfSmall) {
   Random random(6);
   const auto function = [](auto x) { return exponential_of_small(x); };
   const auto exact = [](long double x) { return std::exp(x); };
-  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-0.03125, 0.03125); }), 4e-16);
+  EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-1.0 / 256, 1.0 / 256); }), 4e-16);
   EXPECT_LT(worst_error(function, exact, [&](int) { return random.uniform(-2, 2); }), 4e-16);
+}
+
+/// Larger of the errors of both functions of hyperbolic(y^2) or hyperbolic_of_small(y^2), with y^2 up to a limit.
+template <class Function>
+double worst_of_hyperbolic(Function&& function, double limit) {
+  Random random(4);
+  const auto square = [&](int i) { return i == 0 ? 0 : limit * std::pow(10, random.uniform(-12, 0)); };
+  const auto sinh_over = [&](auto y2) { return function(y2).sinh_over_y; };
+  const auto cosh = [&](auto y2) { return function(y2).cosh; };
+  return std::max(
+      worst_error(
+          sinh_over, [](long double y2) { return y2 == 0 ? 1 : std::sinh(std::sqrt(y2)) / std::sqrt(y2); }, square),
+      worst_error(cosh, [](long double y2) { return std::cosh(std::sqrt(y2)); }, square));
 }
 
 // EXACT to the statement of the header, on both sides of the limit of the series.
 TEST(ElementaryFunctions, Hyperbolic) {
-  Random random(4);
-  const auto square = [&](int i) { return i == 0 ? 0 : std::pow(10, random.uniform(-12, 1.5)); };
-  const auto sinh_over = [](auto y2) { return hyperbolic(y2).sinh_over_y; };
-  const auto cosh = [](auto y2) { return hyperbolic(y2).cosh; };
-  EXPECT_LT(
-      worst_error(
-          sinh_over, [](long double y2) { return y2 == 0 ? 1 : std::sinh(std::sqrt(y2)) / std::sqrt(y2); }, square),
-      2e-15);
-  EXPECT_LT(worst_error(cosh, [](long double y2) { return std::cosh(std::sqrt(y2)); }, square), 2e-15);
+  EXPECT_LT(worst_of_hyperbolic([](auto y2) { return hyperbolic(y2); }, 30), 2e-15);
+}
+
+// EXACT to the statement of the header, on both sides of the limit of the series.
+TEST(ElementaryFunctions, HyperbolicOfSmall) {
+  const auto function = [](auto y2) { return hyperbolic_of_small(y2); };
+  EXPECT_LT(worst_of_hyperbolic(function, 1.0 / 65536), 4e-16);
+  EXPECT_LT(worst_of_hyperbolic(function, 30), 2e-15);
+}
+
+// EXACT: two roundings of numbers of order one on top of the statement of the header.
+TEST(ElementaryFunctions, TwiceArtanhOverSmall) {
+  Random random(7);
+  const auto function = [](auto s2) { return twice_artanh_over_small(s2); };
+  const auto exact = [](long double s2) { return s2 == 0 ? 2 : 2 * std::atanh(std::sqrt(s2)) / std::sqrt(s2); };
+  EXPECT_LT(worst_error(function, exact, [&](int i) { return i == 0 ? 0 : random.uniform(0, 0.02943); }), 2 * epsilon);
 }
 
 // EXACT to the statement of the header, on both sides of the limit of the series.
