@@ -8,10 +8,14 @@
 #include <omp.h>
 #include <sys/prctl.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
+
+#include <spdlog/spdlog.h>
+#include <nlohmann/json.hpp>
 
 #include "benchmarks/scaling/loop_recorder.hpp"
 #include "dynamics/simulation.hpp"
@@ -137,6 +141,7 @@ int run(const char* file, int steps, int rounds) {
 }  // namespace pliant::scaling
 
 int main(int count, char** arguments) {
+  spdlog::set_level(spdlog::level::off);
   try {
     if (count != 4) throw std::runtime_error("usage: pliant_record_loops SCENE STEPS ROUNDS");
     return pliant::scaling::run(arguments[1], std::atoi(arguments[2]), std::atoi(arguments[3]));

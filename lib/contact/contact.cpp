@@ -161,8 +161,8 @@ std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
 
 /// Lays out one contact pair per pair of bodies, either just found or kept.
 void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history) {
-  std::vector<ContactPair> all;
-  all.reserve(static_cast<std::size_t>(verlet_list_.count()));
+  std::vector<ContactPair> all = std::move(spare_pairs_);
+  all.clear(), all.reserve(static_cast<std::size_t>(verlet_list_.count()));
   auto next = found.begin();
   auto kept = contact_pairs().begin();  // in the same order
   for (int p = 0; p < verlet_list_.count(); ++p) {
@@ -171,9 +171,8 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
     all.push_back(just_found ? *next++ : *kept);
   }
   if (model_.scene.contact.self_contact) add_self_pairs(all);
-  const std::vector<ContactPair> old = contact_pairs();
   std::swap(before_, history.last);
-  table_.lay_out(std::move(all), history);
+  const std::vector<ContactPair>& old = spare_pairs_ = table_.lay_out(std::move(all), history);
   found_.clear();
   for (int p = 0; p < table_.count(); ++p)
     if (contact_pairs()[p].found == refreshes_) found_.push_back(p);

@@ -134,6 +134,7 @@ class ContactSystem {
   double largest_correction_;             ///< limit of the energy correction, see energy_correction.hpp
   StepForces unkept_;                     ///< scratch, without energy correction
   StepForces before_;                     ///< scratch: the last step before a layout
+  std::vector<ContactPair> spare_pairs_;  ///< memory for those of the next layout
   std::vector<PairTotals> block_totals_;  ///< scratch
   OutlineField moved_;                    ///< scratch, displacements in a step, m
   Outlines found_at_;                     ///< [bodies] outlines at the last search of a pair with the body

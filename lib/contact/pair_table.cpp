@@ -59,8 +59,8 @@ const ContactPair* PairTable::find(const BodyPair& pair, int part) const {
   return at == contact_pairs_.end() || at->pair() != pair || at->part != part ? nullptr : &*at;
 }
 
-void PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history) {
-  std::sort(contact_pairs.begin(), contact_pairs.end(), comes_before);
+std::vector<ContactPair> PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history) {
+  if (!std::ranges::is_sorted(contact_pairs, comes_before)) std::ranges::sort(contact_pairs, comes_before);
   records_ = entries_ = 0;
   for (ContactPair& contact_pair : contact_pairs)
     for (int side = 0; side < 2; ++side) {
@@ -83,8 +83,9 @@ void PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& 
   std::swap(history, next);
   history.layout = laid_out_ = ++layout_;
   moved_from_ = none;
-  contact_pairs_ = std::move(contact_pairs);
+  std::swap(contact_pairs_, contact_pairs);
   index();
+  return contact_pairs;
 }
 
 void PairTable::take(std::vector<ContactPair> contact_pairs, int records) {

@@ -48,8 +48,8 @@ class PairTable {
   /// Returns null if there is none.
   const ContactPair* find(const BodyPair& pair, int part = 0) const;
 
-  /// Replaces all contact pairs by these, in the order of their keys. The history follows.
-  void lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history);
+  /// Replaces all contact pairs by these, in the order of their keys. The history follows. Returns those before.
+  std::vector<ContactPair> lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history);
   /// Takes the contact pairs of another run, whose history has this many records; the next layout transfers them.
   /// Throws ArchiveError for pairs of other bodies.
   void take(std::vector<ContactPair> contact_pairs, int records);
