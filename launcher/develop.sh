@@ -197,8 +197,8 @@ bench() {
       exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
       ;;
     *)
-      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, scaling, error, gate, faults, ab, page; see" \
-        "./pliant bench --help" >&2
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, scaling, error, gate, faults, ab," \
+        "page; see ./pliant bench --help" >&2
       exit 2
       ;;
   esac

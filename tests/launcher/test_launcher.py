@@ -149,7 +149,7 @@ def test_benchmarks_get_their_arguments(launcher: Launcher, word: str, built: in
 
 def test_unknown_benchmark(launcher: Launcher) -> None:
     result = launcher("bench", "gat")
-    assert result.returncode == 2 and "nothing is called 'gat'; there are: kernels, scenes, error, gate, faults, ab, page" in result.stderr
+    assert result.returncode == 2 and "nothing is called 'gat'; there are: kernels, scenes, scaling, error, gate, faults, ab, page" in result.stderr
     assert not launcher.log.exists()
 
 
