@@ -142,7 +142,7 @@ class Step:
 
 def table_of(step: Step) -> str:
     lines = [f"{'threads':>7} {'ms a step':>10} {'efficiency':>10} {'equal cost':>10} {'serial':>7} {'GB/s':>7}"]
-    lines += [f"{p.threads:>7} {p.seconds * 1e3:>10.3f} {p.efficiency:>10.0%} {p.equal_cost:>10.0%} {p.serial:>7.1%} {p.bandwidth / 1e9:>7.1f}"
+    lines += [f"{p.threads:>7} {p.seconds * 1e3:>10.3f} {p.efficiency:>10.0%} {p.equal_cost:>10.0%} {p.serial:>7.1%} {(f'{p.bandwidth / 1e9:.1f}' if p.bandwidth else '-'):>7}"
               for p in step.predictions()]
     return "\n".join(lines)
 
@@ -176,15 +176,13 @@ def run(program: Path, scene: Path, rounds: int) -> dict:
 
 
 def with_bytes(recording: dict, pages: dict) -> dict:
-    """A recording with what another run of the same scene found in pages."""
+    """A recording with what another run of the same scene found in pages of a step: of a region in each of its calls."""
     of = {(r["file"], r["line"]): r["bytes"] for r in pages.get("regions", [])}
-    return recording | {"bytes": pages["step"],
-                        "regions": [r | {"bytes": of.get((r["file"], r["line"]), 0)} for r in recording["regions"]]}
+    regions = [r | {"bytes": of.get((r["file"], r["line"]), 0) / max(1.0, r["calls"])} for r in recording["regions"]]
+    return recording | {"bytes": pages["step"], "regions": regions}
 
 
-def record(program: Path, text: str, rounds: int, scratch: Path) -> dict:
-    scene = scratch / "scene.toml"
-    scene.write_text(text)
+def record(program: Path, scene: Path, rounds: int) -> dict:
     return with_bytes(run(program, scene, rounds), run(program, scene, 0))
 
 
@@ -201,7 +199,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     options = parser.parse_args(arguments)
     if options.threads not in (1, 2, 4, 8, 16, 32, 64, 128):
         parser.error(f"--threads {options.threads}: no power of two up to 128")
-    if options.scene and not options.scene.exists():
+    if options.scene and not options.scene.is_file():
         parser.error(f"--scene {options.scene}: no such file")
     if options.rounds < 1:
         parser.error(f"--rounds {options.rounds}: at least 1")
@@ -222,14 +220,19 @@ def main(arguments: list[str] | None = None) -> int:
     if options.largest:
         scenes["200,000 grains"] = packing(case, LARGEST)
     if options.only:
-        scenes = {name: text for name, text in scenes.items() if any(name.startswith(begin) for begin in options.only)}
-    if options.scene:
-        scenes = {options.scene.stem: options.scene.read_text()}
+        wanted = {name: text for name, text in scenes.items() if any(name.startswith(begin) for begin in options.only)}
+        if not wanted:
+            print(f"error: --only {' '.join(options.only)}: there are {', '.join(scenes)}", file=sys.stderr)
+            return MISSING
+        scenes = wanted
     found = {}
     with tempfile.TemporaryDirectory() as scratch:
-        for name, text in scenes.items():
+        files = {name: Path(scratch) / f"{i}.toml" for i, name in enumerate(scenes)}
+        for name, file in files.items():
+            file.write_text(scenes[name])
+        for name, file in ({options.scene.stem: options.scene} if options.scene else files).items():
             try:
-                step = Step(record(options.program, text, options.rounds, Path(scratch)), options.bandwidth * 1e9)
+                step = Step(record(options.program, file, options.rounds), options.bandwidth * 1e9)
             except (RuntimeError, OSError, ValueError) as error:
                 print(f"error: {name}: {error}", file=sys.stderr)
                 return MISSING

@@ -99,7 +99,12 @@ class Recording {
   double serial_at_end() const { return median(recorder_.serial_at_end()); }
 
  private:
-  void step() { simulation_.step(simulation_.model().scene.time.end); }
+  void step() {
+    const double end = simulation_.model().scene.time.end;
+    if (!(simulation_.state().time < end))
+      throw std::runtime_error("the scene ends before as many steps; give it a later end");
+    simulation_.step(end);
+  }
 
   Simulation simulation_;
   int steps_;
@@ -110,6 +115,8 @@ int run(const char* file, int steps, int rounds) {
   // Pages of 2 MB would tell little of what is touched.
   if (rounds == 0) prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
   const Scene scene = read_scene(file);
+  if (!scene.start_from.empty())
+    throw std::runtime_error("the scene starts from another run; take one without [start]");
   const Model model = build_model(scene);
   Recording recording(model, steps);
   recording.time(1);  // until the step has its length, and memory is allocated

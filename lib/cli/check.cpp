@@ -275,7 +275,8 @@ void print_cost(const Model& model, const DryRun& first, const Forecast& run, st
             fmt::format("{}{}, {:.0f} evaluations a second on {} thread{}; and {} to write frames", run.before,
                         duration(run.evaluations * first.seconds_per_evaluation), 1 / first.seconds_per_evaluation,
                         threads, threads > 1 ? "s" : "", duration(frame_seconds * static_cast<double>(frames))));
-  print_row("threads", fmt::format("some {} can be of use", useful_threads(threads * first.seconds_per_evaluation)));
+  const int useful = useful_threads(threads * first.seconds_per_evaluation);
+  print_row("threads", useful > 1 ? fmt::format("up to some {} can be of use", useful) : "more than one are of no use");
 }
 
 void print_sizes(const Model& model, const OutputSize& size) {

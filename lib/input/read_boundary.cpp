@@ -96,7 +96,7 @@ void refuse_of_cells(TableReader& table, const Condition& condition, const char*
   const bool turns = axis == axes[2] && mode != AxisCondition::Mode::fixed;
   if (condition.number || grains_of(condition, scene).cells.empty() || (mode != AxisCondition::Mode::force && !turns))
     return;
-  table.fail(axis, fmt::format("'{}' consists of cells, and each would bear it; name one, as in \"{} 3\", or use a "
+  table.fail(axis, fmt::format("'{}' consists of cells, and each would bear it; name one, as in \"{} 0\", or use a "
                                "pressure or a motion along x and y",
                                condition.grains, condition.grains));
 }

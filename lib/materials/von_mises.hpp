@@ -141,10 +141,10 @@ struct VonMises {
       // The inverse series of the excess in y to third order, exact without saturation. As share <= 1, the lowest order
       // of its residual is below share excess y^3/4.
       const T share = saturation_rate * before.left * inverse, y = saturation_rate * x;
-      x *= 1.0 + 0.5 * share * y * (1.0 + y * (share - 1.0 / 3));
-      if (is_small(0.25 * share * excess * (y * y * y))) return x;
+      if (is_small(0.25 * share * excess * (y * y * y)))
+        return x * (1.0 + 0.5 * share * y * (1.0 + y * (share - 1.0 / 3)));
     }
-    // Newton's method. Its last iteration takes the reciprocal derivative of the one before, with one Newton step.
+    // Newton's method from below: sigma is concave, so that no iterate passes the root. Its last iteration takes the reciprocal derivative of the one before, with one Newton step.
     for (int i = 0; i < most_iterations; ++i) {
       const Yield at = further(before, x);
       const T residual = q - 3.0 * mu * x - at.stress * (1.0 + times * x), slope = derivative(at, x);

@@ -76,8 +76,7 @@ int threads_for(const std::vector<int>& processors, const fs::path& root) {
 
 void set_threads(int threads) {
   if (threads > 0) return omp_set_num_threads(threads);
-  if (std::getenv("OMP_NUM_THREADS")) return;
-  if (omp_get_num_places() > 0) return omp_set_num_threads(omp_get_num_places());
+  if (std::getenv("OMP_NUM_THREADS") || std::getenv("OMP_PLACES")) return;  // OpenMP has read them
   const std::vector<int> processors = processors_of_process();  // unknown where there are too many for the set
   if (!processors.empty()) omp_set_num_threads(threads_for(processors));
 }

@@ -10,8 +10,8 @@ namespace pliant {
 /// `root`: of the folders proc and sys. What cannot be read there does not limit.
 int threads_for(const std::vector<int>& processors, const std::filesystem::path& root = "/");
 
-/// Sets the number of threads of parallel regions: `threads`, or if it is 0 that of OMP_NUM_THREADS or OMP_PLACES, or
-/// that for the processors of this process.
+/// Sets the number of threads of parallel regions: `threads`, or if it is 0 what OMP_NUM_THREADS or OMP_PLACES ask
+/// for, or that for the processors of this process.
 void set_threads(int threads);
 
 }  // namespace pliant

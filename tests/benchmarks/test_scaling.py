@@ -42,9 +42,9 @@ def test_no_region_is_faster_than_the_memory() -> None:
 
 
 def test_bytes_come_from_another_run() -> None:
-    both = scaling.with_bytes(recording(region(bytes=0), region(line=8)), {"step": 5, "regions": [
+    both = scaling.with_bytes(recording(region(bytes=0, calls=2), region(line=8)), {"step": 5, "regions": [
         {"file": "lib/contact/contact.cpp", "line": 7, "bytes": 3}]})
-    assert both["bytes"] == 5 and [r["bytes"] for r in both["regions"]] == [3, 0]
+    assert both["bytes"] == 5 and [r["bytes"] for r in both["regions"]] == [1.5, 0]
 
 
 def test_barriers_grow_with_the_logarithm() -> None:
@@ -80,3 +80,8 @@ def test_bad_arguments_are_refused(arguments: list[str], capsys: pytest.CaptureF
         scaling.parse_arguments(arguments)
     assert ended.value.code == 2
     assert arguments[0] in capsys.readouterr().err
+
+
+def test_a_packing_that_is_not_there(capsys: pytest.CaptureFixture) -> None:
+    assert scaling.main(["--only", "3"]) == 2
+    assert "2,000 grains, 20,000 grains, large body" in capsys.readouterr().err

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <omp.h>
+#include <sched.h>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 
@@ -58,6 +61,25 @@ TEST_F(DefaultThreads, GroupsOfVersion1) {
   Files limited = unlimited;
   limited["sys/fs/cgroup/cpu/box/cpu.cfs_quota_us"] = "300000";
   EXPECT_EQ(threads_with(limited), 3);
+}
+
+/// Places that OpenMP makes by itself are no request.
+TEST_F(DefaultThreads, AreThoseOfTheProcessors) {
+  cpu_set_t set;
+  ASSERT_EQ(sched_getaffinity(0, sizeof set, &set), 0);
+  std::vector<int> processors;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    if (CPU_ISSET(cpu, &set)) processors.push_back(cpu);
+  const int before = omp_get_max_threads();
+  const char* named = std::getenv("OMP_NUM_THREADS");
+  const std::string kept = named ? named : "";
+  ::unsetenv("OMP_NUM_THREADS");
+  set_threads(0);
+  if (!std::getenv("OMP_PLACES")) EXPECT_EQ(omp_get_max_threads(), threads_for(processors));
+  set_threads(3);
+  EXPECT_EQ(omp_get_max_threads(), 3);
+  if (named) ::setenv("OMP_NUM_THREADS", kept.c_str(), 1);
+  omp_set_num_threads(before);
 }
 
 TEST_F(DefaultThreads, UnreadableNumbersDoNotLimit) {
