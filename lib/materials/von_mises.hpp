@@ -144,7 +144,7 @@ struct VonMises {
       if (is_small(0.25 * share * excess * (y * y * y)))
         return x * (1.0 + 0.5 * share * y * (1.0 + y * (share - 1.0 / 3)));
     }
-    // Newton's method from below: sigma is concave, so that no iterate passes the root. Its last iteration takes the
+    // Newton's method; without a rate from below, as sigma is concave. Its last iteration takes the
     // reciprocal derivative of the one before, with one Newton step.
     for (int i = 0; i < most_iterations; ++i) {
       const Yield at = further(before, x);
