@@ -29,7 +29,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from scenes import LARGEST, LARGEST_MEMORY, MISSING, ROOT, Size, available_memory, packing
+from scenes import LARGEST, LARGEST_MEMORY, MISSING, ROOT, Size, has_memory_for_largest, packing
 
 STEPS = 100  # as many as between two searches of packing()
 LARGE_BODY = """
@@ -210,9 +210,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
 def main(arguments: list[str] | None = None) -> int:
     options = parse_arguments(arguments)
-    available = available_memory(Path("/proc/meminfo").read_text())
-    if options.largest and available < LARGEST_MEMORY:
-        print(f"error: 200,000 grains need {LARGEST_MEMORY / 1e9:.0f} GB, {available / 1e9:.1f} GB are free", file=sys.stderr)
+    if options.largest and not has_memory_for_largest():
         return MISSING
     case = (ROOT / "cases/third_body.toml").read_text()
     scenes = {"2,000 grains": packing(case, Size(100, 20, STEPS)), "20,000 grains": packing(case, Size(200, 100, STEPS)),

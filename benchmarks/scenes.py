@@ -122,6 +122,14 @@ def available_memory(meminfo: str) -> float:
     return float(found[1]) * 1024 if found else 0.0
 
 
+def has_memory_for_largest() -> bool:
+    """Says so if not."""
+    available = available_memory(Path("/proc/meminfo").read_text())
+    if available < LARGEST_MEMORY:
+        print(f"error: 200,000 grains need {LARGEST_MEMORY / 1e9:.0f} GB, {available / 1e9:.1f} GB are free", file=sys.stderr)
+    return available >= LARGEST_MEMORY
+
+
 def table(rows: list[Figures]) -> str:
     lines = [f"{'scene':<22} {'grains':>7} {'threads':>7} {'steps':>7} {'evaluations':>11} {'a grain and step':>16} "
              f"{'a grain':>10} {'all memory':>10} {'prepared in':>11} {'output':>7} {'CPU':>8}"]
@@ -218,9 +226,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
 
 def main(arguments: list[str] | None = None) -> int:
     options = parse_arguments(arguments)
-    available = available_memory(Path("/proc/meminfo").read_text())
-    if options.largest and available < LARGEST_MEMORY:
-        print(f"error: 200,000 grains need {LARGEST_MEMORY / 1e9:.0f} GB, {available / 1e9:.1f} GB are free", file=sys.stderr)
+    if options.largest and not has_memory_for_largest():
         return MISSING
     case, compressed = (ROOT / "cases/third_body.toml").read_text(), options.json.parent / "compressed"
     wanted = lambda name: not options.only or any(name.startswith(begin) for begin in options.only)

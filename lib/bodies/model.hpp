@@ -123,7 +123,7 @@ struct Model {
   std::vector<NodewiseShape> nodewise_shapes;
   std::vector<Chunk> point_chunks, outline_chunks;  ///< of all nodewise bodies
   std::vector<RigidBody> rigid_bodies;
-  std::vector<int> driven;          ///< numbers of those that are
+  std::vector<int> driven;          ///< indices of the driven rigid bodies
   std::vector<Body> bodies;         ///< grains in the scene's order, then walls
   std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
   std::size_t compliant_size = 0;   ///< length of Dofs::compliant

@@ -276,7 +276,8 @@ void print_cost(const Model& model, const DryRun& first, const Forecast& run, st
                         duration(run.evaluations * first.seconds_per_evaluation), 1 / first.seconds_per_evaluation,
                         threads, threads > 1 ? "s" : "", duration(frame_seconds * static_cast<double>(frames))));
   const int useful = useful_threads(threads * first.seconds_per_evaluation);
-  print_row("threads", useful > 1 ? fmt::format("up to some {} can be of use", useful) : "more than one are of no use");
+  print_row("threads", useful > 1 ? fmt::format("up to some {} can be of use", useful)
+                                  : "more than one would wait for each other");
 }
 
 void print_sizes(const Model& model, const OutputSize& size) {
