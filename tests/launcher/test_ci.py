@@ -27,7 +27,7 @@ def run_ci(launcher: Launcher) -> subprocess.CompletedProcess[str]:
     write_script(launcher.root / "bin/mmdebstrap", "true")
     write_script(launcher.root / "pliant",
                  'echo "${PLIANT_BUILDS:+$PLIANT_BUILDS: }${PLIANT_TEST_FOLDERS:+$PLIANT_TEST_FOLDERS: }pliant $*" >>"$LOG"; case $* in lint) echo "3 passed";; '
-                 '"test -LE "*) echo "9 passed"; echo "5 passed, ${FAILED:-0} failed, 2 skipped"; [ -z "${FAILED-}" ] || exit 8;; '
+                 '"test -LE "*) echo "9 passed"; [ -z "${FAILED-}" ] || echo "  71 - scripts.movie (Timeout)"; echo "5 passed, ${FAILED:-0} failed, 2 skipped"; [ -z "${FAILED-}" ] || exit 8;; '
                  '"test --preset "*) echo "4 passed, 0 failed, 0 skipped";; '
                  'verify*) echo "== 7 passed, 2 xfailed in 3 s ==";; esac')
     path = f"{launcher.root / 'bin'}:{launcher.environment['PATH']}"
@@ -55,6 +55,7 @@ def test_ci_fails_with_one_stage_and_runs_the_others(launcher: Launcher) -> None
     assert lines[-1] == "35 passed, 1 failed, 2 skipped, 4 known to fail"
     assert [line.split()[1] for line in lines if re.fullmatch(r"ci: \w+ \d+ s, red", line)] == ["test", "test"]
     assert [line.split()[1] for line in lines[-2 - len(STAGES):-1]] == [*STAGES, "all"]
+    assert lines[-3 - len(STAGES)] == "ci: test: 71 - scripts.movie (Timeout)"  # of them all, shortly before the end
 
 
 def test_no_stage_depends_on_a_count_or_a_date() -> None:
