@@ -38,11 +38,11 @@ std::vector<SweepEntry> sweep_entries(const Model& model, const std::vector<Box>
 
 /// Adds pairs of entry i with the entries after it in x, around the period as far as it extends. An entry meets itself
 /// one period further on.
-void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, std::size_t i, double period,
+void sweep_from(const std::vector<SweepEntry>& entries, const std::vector<Box>& boxes, int i, double period,
                 double margin, std::vector<BodyPair>& pairs) {
   const SweepEntry& a = entries[i];
   for (std::size_t step = 1;; ++step) {
-    const std::size_t wrapped = i + step;
+    const std::size_t wrapped = static_cast<std::size_t>(i) + step;
     const int lap = static_cast<int>(wrapped / entries.size());
     if (lap > 0 && period == 0) return;
     const SweepEntry& b = entries[wrapped % entries.size()];
@@ -86,11 +86,10 @@ Box bounding_box(const Model& model, const OutlineField& position, int body) {
 std::vector<BodyPair> broad_phase(const Model& model, const std::vector<Box>& boxes, double margin) {
   const double period = model.scene.period.value_or(0);
   const std::vector<SweepEntry> entries = sweep_entries(model, boxes);
-  constexpr std::size_t block = 64;  // entries
-  std::vector<std::vector<BodyPair>> of_block((entries.size() + block - 1) / block);
-  parallel_for(static_cast<int>(of_block.size()), [&](int b) {
-    const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, entries.size());
-    for (std::size_t i = begin; i < end; ++i) sweep_from(entries, boxes, i, period, margin, of_block[b]);
+  const Blocks blocks{static_cast<int>(entries.size()), 64};
+  std::vector<std::vector<BodyPair>> of_block(static_cast<std::size_t>(blocks.count()));
+  parallel_for(blocks.count(), [&](int b) {
+    blocks.for_each_in(b, [&](int i) { sweep_from(entries, boxes, i, period, margin, of_block[b]); });
   });
   std::vector<BodyPair> pairs;
   for (const std::vector<BodyPair>& found : of_block) pairs.insert(pairs.end(), found.begin(), found.end());

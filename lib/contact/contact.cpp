@@ -162,14 +162,14 @@ std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
 /// Lays out one contact pair per pair of bodies, either just found or kept.
 void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history) {
   std::vector<ContactPair> all = std::move(spare_pairs_);
-  all.clear(), all.reserve(static_cast<std::size_t>(verlet_list_.count()));
-  auto next = found.begin();
-  auto kept = contact_pairs().begin();  // in the same order
-  for (int p = 0; p < verlet_list_.count(); ++p) {
-    const bool just_found = next != found.end() && next->pair() == verlet_list_[p];
-    while (!just_found && kept->pair() != verlet_list_[p]) ++kept;
-    all.push_back(just_found ? *next++ : *kept);
-  }
+  all.resize(static_cast<std::size_t>(verlet_list_.count()));
+  parallel_for(verlet_list_.count(), [&](int p) {
+    ContactPair& contact_pair = all[p];
+    contact_pair.first = verlet_list_[p].first, contact_pair.second = verlet_list_[p].second;
+    contact_pair.images = verlet_list_[p].images, contact_pair.part = 0;
+    const int just_found = find_pair(found, contact_pair, p);
+    contact_pair = just_found < 0 ? contact_pairs()[find_pair(contact_pairs(), contact_pair, p)] : found[just_found];
+  });
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   std::swap(before_, history.last);
   const std::vector<ContactPair>& old = spare_pairs_ = table_.lay_out(std::move(all), history);
@@ -184,30 +184,22 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
 
 /// Transfers forces and totals of the last step from the contact pairs before a layout.
 void ContactSystem::carry_step(const std::vector<ContactPair>& old, StepForces& last) const {
-  std::vector<int> number(contact_pairs().size(), -1);
-  std::size_t from = 0;
-  for (int p = 0; p < table_.count(); ++p) {
-    while (from < old.size() && comes_before(old[from], contact_pairs()[p])) ++from;
-    if (from < old.size() && !comes_before(contact_pairs()[p], old[from])) number[p] = static_cast<int>(from);
-  }
   parallel_for(table_.count(), [&](int p) {
     const ContactPair& contact_pair = contact_pairs()[p];
-    if (number[p] < 0) return;
-    last.totals[p] = before_.totals[number[p]];
-    carry_forces(model_, old[number[p]], before_.forces, contact_pair, last.forces);
+    const int from = find_pair(old, contact_pair, p);
+    if (from < 0) return;
+    last.totals[p] = before_.totals[from];
+    carry_forces(model_, old[from], before_.forces, contact_pair, last.forces);
   });
 }
 
 /// Threads share the writing: of many grains these are megabytes.
 void ContactSystem::make_room(StepForces& evaluated) const {
-  const std::size_t size = static_cast<std::size_t>(table_.entries() + lane_count);  // read in whole lanes
-  constexpr std::size_t block = 4096;
+  const Blocks blocks{table_.entries() + lane_count, 4096};  // read in whole lanes
   for (LinedNumbers* numbers : {&evaluated.forces.x, &evaluated.forces.y}) {
-    numbers->resize(size);
-    parallel_for(static_cast<int>((size + block - 1) / block), [&](int b) {
-      const std::size_t begin = block * static_cast<std::size_t>(b);
-      std::fill_n(numbers->begin() + static_cast<std::ptrdiff_t>(begin), std::min(block, size - begin), 0.0);
-    });
+    numbers->resize(static_cast<std::size_t>(blocks.iterations));
+    parallel_for(blocks.count(),
+                 [&](int b) { std::fill(numbers->begin() + blocks[b].begin, numbers->begin() + blocks[b].end, 0.0); });
   }
   evaluated.totals.assign(contact_pairs().size(), {});
 }
@@ -275,13 +267,10 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
       add_run(&now.forces.y[entry], count, y + node);
     });
   };
-  constexpr std::size_t block = 256;  // contact pairs per block, whatever the number of threads
-  block_totals_.assign((now.totals.size() + block - 1) / block, {});
-  const auto add_up = [&](int b) {
-    const std::size_t begin = block * static_cast<std::size_t>(b), end = std::min(begin + block, now.totals.size());
-    for (std::size_t p = begin; p < end; ++p) block_totals_[static_cast<std::size_t>(b)].add(now.totals[p]);
-  };
-  parallel_for(bodies, gather, static_cast<int>(block_totals_.size()), add_up);
+  const Blocks pairs{table_.count(), 256};
+  block_totals_.assign(static_cast<std::size_t>(pairs.count()), {});
+  const auto add_up = [&](int b) { pairs.for_each_in(b, [&](int p) { block_totals_[b].add(now.totals[p]); }); };
+  parallel_for(bodies, gather, pairs.count(), add_up);
   PairTotals total;
   for (const PairTotals& of_block : block_totals_) total.add(of_block);
   if (model_.scene.cell) force.lattice = forces_on_images(now.forces);

@@ -52,21 +52,21 @@ bool find_room(int wanted, int had, int room, int& used, int& at) {
 
 }  // namespace
 
-const ContactPair* PairTable::find(const BodyPair& pair, int part) const {
-  const auto at = std::partition_point(contact_pairs_.begin(), contact_pairs_.end(), [&](const ContactPair& p) {
-    return std::pair(p.pair(), p.part) < std::pair(pair, part);
-  });
-  return at == contact_pairs_.end() || at->pair() != pair || at->part != part ? nullptr : &*at;
+int find_pair(const std::vector<ContactPair>& pairs, const ContactPair& wanted, int near) {
+  const int size = static_cast<int>(pairs.size());
+  int low = std::clamp(near, 0, size), high = low;  // the first that does not come before it lies in [low, high]
+  for (int step = 1; low > 0 && !comes_before(pairs[low - 1], wanted); step *= 2)
+    high = low - 1, low = std::max(0, low - step);
+  for (int step = 1; high < size && comes_before(pairs[high], wanted); step *= 2)
+    low = high + 1, high = std::min(size, high + step);
+  const auto at = std::partition_point(pairs.begin() + low, pairs.begin() + high,
+                                       [&](const ContactPair& p) { return comes_before(p, wanted); });
+  return at == pairs.end() || comes_before(wanted, *at) ? -1 : static_cast<int>(at - pairs.begin());
 }
 
 std::vector<ContactPair> PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history) {
   if (!std::ranges::is_sorted(contact_pairs, comes_before)) std::ranges::sort(contact_pairs, comes_before);
-  records_ = entries_ = 0;
-  for (ContactPair& contact_pair : contact_pairs)
-    for (int side = 0; side < 2; ++side) {
-      contact_pair.record[side] = std::exchange(records_, records_ + padded(contact_pair.nodes[side].count));
-      contact_pair.entry[side] = std::exchange(entries_, entries_ + padded(contact_pair.forces(side).count));
-    }
+  assign_places(contact_pairs);
   record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
   ContactHistory& next = spare_;
   next.resize(record_room_);
@@ -75,10 +75,10 @@ std::vector<ContactPair> PairTable::lay_out(std::vector<ContactPair> contact_pai
   parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
     for (int side = 0; side < 2; ++side) next.clear(contact_pair.record[side], padded(contact_pair.nodes[side].count));
-    const ContactPair* from = find(contact_pair.pair(), contact_pair.part);
-    if (!from) return;
-    for (int side = 0; side < 2; ++side) carry(model_, *from, history, contact_pair, side, next);
-    if (!next.energy_error.empty()) next.copy_energy_error(history, static_cast<int>(from - contact_pairs_.data()), p);
+    const int from = find_pair(contact_pairs_, contact_pair, p);
+    if (from < 0) return;
+    for (int side = 0; side < 2; ++side) carry(model_, contact_pairs_[from], history, contact_pair, side, next);
+    if (!next.energy_error.empty()) next.copy_energy_error(history, from, p);
   });
   std::swap(history, next);
   history.layout = laid_out_ = ++layout_;
@@ -86,6 +86,24 @@ std::vector<ContactPair> PairTable::lay_out(std::vector<ContactPair> contact_pai
   std::swap(contact_pairs_, contact_pairs);
   index();
   return contact_pairs;
+}
+
+/// Gives contact pairs their records and entries one behind the other. Threads share all but the sums.
+void PairTable::assign_places(std::vector<ContactPair>& contact_pairs) {
+  const int count = static_cast<int>(contact_pairs.size());
+  places_.resize(contact_pairs.size());
+  parallel_for(count, [&](int p) {
+    for (int side = 0; side < 2; ++side)
+      places_[p][side] = {padded(contact_pairs[p].nodes[side].count), padded(contact_pairs[p].forces(side).count)};
+  });
+  records_ = entries_ = 0;
+  for (auto& sides : places_)
+    for (auto& [record, entry] : sides)
+      record = std::exchange(records_, records_ + record), entry = std::exchange(entries_, entries_ + entry);
+  parallel_for(count, [&](int p) {
+    for (int side = 0; side < 2; ++side)
+      contact_pairs[p].record[side] = places_[p][side][0], contact_pairs[p].entry[side] = places_[p][side][1];
+  });
 }
 
 void PairTable::take(std::vector<ContactPair> contact_pairs, int records) {
@@ -181,29 +199,33 @@ void PairTable::refuse_others() const {
 /// Forces take as long as their slave nodes and the windows of their masters are large, eight by eight. What else a
 /// pair needs counts as eight. Sums that are too large for a number do not grow further.
 void PairTable::sum_cost() {
-  cost_.assign(1, 0);
-  for (const ContactPair& contact_pair : contact_pairs_) {
-    std::int64_t sum = cost_.back() + 1;
+  cost_.resize(contact_pairs_.size() + 1);
+  cost_[0] = 0;
+  parallel_for(count(), [&](int p) {
+    const ContactPair& contact_pair = contact_pairs_[p];
+    int cost = 1;
     for (int side = 0; side < 2; ++side)
-      sum += (padded(contact_pair.nodes[side].count) + padded(contact_pair.window[side].count)) / lane_count;
-    cost_.push_back(static_cast<int>(std::min<std::int64_t>(sum, std::numeric_limits<int>::max())));
-  }
+      cost += (padded(contact_pair.nodes[side].count) + padded(contact_pair.window[side].count)) / lane_count;
+    cost_[p + 1] = cost;
+  });
+  std::int64_t sum = 0;
+  for (int& cost : cost_)
+    cost = static_cast<int>(sum = std::min<std::int64_t>(sum + cost, std::numeric_limits<int>::max()));
 }
 
 void PairTable::index() {
   sum_cost();
+  slot_.resize(contact_pairs_.size());
+  parallel_for(count(), [&](int p) { slot_[p] = {contact_pairs_[p].first, contact_pairs_[p].second}; });
   arc_begin_.assign(model_.bodies.size() + 1, 0);
-  for (const ContactPair& contact_pair : contact_pairs_)
-    ++arc_begin_[contact_pair.first + 1], ++arc_begin_[contact_pair.second + 1];
+  for (const auto& [first, second] : slot_) ++arc_begin_[first + 1], ++arc_begin_[second + 1];
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) arc_begin_[b + 1] += arc_begin_[b];
   std::vector<int> next(arc_begin_.begin(), arc_begin_.end() - 1);
+  for (auto& [first, second] : slot_) first = next[first]++, second = next[second]++;
   arcs_.resize(2 * contact_pairs_.size());
-  slot_.resize(contact_pairs_.size());
-  for (std::size_t p = 0; p < contact_pairs_.size(); ++p)
-    for (int side = 0; side < 2; ++side) {
-      slot_[p][side] = next[side == 0 ? contact_pairs_[p].first : contact_pairs_[p].second]++;
-      arcs_[slot_[p][side]] = arc_of(contact_pairs_[p], side);
-    }
+  parallel_for(count(), [&](int p) {
+    for (int side = 0; side < 2; ++side) arcs_[slot_[p][side]] = arc_of(contact_pairs_[p], side);
+  });
 }
 
 }  // namespace pliant

@@ -35,6 +35,10 @@ void for_each_shared(const Model& model, const ContactPair& contact_pair, int si
   }
 }
 
+/// Index in ordered contact pairs of the one with the bodies and the part of `wanted`; -1: none. The search goes
+/// outwards from the index `near`: pairs of two lists of the same bodies have much the same indices.
+int find_pair(const std::vector<ContactPair>& pairs, const ContactPair& wanted, int near);
+
 /// Contact pairs with the positions of their nodes' records and forces in memory. A pair that is found again takes the
 /// place of the old one, or moves behind all others while there is room, so that the rest stays in place.
 class PairTable {
@@ -45,8 +49,6 @@ class PairTable {
   int count() const { return static_cast<int>(contact_pairs_.size()); }
   /// [contact pairs + 1] sums of the cost of their forces, in lanes of slave nodes and master segments.
   const std::vector<int>& cost() const { return cost_; }
-  /// Returns null if there is none.
-  const ContactPair* find(const BodyPair& pair, int part = 0) const;
 
   /// Replaces all contact pairs by these, in the order of their keys. The history follows. Returns those before.
   std::vector<ContactPair> lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history);
@@ -115,6 +117,7 @@ class PairTable {
 
  private:
   void refuse_others() const;
+  void assign_places(std::vector<ContactPair>& contact_pairs);
   void sum_cost();
   void index();
   bool take_room(const std::vector<int>& at, std::vector<ContactPair>& now, ContactHistory& history);
@@ -132,11 +135,12 @@ class PairTable {
   /// Records that the last replacement changed, and the layout before it.
   std::vector<std::array<int, 2>> moved_;  ///< first, count
   std::int64_t moved_from_ = none;
-  ContactHistory spare_;                  ///< memory for the next layout
-  std::vector<int> cost_;                 ///< [contact pairs + 1] at the last full layout
-  std::vector<int> arc_begin_;            ///< [bodies + 1]
-  std::vector<ArcEntries> arcs_;          ///< of each body's contact pairs, in their order
-  std::vector<std::array<int, 2>> slot_;  ///< [contact pairs][sides] index in arcs_
+  ContactHistory spare_;                                   ///< memory for the next layout
+  std::vector<int> cost_;                                  ///< [contact pairs + 1] at the last full layout
+  std::vector<std::array<std::array<int, 2>, 2>> places_;  ///< scratch, [contact pairs][sides]: record, entry
+  std::vector<int> arc_begin_;                             ///< [bodies + 1]
+  std::vector<ArcEntries> arcs_;                           ///< of each body's contact pairs, in their order
+  std::vector<std::array<int, 2>> slot_;                   ///< [contact pairs][sides] index in arcs_
 };
 
 }  // namespace pliant

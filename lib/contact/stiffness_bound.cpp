@@ -10,17 +10,21 @@ namespace pliant {
 /// Transfers the entries of contact pairs that were counted before. Counted at their present positions, they would miss
 /// what they can still reach before the next search.
 void StiffnessBound::follow_layout(const PairTable& table) {
-  std::vector<double> entries(static_cast<std::size_t>(table.entries() + lane_count), 0.0);
-  auto old = weighed_.begin();
-  for (const ContactPair& contact_pair : table.contact_pairs()) {
-    if (contact_pair.found > seen_) continue;
-    while (comes_before(*old, contact_pair)) ++old;
+  std::swap(entries_, spare_);
+  entries_.resize(static_cast<std::size_t>(table.entries() + lane_count));
+  const Blocks blocks{static_cast<int>(entries_.size()), 4096};
+  parallel_for(blocks.count(),
+               [&](int b) { std::fill(entries_.begin() + blocks[b].begin, entries_.begin() + blocks[b].end, 0.0); });
+  parallel_for(table.count(), [&](int p) {
+    const ContactPair& contact_pair = table.contact_pairs()[p];
+    if (contact_pair.found > seen_) return;
+    const ContactPair& old = weighed_[find_pair(weighed_, contact_pair, p)];
     for (int side = 0; side < 2; ++side)
-      std::copy_n(entries_.data() + old->entry[side], contact_pair.forces(side).count,
-                  entries.data() + contact_pair.entry[side]);
-  }
-  entries_ = std::move(entries);
-  weighed_ = table.contact_pairs();
+      std::copy_n(spare_.data() + old.entry[side], contact_pair.forces(side).count,
+                  entries_.data() + contact_pair.entry[side]);
+  });
+  weighed_.resize(table.contact_pairs().size());
+  parallel_for(table.count(), [&](int p) { weighed_[p] = table.contact_pairs()[p]; });
 }
 
 std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std::vector<double>& compliance) {

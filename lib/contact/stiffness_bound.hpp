@@ -34,6 +34,7 @@ class StiffnessBound {
 
   const Model& model_;
   std::vector<double> entries_;       ///< in the order of the force buffers, N/m2
+  std::vector<double> spare_;         ///< memory for those of the next layout
   std::vector<ContactPair> weighed_;  ///< as counted in the entries
   std::int64_t layout_ = -1;          ///< PairTable::laid_out of the entries
   std::int64_t seen_ = -1;            ///< last rebuild whose contact pairs are counted

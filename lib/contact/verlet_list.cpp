@@ -21,14 +21,7 @@ constexpr double search_threshold = 0.75;
 constexpr double rounded = 1e-4;
 
 /// Loops over bodies and pairs are cut into blocks, whose results are put together in order.
-constexpr int block = 64;
-
-int blocks_of(int count) { return (count + block - 1) / block; }
-
-template <class Visit>
-void for_each_in_block(int number, int count, Visit&& visit) {
-  for (int i = number * block, end = std::min(i + block, count); i < end; ++i) visit(i);
-}
+Blocks blocks_of(int count) { return {count, 64}; }
 
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
   std::vector<int> bodies;
@@ -102,10 +95,11 @@ void VerletList::measure(const OutlineField& now) {
   swept_by_.setZero();
   if (now.lattice != swept_lattice_ && model_.scene.cell)
     swept_by_ = matrix_of(now.lattice) * matrix_of(swept_lattice_).inverse() - Eigen::Matrix2d::Identity();
-  of_block_.resize(static_cast<std::size_t>(blocks_of(count_of_bodies())));
-  parallel_for(blocks_of(count_of_bodies()), [&](int number) {
+  const Blocks bodies = blocks_of(count_of_bodies());
+  of_block_.resize(static_cast<std::size_t>(bodies.count()));
+  parallel_for(bodies.count(), [&](int number) {
     Vec2 sum(0, 0);
-    for_each_in_block(number, count_of_bodies(), [&](int b) {
+    bodies.for_each_in(number, [&](int b) {
       motion_[b] = displacement_disc(model_, b, now, reference_);
       if (model_.bodies[b].wall) return;
       const DisplacementDisc displacement = displacement_since_sweep(b);
@@ -200,21 +194,22 @@ VerletList::Use VerletList::use_of(int pair, const OutlineField& now) const {
 bool VerletList::skin_is_exceeded(const OutlineField& now) {
   measure(now);
   use_.resize(pairs_.size());
-  exceeded_.resize(static_cast<std::size_t>(blocks_of(count())));
-  farthest_.resize(static_cast<std::size_t>(blocks_of(count_of_bodies())));
+  const Blocks pairs = blocks_of(count()), bodies = blocks_of(count_of_bodies());
+  exceeded_.resize(static_cast<std::size_t>(pairs.count()));
+  farthest_.resize(static_cast<std::size_t>(bodies.count()));
   const auto of_pairs = [&](int number) {
     exceeded_[number] = 0;
-    for_each_in_block(number, count(), [&](int p) {
+    pairs.for_each_in(number, [&](int p) {
       use_[p] = use_of(p, now);
       if (use_[p] == search_again) exceeded_[number] = 1;
     });
   };
   const auto of_bodies = [&](int number) {
     farthest_[number] = 0;
-    for_each_in_block(number, count_of_bodies(),
-                      [&](int b) { farthest_[number] = std::max(farthest_[number], come_out_of_place(b, now)); });
+    bodies.for_each_in(number,
+                       [&](int b) { farthest_[number] = std::max(farthest_[number], come_out_of_place(b, now)); });
   };
-  parallel_for(blocks_of(count()), of_pairs, blocks_of(count_of_bodies()), of_bodies);
+  parallel_for(pairs.count(), of_pairs, bodies.count(), of_bodies);
   come_out_ = swept_by_.isZero(0) ? 0 : approach_by_cell();
   double farthest = 0;
   for (double of_block : farthest_) farthest = std::max(farthest, of_block);

@@ -116,20 +116,28 @@ double parallel_max(int count, double start, Value&& value, const LoopPlace& pla
   return parallel_max<1>(count, start, [&](int i) { return std::array{value(i)}; }, place)[0];
 }
 
-/// Sum of value(i) whose rounding does not depend on the number of threads: fixed blocks, added in order.
+/// Iterations in blocks of fixed size, whatever the number of threads: what blocks find is put together in their order.
+struct Blocks {
+  int iterations, size;
+
+  int count() const { return (iterations + size - 1) / size; }
+  Share operator[](int block) const { return {block * size, std::min((block + 1) * size, iterations)}; }
+  template <class Visit>
+  void for_each_in(int block, Visit&& visit) const {
+    for (int i = block * size, end = (*this)[block].end; i < end; ++i) visit(i);
+  }
+};
+
+/// Sum of value(i) whose rounding does not depend on the number of threads: in blocks, added in order.
 template <int block = 256, class Value>
 double ordered_sum(int count, Value&& value, const LoopPlace& place = LoopPlace::current()) {
-  const int blocks = (count + block - 1) / block;
+  const Blocks blocks{count, block};
   thread_local std::vector<double> scratch;  // memory is allocated once
   std::vector<double>& partial = scratch;    // of the calling thread
-  partial.assign(static_cast<std::size_t>(blocks), 0.0);
+  partial.assign(static_cast<std::size_t>(blocks.count()), 0.0);
   parallel_for(
-      blocks,
-      [&](int b) {
-        for (int i = b * block; i < std::min(count, (b + 1) * block); ++i)
-          partial[static_cast<std::size_t>(b)] += value(i);
-      },
-      place);
+      blocks.count(),
+      [&](int b) { blocks.for_each_in(b, [&](int i) { partial[static_cast<std::size_t>(b)] += value(i); }); }, place);
   double total = 0;
   for (double p : partial) total += p;
   return total;
