@@ -18,7 +18,25 @@ Eigen::MatrixXd corrected_mass(const Space& space) {
   return lumped * (2 * lumped - Eigen::MatrixXd(space.consistent)).ldlt().solve(lumped);
 }
 
-Eigen::MatrixXd unit_mass(const Space& space, MassMatrix kind) {
+/// D plus, for each outline node of mass m and the inner node nearest to it, (s - 1) m (v_outline - v_inner)^2 / 2 of
+/// kinetic energy. Of nodes equally near, to 1e-9, the first counts.
+Eigen::MatrixXd scaled_mass(const Space& space, double scaling) {
+  Eigen::MatrixXd mass = space.lumped.asDiagonal();
+  const int outline = int(space.outline.size());
+  for (int o = 0; o < outline && outline < int(space.mesh.nodes.size()); ++o) {
+    const auto distance = [&](int i) { return (space.mesh.nodes[i] - space.mesh.nodes[o]).norm(); };
+    int nearest = outline;
+    for (int i = outline + 1; i < int(space.mesh.nodes.size()); ++i)
+      if (distance(i) < distance(nearest) * (1 - 1e-9)) nearest = i;
+    Vector difference = Vector::Zero(mass.rows());
+    difference[o] = 1, difference[nearest] = -1;
+    mass += (scaling - 1) * space.lumped[o] * difference * difference.transpose();
+  }
+  return mass;
+}
+
+Eigen::MatrixXd unit_mass(const Space& space, MassMatrix kind, double scaling) {
+  if (kind == MassMatrix::scaled) return scaled_mass(space, scaling);
   if (kind == MassMatrix::corrected) return corrected_mass(space);
   if (kind == MassMatrix::consistent) return Eigen::MatrixXd(space.consistent);
   return space.lumped.asDiagonal();
@@ -132,7 +150,7 @@ Vector Bodies::initial_velocities() const {
 
 SparseMatrix Bodies::mass(MassMatrix kind) const {
   std::vector<Eigen::MatrixXd> unit;
-  for (const Space& space : spaces_) unit.push_back(unit_mass(space, kind));
+  for (const Space& space : spaces_) unit.push_back(unit_mass(space, kind, scene_.discretisation.mass_scaling));
   Triplets entries;
   for (const Body& body : bodies_) {
     const int d = body.first_dof;

@@ -20,6 +20,7 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// Mass matrix of compliant bodies (docs/method.md 2).
 enum class MassMatrix {
   lumped,     ///< row sums, the engine's default
+  scaled,     ///< selective mass scaling: row sums D, with L from outline nodes to their nearest inner nodes
   corrected,  ///< inverse of the engine's 2 D^-1 - D^-1 M D^-1
   consistent
 };

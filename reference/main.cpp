@@ -55,8 +55,9 @@ int main_program(int argc, char** argv) {
     throw InputError(fmt::format("{}: [start]: the reference solver starts no scene from another run's end", file));
   if (!until.empty()) scene.time.end = parse_time("--until", until);
   if (!dt.empty()) options.solver.dt = parse_time("--dt", dt);
-  options.solver.mass =
-      mass.value_or(scene.discretisation.mass == Mass::corrected ? MassMatrix::corrected : MassMatrix::lumped);
+  options.solver.mass = mass.value_or(scene.discretisation.mass == Mass::corrected ? MassMatrix::corrected
+                                      : scene.discretisation.mass_scaling > 1      ? MassMatrix::scaled
+                                                                                   : MassMatrix::lumped);
   if (!modes.empty()) {
     write_modes(scene, options.solver.mass, modes);
     return 0;

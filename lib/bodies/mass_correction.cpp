@@ -1,5 +1,8 @@
 #include "bodies/mass_correction.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "bodies/node_arrays.hpp"
 
 namespace pliant {
@@ -63,12 +66,20 @@ Dofs material_velocity(const Model& model, const Dofs& y) {
 Dofs reduced_momentum(const Model& model, const Dofs& velocity) {
   Dofs y = velocity;
   if (!model.corrected_mass) return y;
-  // The eigenvalues of C are in [1, 2], so each step of y += 2/3 (v - C y) leaves at most a third of the error.
-  constexpr int steps = 40;
-  for (int step = 0; step < steps; ++step) {
+  double bound = 1;  // of the eigenvalues of C: each step of y += (v - C y) / bound leaves less of the error
+  for (const CompliantShape& shape : model.shapes) bound = std::max(bound, shape.space.correction_bound);
+  constexpr int most_steps = 10'000;
+  Lanes least = broadcast(std::numeric_limits<double>::infinity());
+  for (int step = 0; step < most_steps; ++step) {
     const Dofs reached = material_velocity(model, y);
-    for (std::size_t i = 0; i < y.compliant.size(); ++i)
-      y.compliant[i] += 2.0 / 3 * (velocity.compliant[i] - reached.compliant[i]);
+    Lanes error{};
+    for (std::size_t i = 0; i < y.compliant.size(); ++i) {
+      const Lanes change = (velocity.compliant[i] - reached.compliant[i]) / bound;
+      y.compliant[i] += change;
+      error += change * change;
+    }
+    if (!any(error < least)) break;  // down to rounding in all lanes
+    least = min(least, error);
   }
   return y;
 }

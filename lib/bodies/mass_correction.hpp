@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// With corrected mass a state holds y = p/D, momentum over lumped mass, in place of velocities. Positions move by
-/// v = C y, and kinetic energy is y.D C y / 2, with C = 2 I - D^-1 M (docs/method.md 2). With lumped mass C = I, v = y.
+/// With corrected or scaled mass a state holds y = p/D, momentum over lumped mass, in place of velocities. Positions
+/// move by v = C y, and kinetic energy is y.D C y / 2 (docs/method.md 2). Otherwise C = I, v = y.
 
 /// v = C y of one batch, [slots x 2] each; y and v must be different arrays.
 void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v);

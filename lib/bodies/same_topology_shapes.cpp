@@ -65,10 +65,7 @@ SameTopologyShapes unite(Shapes shapes) {
       result.inverse_mass_at_unit_density[i][lane] = 1 / shapes[lane]->mass_at_unit_density[i];
       result.nodal_distance[i][lane] = shapes[lane]->nodal_distance[i];
     }
-  for (int lane = 0; lane < lane_count; ++lane) {
-    result.correction_bound[lane] = shapes[lane]->correction_bound;
-    result.weight_share[lane] = shapes[lane]->weight_share;
-  }
+  for (int lane = 0; lane < lane_count; ++lane) result.correction_bound[lane] = shapes[lane]->correction_bound;
   result.table = unite_tables(shapes);
   result.outline_rows = unite_rows(shapes, &Discretisation::outline_rows);
   result.node_rows = unite_rows(shapes, &Discretisation::node_rows);

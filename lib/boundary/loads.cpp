@@ -35,22 +35,11 @@ double applied_load(const RigidDof& dof, const Instant& at, double g) {
   return dof.force_scale * dof.history.at(at.time) - (servo ? dof.mass * g : 0);
 }
 
-namespace {
-
-/// Density of gravitational mass for a batch's masses at unit density: mass_scaling adds inertia but no weight.
-Lanes weighing_density(const Model& model, const Batch& batch) {
-  const Lanes density =
-      with_tables(model, batch, [&](const auto& tables) { return tables.weight_share * batch.density; });
-  return density * batch.inverse_scale;
-}
-
-}  // namespace
-
 void add_gravity(const Model& model, const Region& region, const Vec2& g, Lanes* forces) {
   if (g.x() == 0 && g.y() == 0) return;
   const Batch& batch = model.batches[region.batch];
   // Padding lanes would fall without end, because nothing supports them.
-  const Lanes density = select(batch.weight > 0.0, weighing_density(model, batch), Lanes{});
+  const Lanes density = select(batch.weight > 0.0, batch.density * batch.inverse_scale, Lanes{});
   with_nodes(model, batch, [&](const auto& nodes) {
     for (int i = region.first; i < region.last; ++i) {
       forces[2 * i] += density * (nodes.mass_at_unit_density[i] * g.x());
@@ -110,7 +99,7 @@ Lanes gravity_moment(const Model& model, const Batch& batch, int first, int last
     Lanes moment{};
     for (int i = first; i < last; ++i)
       moment += nodes.mass_at_unit_density[i] * (g.x() * q[2 * i] + g.y() * q[2 * i + 1]);
-    return moment * weighing_density(model, batch) * batch.weight;
+    return moment * batch.density * batch.inverse_scale * batch.weight;
   });
 }
 

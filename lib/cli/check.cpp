@@ -118,11 +118,10 @@ void print_masses(const Model& model) {
     heading = "";
   }
   print_share("", "all grains", grains);
-  if (const double added = added_mass(model); added > 0)
-    print_row(
-        "", fmt::format("mass_scaling adds {:.2g} % to the inertia of compliant grains, not to their weight; inertial "
-                        "numbers grow by up to {:.2g} %",
-                        100 * added, 100 * (std::sqrt(1 + added) - 1)));
+  if (const double slowed = slowed_by_mass_scaling(model); slowed > 0)
+    print_row("", fmt::format("mass_scaling slows the lowest vibrations of compliant grains by {:.2g} %, their "
+                              "translation by nothing",
+                              100 * slowed));
   if (all.bodies > grains.bodies) print_share("", "all bodies", all);
 }
 

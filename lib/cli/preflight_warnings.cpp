@@ -62,9 +62,12 @@ double largest_inertia_ratio(const Model& model) {
   return largest;
 }
 
-std::string of_inertia(double excess, bool corrected) {
+std::string of_inertia(double excess, const DiscretisationSettings& space) {
   return fmt::format("compliant grains have up to {:.2g} % more rotational inertia than their polygons{}", 100 * excess,
-                     corrected ? "" : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
+                     space.mass == Mass::corrected ? ""
+                     : space.mass_scaling > 1
+                         ? ", by lumped and scaled mass"
+                         : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
 }
 
 std::optional<double> least_restitution(const Scene& scene) {
@@ -91,7 +94,7 @@ std::vector<std::string> preflight_warnings(const Model& model) {
       restitution && has_round_rigid_grains(model))
     all.push_back(of_rolling(*restitution));
   if (const double excess = largest_inertia_ratio(model) - 1; excess > least_excess)
-    all.push_back(of_inertia(excess, model.corrected_mass));
+    all.push_back(of_inertia(excess, model.scene.discretisation));
   if (has_locking_triangles(model))
     all.emplace_back(
         "method \"t3\" locks where plastic flow keeps the volume: with 4 to 8 spacings across a part, forces were 2 % "

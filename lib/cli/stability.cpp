@@ -1,18 +1,20 @@
 #include "cli/stability.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "bodies/initial_state.hpp"
 #include "bodies/place_outlines.hpp"
+#include "discretisation/mass.hpp"
 #include "dynamics/time_step_bound.hpp"
 #include "setup/build_model.hpp"
 
 namespace pliant {
 namespace {
 
-constexpr double tried = 2;          ///< mass_scaling
+constexpr double tried = 3;          ///< mass_scaling
 constexpr double worth_while = 1.1;  ///< times as long
 constexpr std::size_t most_bodies = 3000;
 
@@ -34,14 +36,13 @@ Stability stability(const Model& model) {
   return {bound.largest_dt(), bound.largest_dt(stiffer), bound.governing()};
 }
 
-double added_mass(const Model& model) {
-  double without = 0, added = 0;
-  for (const Body& body : model.bodies) {
-    if (body.kind != BodyKind::compliant) continue;
-    without += body.mass;
-    added += body.mass * (1 / model.shape_of(body).space.weight_share - 1);
-  }
-  return without > 0 ? added / without : 0;
+double slowed_by_mass_scaling(const Model& model) {
+  double largest = 1;
+  if (model.scene.discretisation.mass_scaling > 1)
+    for (const CompliantShape& shape : model.shapes)
+      largest = std::max(
+          largest, stretching_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.mass_correction));
+  return std::sqrt(largest) - 1;
 }
 
 std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stability& as_it_is) {
@@ -52,13 +53,13 @@ std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stab
     return {};
   Scene scene = model.scene;
   scene.discretisation.mass_scaling = tried;
-  const Model heavier = build_model(scene);
-  const double longer = stability(heavier).dt / as_it_is.dt;
+  const Model scaled = build_model(scene);
+  const double longer = stability(scaled).dt / as_it_is.dt;
   if (longer < worth_while) return {};
   return fmt::format(
-      "mass_scaling = {:.0f} would make it {:.2g} times as long, for {:.2g} % more inertia of compliant grains; see "
-      "docs/defaults.md",
-      tried, longer, 100 * added_mass(heavier));
+      "mass_scaling = {:.0f} would make it {:.3g} times as long; compliant grains would vibrate {:.2g} % more slowly; "
+      "see docs/defaults.md",
+      tried, longer, 100 * slowed_by_mass_scaling(scaled));
 }
 
 }  // namespace pliant

@@ -17,11 +17,12 @@ struct Stability {
 };
 Stability stability(const Model& model);
 
-/// What [discretisation] mass_scaling adds to the mass of the model's compliant grains, over theirs; 0 without it.
-double added_mass(const Model& model);
+/// By how much [discretisation] mass_scaling slows the lowest vibrations of compliant grains, over their frequencies:
+/// that of a uniform stretch, the largest of all shapes. 0 without mass scaling.
+double slowed_by_mass_scaling(const Model& model);
 
-/// What it could do for a scene without it: try it. Nothing where steps do not depend on it, or for scenes of more
-/// bodies than are tried within a second or so.
+/// What mass scaling could do for a scene without it: try it. Nothing where steps do not depend on it, or for scenes of
+/// more bodies than are tried within a second or so.
 std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stability& as_it_is);
 
 }  // namespace pliant

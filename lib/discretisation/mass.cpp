@@ -5,8 +5,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
+#include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 
 #include "core/errors.hpp"
 #include "discretisation/quadrature.hpp"
@@ -29,10 +30,54 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
   return mass;
 }
 
-double scale_outline_mass(int outline_count, double times, std::vector<double>& mass) {
-  const double before = std::accumulate(mass.begin(), mass.end(), 0.0);
-  for (int i = 0; i < outline_count; ++i) mass[i] *= times;
-  return before / std::accumulate(mass.begin(), mass.end(), 0.0);
+namespace {
+
+/// [nodes] outline nodes to which each inner node is the nearest; of nodes that are equally near to rounding the first.
+std::vector<std::vector<int>> nearest_outline_nodes(const FieldMesh& mesh) {
+  constexpr double rounding = 1e-9;
+  std::vector<std::vector<int>> of_inner(mesh.nodes.size());
+  for (int o = 0; o < mesh.outline_count; ++o) {
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t nearest = 0;
+    for (std::size_t i = static_cast<std::size_t>(mesh.outline_count); i < mesh.nodes.size(); ++i)
+      if (const double d = (mesh.nodes[i] - mesh.nodes[o]).norm(); d < (1 - rounding) * least) least = d, nearest = i;
+    if (std::isfinite(least)) of_inner[nearest].push_back(o);
+  }
+  return of_inner;
+}
+
+ShapeRows rows_of(const std::vector<std::map<int, double>>& matrix) {
+  ShapeRows rows;
+  rows.start.push_back(0);
+  for (const auto& row : matrix) {
+    for (const auto& [j, value] : row) rows.node.push_back(j), rows.value.push_back(value);
+    rows.start.push_back(static_cast<int>(rows.node.size()));
+  }
+  return rows;
+}
+
+}  // namespace
+
+ShapeRows scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling) {
+  std::vector<std::map<int, double>> rows(lumped.size());
+  for (std::size_t i = 0; i < lumped.size(); ++i) rows[i][static_cast<int>(i)] = 1;
+  const std::vector<std::vector<int>> outline_nodes = nearest_outline_nodes(mesh);
+  for (std::size_t i = static_cast<std::size_t>(mesh.outline_count); i < lumped.size(); ++i) {
+    std::vector<int> node{static_cast<int>(i)};  // an inner node and the outline nodes that it is coupled to
+    node.insert(node.end(), outline_nodes[i].begin(), outline_nodes[i].end());
+    const Eigen::Index size = static_cast<Eigen::Index>(node.size());
+    Eigen::VectorXd diagonal(size);
+    for (Eigen::Index a = 0; a < size; ++a) diagonal[a] = lumped[node[a]];
+    Eigen::MatrixXd mass = diagonal.asDiagonal();
+    for (Eigen::Index a = 1; a < size; ++a) {
+      const double coupling = (scaling - 1) * diagonal[a];
+      mass(a, a) += coupling, mass(0, 0) += coupling, mass(a, 0) -= coupling, mass(0, a) -= coupling;
+    }
+    const Eigen::MatrixXd c = mass.ldlt().solve(Eigen::MatrixXd(diagonal.asDiagonal()));
+    for (Eigen::Index a = 0; a < size; ++a)
+      for (Eigen::Index b = 0; b < size; ++b) rows[node[a]][node[b]] = c(a, b);
+  }
+  return rows_of(rows);
 }
 
 ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {
@@ -44,16 +89,9 @@ ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::
       for (std::size_t b = 0; b < shape.node.size(); ++b)
         mass[shape.node[a]][shape.node[b]] += quadrature.weight[g] * shape.value[a] * shape.value[b];
   }
-  ShapeRows rows;
-  rows.start.push_back(0);
-  for (std::size_t i = 0; i < mass.size(); ++i) {
-    for (const auto& [j, m] : mass[i]) {
-      rows.node.push_back(j);
-      rows.value.push_back((static_cast<std::size_t>(j) == i ? 2.0 : 0.0) - m / lumped[i]);
-    }
-    rows.start.push_back(static_cast<int>(rows.node.size()));
-  }
-  return rows;
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    for (auto& [j, m] : mass[i]) m = (static_cast<std::size_t>(j) == i ? 2.0 : 0.0) - m / lumped[i];
+  return rows_of(mass);
 }
 
 double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped) {
@@ -69,14 +107,16 @@ double correction_bound(const ShapeRows& correction, const std::vector<double>& 
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
 
-double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
+namespace {
+
+/// Twice the kinetic energy y.D C y / 2 of these velocities C y at density 1.
+double twice_kinetic_energy(const std::vector<double>& lumped, const ShapeRows& correction,
+                            const Eigen::MatrixX2d& velocity) {
   const Eigen::Index n = static_cast<Eigen::Index>(lumped.size());
   const Eigen::Map<const Eigen::VectorXd> mass(lumped.data(), n);
-  Eigen::MatrixX2d velocity(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i) velocity.row(i) << -mesh.nodes[i].y(), mesh.nodes[i].x();
   Eigen::MatrixX2d y = velocity;
   if (!correction.start.empty()) {
-    Eigen::SparseMatrix<double> matrix(n, n);  // D C = 2 D - M
+    Eigen::SparseMatrix<double> matrix(n, n);  // D C
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < n; ++i)
       for (int e = correction.start[i]; e < correction.start[i + 1]; ++e)
@@ -85,8 +125,30 @@ double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, c
     y = Eigen::ConjugateGradient < Eigen::SparseMatrix<double>,
     Eigen::Lower | Eigen::Upper > (matrix).solve(mass.asDiagonal() * velocity);
   }
+  return mass.dot(velocity.cwiseProduct(y).rowwise().sum());
+}
+
+/// Velocities of the nodes at x, y: components a x + b y.
+Eigen::MatrixX2d linear_field(const FieldMesh& mesh, const Vec2& a, const Vec2& b) {
+  Eigen::MatrixX2d velocity(static_cast<Eigen::Index>(mesh.nodes.size()), 2);
+  for (Eigen::Index i = 0; i < velocity.rows(); ++i) velocity.row(i) = mesh.nodes[i].x() * a + mesh.nodes[i].y() * b;
+  return velocity;
+}
+
+}  // namespace
+
+double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
   const Points outline(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count);
-  return mass.dot(velocity.cwiseProduct(y).rowwise().sum()) / polygon_properties(outline).polar_moment;
+  return twice_kinetic_energy(lumped, correction, linear_field(mesh, {0, 1}, {-1, 0})) /
+         polygon_properties(outline).polar_moment;
+}
+
+double stretching_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
+  double largest = 0;
+  for (const Eigen::MatrixX2d& velocity : {linear_field(mesh, {1, 0}, {0, -1}), linear_field(mesh, {0, 1}, {1, 0})})
+    largest = std::max(largest,
+                       twice_kinetic_energy(lumped, correction, velocity) / twice_kinetic_energy(lumped, {}, velocity));
+  return largest;
 }
 
 }  // namespace pliant

@@ -8,9 +8,10 @@ namespace pliant {
 /// whatever the integration points of the discretisation (docs/method.md 2). Throws InputError if one is not positive.
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
-/// Multiplies the mass of the first `outline_count` nodes by `times`. Returns the share of the mass that was there
-/// before.
-double scale_outline_mass(int outline_count, double times, std::vector<double>& mass);
+/// Rows of C = (D + L)^-1 D, [nodes x nodes], sparse, for selective mass scaling (docs/method.md 2): L couples each
+/// outline node of mass m to the nearest inner node by (scaling - 1) m. C has no negative entries, keeps translations
+/// and the momentum, and its eigenvalues lie in (0, 1].
+ShapeRows scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling);
 
 /// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points per triangle: exact for
 /// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in
@@ -22,8 +23,11 @@ ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::
 double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped);
 
 /// Rotational inertia about the centroid over that of the polygon, which the consistent mass has. It follows from the
-/// kinetic energy y.D C y / 2 of the y that moves nodes in a rotation (docs/method.md 2). `correction`: rows of C from
-/// mass_correction; empty: C = I.
+/// kinetic energy y.D C y / 2 of the y that moves nodes in a rotation (docs/method.md 2). `correction`: rows of C;
+/// empty: C = I.
 double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction);
+
+/// Kinetic energy of a uniform stretch that keeps areas, over that with C = I: the larger one of two directions.
+double stretching_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction);
 
 }  // namespace pliant

@@ -94,7 +94,10 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.outline_rows = rows_at_outline(scaled, result.node_rows);
   result.mass_at_unit_density = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
-  result.weight_share = scale_outline_mass(mesh.outline_count, settings.mass_scaling, result.mass_at_unit_density);
+  if (settings.mass_scaling > 1) {
+    result.mass_correction = scaled_mass(scaled, result.mass_at_unit_density, settings.mass_scaling);
+    result.correction_averages = true;
+  }
   if (settings.mass == Mass::corrected) {
     result.mass_correction = mass_correction(scaled, basis, result.mass_at_unit_density);
     result.correction_bound = correction_bound(result.mass_correction, result.mass_at_unit_density);

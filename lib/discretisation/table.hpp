@@ -36,11 +36,11 @@ struct Discretisation {
   ShapeRows node_rows;                       ///< at all field nodes
   std::vector<double> mass_at_unit_density;  ///< [nodes], lumped mass at density 1, m2
   std::vector<double> nodal_distance;        ///< [nodes], distance to the nearest other node, m
-  /// Rows of 2 I - D^-1 M, D the lumped and M the consistent mass: from p/D to velocities (docs/method.md 2). Empty:
-  /// lumped mass.
+  /// Rows of C, which takes p/D to velocities, D the lumped mass: 2 I - D^-1 M of corrected mass, or that of mass
+  /// scaling (docs/method.md 2). Empty: C = I.
   ShapeRows mass_correction;
   double correction_bound = 1;       ///< bound on its largest eigenvalue
-  double weight_share = 1;           ///< share of the mass without the addition of mass_scaling
+  bool correction_averages = false;  ///< whether it has no negative entries
   double min_shape_value = 0;        ///< least phi at integration points and nodes (docs/method.md 2)
   double condition = 1;              ///< largest condition number of the systems that the shape functions solve
   double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)

@@ -17,8 +17,8 @@ namespace {
 constexpr int bound_rounds = 5;
 constexpr double blend = 0.1;
 
-/// product = D^-1 |C| x at the field nodes. C = Phi^T S Phi is the stiffness that springs S, [outline nodes], N/m2,
-/// give them, D the mass at density 1.
+/// product = C D^-1 |K| x at the field nodes. K = Phi^T S Phi is the stiffness that springs S, [outline nodes], N/m2,
+/// give them, D the mass at density 1. C is that of scaled mass, otherwise I.
 void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, const std::vector<Lanes>& x,
                        std::vector<Lanes>& product) {
   const ShapeRows& rows = shape.space.outline_rows;
@@ -30,11 +30,20 @@ void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, cons
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) product[rows.node[e]] += std::abs(rows.value[e]) * absolute;
   }
   for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_mass_at_unit_density[i];
+  if (!shape.space.correction_averages) return;
+  thread_local std::vector<Lanes> lumped;  // memory is allocated once
+  lumped = product;
+  const ShapeRows& c = shape.space.mass_correction;
+  for (std::size_t i = 0; i < product.size(); ++i) {
+    product[i] = Lanes{};
+    for (int e = c.start[i]; e < c.start[i + 1]; ++e) product[i] += c.value[e] * lumped[c.node[e]];
+  }
 }
 
 /// Bounds of w^2, 1/s2, of eight bodies of a shape, of density 1, with springs of these stiffnesses, [outline nodes],
-/// N/m2. For any x > 0 the largest ratio of D^-1 |C| x to x bounds the eigenvalues of D^-1 C (Collatz 1942, Wielandt
-/// 1950); the least of all rounds counts.
+/// N/m2. For any x > 0 the largest ratio of C D^-1 |K| x to x bounds the eigenvalues of C D^-1 K if C has no negative
+/// entries (Collatz 1942, Wielandt 1950). Otherwise the bound on the eigenvalues of C multiplies that for C = I. The
+/// least of all rounds counts.
 Lanes contact_frequencies(const CompliantShape& shape, const Lanes* stiffness) {
   thread_local std::vector<Lanes> x, product;  // memory is allocated once
   x.assign(static_cast<std::size_t>(shape.nodes()), broadcast(1));

@@ -43,6 +43,7 @@ class Verlet {
 
  private:
   Evaluation forces_and_velocities(const State& state, const Motion& motion, double dt);
+  void move_by_momenta(const State& state, double dt, double half);
   void predict_velocities(const State& state, double dt);
   void move_by_mean_velocity(const State& state, double dt);
   void update_rigid(const State& state, double dt, int r);
@@ -52,7 +53,7 @@ class Verlet {
   const Model& model_;
   const bool has_mass_damping_;  ///< some degree of freedom has mass damping
   DampingLoss damping_loss_;
-  const bool needs_velocities_;  ///< with mass damping, rates or corrected mass
+  const bool needs_velocities_;  ///< with mass damping or rates
   TimeStepBound bound_;
   BodyEnergyCorrection body_correction_;
   Trial trial_;

@@ -346,7 +346,7 @@ struct DiscretisationSettings {
   int support = 8;       ///< nodal support radius = distance to the support-th nearest node
   int gauss_points = 3;  ///< mls-gauss, rpim: 1, 3 or 6
   Mass mass = Mass::lumped;
-  double mass_scaling = 1;  ///< of nodes on outlines, lumped: times theirs, so that contact allows longer steps
+  double mass_scaling = 1;  ///< of outline nodes with their inner neighbours, so that contact allows longer steps
 };
 
 struct Scene {

@@ -141,7 +141,6 @@ void fill_with_moving_least_squares(Space& space, const DiscretisationSettings& 
 }  // namespace
 
 Space make_space(const FieldMesh& mesh, const DiscretisationSettings& settings) {
-  if (settings.mass_scaling != 1) throw InputError("[discretisation] mass_scaling: not in the reference solver");
   if (settings.method == DiscretisationMethod::rpim)
     throw InputError(
         "the reference solver has no method \"rpim\": it has \"mls\", \"mls-gauss\", \"t3\" and \"es-t3\"");

@@ -28,7 +28,7 @@ Scene heap(DiscretisationMethod method, Integrator integrator, Extras extras = E
     scene.discretisation.mass = Mass::corrected;
     for (Material& material : scene.materials) material.viscosity = 0.003, material.mass_damping = 0.1;
   }
-  if (extras == Extras::mass_scaling) scene.discretisation.mass_scaling = 1.6;
+  if (extras == Extras::mass_scaling) scene.discretisation.mass_scaling = 3;
   scene.contacts = {mohr_coulomb(60, 0.3)};
   for (int i = 0; i < grains_in_all; ++i) {
     ShapeSpec shape;

@@ -159,18 +159,6 @@ TEST(StiffnessBound, CompliantAndRigidBodies) {
     }
 }
 
-// Nodes on outlines that are heavier than their share of the material.
-TEST(StiffnessBound, RimMass) {
-  for (const ContactRule& rule : rules) {
-    Scene scene = bare_scene();
-    scene.contacts = {rule};
-    scene.discretisation.mass_scaling = 2;
-    add_body(scene, polygonal_disc("disc", 2, 36, 90), BodyKind::compliant, {0, 0});
-    add_body(scene, polygonal_disc("disc", 1.6, 30, 70), BodyKind::compliant, {1.76, 0.1}, 0.1);
-    expect_bounded(scene, "heavy rims");
-  }
-}
-
 // A cluster squeezed from all sides: every disc has six partners.
 TEST(StiffnessBound, Cluster) {
   for (const ContactRule& rule : rules) {

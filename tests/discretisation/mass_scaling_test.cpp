@@ -1,68 +1,98 @@
-// Added mass on outlines: inertia without weight, for longer steps.
+// Selective mass scaling (docs/method.md 2): outline nodes share their accelerations with inner ones, for longer steps.
 #include <gtest/gtest.h>
 
-#include <numeric>
+#include <cmath>
 
+#include <Eigen/Eigenvalues>
+
+#include "discretisation/mass.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {
 namespace {
 
-Scene with_rim(Scene scene, double mass_scaling) {
-  scene.discretisation.mass_scaling = mass_scaling;
+constexpr double scaling = 3;
+
+Scene scaled(Scene scene) {
+  scene.discretisation.mass_scaling = scaling;
   return scene;
 }
 
-/// EXACT: nodes on the outline are so many times as heavy, no others; the share is that of the mass before.
-TEST(RimMass, makes_outline_nodes_heavier) {
+Discretisation disc(int nodes, DiscretisationMethod method) {
+  DiscretisationSettings settings;
+  settings.method = method, settings.mass_scaling = scaling;
+  return discretise(make_field_mesh(disc_shape("disc", 2, nodes)), settings);
+}
+
+Eigen::MatrixXd dense(const ShapeRows& rows) {
+  const auto n = static_cast<Eigen::Index>(rows.start.size()) - 1;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (int e = rows.start[i]; e < rows.start[i + 1]; ++e) matrix(i, rows.node[e]) = rows.value[e];
+  return matrix;
+}
+
+/// EXACT: M = D C^-1 is D plus (s - 1) m [1 -1; -1 1] between each outline node and the inner node nearest to it. C has
+/// no negative entries.
+TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::es_t3}) {
-    Scene scene = free_disc(90, 1);
-    scene.discretisation.method = method;
-    const Model plain = build_model(scene), heavy = build_model(with_rim(scene, 1.7));
-    const std::vector<double>&before = plain.shapes[0].space.mass_at_unit_density,
-          &now = heavy.shapes[0].space.mass_at_unit_density;
-    const std::size_t outline = static_cast<std::size_t>(plain.shapes[0].space.mesh.outline_count);
-    ASSERT_GT(outline, 10u);
-    for (std::size_t i = 0; i < before.size(); ++i) EXPECT_DOUBLE_EQ(now[i], (i < outline ? 1.7 : 1) * before[i]);
-    const double ratio =
-        std::accumulate(before.begin(), before.end(), 0.0) / std::accumulate(now.begin(), now.end(), 0.0);
-    EXPECT_DOUBLE_EQ(heavy.shapes[0].space.weight_share, ratio);
-    EXPECT_EQ(plain.shapes[0].space.weight_share, 1);
-  }
-}
-
-/// EXACT: weight is what it was, so that a grain with more inertia falls more slowly; the energy balance closes.
-TEST(RimMass, adds_no_weight) {
-  for (const int count : {1, 9}) {
-    Scene scene = empty_scene(1);
-    scene.gravity = {0.3, -1};
-    scene.shapes = {disc_shape("disc", 2, 90)};
-    for (int i = 0; i < count; ++i)
-      scene.grains.push_back(grains("disc" + std::to_string(i), "disc", BodyKind::compliant, {{3.0 * i, 0}}));
-    const Model model = build_model(with_rim(scene, 2));
-    const double share = model.shapes[0].space.weight_share;
-    EXPECT_LT(share, 0.95);
-    Simulation simulation(model);
-    advance(simulation, 1);
-    for (const Body& body : model.bodies) {
-      const Vec2 velocity = mass_mean(model, body, simulation.state().reduced_momentum);
-      EXPECT_LT((velocity - share * scene.gravity).norm(), 1e-12);
+    const Discretisation space = disc(90, method);
+    const Eigen::MatrixXd c = dense(space.mass_correction);
+    EXPECT_GE(c.minCoeff(), 0);
+    EXPECT_TRUE(space.correction_averages);
+    const auto n = c.rows();
+    const Eigen::VectorXd lumped = Eigen::Map<const Eigen::VectorXd>(space.mass_at_unit_density.data(), n);
+    Eigen::MatrixXd expected = lumped.asDiagonal();
+    for (Eigen::Index o = 0; o < space.mesh.outline_count; ++o) {
+      Eigen::Index nearest = space.mesh.outline_count;
+      for (Eigen::Index i = nearest; i < n; ++i)
+        if ((space.mesh.nodes[i] - space.mesh.nodes[o]).norm() <
+            (1 - 1e-9) * (space.mesh.nodes[nearest] - space.mesh.nodes[o]).norm())
+          nearest = i;
+      const double m = (scaling - 1) * lumped[o];
+      expected(o, o) += m, expected(nearest, nearest) += m, expected(o, nearest) -= m, expected(nearest, o) -= m;
     }
-    const EnergyBalance audit = simulation.energy_balance();
-    EXPECT_NEAR(audit.energy.kinetic, 0.5 * count * share * M_PI * scene.gravity.squaredNorm(), 0.02)
-        << "of (m / share) (share g)^2 / 2, m that of the polygon";
-    EXPECT_NEAR(audit.energy.kinetic / audit.energy.external_work, 1, 1e-10);
+    const Eigen::MatrixXd mass = lumped.asDiagonal() * c.inverse();
+    EXPECT_LT((mass - expected).cwiseAbs().maxCoeff(), 1e-12 * lumped.maxCoeff());
+    EXPECT_LT((mass.rowwise().sum() - lumped).cwiseAbs().maxCoeff(), 1e-12 * lumped.maxCoeff()) << "translation";
   }
 }
 
-/// INDEPENDENT: steps of a layer under contact are longer, by less than the root of what was added.
-TEST(RimMass, allows_longer_steps) {
+/// EXACT: the lumped mass and with it weight and momentum are what they were: a grain falls as without scaling.
+TEST(MassScaling, lets_grains_fall_as_before) {
+  Scene scene = empty_scene(1);
+  scene.gravity = {0.3, -1};
+  scene.shapes = {disc_shape("disc", 2, 90)};
+  scene.grains.push_back(grains("disc", "disc", BodyKind::compliant, {{0, 0}}));
+  const Model model = build_model(scaled(scene));
+  Simulation simulation(model);
+  advance(simulation, 1);
+  const Vec2 velocity = mass_mean(model, model.bodies[0], simulation.state().reduced_momentum);
+  EXPECT_LT((velocity - scene.gravity).norm(), 1e-12);
+  const EnergyBalance audit = simulation.energy_balance();
+  EXPECT_NEAR(audit.energy.kinetic / audit.energy.external_work, 1, 1e-10);
+}
+
+/// RATE: the coupling adds m h^2 |grad v|^2 to the kinetic energy of a rim of width h: a share of h^3 for smooth
+/// velocities.
+TEST(MassScaling, slows_smooth_motions_by_the_cube_of_the_node_distance) {
+  const auto excess = [](int nodes) {
+    const Discretisation space = disc(nodes, DiscretisationMethod::t3);
+    return stretching_ratio(space.mesh, space.mass_at_unit_density, space.mass_correction) - 1;
+  };
+  const double coarse = excess(168), fine = excess(672);
+  EXPECT_GT(fine, 0);
+  EXPECT_NEAR(std::log2(coarse / fine), 3, 0.5) << "between meshes that are not similar";
+}
+
+/// INDEPENDENT: steps of a layer under contact are longer, by less than the root of the scaling.
+TEST(MassScaling, allows_longer_steps) {
   const Scene scene = small_third_body(1);
-  const Model plain = build_model(scene), heavy = build_model(with_rim(scene, 2));
-  const double longer = Simulation(heavy).largest_dt() / Simulation(plain).largest_dt();
-  EXPECT_GT(longer, 1.15);
-  EXPECT_LT(longer, std::sqrt(2.0));
+  const Model plain = build_model(scene), with = build_model(scaled(scene));
+  const double longer = Simulation(with).largest_dt() / Simulation(plain).largest_dt();
+  EXPECT_GT(longer, 1.2);
+  EXPECT_LT(longer, std::sqrt(scaling));
 }
 
 }  // namespace

@@ -16,8 +16,15 @@ Scene corrected(Scene scene) {
   return scene;
 }
 
-TEST(CorrectedMass, momentum_gives_back_the_velocities) {
-  const Model model = build_model(corrected(free_disc(60, 1, stretching(1))));
+Scene scaled(Scene scene) {
+  scene.discretisation.mass_scaling = 3;
+  return scene;
+}
+
+using WithMass = Scene (*)(Scene);
+
+void expect_velocities_back(const Scene& scene) {
+  const Model model = build_model(scene);
   const Dofs y = Simulation(model).state().reduced_momentum;
   const Dofs v = material_velocity(model, y);
   double largest_change = 0;
@@ -31,6 +38,11 @@ TEST(CorrectedMass, momentum_gives_back_the_velocities) {
   EXPECT_GT(largest_change, 1e-3) << "else C were the identity";
 }
 
+TEST(MassMatrix, momentum_gives_back_the_velocities) {
+  expect_velocities_back(corrected(free_disc(60, 1, stretching(1))));
+  expect_velocities_back(scaled(free_disc(60, 1, stretching(1))));
+}
+
 double angular_momentum(const Model& model, const State& state) {
   const std::vector<double> masses = node_masses(model, model.bodies[0]);
   double total = 0;
@@ -40,14 +52,15 @@ double angular_momentum(const Model& model, const State& state) {
   return total;
 }
 
-class CorrectedMassIntegrators : public ::testing::TestWithParam<Integrator> {};
+class MassMatrixIntegrators : public ::testing::TestWithParam<std::tuple<Integrator, WithMass>> {};
 
 /// Angular momentum counts the momenta p = D y, as drift is symmetric in W and internal forces exert no moment.
-TEST_P(CorrectedMassIntegrators, momentum_and_energy_stay) {
-  Scene scene = corrected(free_disc(60, 10, stretching(0.3)));
+TEST_P(MassMatrixIntegrators, momentum_and_energy_stay) {
+  const auto [integrator, with_mass] = GetParam();
+  Scene scene = with_mass(free_disc(60, 10, stretching(0.3)));
   scene.grains[0].velocity.uniform = {0.1, -0.2};
   scene.grains[0].velocity.rotation = 0.2;
-  scene.time.integrator = GetParam();
+  scene.time.integrator = integrator;
   const Model model = build_model(scene);
   Simulation simulation(model);
   const double start = angular_momentum(model, simulation.state());
@@ -79,15 +92,17 @@ double energy_error(Scene scene, Integrator integrator, bool fine) {
 
 /// Verlet's energy error is of second order in dt; the paper's scheme is of first order, and its step goes as the root
 /// of the target.
-TEST_P(CorrectedMassIntegrators, energy_error_falls_with_the_step) {
-  const Scene scene = corrected(free_disc(60, 5, stretching(0.3)));
-  const double order = observed_order(energy_error(scene, GetParam(), false), energy_error(scene, GetParam(), true),
-                                      GetParam() == Integrator::verlet ? 2 : 4);
-  EXPECT_NEAR(order, GetParam() == Integrator::verlet ? 2 : 1, 0.25) << "RATE";
+TEST_P(MassMatrixIntegrators, energy_error_falls_with_the_step) {
+  const auto [integrator, with_mass] = GetParam();
+  const Scene scene = with_mass(free_disc(60, 5, stretching(0.3)));
+  const double order = observed_order(energy_error(scene, integrator, false), energy_error(scene, integrator, true),
+                                      integrator == Integrator::verlet ? 2 : 4);
+  EXPECT_NEAR(order, integrator == Integrator::verlet ? 2 : 1, 0.25) << "RATE";
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, CorrectedMassIntegrators,
-                         ::testing::Values(Integrator::verlet, Integrator::step_doubling));
+INSTANTIATE_TEST_SUITE_P(All, MassMatrixIntegrators,
+                         ::testing::Combine(::testing::Values(Integrator::verlet, Integrator::step_doubling),
+                                            ::testing::Values(corrected, scaled)));
 
 /// Frequency of the oval mode from the times at which int (x X - y Y) passes its mean.
 double oval_frequency(Mass mass) {
@@ -206,6 +221,8 @@ DampedRun damped_run(Integrator integrator, int steps) {
   return {run.bench.state, run.auditor.balance_error(energy)};
 }
 
+class CorrectedMassIntegrators : public ::testing::TestWithParam<Integrator> {};
+
 /// RATE, INDEPENDENT: the motion, and its energy balance, go to those of another scheme as the step falls: the paper's
 /// by its first order, Verlet by its second.
 TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
@@ -223,6 +240,9 @@ TEST_P(CorrectedMassIntegrators, damping_goes_with_velocities) {
   EXPECT_NEAR(order, expected, 0.2);
   EXPECT_NEAR(of_balance, expected, 0.2);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, CorrectedMassIntegrators,
+                         ::testing::Values(Integrator::verlet, Integrator::step_doubling));
 
 }  // namespace
 }  // namespace pliant::dynamics_tests

@@ -51,14 +51,15 @@ Scene one_disc(const DiscretisationSettings& settings) {
 TEST(NaturalModesOfBoth, agree) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
                                             DiscretisationMethod::t3, DiscretisationMethod::es_t3})
-    for (const Mass mass : {Mass::lumped, Mass::corrected}) {
-      const Scene scene = one_disc({.method = method, .mass = mass});
+    for (const auto& [kind, mass, scaling] : {std::tuple(reference::MassMatrix::lumped, Mass::lumped, 1.0),
+                                              {reference::MassMatrix::scaled, Mass::lumped, 3},
+                                              {reference::MassMatrix::corrected, Mass::corrected, 1}}) {
+      const Scene scene = one_disc({.method = method, .mass = mass, .mass_scaling = scaling});
       const Model model = build_model(scene);
       const SmallMotions motions = small_motions(model, model.bodies[0]);
       const NaturalModes engine = natural_modes(motions);
       const double error = error_of_differences(motions), fastest = engine.frequency.back();
       const reference::Bodies bodies(scene);
-      const auto kind = mass == Mass::corrected ? reference::MassMatrix::corrected : reference::MassMatrix::lumped;
       const Eigen::VectorXd own = natural_frequencies(bodies, bodies.all()[0], kind);
       ASSERT_EQ(engine.motions_at_rest, 3);
       ASSERT_EQ(engine.frequency.size(), static_cast<std::size_t>(own.size()) - 3);

@@ -133,8 +133,10 @@ TEST(ReferenceSystem, kinds_in_turn_are_those_of_the_engine) {
 TEST(ReferenceSystem, sums_of_masses) {
   Scene scene = small_third_body(1);
   scene.grains[0].size = {.kind = SizeDistribution::Kind::uniform, .low = 0.8, .high = 1};
+  scene.discretisation.mass_scaling = 3;
   const System system(scene);
-  for (const MassMatrix kind : {MassMatrix::lumped, MassMatrix::consistent, MassMatrix::corrected}) {
+  for (const MassMatrix kind :
+       {MassMatrix::lumped, MassMatrix::scaled, MassMatrix::consistent, MassMatrix::corrected}) {
     const reference::SparseMatrix mass = system.bodies().mass(kind);
     for (const reference::Body& body : system.bodies().all()) {
       Vector along = Vector::Zero(system.bodies().dofs());
