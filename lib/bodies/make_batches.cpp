@@ -5,6 +5,7 @@
 
 #include "bodies/node_arrays.hpp"
 #include "bodies/nodewise_shape.hpp"
+#include "bodies/own_bodies.hpp"
 #include "bodies/same_topology_shapes.hpp"
 #include "materials/with_law.hpp"
 
@@ -138,6 +139,7 @@ int sparse_nodes(const Model& model) {
 
 void make_batches(Model& model, int least_sparse_nodes) {
   BatchMaker(model).make(sparse_nodes(model) >= std::max(1, least_sparse_nodes));
+  model.own = all_bodies(model);
 }
 
 }  // namespace pliant

@@ -110,6 +110,15 @@ struct Body : PlacedBody {
   double mass = 0;            ///< kg/m
 };
 
+/// Bodies that a process advances, by their numbers in Model, ascending.
+struct OwnBodies {
+  std::vector<int> batches;  ///< those of several bodies first
+  int lane_batches = 0;      ///< number of batches of several bodies
+  std::vector<int> regions, rigid_bodies, bodies;
+};
+
+class Halo;
+
 /// Bodies and tables: built once from the scene, then immutable.
 struct Model {
   Scene scene;
@@ -135,6 +144,9 @@ struct Model {
   std::vector<OutlinePressure> pressures;
   std::vector<OutlineSupport> supports;
   std::vector<double> switch_times;  ///< ascending, s: points of histories, and ends of windows; steps end there
+
+  OwnBodies own;         ///< all, unless there is a halo
+  Halo* halo = nullptr;  ///< communication with processes that advance other bodies (contact/halo.hpp); null: none
 
   const OutlineShape& outline_of(int body) const { return outlines[bodies[body].outline]; }
   int outline_end(int body) const { return outline_offset[body] + outline_of(body).count; }  ///< without cyclic copies

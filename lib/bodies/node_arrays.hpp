@@ -40,16 +40,16 @@ inline Lanes largest_of_body(const Batch& batch, Lanes lanes) {
   return batch.layout == Layout::nodewise ? broadcast(largest(lanes)) : lanes;
 }
 
-/// Calls work(b) for each batch. Threads share the batches, but a nodewise body of many regions is handled alone, as
-/// threads share its work.
+/// Calls work(b) for each own batch. Threads share the batches, but a nodewise body of many regions is handled alone,
+/// as threads share its work.
 template <class Work>
 void for_each_batch(const Model& model, Work&& work) {
-  const int count = static_cast<int>(model.batches.size());
-  parallel_for(count, [&](int b) {
-    if (model.batches[b].regions == 1) work(b);
+  const std::vector<int>& batches = model.own.batches;
+  parallel_for(static_cast<int>(batches.size()), [&](int i) {
+    if (model.batches[batches[i]].regions == 1) work(batches[i]);
   });
-  for (int b = model.lane_batches; b < count; ++b)
-    if (model.batches[b].regions > 1) work(b);
+  for (std::size_t i = static_cast<std::size_t>(model.own.lane_batches); i < batches.size(); ++i)
+    if (model.batches[batches[i]].regions > 1) work(batches[i]);
 }
 
 }  // namespace pliant

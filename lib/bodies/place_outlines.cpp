@@ -5,17 +5,11 @@
 
 #include "bodies/body_view.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/own_bodies.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
-
-void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
-  for (int i = shape.count; i < shape.count + lane_count; ++i) {
-    x[i] = x[i - shape.count] + shape.turn_shift;
-    y[i] = y[i - shape.count];
-  }
-}
 
 /// Field of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
 struct Field {
@@ -86,31 +80,29 @@ void update_nodewise_outlines(const Model& model, const Field& field, OutlineFie
   }
 }
 
-/// Computes a field at all outline nodes of compliant bodies, and calls of_rigid(r) for `rigid` bodies.
+/// Computes a field at the outline nodes of some compliant bodies, and calls of_rigid(r) for the first `rigid` of their
+/// rigid bodies.
 template <class OfRigid>
-void show(const Model& model, const Field& field, OutlineField& outlines, std::size_t rigid, OfRigid&& of_rigid) {
-  const auto of_batch = [&](int b) {
-    const Batch& batch = model.batches[b];
+void show(const Model& model, const OwnBodies& bodies, const Field& field, OutlineField& outlines, std::size_t rigid,
+          OfRigid&& of_rigid) {
+  const auto of_batch = [&](int number) {
+    const Batch& batch = model.batches[bodies.batches[number]];
     with_tables(model, batch, [&](const auto& tables) {
       batch.scaled ? show_batch<true>(model, batch, tables.outline_rows, field, outlines)
                    : show_batch<false>(model, batch, tables.outline_rows, field, outlines);
     });
   };
-  parallel_for(model.lane_batches, of_batch, static_cast<int>(rigid), of_rigid);
+  parallel_for(bodies.lane_batches, of_batch, static_cast<int>(rigid),
+               [&](int number) { of_rigid(bodies.rigid_bodies[number]); });
   if (!model.outline_chunks.empty()) update_nodewise_outlines(model, field, outlines);
 }
 
-void place_rigid(const Model& model, const RigidBody& rigid, const double* position, OutlineField& outlines) {
-  const OutlineShape& shape = model.outlines[rigid.outline];
-  const double c = std::cos(position[2]), s = std::sin(position[2]);
-  double* x = &outlines.x[model.outline_offset[rigid.body]];
-  double* y = &outlines.y[model.outline_offset[rigid.body]];
-  for (int k = 0; k < shape.count; ++k) {
-    const Vec2& p = shape.points[k];
-    x[k] = position[0] + (c * p.x() - s * p.y());
-    y[k] = position[1] + (s * p.x() + c * p.y());
-  }
-  extend_cyclically(shape, x, y);
+/// Computes the positions of the outlines of some bodies.
+void place(const Model& model, const OwnBodies& bodies, const Dofs& positions, OutlineField& position) {
+  position.lattice = positions.lattice;
+  show(model, bodies, {positions, true}, position, bodies.rigid_bodies.size(), [&](int r) {
+    place_rigid_outline(model, model.rigid_bodies[r], &positions.rigid[3 * static_cast<std::size_t>(r)], position);
+  });
 }
 
 template <bool scaled, class Rows>
@@ -152,20 +144,38 @@ void add_to_region(const Model& model, const Region& region, const OutlineField&
 
 }  // namespace
 
+void extend_cyclically(const OutlineShape& shape, double* x, double* y) {
+  for (int i = shape.count; i < shape.count + lane_count; ++i) {
+    x[i] = x[i - shape.count] + shape.turn_shift;
+    y[i] = y[i - shape.count];
+  }
+}
+
+void place_rigid_outline(const Model& model, const RigidBody& rigid, const double* position, OutlineField& outlines) {
+  const OutlineShape& shape = model.outlines[rigid.outline];
+  const double c = std::cos(position[2]), s = std::sin(position[2]);
+  double* x = &outlines.x[model.outline_offset[rigid.body]];
+  double* y = &outlines.y[model.outline_offset[rigid.body]];
+  for (int k = 0; k < shape.count; ++k) {
+    const Vec2& p = shape.points[k];
+    x[k] = position[0] + (c * p.x() - s * p.y());
+    y[k] = position[1] + (s * p.x() + c * p.y());
+  }
+  extend_cyclically(shape, x, y);
+}
+
 void place_outlines(const Model& model, const Dofs& positions, OutlineField& position) {
-  position.lattice = positions.lattice;
-  show(model, {positions, true}, position, model.rigid_bodies.size(),
-       [&](int r) { place_rigid(model, model.rigid_bodies[r], &positions.rigid[3 * r], position); });
+  place(model, model.own, positions, position);
 }
 
 void update_outline_field(const Model& model, const Dofs& values, OutlineField& field) {
   field.lattice = values.lattice;
-  show(model, {values, false}, field, 0, [](int) {});
+  show(model, model.own, {values, false}, field, 0, [](int) {});
 }
 
 OutlineField placed_outlines(const Model& model, const Dofs& positions) {
   OutlineField position(model.outline_offset.back());
-  place_outlines(model, positions, position);
+  place(model, all_bodies(model), positions, position);
   return position;
 }
 

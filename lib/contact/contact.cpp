@@ -8,6 +8,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "contact/halo.hpp"
 #include "contact/master_window.hpp"
 #include "contact/narrow_phase.hpp"
 #include "contact/pair_forces.hpp"
@@ -226,7 +227,9 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
 const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
   moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
   moved_.lattice = now.lattice - before.lattice;
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+  const std::vector<int>& present = present_bodies(model_);
+  parallel_for(static_cast<int>(present.size()), [&](int number) {
+    const int b = present[number];
     for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
       moved_.x[i] = now.x[i] - before.x[i], moved_.y[i] = now.y[i] - before.y[i];
   });
@@ -253,10 +256,12 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
     else
       totals = compute_pair(view, nullptr, from, to, now.forces);
   });
-  const int bodies = static_cast<int>(model_.bodies.size());
-  const auto gather = [&](int b) {
-    if (b + 1 < bodies)
-      table_.for_each_run(b + 1, [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
+  const std::vector<int>& own = model_.own.bodies;
+  const int bodies = static_cast<int>(own.size());
+  const auto gather = [&](int number) {
+    if (number + 1 < bodies)
+      table_.for_each_run(own[number + 1], [&](int, int entry, int count) { prefetch_run(now.forces, entry, count); });
+    const int b = own[number];
     const int n = model_.outline_of(b).count;
     double* x = &force.x[model_.outline_offset[b]];
     double* y = &force.y[model_.outline_offset[b]];
@@ -271,6 +276,11 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   block_totals_.assign(static_cast<std::size_t>(pairs.count()), {});
   const auto add_up = [&](int b) { pairs.for_each_in(b, [&](int p) { block_totals_[b].add(now.totals[p]); }); };
   parallel_for(bodies, gather, pairs.count(), add_up);
+  if (model_.halo) {
+    const double* const entries[] = {now.forces.x.data(), now.forces.y.data()};
+    double* const sums[] = {force.x.data(), force.y.data()};
+    model_.halo->add_up_on_walls(table_, refreshes_, entries, sums);
+  }
   PairTotals total;
   for (const PairTotals& of_block : block_totals_) total.add(of_block);
   if (model_.scene.cell) force.lattice = forces_on_images(now.forces);

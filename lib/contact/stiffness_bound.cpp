@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "contact/halo.hpp"
 #include "contact/pair_queries.hpp"
 #include "core/parallel.hpp"
 
@@ -54,9 +55,10 @@ std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std:
     if (!contact_pair.is_empty()) add_patch_stiffness(contact.view(contact_pair), factor, entries_);
   });
   layout_ = table.laid_out(), seen_ = contact.refreshes();
+  if (model_.halo) add_up_on_walls(table, contact.refreshes());
   std::vector<int> bodies;
-  for (std::size_t b = 0; b < changed.size(); ++b)
-    if (changed[b]) bodies.push_back(static_cast<int>(b));
+  for (const int b : model_.own.bodies)
+    if (changed[b] || has_partners_elsewhere(b)) bodies.push_back(b);
   return bodies;
 }
 
@@ -66,7 +68,20 @@ std::vector<double> StiffnessBound::of_body(const ContactSystem& contact, int bo
   return stiffness;
 }
 
+/// Sums of the pairs of all processes on walls.
+void StiffnessBound::add_up_on_walls(const PairTable& table, long rebuild) {
+  on_walls_.resize(static_cast<std::size_t>(model_.outline_offset.back()));
+  const double* const entries[] = {entries_.data()};
+  double* const sums[] = {on_walls_.data()};
+  model_.halo->add_up_on_walls(table, rebuild, entries, sums);
+}
+
 void StiffnessBound::add_of_body(const ContactSystem& contact, int body, double* to, int stride) const {
+  if (has_partners_elsewhere(body)) {
+    for (int i = 0; i < model_.outline_of(body).count; ++i)
+      to[stride * i] += on_walls_[static_cast<std::size_t>(model_.outline_offset[body] + i)];
+    return;
+  }
   contact.table().for_each_run(body, [&](int node, int entry, int count) {
     for (int i = 0; i < count; ++i) to[stride * (node + i)] += entries_[entry + i];
   });

@@ -15,7 +15,7 @@ class StiffnessBound {
   explicit StiffnessBound(const Model& model) : model_(model) {}
 
   /// Counts all contact pairs found since the last call. `compliance` [bodies]: largest w^2 of a body per unit contact
-  /// stiffness. Returns the bodies whose bound may have changed, in ascending order.
+  /// stiffness. Returns the own bodies whose bound may have changed, in ascending order.
   std::vector<int> update(const ContactSystem& contact, const std::vector<double>& compliance);
   /// [outline nodes of the body] stiffness bound, N/m2.
   std::vector<double> of_body(const ContactSystem& contact, int body) const;
@@ -31,11 +31,15 @@ class StiffnessBound {
 
  private:
   void follow_layout(const PairTable& table);
+  void add_up_on_walls(const PairTable& table, long rebuild);
+  /// Whether other processes compute some pairs of an own body.
+  bool has_partners_elsewhere(int body) const { return model_.halo && model_.bodies[body].wall; }
 
   const Model& model_;
   std::vector<double> entries_;       ///< in the order of the force buffers, N/m2
   std::vector<double> spare_;         ///< memory for those of the next layout
   std::vector<ContactPair> weighed_;  ///< as counted in the entries
+  std::vector<double> on_walls_;      ///< [outline nodes] on walls, pairs of all processes, N/m2; empty without a halo
   std::int64_t layout_ = -1;          ///< PairTable::laid_out of the entries
   std::int64_t seen_ = -1;            ///< last rebuild whose contact pairs are counted
 };

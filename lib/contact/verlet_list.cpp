@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/halo.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
 #include "geometry/lattice.hpp"
@@ -19,6 +20,17 @@ constexpr double reset_threshold = 0.25;
 constexpr double search_threshold = 0.75;
 /// Bound of the rounding of stored displacements of some skins, over the skin, with a wide margin.
 constexpr double rounded = 1e-4;
+/// Unit of displacements over the skin. Sums of integers do not depend on the order, nor on the number of processes.
+constexpr double displacement_unit = 0x1p-24;
+/// Bound of a displacement in units, 16384 skins. The sum of 2^24 bodies does not overflow. Beyond it the mean
+/// displacement is wrong, and the broad phase only runs more often.
+constexpr double largest_in_units = 0x1p38;
+
+/// Displacement in whole units; 0 if it is not a number.
+std::int64_t in_units(double displacement, double unit) {
+  if (std::isnan(displacement)) return 0;
+  return std::llrint(std::clamp(displacement / unit, -largest_in_units, largest_in_units));
+}
 
 /// Loops over bodies and pairs are cut into blocks, whose results are put together in order.
 Blocks blocks_of(int count) { return {count, 64}; }
@@ -95,21 +107,27 @@ void VerletList::measure(const OutlineField& now) {
   swept_by_.setZero();
   if (now.lattice != swept_lattice_ && model_.scene.cell)
     swept_by_ = matrix_of(now.lattice) * matrix_of(swept_lattice_).inverse() - Eigen::Matrix2d::Identity();
-  const Blocks bodies = blocks_of(count_of_bodies());
+  const std::vector<int>& present = present_bodies(model_);
+  const int own = static_cast<int>(model_.own.bodies.size());
+  const Blocks bodies = blocks_of(static_cast<int>(present.size()));
   of_block_.resize(static_cast<std::size_t>(bodies.count()));
+  const double unit = displacement_unit * skin_;
   parallel_for(bodies.count(), [&](int number) {
-    Vec2 sum(0, 0);
-    bodies.for_each_in(number, [&](int b) {
+    std::array<std::int64_t, 2> sum{};
+    bodies.for_each_in(number, [&](int i) {
+      const int b = present[i];
       motion_[b] = displacement_disc(model_, b, now, reference_);
-      if (model_.bodies[b].wall) return;
+      if (model_.bodies[b].wall || i >= own) return;
       const DisplacementDisc displacement = displacement_since_sweep(b);
-      sum += Vec2(displacement.x, displacement.y);
+      sum[0] += in_units(displacement.x, unit), sum[1] += in_units(displacement.y, unit);
     });
     of_block_[number] = sum;
   });
+  std::array<std::int64_t, 2> total{};
+  for (const auto& of_block : of_block_) total[0] += of_block[0], total[1] += of_block[1];
+  if (model_.halo) model_.halo->add(total);
   drift_.setZero();
-  for (const Vec2& of_block : of_block_) drift_ += of_block;
-  if (grains_ > 0) drift_ /= grains_;
+  if (grains_ > 0) drift_ = unit / grains_ * Vec2(static_cast<double>(total[0]), static_cast<double>(total[1]));
 }
 
 /// Displacement of a body since the last broad phase. In a cell that is deformed it is relative to the motion of the
@@ -194,7 +212,8 @@ VerletList::Use VerletList::use_of(int pair, const OutlineField& now) const {
 bool VerletList::skin_is_exceeded(const OutlineField& now) {
   measure(now);
   use_.resize(pairs_.size());
-  const Blocks pairs = blocks_of(count()), bodies = blocks_of(count_of_bodies());
+  const std::vector<int>& own = model_.own.bodies;
+  const Blocks pairs = blocks_of(count()), bodies = blocks_of(static_cast<int>(own.size()));
   exceeded_.resize(static_cast<std::size_t>(pairs.count()));
   farthest_.resize(static_cast<std::size_t>(bodies.count()));
   const auto of_pairs = [&](int number) {
@@ -207,14 +226,20 @@ bool VerletList::skin_is_exceeded(const OutlineField& now) {
   const auto of_bodies = [&](int number) {
     farthest_[number] = 0;
     bodies.for_each_in(number,
-                       [&](int b) { farthest_[number] = std::max(farthest_[number], come_out_of_place(b, now)); });
+                       [&](int i) { farthest_[number] = std::max(farthest_[number], come_out_of_place(own[i], now)); });
   };
   parallel_for(pairs.count(), of_pairs, bodies.count(), of_bodies);
   come_out_ = swept_by_.isZero(0) ? 0 : approach_by_cell();
   double farthest = 0;
   for (double of_block : farthest_) farthest = std::max(farthest, of_block);
+  bool exceeded = std::ranges::any_of(exceeded_, [](char some) { return some; });
+  if (model_.halo) {
+    double largest[] = {farthest, exceeded ? 1.0 : 0.0};
+    model_.halo->take_largest(largest);
+    farthest = largest[0], exceeded = largest[1] > 0;
+  }
   come_out_ += farthest;
-  return std::ranges::any_of(exceeded_, [](char some) { return some; }) || !(come_out_ < own_skin_);
+  return exceeded || !(come_out_ < own_skin_);
 }
 
 /// Sets a new reference for bodies that have deformed or rotated since theirs. The bounds of all their pairs would
@@ -224,7 +249,9 @@ void VerletList::reset_references(const OutlineField& here, const OutlineField& 
   parallel_for(pair_displacements_.count(), [&](int e) {
     if (is_due(pair_displacements_.body(e))) pair_displacements_.reset_reference(e, displacements(here));
   });
-  parallel_for(count_of_bodies(), [&](int b) {
+  const std::vector<int>& present = present_bodies(model_);
+  parallel_for(static_cast<int>(present.size()), [&](int i) {
+    const int b = present[i];
     if (!is_due(b)) return;
     const int first = model_.outline_offset[b], nodes = model_.outline_offset[b + 1] - first;
     since_sweep_[b] = displacement_between(displacement_disc(model_, b, here, reference_), since_sweep_[b]);
@@ -232,6 +259,21 @@ void VerletList::reset_references(const OutlineField& here, const OutlineField& 
     std::copy_n(&here.y[first], nodes, &reference_.y[first]);
     motion_[b] = displacement_disc(model_, b, trial, reference_);
   });
+}
+
+/// Pairs of the broad phase, those that this process computes. Their ghosts get their outlines.
+std::vector<BodyPair> VerletList::close_boxes(const OutlineField& here) {
+  const std::vector<int>& own = model_.own.bodies;
+  std::vector<Box> boxes(model_.bodies.size());
+  parallel_for(static_cast<int>(own.size()), [&](int i) { boxes[own[i]] = bounding_box(model_, here, own[i]); });
+  if (model_.halo) model_.halo->gather_boxes(boxes);
+  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_, here.lattice);
+  if (model_.halo) {
+    std::erase_if(found, [&](const BodyPair& pair) { return !model_.halo->computes(pair); });
+    model_.halo->set_pairs(found);
+    model_.halo->renew(reference_);
+  }
+  return found;
 }
 
 bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
@@ -245,14 +287,15 @@ bool VerletList::update(const OutlineField& here, const OutlineField& trial) {
   }
   just_swept_ = true;
   swept_lattice_ = here.lattice;
-  std::vector<Box> boxes(model_.bodies.size());
-  parallel_for(count_of_bodies(), [&](int b) {
-    boxes[b] = bounding_box(model_, here, b);
+  std::vector<BodyPair> found = close_boxes(here);
+  const std::vector<int>& present = present_bodies(model_);
+  parallel_for(static_cast<int>(present.size()), [&](int i) {
+    const int b = present[i];
     since_sweep_[b] = displacement_disc(model_, b, here, reference_);
     if (!model_.bodies[b].wall) swept_at_[b] = place_of(model_, b, here);
   });
-  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_, here.lattice);
   std::erase_if(found, [&](const BodyPair& pair) { return discs_are_apart(pair, here); });
+  if (model_.halo) model_.halo->set_pairs(found);
   follow(std::move(found), here);
   skin_is_exceeded(trial);
   return true;
@@ -315,8 +358,9 @@ std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {
 }
 
 bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
-  return come_out_ < own_skin_ &&
-         std::ranges::all_of(pairs, [&](int p) { return !watched_[p] || stays_within(p, skin_, trial); });
+  const auto holds = [&](int p) { return !watched_[p] || stays_within(p, skin_, trial); };
+  const bool hold = come_out_ < own_skin_ && std::ranges::all_of(pairs, holds);
+  return model_.halo ? model_.halo->largest(hold ? 0 : 1) == 0 : hold;
 }
 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {

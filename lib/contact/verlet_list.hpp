@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "bodies/model.hpp"
@@ -61,7 +63,6 @@ class VerletList {
   enum Use : char { keep, check, search_again };
 
   DisplacementsSoFar displacements(const OutlineField& now) const { return {now, reference_, motion_}; }
-  int count_of_bodies() const { return static_cast<int>(motion_.size()); }
   void measure(const OutlineField& now);
   DisplacementDisc displacement_since_sweep(int body) const;
   double approach_by_cell() const;
@@ -73,6 +74,7 @@ class VerletList {
   double displacement(int pair, const OutlineField& now) const;
   bool stays_within(int pair, double limit, const OutlineField& now) const;
   void reset_references(const OutlineField& here, const OutlineField& trial);
+  std::vector<BodyPair> close_boxes(const OutlineField& here);
   bool discs_are_apart(const BodyPair& pair, const OutlineField& here) const;
   void follow(std::vector<BodyPair> found, const OutlineField& here);
 
@@ -104,9 +106,10 @@ class VerletList {
   std::vector<DisplacementDisc> since_sweep_;
   std::vector<BodyPlace> swept_at_;  ///< [bodies] at the last broad phase; unused for walls
   int grains_;                       ///< number of bodies that are not walls
-  std::vector<Vec2> of_block_;       ///< scratch: sums over blocks of bodies
-  std::vector<double> farthest_;     ///< scratch: largest value of each block of bodies
-  std::vector<char> exceeded_;       ///< scratch: whether a pair of each block must be searched again
+  /// scratch: sums over blocks of bodies, in units of displacement
+  std::vector<std::array<std::int64_t, 2>> of_block_;
+  std::vector<double> farthest_;  ///< scratch: largest value of each block of bodies
+  std::vector<char> exceeded_;    ///< scratch: whether a pair of each block must be searched again
 };
 
 }  // namespace pliant

@@ -152,7 +152,8 @@ BodyEnergyCorrection::BodyEnergyCorrection(const Model& model) : model_(model) {
 
 void BodyEnergyCorrection::add_work(const Trial& before, State& state) const {
   if (state.body_balance.work.empty()) return;
-  parallel_for(static_cast<int>(model_.bodies.size()), [&](int b) {
+  parallel_for(static_cast<int>(model_.own.bodies.size()), [&](int number) {
+    const int b = model_.own.bodies[number];
     const Body& body = model_.bodies[b];
     if (body.batch >= 0 && corrected_[body.batch][body.lane] > 0)
       state.body_balance.work[b] += contact_work(model_, b, before, state);

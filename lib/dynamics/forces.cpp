@@ -75,15 +75,18 @@ Evaluation Forces::evaluate_and_update(const Motion& motion, const Outlines& out
     on_outlines = &outline_force_;
   }
   to.memory.material.resize(model_.material_memory);
-  const auto of_batch = [&](int b) {  // region b is all of batch b (Model::regions)
+  const OwnBodies& own = model_.own;
+  const auto of_batch = [&](int number) {
+    const int b = own.batches[number];  // region b is all of batch b (Model::regions)
     lane_forces(b, motion, *on_outlines, from, to);
     if (update.region) update.region(b);
   };
-  const auto of_rigid = [&](int r) {
+  const auto of_rigid = [&](int number) {
+    const int r = own.rigid_bodies[number];
     rigid_forces(r, motion, outlines.position, *on_outlines, to.force);
     if (update.rigid) update.rigid(r);
   };
-  parallel_for(model_.lane_batches, of_batch, static_cast<int>(model_.rigid_bodies.size()), of_rigid);
+  parallel_for(own.lane_batches, of_batch, static_cast<int>(own.rigid_bodies.size()), of_rigid);
   if (!stresses_.empty()) nodewise_forces(motion, *on_outlines, from, to, update);
   phases_.enter(Phase::update);
   for (const Lanes& power : damping_power_) result.damping_power += sum(power);

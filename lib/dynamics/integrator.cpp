@@ -9,6 +9,7 @@
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
+#include "contact/halo.hpp"
 #include "dynamics/cell_motion.hpp"
 
 namespace pliant {
@@ -50,6 +51,10 @@ Evaluation evaluate_at(Forces& forces, State& state, Trial& trial) {
   const Dofs& velocity = material_velocity(forces.model(), state.reduced_momentum, scratch);
   const Motion motion{state.position, velocity, state.time};
   update_outlines(forces.model(), motion, state.outlines);
+  if (Halo* halo = forces.model().halo) {
+    const HaloFields now{state.position, state.force, state.outlines};
+    halo->exchange(now, now);
+  }
   forces.ensure_candidates(state, state.outlines.position, state.time);
   return forces.evaluate(motion, state.outlines, {state.memory}, {trial.force, trial.contact_force, trial.memory});
 }

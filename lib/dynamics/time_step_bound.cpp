@@ -15,6 +15,7 @@
 #include "bodies/internal_forces.hpp"
 #include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "contact/halo.hpp"
 #include "core/parallel.hpp"
 #include "dynamics/body_frame.hpp"
 #include "dynamics/contact_frequency.hpp"
@@ -186,7 +187,8 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
 }
 
 void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, int iterations) {
-  const bool first = !internal_.empty() && internal_[0][0] == 0;
+  const std::vector<int>& batches = model_.own.batches;
+  const bool first = !batches.empty() && internal_[batches[0]][0] == 0;
   for_each_batch(model_, [&](int b) {
     iterate_batch(b, motion_of(model_.batches[b], position, memory), first ? start_iterations : iterations);
     if (model_.batches[b].viscous)
@@ -245,8 +247,11 @@ double TimeStepBound::largest_dt_of(std::size_t b, double contact_factor) const 
 
 TimeStepBound::Limit TimeStepBound::limit(double contact_factor) const {
   Limit least{0, std::numeric_limits<double>::infinity()};
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b)
+  for (const int own : model_.own.bodies) {
+    const auto b = static_cast<std::size_t>(own);
     if (const double dt = largest_dt_of(b, contact_factor); dt < least.dt) least = {b, dt};
+  }
+  if (model_.halo) least.dt = -model_.halo->largest(-least.dt);
   return least;
 }
 

@@ -12,6 +12,7 @@
 #include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
 #include "boundary/loads.hpp"
+#include "contact/halo.hpp"
 #include "dynamics/cell_motion.hpp"
 #include "dynamics/mass_damping.hpp"
 
@@ -72,6 +73,9 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   const Motion motion{trial_.position, end_velocity_, proposal.end_time, true};
   forces_.phases().enter(Phase::outlines);
   update_outlines(model_, motion, trial_.outlines);
+  if (model_.halo)
+    model_.halo->exchange({state.position, state.force, state.outlines},
+                          {trial_.position, trial_.force, trial_.outlines});
   Forces::ListCheck candidates;
   if (!proposal.is_output_sample)
     candidates = forces_.ensure_candidates(state, trial_.outlines.position, proposal.end_time);
@@ -81,6 +85,7 @@ void Verlet::attempt(State& state, const Proposal& proposal, StepReport& report)
   report.evaluation.valid &= candidates.valid;
   ++report.evaluations;
   report.error = report.evaluation.valid ? error(proposal.dt) : std::numeric_limits<double>::infinity();
+  if (model_.halo) report.error = model_.halo->largest(report.error);
 }
 
 /// Fused kernel (Forces::evaluate_and_update): all forces at the end of the step, then update_region and update_rigid
@@ -116,7 +121,7 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
   rigid_steps_.resize(model_.rigid_bodies.size());
   const Vec2 gravity = model_.scene.gravity_at(state.time);
   const double just_before = std::nextafter(state.time, -std::numeric_limits<double>::infinity());
-  parallel_for(static_cast<int>(rigid_steps_.size()), [&](int r) {
+  const auto set_step = [&](int r) {
     const double *from = &state.position.rigid[3 * r], *to = &trial_.position.rigid[3 * r];
     RigidStep& step = rigid_steps_[r] = {{from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {}, {}};
     // Loads at the end of the previous step and at the start of this one.
@@ -129,7 +134,11 @@ const RigidStep* Verlet::rigid_steps(const State& state) {
       step.acceleration[c] = dof.inverse_mass_at(state.time) * force;
       step.acceleration_before[c] = dof.inverse_mass_at(just_before) * (force - begins[c] + ended[c]);
     }
-  });
+  };
+  const std::vector<int>& own = model_.own.rigid_bodies;
+  parallel_for(static_cast<int>(own.size()), [&](int number) { set_step(own[number]); });
+  if (model_.halo)
+    for (int r : model_.halo->rigid_ghosts()) set_step(r);
   return rigid_steps_.data();
 }
 
@@ -149,7 +158,8 @@ void Verlet::predict(const State& state, double dt) {
   };
   if (model_.corrected_mass) {
     move_by_momenta(state, dt, half);
-    parallel_for(static_cast<int>(model_.rigid_bodies.size()), [&](int r) { for_each_dof_of(model_, r, move_rigid); });
+    const std::vector<int>& own = model_.own.rigid_bodies;
+    parallel_for(static_cast<int>(own.size()), [&](int number) { for_each_dof_of(model_, own[number], move_rigid); });
     return;
   }
   for_each_dof(
@@ -195,8 +205,8 @@ void Verlet::move_by_momenta(const State& state, double dt, double half) {
 /// Predicts the mean velocity of the step and the velocity at its end for constant accelerations, apart from mass
 /// damping.
 void Verlet::predict_velocities(const State& state, double dt) {
-  parallel_for(static_cast<int>(model_.regions.size()), [&](int r) {
-    const Region& region = model_.regions[r];
+  parallel_for(static_cast<int>(model_.own.regions.size()), [&](int number) {
+    const Region& region = model_.regions[model_.own.regions[number]];
     const Batch& batch = model_.batches[region.batch];
     const DampedStep<Lanes> damped = damped_step(dt * batch.mass_damping);
     with_nodes(model_, batch, [&](const auto& nodes) {
