@@ -161,6 +161,14 @@ bench() {
       prepare release pliant_record_loops pliant_record_loops
       exec "$python" -B "$root/benchmarks/scaling.py" "${@:2}"
       ;;
+    partition)
+      ready
+      exec "$python" -B "$root/benchmarks/partition.py" "${@:2}"
+      ;;
+    machines)
+      ready
+      exec "$python" -B "$root/benchmarks/many_machines.py" "${@:2}"
+      ;;
     error)
       prepare release pliant_engine
       prepare release pliant_reference_solver
@@ -197,8 +205,8 @@ bench() {
       exec "$python" "$root/benchmarks/reference_cost.py" "${@:2}"
       ;;
     *)
-      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, scaling, error, gate, faults, ab," \
-        "page; see ./pliant bench --help" >&2
+      echo "pliant: bench: nothing is called '$1'; there are: kernels, scenes, scaling, partition, machines," \
+        "error, gate, faults, ab, page; see ./pliant bench --help" >&2
       exit 2
       ;;
   esac

@@ -18,6 +18,7 @@ from conftest import ROOT, Launcher, write_script
 COMMANDS = ["run a.toml", "reference a.toml", "check a.toml", "modes a.toml", "plot a", "movie a", "view a", "export a",
             "info a", "compare a b", "shape-functions", "study a.toml", "schema", "docs", "test", "verify", "verify --mutate",
             "fuzz", "lint", "bench scenes", "bench scaling", "bench error", "bench gate", "bench faults", "bench ab a b", "bench page",
+            "bench partition a", "bench machines a.json",
             "bench --instructions", "bench --reference"]
 # Modules whose package has another name, or that come with another one.
 PACKAGE = {"ufl": "python3-dolfinx", "basix": "python3-dolfinx", "petsc4py": "python3-dolfinx", "slepc4py": "python3-dolfinx",

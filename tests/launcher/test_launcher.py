@@ -137,10 +137,11 @@ def test_scripts_get_their_arguments_and_build_nothing(launcher: Launcher, comma
     assert not launcher.calls("ninja")
 
 
-@pytest.mark.parametrize("word, built", [("error", 2), ("gate", 2), ("faults", 2), ("ab", 0), ("page", 0)])
+@pytest.mark.parametrize("word, built", [("error", 2), ("gate", 2), ("faults", 2), ("ab", 0), ("page", 0),
+                                         ("partition", 0), ("machines", 0)])
 def test_benchmarks_get_their_arguments(launcher: Launcher, word: str, built: int) -> None:
     (launcher.root / "benchmarks").mkdir()
-    file = {"faults": "injected_faults"}.get(word, word)
+    file = {"faults": "injected_faults", "machines": "many_machines"}.get(word, word)
     (launcher.root / f"benchmarks/{file}.py").write_text("import sys\nprint(*sys.argv[1:])\nsys.exit(1)\n")
     result = launcher("bench", word, "one two", "--three")
     assert result.returncode == 1 and result.stdout == "one two --three\n"
@@ -149,7 +150,7 @@ def test_benchmarks_get_their_arguments(launcher: Launcher, word: str, built: in
 
 def test_unknown_benchmark(launcher: Launcher) -> None:
     result = launcher("bench", "gat")
-    assert result.returncode == 2 and "nothing is called 'gat'; there are: kernels, scenes, scaling, error, gate, faults, ab, page" in result.stderr
+    assert result.returncode == 2 and "nothing is called 'gat'; there are: kernels, scenes, scaling, partition, machines, error, gate, faults, ab, page" in result.stderr
     assert not launcher.log.exists()
 
 
