@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <map>
+#include <set>
 
 #include "core/located.hpp"
 
@@ -18,15 +19,20 @@ Eigen::MatrixXd corrected_mass(const Space& space) {
   return lumped * (2 * lumped - Eigen::MatrixXd(space.consistent)).ldlt().solve(lumped);
 }
 
-/// D plus, for each outline node of mass m and the inner node nearest to it, (s - 1) m (v_outline - v_inner)^2 / 2 of
-/// kinetic energy. Of nodes equally near, to 1e-9, the first counts.
+/// D plus, for each outline node of mass m and the nearest of the inner nodes that share a triangle with it, if any,
+/// (s - 1) m (v_outline - v_inner)^2 / 2 of kinetic energy. Of nodes equally near, to 1e-9, the first counts.
 Eigen::MatrixXd scaled_mass(const Space& space, double scaling) {
   Eigen::MatrixXd mass = space.lumped.asDiagonal();
   const int outline = int(space.outline.size());
-  for (int o = 0; o < outline && outline < int(space.mesh.nodes.size()); ++o) {
+  for (int o = 0; o < outline; ++o) {
     const auto distance = [&](int i) { return (space.mesh.nodes[i] - space.mesh.nodes[o]).norm(); };
-    int nearest = outline;
-    for (int i = outline + 1; i < int(space.mesh.nodes.size()); ++i)
+    std::set<int> beside;
+    for (const Triangle& t : space.mesh.triangles)
+      if (t[0] == o || t[1] == o || t[2] == o) beside.insert(t.begin(), t.end());
+    beside.erase(beside.begin(), beside.lower_bound(outline));
+    if (beside.empty()) continue;
+    int nearest = *beside.begin();
+    for (const int i : beside)
       if (distance(i) < distance(nearest) * (1 - 1e-9)) nearest = i;
     Vector difference = Vector::Zero(mass.rows());
     difference[o] = 1, difference[nearest] = -1;

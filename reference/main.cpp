@@ -22,13 +22,15 @@ int main_program(int argc, char** argv) {
   std::string file, until, dt, modes;
   RunOptions options;
   std::optional<MassMatrix> mass;
-  const std::map<std::string, MassMatrix> masses{
-      {"lumped", MassMatrix::lumped}, {"corrected", MassMatrix::corrected}, {"consistent", MassMatrix::consistent}};
+  const std::map<std::string, MassMatrix> masses{{"lumped", MassMatrix::lumped},
+                                                 {"scaled", MassMatrix::scaled},
+                                                 {"corrected", MassMatrix::corrected},
+                                                 {"consistent", MassMatrix::consistent}};
   app.add_option("scene", file, "Scene file (TOML)")->required();
   app.add_option("--out", options.out, "Output folder; default results/<scene name>_reference");
   app.add_option("--until", until, "End time instead of the scene's, as in \"0.02 us\"");
   app.add_option("--dt", dt, "Time step; default: the fastest wave over a segment");
-  app.add_option("--mass", mass, "lumped, corrected or consistent; default the scene's")
+  app.add_option("--mass", mass, "lumped, scaled, corrected or consistent; default the scene's")
       ->transform(CLI::CheckedTransformer(masses));
   app.add_option("--hht", options.solver.hht, "alpha of Hilber, Hughes and Taylor; 0: Newmark")
       ->check(CLI::Range(-1.0 / 3, 0.0));

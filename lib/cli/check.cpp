@@ -119,8 +119,8 @@ void print_masses(const Model& model) {
   }
   print_share("", "all grains", grains);
   if (const double slowed = slowed_by_mass_scaling(model); slowed > 0)
-    print_row("", fmt::format("mass_scaling slows the lowest vibrations of compliant grains by {:.2g} %, their "
-                              "translation by nothing",
+    print_row("", fmt::format("mass_scaling slows a uniform stretch of compliant grains by {:.2g} %, their translation "
+                              "by nothing",
                               100 * slowed));
   if (all.bodies > grains.bodies) print_share("", "all bodies", all);
 }

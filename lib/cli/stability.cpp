@@ -57,7 +57,7 @@ std::optional<std::string> advice_on_mass_scaling(const Model& model, const Stab
   const double longer = stability(scaled).dt / as_it_is.dt;
   if (longer < worth_while) return {};
   return fmt::format(
-      "mass_scaling = {:.0f} would make it {:.3g} times as long; compliant grains would vibrate {:.2g} % more slowly; "
+      "mass_scaling = {:.0f} would make it {:.3g} times as long; compliant grains would stretch {:.2g} % more slowly; "
       "see docs/defaults.md",
       tried, longer, 100 * slowed_by_mass_scaling(scaled));
 }

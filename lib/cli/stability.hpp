@@ -17,8 +17,8 @@ struct Stability {
 };
 Stability stability(const Model& model);
 
-/// By how much [discretisation] mass_scaling slows the lowest vibrations of compliant grains, over their frequencies:
-/// that of a uniform stretch, the largest of all shapes. 0 without mass scaling.
+/// By how much [discretisation] mass_scaling slows a uniform stretch of compliant grains, over its frequency: the
+/// largest of all shapes. Lowest vibrations are slowed by as much or some more. 0 without mass scaling.
 double slowed_by_mass_scaling(const Model& model);
 
 /// What mass scaling could do for a scene without it: try it. Nothing where steps do not depend on it, or for scenes of

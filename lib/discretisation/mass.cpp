@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "core/errors.hpp"
 #include "discretisation/quadrature.hpp"
@@ -32,16 +33,28 @@ std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis) {
 
 namespace {
 
-/// [nodes] outline nodes to which each inner node is the nearest; of nodes that are equally near to rounding the first.
+/// [outline nodes] ascending inner nodes that share an edge of the triangulation, which lies within the body.
+std::vector<std::set<int>> inner_neighbours(const FieldMesh& mesh) {
+  std::vector<std::set<int>> neighbours(static_cast<std::size_t>(mesh.outline_count));
+  for (const Triangle& triangle : mesh.triangles)
+    for (const int o : triangle)
+      for (const int i : triangle)
+        if (o < mesh.outline_count && i >= mesh.outline_count) neighbours[o].insert(i);
+  return neighbours;
+}
+
+/// [nodes] outline nodes to which each inner node is the nearest across an edge; of nodes that are equally near to
+/// rounding the first.
 std::vector<std::vector<int>> nearest_outline_nodes(const FieldMesh& mesh) {
   constexpr double rounding = 1e-9;
   std::vector<std::vector<int>> of_inner(mesh.nodes.size());
+  const std::vector<std::set<int>> neighbours = inner_neighbours(mesh);
   for (int o = 0; o < mesh.outline_count; ++o) {
     double least = std::numeric_limits<double>::infinity();
-    std::size_t nearest = 0;
-    for (std::size_t i = static_cast<std::size_t>(mesh.outline_count); i < mesh.nodes.size(); ++i)
+    int nearest = -1;
+    for (const int i : neighbours[o])
       if (const double d = (mesh.nodes[i] - mesh.nodes[o]).norm(); d < (1 - rounding) * least) least = d, nearest = i;
-    if (std::isfinite(least)) of_inner[nearest].push_back(o);
+    if (nearest >= 0) of_inner[nearest].push_back(o);
   }
   return of_inner;
 }

@@ -9,7 +9,7 @@ namespace pliant {
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
 /// Rows of C = (D + L)^-1 D, [nodes x nodes], sparse, for selective mass scaling (docs/method.md 2): L couples each
-/// outline node of mass m to the nearest inner node by (scaling - 1) m. C has no negative entries, keeps translations
+/// outline node of mass m to the nearest inner node across an edge of the mesh, if any, by (scaling - 1) m. C has no negative entries, keeps translations
 /// and the momentum, and its eigenvalues lie in (0, 1].
 ShapeRows scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling);
 

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::string_view magic = "pliant checkpoint 3\n";
+constexpr std::string_view magic = "pliant checkpoint 4\n";
 constexpr std::size_t digits = 16;  ///< of the hash at the end
 
 std::string text_of(const Fnv1a& hash) { return fmt::format("{:016x}", hash.value()); }

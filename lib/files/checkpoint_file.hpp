@@ -9,7 +9,7 @@
 
 namespace pliant {
 
-/// One binary file, whole or not at all, written as it comes: the line "pliant checkpoint 1", a line of JSON (for
+/// One binary file, whole or not at all, written as it comes: the line "pliant checkpoint 4", a line of JSON (for
 /// people and scripts), the content, and 16 hexadecimal digits of the FNV-1a hash of all before.
 class CheckpointFile {
  public:

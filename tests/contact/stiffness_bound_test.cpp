@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "bodies/initial_state.hpp"
+#include "bodies/mass_correction.hpp"
 #include "dynamics/time_step_bound.hpp"
 #include "support/bench.hpp"
 #include "support/scenes.hpp"
@@ -50,7 +52,20 @@ struct Loaded : dynamics_tests::Bench {
   void evaluate() { Bench::evaluate(trial); }
 };
 
-// Largest eigenvalue of M^-1/2 K M^-1/2, K = -df/dq of all forces by central differences: w^2 of the fastest motion.
+// Velocities by unit momenta, [dofs x dofs].
+Eigen::MatrixXd inverse_mass(const Model& model, const std::vector<FreeDof>& dofs) {
+  const auto n = static_cast<Eigen::Index>(dofs.size());
+  Eigen::MatrixXd inverse(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Dofs momentum = zero_dofs(model);
+    add(momentum, dofs[j], 1 / dofs[j].mass);
+    const Dofs velocity = material_velocity(model, momentum);
+    for (Eigen::Index i = 0; i < n; ++i) inverse(i, j) = get(velocity, dofs[i]);
+  }
+  return 0.5 * (inverse + inverse.transpose());
+}
+
+// Largest eigenvalue of W K, K = -df/dq of all forces by central differences: w^2 of the fastest motion.
 double fastest(Loaded& loaded) {
   const std::vector<FreeDof> dofs = free_dofs(loaded.model);
   const Eigen::Index n = static_cast<Eigen::Index>(dofs.size());
@@ -64,9 +79,10 @@ double fastest(Loaded& loaded) {
       for (Eigen::Index i = 0; i < n; ++i) column[i] -= sign * get(loaded.trial.force, dofs[i]) / (2 * step);
       add(loaded.state.position, dofs[j], -sign * step);
     }
-    for (Eigen::Index i = 0; i < n; ++i) K(i, j) = column[i] / std::sqrt(dofs[i].mass * dofs[j].mass);
+    K.col(j) = column;
   }
-  const Eigen::MatrixXd symmetric = 0.5 * (K + K.transpose());
+  const Eigen::MatrixXd root = inverse_mass(loaded.model, dofs).llt().matrixL();
+  const Eigen::MatrixXd symmetric = root.transpose() * (0.5 * (K + K.transpose())) * root;
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues()[n - 1];
 }
 
@@ -157,6 +173,18 @@ TEST(StiffnessBound, CompliantAndRigidBodies) {
                0.1);
       expect_bounded(scene, both ? "compliant" : "mixed");
     }
+}
+
+// Outline nodes share their accelerations with inner ones.
+TEST(StiffnessBound, MassScaling) {
+  for (const ContactRule& rule : rules) {
+    Scene scene = bare_scene();
+    scene.contacts = {rule};
+    scene.discretisation.mass_scaling = 3;
+    add_body(scene, polygonal_disc("disc", 2, 36, 90), BodyKind::compliant, {0, 0});
+    add_body(scene, polygonal_disc("disc", 1.6, 30, 70), BodyKind::compliant, {1.76, 0.1}, 0.1);
+    expect_bounded(scene, "scaled mass");
+  }
 }
 
 // A cluster squeezed from all sides: every disc has six partners.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -33,8 +35,8 @@ Eigen::MatrixXd dense(const ShapeRows& rows) {
   return matrix;
 }
 
-/// EXACT: M = D C^-1 is D plus (s - 1) m [1 -1; -1 1] between each outline node and the inner node nearest to it. C has
-/// no negative entries.
+/// EXACT: M = D C^-1 is D plus (s - 1) m [1 -1; -1 1] between each outline node and the inner node nearest to it, which
+/// in a disc is one across an edge. C has no negative entries.
 TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::es_t3}) {
     const Discretisation space = disc(90, method);
@@ -57,6 +59,28 @@ TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
     EXPECT_LT((mass - expected).cwiseAbs().maxCoeff(), 1e-12 * lumped.maxCoeff());
     EXPECT_LT((mass.rowwise().sum() - lumped).cwiseAbs().maxCoeff(), 1e-12 * lumped.maxCoeff()) << "translation";
   }
+}
+
+/// EXACT: nodes on both sides of a slit are not coupled: no pair is further apart than the longest edge of the mesh.
+TEST(MassScaling, stays_within_the_body) {
+  ShapeSpec shape;
+  shape.name = "slit", shape.kind = ShapeKind::curve, shape.nodes = 200;
+  shape.points = {{-1, -1}, {1, -1}, {1, -0.02}, {-0.6, -0.02}, {-0.6, 0.02}, {1, 0.02}, {1, 1}, {-1, 1}};
+  shape.outline_nodes = 80;
+  DiscretisationSettings settings;
+  settings.method = DiscretisationMethod::es_t3, settings.mass_scaling = scaling;
+  const Discretisation space = discretise(make_field_mesh(shape), settings);
+  const Eigen::MatrixXd c = dense(space.mass_correction);
+  std::set<std::pair<int, int>> edges;
+  for (const Triangle& t : space.mesh.triangles)
+    for (const int a : t)
+      for (const int b : t) edges.insert({a, b});
+  int pairs = 0;
+  const auto inner = static_cast<Eigen::Index>(space.mesh.outline_count);
+  for (Eigen::Index o = 0; o < inner; ++o)
+    for (Eigen::Index i = inner; i < c.rows(); ++i)
+      if (c(o, i) > 0) ++pairs, EXPECT_TRUE(edges.contains({static_cast<int>(o), static_cast<int>(i)}));
+  EXPECT_GT(pairs, 40);
 }
 
 /// EXACT: the lumped mass and with it weight and momentum are what they were: a grain falls as without scaling.

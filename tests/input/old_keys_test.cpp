@@ -19,16 +19,12 @@ using scene_tests::SceneFile;
 struct Renamed {
   std::string now, formerly;
 };
-const std::vector<Renamed> keys{{"method", "recipe"},
-                                {"mass_scaling", "rim_mass"},
-                                {"asperities", "caps"},
-                                {"species", "mix"},
-                                {"species_order", "mix_order"}};
+const std::vector<Renamed> keys{
+    {"method", "recipe"}, {"asperities", "caps"}, {"species", "mix"}, {"species_order", "mix_order"}};
 
 /// The good scene with all of these keys, by their present or their old names.
 std::string scene_with(std::string Renamed::* name) {
-  std::string text = edited(
-      {{"support = 9", "support = 9\nmass_scaling = 1.5"}, {"seed = 7", "seed = 7\nspecies_order = \"random\""}});
+  std::string text = edited({{"seed = 7", "seed = 7\nspecies_order = \"random\""}});
   for (const Renamed& key : keys) text.replace(text.find("\n" + key.now + " =") + 1, key.now.size(), key.*name);
   return text;
 }
@@ -41,7 +37,6 @@ TEST(OldKeys, AreReadAsTheNewOnesWithAWarningAtTheirPlace) {
   EXPECT_EQ(scene.warnings[0], old.path().string() +
                                    ":9:1: 'recipe' in [discretisation] is now called 'method'; the next version will "
                                    "refuse the old name");
-  EXPECT_EQ(scene.discretisation.mass_scaling, 1.5);
   EXPECT_EQ(scene_difference(text, present), "");
   EXPECT_EQ(start_difference(text, present), "");
   EXPECT_EQ(place_of_key(text, "discretisation.method"), "9:10");
