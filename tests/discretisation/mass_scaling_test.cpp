@@ -79,7 +79,10 @@ TEST(MassScaling, stays_within_the_body) {
   const auto inner = static_cast<Eigen::Index>(space.mesh.outline_count);
   for (Eigen::Index o = 0; o < inner; ++o)
     for (Eigen::Index i = inner; i < c.rows(); ++i)
-      if (c(o, i) > 0) ++pairs, EXPECT_TRUE(edges.contains({static_cast<int>(o), static_cast<int>(i)}));
+      if (c(o, i) > 0) {
+        ++pairs;
+        EXPECT_TRUE(edges.contains({static_cast<int>(o), static_cast<int>(i)}));
+      }
   EXPECT_GT(pairs, 40);
 }
 
