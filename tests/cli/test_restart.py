@@ -224,7 +224,7 @@ def test_a_damaged_checkpoint_is_refused(half, damage) -> None:
     middle = len(content) // 2
     flipped = content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1:]
     spoilt = {"cut": content[:middle], "flipped": flipped, "grown": content + b"x", "empty": b"",
-              "other version": content.replace(b"checkpoint 3", b"checkpoint 2"), "no checkpoint": b"time [s],dt\n"}
+              "other version": content.replace(b"checkpoint 4", b"checkpoint 3"), "no checkpoint": b"time [s],dt\n"}
     if damage == "missing":
         file.unlink()
     else:
