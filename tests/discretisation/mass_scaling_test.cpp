@@ -61,7 +61,7 @@ TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
   }
 }
 
-/// EXACT: nodes on both sides of a slit are not coupled: no pair is further apart than the longest edge of the mesh.
+/// EXACT: coupled nodes share an edge of the mesh, also beside a slit, across which other nodes are nearer.
 TEST(MassScaling, stays_within_the_body) {
   ShapeSpec shape;
   shape.name = "slit", shape.kind = ShapeKind::curve, shape.nodes = 200;
