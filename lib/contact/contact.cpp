@@ -224,30 +224,23 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
   }
 }
 
-const OutlineField* ContactSystem::find_displacements(const OutlineField& now, const OutlineField& before) {
-  moved_.x.resize(now.x.size()), moved_.y.resize(now.x.size());
-  moved_.lattice = now.lattice - before.lattice;
-  const std::vector<int>& present = present_bodies(model_);
-  parallel_for(static_cast<int>(present.size()), [&](int number) {
-    const int b = present[number];
-    for (int i = model_.outline_offset[b]; i < model_.outline_offset[b + 1]; ++i)
-      moved_.x[i] = now.x[i] - before.x[i], moved_.y[i] = now.y[i] - before.y[i];
-  });
-  return &moved_;
-}
-
 PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory& from, ContactHistory& to,
                                  OutlineField& force, const StepStart* step) {
   table_.follow(from, to);  // also where no contact pair writes: states are compared bitwise
   StepForces& now = corrects_energy() ? to.last : unkept_;
   now.refreshes = refreshes_;
   now.dt = step ? step->dt : 0;
-  const OutlineField* moved = step && may_integrate_ ? find_displacements(outlines.position, step->position) : nullptr;
   force.x.resize(outlines.position.x.size());
   force.y.resize(outlines.position.x.size());
   parallel_for_by_cost(table_.cost(), [&](int p) {
     if (p + 1 < table_.count()) prefetch(contact_pairs()[p + 1], outlines.position, step, from, to, now.forces);
-    const PairView view{model_, outlines, contact_pairs()[p], skin_, thread_scratch(), step ? step->dt : 0.0, moved};
+    const PairView view{model_,
+                        outlines,
+                        contact_pairs()[p],
+                        skin_,
+                        thread_scratch(),
+                        step ? step->dt : 0.0,
+                        step ? &step->position : nullptr};
     PairTotals& totals = now.totals[p];
     if (view.contact_pair.is_empty())
       totals = {};

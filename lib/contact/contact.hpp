@@ -80,8 +80,6 @@ class ContactSystem {
   PairView view(const ContactPair& contact_pair) const;
   /// Indices in the table of the contact pairs that the last rebuild searched.
   const std::vector<int>& found() const { return found_; }
-  /// Whether contact of some pairs may be integrated over segments.
-  bool may_integrate() const { return may_integrate_; }
   long refreshes() const { return refreshes_; }
   long pairs_searched() const { return pairs_searched_; }  ///< narrow-phase searches, all rebuilds
   double skin() const { return skin_; }
@@ -114,7 +112,6 @@ class ContactSystem {
   void carry_step(const std::vector<ContactPair>& old, StepForces& last) const;
   void make_room(StepForces& evaluated) const;
   bool integrates(int first, int second) const;
-  const OutlineField* find_displacements(const OutlineField& now, const OutlineField& before);
   bool corrects_energy() const { return largest_correction_ > 0 && model_.scene.corrects_energy(); }
   PairTotals corrected_forces(const PairView& view, int contact_pair, const StepStart* step, const ContactHistory& from,
                               ContactHistory& to) const;
@@ -136,7 +133,6 @@ class ContactSystem {
   StepForces before_;                     ///< scratch: the last step before a layout
   std::vector<ContactPair> spare_pairs_;  ///< memory for those of the next layout
   std::vector<PairTotals> block_totals_;  ///< scratch
-  OutlineField moved_;                    ///< scratch, displacements in a step, m
   Outlines found_at_;                     ///< [bodies] outlines at the last search of a pair with the body
   std::vector<int> found_;                ///< see found()
   bool fresh_ = false, warned_ = false;

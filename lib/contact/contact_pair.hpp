@@ -80,10 +80,10 @@ struct PairView {
   const Model& model;
   const Outlines& outlines;  ///< current outlines
   const ContactPair& contact_pair;
-  double skin;                          ///< m
-  MasterWindow& window;                 ///< scratch: master segments of the current half pass
-  double dt = 0;                        ///< size of the step that led here, s; 0: unknown
-  const OutlineField* moved = nullptr;  ///< displacements of outline nodes in that step, m; null: none
+  double skin;                           ///< m
+  MasterWindow& window;                  ///< scratch: master segments of the current half pass
+  double dt = 0;                         ///< size of the step that led here, s; 0: unknown
+  const OutlineField* before = nullptr;  ///< outlines at the start of that step; null: none
   int body(int side) const { return side == 0 ? contact_pair.first : contact_pair.second; }
   /// Shift of one side's body to its image, m.
   Vec2 shift(int side) const { return image_of(outlines.position, side); }

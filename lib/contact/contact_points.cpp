@@ -9,9 +9,10 @@ namespace {
 
 /// Response of the law without dashpot and energy correction.
 template <class Law>
-Contact answer(const Law& law, const MasterWindow& window, const Projection& p, LaneBits touching,
-               const Lanes* before) {
-  const Lanes moved = slip_increment(law, window, p, touching, before[ContactHistory::place], place_of(p));
+Contact answer(const Law& law, const PairView& view, const HalfPass& pass, int i, const Projection& p,
+               LaneBits touching, const Lanes* before) {
+  const FormerPlaces former{before[ContactHistory::place], view, pass, i};
+  const Lanes moved = slip_increment(law, view.window, p, touching, former, place_of(p));
   return respond(law, law(p.gap), touching, before[ContactHistory::slip], moved);
 }
 
@@ -21,7 +22,7 @@ std::vector<ContactPoint> inspect_contact_pair(const PairView& view, const Conta
   const auto add_points = [&]<class Law>(const Law& law, const HalfPass& pass, int side, int i, const Projection& p) {
     const LaneBits touching = first_lanes(pass.nodes.count - i) & p.hit & (p.gap < law.reach);
     const SlaveNodes nodes = load_slaves(pass, i);
-    const Contact c = answer(law, view.window, p, touching, history.at(pass.record + i));
+    const Contact c = answer(law, view, pass, i, p, touching, history.at(pass.record + i));
     for (int lane = 0; lane < lane_count; ++lane) {
       if (!touching[lane]) continue;
       const int index = pass.nodes.begin + i + lane, count = pass.slave->count;

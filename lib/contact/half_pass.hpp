@@ -10,6 +10,7 @@ namespace pliant {
 
 /// One half pass: the slave's nodes and the force buffers of both sides.
 struct HalfPass {
+  int slave_side;
   const OutlineShape *slave, *master;
   const double* slave_x;
   const double* slave_y;
@@ -59,7 +60,8 @@ inline HalfPass make_half_pass(const PairView& view, int slave_side, const Force
   const ContactPair& contact_pair = view.contact_pair;
   const int master_side = 1 - slave_side, slave = view.body(slave_side), offset = model.outline_offset[slave];
   const std::vector<double>& present = view.outlines.tributary_length;
-  return {&model.outline_of(slave),
+  return {slave_side,
+          &model.outline_of(slave),
           &model.outline_of(view.body(master_side)),
           &view.outlines.position.x[offset],
           &view.outlines.position.y[offset],
@@ -75,10 +77,14 @@ inline HalfPass make_half_pass(const PairView& view, int slave_side, const Force
           !present.empty()};
 }
 
-inline void fill_window(const PairView& view, int master_side) {
+/// `before`: the outlines at the start of the step, for lengths that change in it; null: not needed.
+inline void fill_window(const PairView& view, int master_side, const OutlineField* before = nullptr) {
   const int master = view.body(master_side), offset = view.model.outline_offset[master];
-  view.window.fill(view.model.outline_of(master), &view.outlines.position.x[offset], &view.outlines.position.y[offset],
-                   view.contact_pair.window[master_side], view.shift(master_side), view.skin);
+  const auto in = [&](const OutlineField& at) { return std::array{&at.x[offset], &at.y[offset]}; };
+  const auto [x, y] = in(view.outlines.position);
+  const bool stretches = before && view.model.bodies[master].rigid < 0;
+  view.window.fill(view.model.outline_of(master), x, y, view.contact_pair.window[master_side], view.shift(master_side),
+                   view.skin, stretches ? in(*before) : std::array<const double*, 2>{});
 }
 
 /// Calls visit(pass, slave side, i, projection) for each eight slave nodes, from position i of the pass on, of which

@@ -23,7 +23,8 @@ struct Segments {
 }  // namespace
 
 void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, const double* outline_y,
-                        const Arc& segments, const Vec2& shift, double inward) {
+                        const Arc& segments, const Vec2& shift, double inward,
+                        const std::array<const double*, 2>& before) {
   shape_ = &shape;
   count_ = segments.count;
   outline_count_ = shape.count;
@@ -36,8 +37,8 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
   const Vec2 origin(outline_x[first_number_] + shift.x() + first_turn * shape.turn_shift,
                     outline_y[first_number_] + shift.y());
   // The segment before the first gives its tangent for the bisector at the first node.
-  const int before = segments.begin - 1 - turn_of(segments.begin - 1, shape.count) * shape.count;
-  const Segments last(outline_x + before, outline_y + before);
+  const int previous = segments.begin - 1 - turn_of(segments.begin - 1, shape.count) * shape.count;
+  const Segments last(outline_x + previous, outline_y + previous);
   before_ = last.length[0];
   Lanes last_tx = broadcast(last.tangent_x[0]), last_ty = broadcast(last.tangent_y[0]),
         longest = broadcast(last.length[0]);
@@ -52,6 +53,7 @@ void MasterWindow::fill(const OutlineShape& shape, const double* outline_x, cons
     put(x, shifted_x), put(y, shifted_y);
     put(tangent_x, now.tangent_x), put(tangent_y, now.tangent_y);
     put(length, now.length), put(inverse_length, now.inverse_length);
+    put(mean_length, before[0] ? 0.5 * (now.length + Segments(before[0] + node, before[1] + node).length) : now.length);
     put(bisector_x, along_x), put(bisector_y, along_y);
     put(bisector_at, (shifted_x - origin.x()) * along_x + (shifted_y - origin.y()) * along_y - ties_up_to * now.length);
     longest = max(longest, select(first_lanes(rows - w), now.length, Lanes{}));

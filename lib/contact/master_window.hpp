@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,26 +20,40 @@ struct MasterSegment {
   double x, y;  ///< first node, m
   double tangent_x, tangent_y;
   double length, inverse_length;
+  double mean_length;             ///< see MasterWindow::fill, m
   double bisector_x, bisector_y;  ///< at the first node: sum of the two segments' tangents, normal to the bisector
 };
 
 /// Segments of one arc of a master, rebuilt at every evaluation.
 class MasterWindow {
  public:
-  enum Column { x, y, tangent_x, tangent_y, length, inverse_length, bisector_x, bisector_y, bisector_at, columns };
+  enum Column {
+    x,
+    y,
+    tangent_x,
+    tangent_y,
+    length,
+    inverse_length,
+    mean_length,
+    bisector_x,
+    bisector_y,
+    bisector_at,
+    columns
+  };
 
-  /// `inward`: detection depth below a segment in excess of the longest segment's length, m.
+  /// `inward`: detection depth below a segment in excess of the longest segment's length, m. `before`: the outline at
+  /// the start of the step, x and y, for mean lengths over the step; null: the present ones serve.
   void fill(const OutlineShape& shape, const double* outline_x, const double* outline_y, const Arc& segments,
-            const Vec2& shift, double inward);
+            const Vec2& shift, double inward, const std::array<const double*, 2>& before = {});
 
   int count() const { return count_; }
   /// Values of all rows from 0 on. There is one row more than segments, for the end node of the last.
   const double* column(Column c) const { return reinterpret_cast<const double*>(&entries_[c * stride_]); }
   MasterSegment operator[](int row) const {
     const auto entry = [&](Column c) { return column(c)[row]; };
-    return {entry(x),          entry(y),         entry(tangent_x),
-            entry(tangent_y),  entry(length),    entry(inverse_length),
-            entry(bisector_x), entry(bisector_y)};
+    return {entry(x),           entry(y),          entry(tangent_x),
+            entry(tangent_y),   entry(length),     entry(inverse_length),
+            entry(mean_length), entry(bisector_x), entry(bisector_y)};
   }
   /// Entries of rows in [0, count()], one per lane.
   Lanes entries(Column c, LaneBits rows) const {

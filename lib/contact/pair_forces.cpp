@@ -86,7 +86,7 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     const SlaveNodes nodes = load_slaves(pass, i);
     const Projection p = project(window, nodes.x, nodes.y, outward);
     const Lanes half_length = select(active, 0.5 * nodes.tributary_length, Lanes{});
-    const Lanes old_place = before[ContactHistory::place], old_slip = before[ContactHistory::slip];
+    const Lanes old_slip = before[ContactHistory::slip];
     if (!any(p.hit)) {
       totals.dissipated += half_length * set_free(law, old_slip);
       to.clear(record, lane_count);
@@ -97,8 +97,9 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     Traction traction = law(p.gap);
     if constexpr (has_dashpot<Law>)
       totals.damping_power += add_damping(law, pass, i, p, touching, half_length, traction);
+    const FormerPlaces former{before[ContactHistory::place], view, pass, i};
     const Contact c =
-        respond(law, traction, touching, old_slip, slip_increment(law, window, p, touching, old_place, place));
+        respond(law, traction, touching, old_slip, slip_increment(law, window, p, touching, former, place));
     after[ContactHistory::place] = select(p.hit, place, broadcast(ContactHistory::nowhere));
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
     totals.dissipated += half_length * c.slip_work;
@@ -137,7 +138,7 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
       load_velocities(view, slave_side, pass);
       pass.damping = damping, pass.dt = view.dt;
     }
-    fill_window(view, 1 - slave_side);
+    fill_window(view, 1 - slave_side, Law::has_shear ? view.before : nullptr);
     compute_half_pass(law, pass, view, accounts);
   }
   const LaneTotals& totals = accounts.totals;

@@ -20,15 +20,15 @@ inline int slave_index(const HalfPass& pass, int i) {
 /// Field on the nodes of an arc, contiguous, with room to load a whole vector at each node.
 class ArcField {
  public:
-  /// `on_outline`: values with their cyclic copies. Each turn adds `turn_shift`, and `shift` is added to all.
-  void fill(const double* on_outline, const Arc& arc, const OutlineShape& outline, double shift, double turn_shift) {
+  /// value(node, turn): Lanes of an outline array with its cyclic copies, from a node on, after a number of turns.
+  template <class Value>
+  void fill(const Arc& arc, const OutlineShape& outline, Value&& value) {
     const int nodes = arc.count + 1;
     if (const auto room = static_cast<std::size_t>(padded(nodes) + lane_count); values_.size() < room)
       values_.resize(room);
     for (int i = 0; i < nodes; i += lane_count) {
       const int turn = turn_of(arc.begin + i, outline.count);
-      store(&values_[static_cast<std::size_t>(i)],
-            load(on_outline + arc.begin + i - turn * outline.count) + (shift + turn * turn_shift));
+      store(&values_[static_cast<std::size_t>(i)], value(arc.begin + i - turn * outline.count, turn));
     }
   }
   const double* data() const { return values_.data(); }
@@ -46,8 +46,10 @@ struct SlaveArc {
   void fill(const HalfPass& pass) {
     segments = pass.segments;
     const Arc arc{pass.nodes.begin, segments};
-    x.fill(pass.slave_x, arc, *pass.slave, pass.slave_shift.x(), pass.slave->turn_shift);
-    y.fill(pass.slave_y, arc, *pass.slave, pass.slave_shift.y(), 0);
+    x.fill(arc, *pass.slave, [&](int node, int turn) {
+      return load(pass.slave_x + node) + (pass.slave_shift.x() + turn * pass.slave->turn_shift);
+    });
+    y.fill(arc, *pass.slave, [&](int node, int) { return load(pass.slave_y + node) + pass.slave_shift.y(); });
     if (const auto room = static_cast<std::size_t>(padded(segments)); lengths.size() < room) lengths.resize(room);
     for (int i = 0; i < segments; i += lane_count) {
       Lanes length = load(&pass.slave->segment_length[static_cast<std::size_t>(slave_index(pass, i))]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -45,16 +46,34 @@ struct PairForces {
 struct PairMotion {
   ArcField slave_x, slave_y, master_x, master_y;
 
-  void fill(const PairView& view, const OutlineField& field, int slave_side) {
-    const int slave = view.body(slave_side), master = view.body(1 - slave_side);
-    const OutlineShape &of_slave = view.model.outline_of(slave), &of_master = view.model.outline_of(master);
-    const Arc segments{view.contact_pair.nodes[slave_side].begin, view.contact_pair.slave_segments[slave_side]},
-        window = view.contact_pair.window[1 - slave_side];
-    const Vec2 by_slave = view.image_of(field, slave_side), by_master = view.image_of(field, 1 - slave_side);
-    slave_x.fill(&field.x[view.model.outline_offset[slave]], segments, of_slave, by_slave.x(), 0);
-    slave_y.fill(&field.y[view.model.outline_offset[slave]], segments, of_slave, by_slave.y(), 0);
-    master_x.fill(&field.x[view.model.outline_offset[master]], window, of_master, by_master.x(), 0);
-    master_y.fill(&field.y[view.model.outline_offset[master]], window, of_master, by_master.y(), 0);
+  void fill_displacements(const PairView& view, int slave_side) {
+    const OutlineField &now = view.outlines.position, &before = *view.before;
+    fill(
+        view, slave_side, [&](int side) -> Vec2 { return view.image_of(now, side) - view.image_of(before, side); },
+        [&](int i) { return load(&now.x[i]) - load(&before.x[i]); },
+        [&](int i) { return load(&now.y[i]) - load(&before.y[i]); });
+  }
+  void fill_velocities(const PairView& view, int slave_side) {
+    const OutlineField& velocity = view.outlines.velocity;
+    fill(
+        view, slave_side, [&](int side) { return view.image_of(velocity, side); },
+        [&](int i) { return load(&velocity.x[i]); }, [&](int i) { return load(&velocity.y[i]); });
+  }
+
+ private:
+  /// x(i), y(i): values of eight outline nodes from i on. of_image(side): those of the side's image less its body's.
+  template <class OfImage, class X, class Y>
+  void fill(const PairView& view, int slave_side, OfImage&& of_image, X&& x, Y&& y) {
+    const auto fill_side = [&](int side, const Arc& arc, ArcField& to_x, ArcField& to_y) {
+      const OutlineShape& outline = view.model.outline_of(view.body(side));
+      const int offset = view.model.outline_offset[view.body(side)];
+      const Vec2 shift = of_image(side);
+      to_x.fill(arc, outline, [&](int node, int) { return x(offset + node) + shift.x(); });
+      to_y.fill(arc, outline, [&](int node, int) { return y(offset + node) + shift.y(); });
+    };
+    const ContactPair& pair = view.contact_pair;
+    fill_side(slave_side, {pair.nodes[slave_side].begin, pair.slave_segments[slave_side]}, slave_x, slave_y);
+    fill_side(1 - slave_side, pair.window[1 - slave_side], master_x, master_y);
   }
 };
 
@@ -73,8 +92,9 @@ struct NodeMotions {
         second_y(gather(of.master_y.data() + 1, at.row)) {}
 };
 
-/// Displacements of points along the master's outline in the step, m: on a segment l d(xi), around a node g times
-/// the rotation of the normal relative to the segment.
+/// Displacements of points along the master's outline in the step, m: on a segment the mean of the lengths l at its
+/// ends times d(xi), so that the work of the shear is of second order in the step; around a node g times the rotation
+/// of the normal relative to the segment.
 class TangentialMotion {
  public:
   TangentialMotion() = default;
@@ -94,10 +114,13 @@ class TangentialMotion {
     x0 -= m.slave_x0 - m.first_x, y0 -= m.slave_y0 - m.first_y;
     x1 -= m.slave_x1 - m.first_x, y1 -= m.slave_y1 - m.first_y;
     const Linear along{x0 * tx + y0 * ty, x1 * tx + y1 * ty}, height{x0 * ty - y0 * tx, x1 * ty - y1 * tx};
-    // In a vertex region distances begin at the node, whose xi is 0 or 1.
-    const Lanes stretch = at.of_nodes ? broadcast(1) : at.length / old_length,
-                start = at.of_nodes ? xi.at0 * (at.length - old_length) : Lanes{};
-    along_ = {at.along.at0 - stretch * along.at0 - start, at.along.at1 - stretch * along.at1 - start};
+    if (at.of_nodes) {  // distances begin at the node, whose xi is 0 or 1
+      const Lanes start = xi.at0 * (at.length - old_length);
+      along_ = {at.along.at0 - along.at0 - start, at.along.at1 - along.at1 - start};
+    } else {
+      const Lanes now = 0.5 * (1.0 + old_length * at.inverse_length), then = 0.5 * (1.0 + at.length / old_length);
+      along_ = {now * at.along.at0 - then * along.at0, now * at.along.at1 - then * along.at1};
+    }
     height_ = at.height - height;
   }
 

@@ -121,9 +121,7 @@ class TractionVisitor {
           limit_.times_s += p.of_limit.times_s * traction.shear_limit;
   }
 
-  void in_fan_of(const FanShape& f)
-    requires(Law::has_shear)
-  {
+  void in_fan_of(const FanShape& f) requires(Law::has_shear) {
     weight_.plain += f.weight[0], weight_.times_s += f.weight[1];
     for (int power = 0; power < 3; ++power) shear_x_[power] -= f.normal_y[power], shear_y_[power] += f.normal_x[power];
     gap_.plain += f.gap.plain, gap_.times_s += f.gap.times_s;
@@ -277,8 +275,8 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
       pass.damping = damping, pass.dt = view.dt;
       SegmentHalfPass at{pass, view.window, nullptr, nullptr, forces};
       if constexpr (Law::has_shear)
-        if (view.moved) moved.fill(view, *view.moved, slave_side), at.moved = &moved;
-      if constexpr (has_dashpot<Law>) speeds.fill(view, view.outlines.velocity, slave_side), at.speeds = &speeds;
+        if (view.before) moved.fill_displacements(view, slave_side), at.moved = &moved;
+      if constexpr (has_dashpot<Law>) speeds.fill_velocities(view, slave_side), at.speeds = &speeds;
       integrate_half_pass(law, at, from, to, totals);
     });
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "contact/half_pass.hpp"
 #include "contact/laws/response.hpp"
 #include "contact/projection.hpp"
 
@@ -22,40 +23,43 @@ inline Lanes fan_of(Lanes off) {
   return select(size > 0.275, select(off > 0.0, -inside, inside), 4.0 * off);
 }
 
-/// Path length along the outline, signed, m, from an old surface coordinate on another segment to the projection in one
-/// lane, at its present gap and shape. Faces count by their length, corners by the rotation of the normal. Between
-/// flanks of a fold the displacement along them counts instead.
-double distance_between_segments(const MasterWindow& window, const Projection& p, int lane, double old_place);
+/// Former surface coordinates of eight slave nodes, and what else is needed of their former positions.
+struct FormerPlaces {
+  Lanes place;           ///< NaN: unknown
+  const PairView& view;  ///< view.before: outlines then; null: heights and gaps are the present ones
+  const HalfPass& pass;
+  int first;  ///< position of the first node in the pass
+};
 
-/// Slip increment of eight nodes along the master since the last accepted step, m. It is a rate in the present shape
-/// (on a segment l d(xi), beyond an end g d(angle)), so that the shear force is its exact conjugate. `place`:
-/// place_of(p), rounded like the old one, so that a node at rest gives exactly 0. `counted`: lanes in contact whose old
-/// place is known; others give 0.
-inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBits counted, Lanes old_place,
+/// Path length along the outline, signed, m, from a former surface coordinate to the projection in one lane. Faces
+/// count by their length, corners and vertex regions by the rotation of the normal, all with the means of both ends of
+/// the step. Between flanks of a fold the displacement along them counts instead.
+double distance_along(const MasterWindow& window, const Projection& p, int lane, const FormerPlaces& from);
+
+/// Slip increment of eight nodes along the master since the last accepted step, m. It is the integral of a rate, on a
+/// segment l d(xi), beyond an end g d(angle), of which the shear force is the exact conjugate. Lengths and gaps are
+/// the means of both ends of the step: with those of its end, shears in outlines that vibrate would create energy of
+/// first order in the step. `place`: place_of(p), rounded like the former one, so that a node at rest gives exactly 0.
+/// `counted`: lanes in contact whose former place is known; others give 0.
+inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBits counted, const FormerPlaces& from,
                          Lanes place) {
-  const Lanes u = place - 2.0 * p.number, old_u = old_place - 2.0 * p.number;
-  const Lanes xi = min(max(u, Lanes{}), broadcast(1)), old_xi = min(max(old_u, Lanes{}), broadcast(1));
-  Lanes moved = p.length * (xi - old_xi);
-  const LaneBits same = abs(old_u - 0.5) < 1.0;
-  if (any(counted & same & ((u != xi) | (old_u != old_xi)))) {
-    const Lanes fan = fan_of(u - xi), old_fan = fan_of(old_u - old_xi);
-    const Lanes cosine = sqrt(max(1.0 - fan * fan, Lanes{})), old_cosine = sqrt(max(1.0 - old_fan * old_fan, Lanes{}));
-    moved += p.gap * (fan * old_cosine - cosine * old_fan);
-  }
-  if (const LaneBits crossed = counted & ~same; any(crossed))
-    for (int lane = 0; lane < lane_count; ++lane)
-      if (crossed[lane]) moved[lane] = distance_between_segments(window, p, lane, old_place[lane]);
+  const Lanes u = place - 2.0 * p.number, old_u = from.place - 2.0 * p.number;
+  const Lanes mean_length =
+      window.entries(MasterWindow::mean_length, __builtin_convertvector(max(p.row, Lanes{}), LaneBits));
+  const auto on_segment = [](Lanes at) { return (at >= 0.0) & (at <= 1.0); };
+  Lanes moved = mean_length * (u - old_u);
+  for_each_lane(counted & ~(on_segment(u) & on_segment(old_u)),
+                [&](int lane) { moved[lane] = distance_along(window, p, lane, from); });
   return select(counted, moved, Lanes{});
 }
 
 /// Slip increment of eight nodes, m, from their surface coordinates place_of(p) on the master at the last accepted step
 /// and now. 0 for laws without shear.
 template <class Law>
-Lanes slip_increment(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching, Lanes old_place,
-                     Lanes place) {
+Lanes slip_increment(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching,
+                     const FormerPlaces& from, Lanes place) {
   if constexpr (!Law::has_shear) return Lanes{};
-  const LaneBits known = old_place == old_place;
-  return moved_along(window, p, touching & known, select(known, old_place, place), place);
+  return moved_along(window, p, touching & (from.place == from.place), from, place);
 }
 
 }  // namespace pliant

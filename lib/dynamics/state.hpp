@@ -30,8 +30,8 @@ struct Memory {
   }
 };
 
-/// History variables, the time since then and, if contact needs them, the outlines at that time and the motion of rigid
-/// bodies since.
+/// History variables, the time since then, the outlines at that time and, for the energy correction of contacts, the
+/// motion of rigid bodies since.
 struct PreviousHistory {
   const Memory& memory;
   double dt = 0;  ///< s

@@ -106,28 +106,22 @@ StepDoubling::Halves StepDoubling::try_halves(State& state, const Proposal& prop
   find_start_force(state, half);
   half_step(state.position, state.reduced_momentum, start_force_, state.time, half);
   const bool is_covered = show(state, first, proposal, report).valid;
-  evaluate(first, {state.memory, half, start_of_step(state.outlines)}, half_memory_, report);
+  evaluate(first, {state.memory, half, &state.outlines.position}, half_memory_, report);
   report.evaluation.valid &= is_covered;
   if (!report.evaluation.valid) return Halves::failed;
   const double slip_work = report.evaluation.contact.dissipated, damping_power = report.evaluation.damping_power,
                material_loss = report.evaluation.material_loss, bond_loss = report.evaluation.bonds.loss;
-  if (start_of_step(trial_.outlines)) half_outlines_ = trial_.outlines.position;
+  half_outlines_ = trial_.outlines.position;
   half_step(trial_.position, trial_.reduced_momentum, trial_.force, middle, half);
   report.error = error(state, proposal.dt);
   if (!within_tolerance(report)) return Halves::done;
   if (show(state, second, proposal, report).rebuilt) return Halves::voided;
-  const OutlineField* half_way = start_of_step(trial_.outlines) ? &half_outlines_ : nullptr;
-  if (!evaluate(second, {half_memory_, half, half_way}, trial_.memory, report)) return Halves::failed;
+  if (!evaluate(second, {half_memory_, half, &half_outlines_}, trial_.memory, report)) return Halves::failed;
   report.evaluation.contact.dissipated += slip_work;
   report.evaluation.material_loss += material_loss;
   report.evaluation.bonds.loss += bond_loss;
   report.damping_work = half * (damping_power + report.evaluation.damping_power);
   return Halves::done;
-}
-
-/// Outlines at the start of the step, if contact needs them.
-const OutlineField* StepDoubling::start_of_step(const Outlines& outlines) const {
-  return forces_.contact().may_integrate() ? &outlines.position : nullptr;
 }
 
 /// Forces at the start with the mean of the loads over the half step. Loads are linear in time within a step, as steps

@@ -39,7 +39,6 @@ class StepDoubling {
   /// `voided`: contact candidates were rebuilt in the second half, and its history does not belong to them.
   enum class Halves { done, failed, voided };
   Halves try_halves(State& state, const Proposal& proposal, StepReport& report);
-  const OutlineField* start_of_step(const Outlines& outlines) const;
   void find_start_force(const State& state, double half);
   Motion motion(const Instant& at) const;
   Forces::ListCheck show(State& state, const Instant& at, const Proposal& proposal, StepReport& report);

@@ -97,6 +97,7 @@ struct Contacts::Implementation {
 
   ContactResult evaluate(const Points& x, const Periods& present) {
     periods = present;
+    evaluated = x;
     trial.clear();
     result = integrals->evaluate(x, periods);
     bodies.clear();
@@ -173,6 +174,8 @@ struct Contacts::Implementation {
     memory.segment = nearest.segment;
     memory.xi = at.xi.value;
     memory.angle = at.angle.value;
+    memory.height = at.height.value;
+    memory.gap = at.gap.value;
     if (at.gap.value < law.reach)
       touch(encounter, at, law, before, memory);
     else
@@ -184,7 +187,8 @@ struct Contacts::Implementation {
     const int segment = memory.segment;
     const PresentBody& on = bodies[encounter.master];
     Motion motion;
-    if (before.beside && law.shears()) motion = motion_along(on.outline, before, segment, at);
+    if (before.beside && law.shears())
+      motion = motion_along(on.outline, {outlines[encounter.master], past}, before, segment, at);
     const Response response = respond(law, before.slip, at.gap.value, motion.by_element.value);
     memory.slip = response.slip;
     const double length = weight(encounter);
@@ -229,7 +233,8 @@ struct Contacts::Implementation {
   double skin = 0;                           ///< m
   std::vector<std::vector<double>> lengths;  ///< [bodies][nodes], m
   Memories accepted, trial;
-  bool initial = true;  ///< nothing accepted yet
+  Points evaluated, past;  ///< outlines of the last evaluation, and of the last accepted one, m
+  bool initial = true;     ///< nothing accepted yet
 
   // Of the current evaluation.
   std::vector<PresentBody> bodies;
@@ -260,6 +265,7 @@ ContactResult Contacts::evaluate(const Points& x) { return evaluate(x, implement
 void Contacts::accept() {
   implementation_->integrals->accept();
   implementation_->accepted = implementation_->trial;
+  implementation_->past = implementation_->evaluated;
   implementation_->initial = false;
 }
 

@@ -27,11 +27,12 @@ struct ContactOutline {
 
 /// History variables of a slave node and one partner, at the last accepted state.
 struct ContactMemory {
-  bool beside = false;  ///< it had a projection onto the other body, so segment, xi and angle are known
-  int segment = 0;      ///< of the partner's outline
-  double xi = 0;        ///< in [0, 1] along it
-  double angle = 0;     ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
-  double slip = 0;      ///< elastic, m
+  bool beside = false;         ///< it had a projection onto the other body, so segment, xi and angle are known
+  int segment = 0;             ///< of the partner's outline
+  double xi = 0;               ///< in [0, 1] along it
+  double angle = 0;            ///< beyond an end: from the segment's normal to the node's, rad, towards growing xi
+  double height = 0, gap = 0;  ///< from the segment's line, from the outline, m
+  double slip = 0;             ///< elastic, m
 };
 
 /// What a contact does to an image of the master, and across its gap.

@@ -104,7 +104,7 @@ class Pass {
   }
 
   /// Slip increment, from the former position of the same point of the slave over the same segment of the master: in
-  /// that segment's present length, or around its first node.
+  /// the mean of that segment's former and present lengths, or around its first node.
   Jet<6> motion_of(const ContactSample& sample, int segment) const {
     const auto& [slave, master, shift] = *of_.past;
     const int j = sample.nearby.segment;
@@ -112,7 +112,8 @@ class Pass {
     const Vec2 from = point - master.node(j), t = master.tangent(j);
     const double along = from.dot(t), height = from.dot(Vec2(t.y(), -t.x()));
     const Projection& now = sample.at;
-    if (!sample.nearby.at_node) return now.length * (now.xi - along / master.length(j));
+    const double length = master.length(j);
+    if (!sample.nearby.at_node) return 0.5 * (now.length + length) * (now.xi - along / length);
     const double side =
         now.gap.value * now.height.value < 0 ? -1 : 1;  // side of the line relative to that of the outline
     return side * (sin(now.angle) * height - cos(now.angle) * along);

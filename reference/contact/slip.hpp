@@ -14,7 +14,9 @@ struct Motion {
       others;  ///< derivatives by nodes that it passed, numbered as in the outline; entries add up
 };
 
-/// Slip increment from the stored surface coordinate to the present one on `segment`.
-Motion motion_along(const PresentOutline& master, const ContactMemory& memory, int segment, const Projection& now);
+/// Slip increment from the stored surface coordinate, on the outline as it was at the last accepted state, to the
+/// present one on `segment`.
+Motion motion_along(const PresentOutline& master, const PresentOutline& past, const ContactMemory& memory, int segment,
+                    const Projection& now);
 
 }  // namespace pliant::reference

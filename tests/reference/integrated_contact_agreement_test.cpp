@@ -34,14 +34,13 @@ class BothIntegrals {
     rig.show();
     if (!moved) rig.refresh();
     ASSERT_TRUE(rig.contact.candidates_hold(rig.outlines.position));
-    const StepStart start{before_, 1};
+    const StepStart start{rig.accepted_outlines, 1};
     rig.totals = rig.contact.forces(rig.outlines, rig.committed, rig.trial, rig.forces, moved ? &start : nullptr);
     result = contacts_.evaluate(outline_points(rig));
   }
   void accept() {
     rig.commit();
     rig.refresh();
-    before_ = rig.outlines.position;
     contacts_.accept();
   }
   Difference difference() const {
@@ -68,7 +67,6 @@ class BothIntegrals {
 
  private:
   reference::Contacts contacts_;
-  OutlineField before_;
 };
 
 Scene random_outlines(Random& random, const ContactRule& rule, int sample) {

@@ -17,12 +17,15 @@ class ContactRig {
   ContactRig(const ContactRig&) = delete;
 
   void show() { update_outlines(model, {q, q, 0}, outlines); }
-  /// Forces at the positions q. Returns whether the candidates were searched anew.
+  /// Forces at the positions q. Returns whether the candidates were searched anew. Without energy correction it is the
+  /// end of a step from the last accepted evaluation.
   bool evaluate() {
     show();
     const bool hold = contact.candidates_hold(outlines.position);
     if (!hold) contact.renew_candidates(outlines, committed);
-    totals = contact.forces(outlines, committed, trial, forces);
+    const StepStart start{accepted_outlines, 1};
+    const bool is_step = !accepted_outlines.x.empty() && !model.scene.corrects_energy();
+    totals = contact.forces(outlines, committed, trial, forces, is_step ? &start : nullptr);
     return !hold;
   }
   /// Searches the candidates anew, whether needed or not.
@@ -33,6 +36,7 @@ class ContactRig {
   /// Accepts the last evaluation.
   void commit() {
     std::swap(committed, trial);
+    accepted_outlines = outlines.position;
     dissipated += totals.dissipated;
   }
   void step() {
@@ -83,7 +87,7 @@ class ContactRig {
   Model model;
   Dofs q;
   Outlines outlines;
-  OutlineField forces;
+  OutlineField forces, accepted_outlines;
   ContactSystem contact;
   ContactHistory committed, trial;
   PairTotals totals;
