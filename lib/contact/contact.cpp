@@ -218,8 +218,9 @@ void ContactSystem::prefetch(const ContactPair& contact_pair, const OutlineField
     prefetch_run(reinterpret_cast<const double*>(from.at(record)), numbers);
     prefetch_run<Access::write>(reinterpret_cast<const double*>(to.at(record)), numbers);
     prefetch_run<Access::write>(forces, contact_pair.entry[side], arc.count);
-    if (!corrects_energy() || !step) continue;
+    if (!step) continue;
     prefetch_run(step->position, node, arc.count);
+    if (!corrects_energy()) continue;
     prefetch_run(from.last.forces, contact_pair.entry[side], arc.count);
   }
 }

@@ -72,7 +72,7 @@ PairTotals ContactSystem::corrected_forces(const PairView& view, int contact_pai
   const auto compute_apart = [&] {
     ContactPair near = view.contact_pair;
     near.law = parting_law(near.law, skin_);
-    return compute(PairView{model_, view.outlines, near, skin_, view.window, view.dt, view.before});
+    return compute(PairView{model_, view.outlines, near, skin_, view.window, view.dt});
   };
 
   PairTotals now, correcting;

@@ -92,9 +92,9 @@ struct NodeMotions {
         second_y(gather(of.master_y.data() + 1, at.row)) {}
 };
 
-/// Displacements of points along the master's outline in the step, m: on a segment the mean of the lengths l at its
-/// ends times d(xi), so that the work of the shear is of second order in the step; around a node g times the rotation
-/// of the normal relative to the segment.
+/// Displacements of points along the master's outline in the step, m. On a segment they are the mean of the lengths at
+/// both ends of the step times d(xi), so that the work of the shear is accurate to second order. Around a node they are
+/// the gap at the start times the rotation of the normal relative to the segment.
 class TangentialMotion {
  public:
   TangentialMotion() = default;

@@ -121,7 +121,9 @@ class TractionVisitor {
           limit_.times_s += p.of_limit.times_s * traction.shear_limit;
   }
 
-  void in_fan_of(const FanShape& f) requires(Law::has_shear) {
+  void in_fan_of(const FanShape& f)
+    requires(Law::has_shear)
+  {
     weight_.plain += f.weight[0], weight_.times_s += f.weight[1];
     for (int power = 0; power < 3; ++power) shear_x_[power] -= f.normal_y[power], shear_y_[power] += f.normal_x[power];
     gap_.plain += f.gap.plain, gap_.times_s += f.gap.times_s;

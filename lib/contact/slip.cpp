@@ -22,14 +22,15 @@ constexpr double folded = -0.5;
 
 double angle_of(double fan) { return std::asin(std::clamp(fan, -1.0, 1.0)); }
 
-/// Path length around the corner at a row's first node, for a node at a height over its row and at a gap. Outside a
+/// Path length around a corner with a turn, for a node at a height over the row's segment and at a gap. Outside a
 /// convex corner or inside a re-entrant one wedges open, and the node moves around the corner at the distance of the
 /// gap. Elsewhere wedges close, and the ends of both faces are cut off.
-double corner(const MasterSegment& before, const MasterSegment& after, double height, double gap) {
-  const double sine = before.tangent_x * after.tangent_y - before.tangent_y * after.tangent_x;
-  const double cosine = before.tangent_x * after.tangent_x + before.tangent_y * after.tangent_y;
-  const double turn = std::atan2(sine, cosine);
+double corner(double turn, double height, double gap) {
   return height * turn > 0 ? gap * turn : 2 * height * std::tan(0.5 * turn);
+}
+
+double turn_between(const Vec2& before, const Vec2& after) {
+  return std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
 }
 
 /// Segment of a row. A window of the whole outline continues cyclically beyond its ends. In other windows nodes stay on
@@ -37,16 +38,6 @@ double corner(const MasterSegment& before, const MasterSegment& after, double he
 MasterSegment at(const MasterWindow& window, int row) {
   const int n = window.count();
   return n == window.outline_count() ? window[row - turn_of(row, n) * n] : window[std::clamp(row, 0, n)];
-}
-
-double distance_onward(const MasterWindow& window, const Place& from, const Place& to, double height, double gap) {
-  double distance = (1 - from.xi) * at(window, from.row).mean_length + to.xi * at(window, to.row).mean_length +
-                    gap * (to.angle - from.angle);
-  for (int row = from.row + 1; row <= to.row; ++row) {
-    distance += corner(at(window, row - 1), at(window, row), height, gap);
-    if (row < to.row) distance += at(window, row).mean_length;
-  }
-  return distance;
 }
 
 /// Position of a node, and the tangent along which its shear acts there.
@@ -73,41 +64,77 @@ bool are_folded(const MasterSegment& a, const MasterSegment& b) {
   return a.tangent_x * b.tangent_x + a.tangent_y * b.tangent_y < folded;
 }
 
-/// Distances of a slave node at the start of the step, from the row's segment then.
-Distances former_distances(const FormerPlaces& from, int lane, const Place& place) {
-  const PairView& view = from.view;
-  const auto find = [&](int side, int index) -> Vec2 {
+/// Outlines at the start of the step, if they are known.
+class FormerOutlines {
+ public:
+  FormerOutlines(const FormerPlaces& from, int lane) : from_(from), lane_(lane) {}
+  bool known() const { return from_.view.before; }
+
+  /// Distances of the slave node from the segment of a row.
+  Distances distances(const Place& place) const {
+    const Vec2 a = master_node(place.row), b = master_node(place.row + 1), along = (b - a).normalized();
+    const Vec2 beside = find(slave_side(), from_.pass.nodes.begin + from_.first + lane_) - a;
+    const double height = beside.x() * along.y() - beside.y() * along.x();
+    const double distance = (beside - place.xi * (b - a)).norm();
+    return {height, place.angle == 0 ? height : std::copysign(distance, height)};
+  }
+  /// Turn of the outline at the first node of a row.
+  double turn(int row) const {
+    const Vec2 at = master_node(row);
+    return turn_between(at - master_node(row - 1), master_node(row + 1) - at);
+  }
+
+ private:
+  int slave_side() const { return from_.pass.slave_side; }
+  Vec2 master_node(int row) const {
+    return find(1 - slave_side(), from_.view.contact_pair.window[1 - slave_side()].begin + row);
+  }
+  Vec2 find(int side, int index) const {
+    const PairView& view = from_.view;
     const OutlineShape& outline = view.model.outline_of(view.body(side));
-    const int turn = turn_of(index, outline.count), offset = view.model.outline_offset[view.body(side)];
-    return view.before->at(offset + index - turn * outline.count) + view.image_of(*view.before, side) +
-           Vec2(turn * outline.turn_shift, 0);
-  };
-  const int slave = from.pass.slave_side, segment = view.contact_pair.window[1 - slave].begin + place.row;
-  const Vec2 a = find(1 - slave, segment), b = find(1 - slave, segment + 1), along = (b - a).normalized();
-  const Vec2 beside = find(slave, from.pass.nodes.begin + from.first + lane) - a;
-  const double height = beside.x() * along.y() - beside.y() * along.x();
-  const double distance = (beside - place.xi * (b - a)).norm();
-  return {height, place.angle == 0 ? height : std::copysign(distance, height)};
+    const int turns = turn_of(index, outline.count), offset = view.model.outline_offset[view.body(side)];
+    return view.before->at(offset + index - turns * outline.count) + view.image_of(*view.before, side) +
+           Vec2(turns * outline.turn_shift, 0);
+  }
+
+  const FormerPlaces& from_;
+  int lane_;
+};
+
+double distance_onward(const MasterWindow& window, const FormerOutlines& former, const Place& from, const Place& to,
+                       const Distances& mean) {
+  double distance = (1 - from.xi) * at(window, from.row).mean_length + to.xi * at(window, to.row).mean_length +
+                    mean.gap * (to.angle - from.angle);
+  for (int row = from.row + 1; row <= to.row; ++row) {
+    const MasterSegment before = at(window, row - 1), after = at(window, row);
+    const double now = turn_between({before.tangent_x, before.tangent_y}, {after.tangent_x, after.tangent_y});
+    distance += corner(former.known() ? 0.5 * (former.turn(row) + now) : now, mean.height, mean.gap);
+    if (row < to.row) distance += at(window, row).mean_length;
+  }
+  return distance;
 }
 
 }  // namespace
 
-double distance_along(const MasterWindow& window, const Projection& p, int lane, const FormerPlaces& from) {
-  const double old_place = from.place[lane];
-  const double old_number = std::floor(0.5 * (old_place + 0.5)), old_u = old_place - 2 * old_number;
-  const double old_xi = std::clamp(old_u, 0.0, 1.0);
-  double rows = old_number - p.number[lane];
-  rows -= window.outline_count() * std::round(rows / window.outline_count());
-  const Place now{static_cast<int>(p.row[lane]), p.xi[lane], angle_of(p.sine_beyond[lane])};
-  const Place old{now.row + static_cast<int>(rows), old_xi, angle_of(fan_of(broadcast(old_u - old_xi))[0])};
-  const Distances present{p.height[lane], p.gap[lane]},
-      former = from.view.before ? former_distances(from, lane, old) : present;
-  const double height = 0.5 * (former.height + present.height), gap = 0.5 * (former.gap + present.gap);
+double distance_along(const MasterWindow& window, const Projection& p, int lane, const FormerPlaces& from,
+                      double place) {
+  // Both ends from their surface coordinates: equal ones give 0.
+  const auto decode = [&](double coordinate) {
+    const double number = std::floor(0.5 * (coordinate + 0.5)), u = coordinate - 2 * number;
+    double rows = number - p.number[lane];
+    rows -= window.outline_count() * std::round(rows / window.outline_count());
+    const double xi = std::clamp(u, 0.0, 1.0);
+    return Place{static_cast<int>(p.row[lane]) + static_cast<int>(rows), xi, angle_of(fan_of(broadcast(u - xi))[0])};
+  };
+  const Place now = decode(place), old = decode(from.place[lane]);
+  const FormerOutlines outlines(from, lane);
+  const Distances present{p.height[lane], p.gap[lane]}, former = outlines.known() ? outlines.distances(old) : present;
+  const Distances mean{0.5 * (former.height + present.height), 0.5 * (former.gap + present.gap)};
   if (old.row == now.row)
-    return at(window, now.row).mean_length * (now.xi - old.xi) + gap * std::sin(now.angle - old.angle);
-  if (are_folded(at(window, old.row), at(window, now.row))) return across_fold(window, old, now, gap);
-  return old.row < now.row ? distance_onward(window, old, now, height, gap)
-                           : -distance_onward(window, now, old, height, gap);
+    return at(window, now.row).mean_length * (now.xi - old.xi) + mean.gap * std::sin(now.angle - old.angle);
+  if (are_folded(at(window, old.row), at(window, now.row))) return across_fold(window, old, now, mean.gap);
+  return old.row < now.row ? distance_onward(window, outlines, old, now, mean)
+                           : -distance_onward(window, outlines, now, old, mean);
 }
 
 }  // namespace pliant

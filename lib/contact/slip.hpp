@@ -31,10 +31,12 @@ struct FormerPlaces {
   int first;  ///< position of the first node in the pass
 };
 
-/// Path length along the outline, signed, m, from a former surface coordinate to the projection in one lane. Faces
-/// count by their length, corners and vertex regions by the rotation of the normal, all with the means of both ends of
-/// the step. Between flanks of a fold the displacement along them counts instead.
-double distance_along(const MasterWindow& window, const Projection& p, int lane, const FormerPlaces& from);
+/// Path length along the outline, signed, m, from a former surface coordinate to the present one, `place`, of the
+/// projection in one lane. Faces count by their length, corners and vertex regions by the rotation of the normal:
+/// lengths, gaps, heights and turns of corners are means of both ends of the step. Between flanks of a fold the
+/// displacement along them counts instead.
+double distance_along(const MasterWindow& window, const Projection& p, int lane, const FormerPlaces& from,
+                      double place);
 
 /// Slip increment of eight nodes along the master since the last accepted step, m. It is the integral of a rate, on a
 /// segment l d(xi), beyond an end g d(angle), of which the shear force is the exact conjugate. Lengths and gaps are
@@ -49,7 +51,7 @@ inline Lanes moved_along(const MasterWindow& window, const Projection& p, LaneBi
   const auto on_segment = [](Lanes at) { return (at >= 0.0) & (at <= 1.0); };
   Lanes moved = mean_length * (u - old_u);
   for_each_lane(counted & ~(on_segment(u) & on_segment(old_u)),
-                [&](int lane) { moved[lane] = distance_along(window, p, lane, from); });
+                [&](int lane) { moved[lane] = distance_along(window, p, lane, from, place[lane]); });
   return select(counted, moved, Lanes{});
 }
 
@@ -59,7 +61,9 @@ template <class Law>
 Lanes slip_increment(const Law&, const MasterWindow& window, const Projection& p, LaneBits touching,
                      const FormerPlaces& from, Lanes place) {
   if constexpr (!Law::has_shear) return Lanes{};
-  return moved_along(window, p, touching & (from.place == from.place), from, place);
+  const LaneBits known = from.place == from.place;
+  const FormerPlaces numbers{select(known, from.place, place), from.view, from.pass, from.first};
+  return moved_along(window, p, touching & known, numbers, place);
 }
 
 }  // namespace pliant

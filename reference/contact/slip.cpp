@@ -29,9 +29,11 @@ class Way {
     const JetVector before = JetVector::point(master_.node(i - 1), 0), corner = JetVector::point(master_.node(i), 1),
                     after = JetVector::point(master_.node(i + 1), 2);
     const JetVector in = unit(corner - before), out = unit(after - corner);
-    const Jet<6> half_tangent = cross(in, out) / (1 + dot(in, out));
-    const bool around = height.value * half_tangent.value > 0;
-    const Jet<6> turn = around ? 2 * atan(half_tangent) : 2 * half_tangent, &distance = around ? gap : height;
+    const Vec2 past_in = past_.tangent(i - 1), past_out = past_.tangent(i);
+    const double past_turn = std::atan2(past_in.x() * past_out.y() - past_in.y() * past_out.x(), past_in.dot(past_out));
+    const Jet<6> angle = atan(cross(in, out) / (1 + dot(in, out))) + past_turn / 2;  // the mean of both ends
+    const bool around = height.value * angle.value > 0;
+    const Jet<6> turn = around ? angle : 2 * (sin(0.5 * angle) / cos(0.5 * angle)), &distance = around ? gap : height;
     add(distance * turn.value);
     for (int k = 0; k < 3; ++k) depends(i - 1 + k, distance.value * turn.gradient.segment<2>(2 * k));
   }

@@ -196,10 +196,10 @@ TEST(ContactSlip, IncrementsThereAndBackCancel) {
   add_body(scene, outline_shape("needle", {{0, 0}, {3, 4}, {-3, 4}}), BodyKind::rigid, {0, 0});
   ContactRig rig(scene);
   const Dofs start = rig.q;
-  const auto place = [&](double angle, double stretch, double depth) {
-    for (Lanes* q = rig.q.compliant.data(); const Lanes& at : start.compliant) *q++ = stretch * at;
+  const auto place = [&](double angle, double stretch, double depth) {  // changes lengths and turns of corners
+    for (std::size_t i = 0; i < start.compliant.size(); i += 2) rig.q.compliant[i] = stretch * start.compliant[i];
     const Vec2 out(std::sin(angle), std::cos(angle));
-    const Vec2 centroid = (0.5 * stretch - depth + 8.0 / 3) * out;
+    const Vec2 centroid = (0.5 - depth + 8.0 / 3) * out;
     rig.rigid(1)[0] = centroid.x(), rig.rigid(1)[1] = centroid.y(), rig.rigid(1)[2] = -angle;
     rig.step();
   };
@@ -210,6 +210,24 @@ TEST(ContactSlip, IncrementsThereAndBackCancel) {
   EXPECT_GT(largest_slip(rig), 0.1);
   place(0.05, 1, 0.02);
   EXPECT_LT(largest_slip(rig), 1e-14);
+}
+
+// EXACT: a node at rest gets no slip, also beside a vertex, whose surface coordinate is rounded.
+TEST(ContactSlip, RestBesideAVertexGivesNone) {
+  for (int sample = 0; sample < 100; ++sample) {
+    Scene scene = scene_of_steps();
+    scene.contacts = {cohesive(100, 5, 0.08, 1e6)};
+    add_body(scene, outline_shape("polygon", regular(100, 1)), BodyKind::rigid, {0, 0});
+    add_body(scene, outline_shape("needle", {{0, 0}, {3, 4}, {-3, 4}}), BodyKind::rigid, {0, 0});
+    ContactRig rig(scene);
+    const double angle = 2 * M_PI * sample / 100 + 0.002 * std::sin(sample);  // a corner's, 0.06 outside
+    rig.rigid(1)[2] = angle - M_PI / 2;
+    const Vec2 centroid = (1.06 + 8.0 / 3) * Vec2(std::cos(angle), std::sin(angle));
+    rig.rigid(1)[0] = centroid.x(), rig.rigid(1)[1] = centroid.y();
+    for (int step = 0; step < 3; ++step) rig.step();
+    EXPECT_GE(rig.totals.contacts, 1);
+    EXPECT_EQ(largest_slip(rig), 0);
+  }
 }
 
 // A disc slid over a bar, past many corners: nodes inside a convex outline travel less than the outline is long, and
@@ -223,8 +241,7 @@ TEST(ContactSlip, WorkPastConvexCorners) {
     add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
     add_body(scene, polygonal_disc("disc", 2, 48), BodyKind::rigid, {-0.5, 1 - depth}, 0.1);
     ContactRig rig(scene);
-    const WorkBalance balance = follow(
-        rig, [](double s) { return Vec2(s, 0); }, 8000);
+    const WorkBalance balance = follow(rig, [](double s) { return Vec2(s, 0); }, 8000);
     EXPECT_GT(balance.dissipated, 0.02);
     EXPECT_LT(std::abs(balance.defect()), 0.03 * depth * balance.dissipated);
   }
@@ -272,8 +289,7 @@ TEST(ContactSlip, WayAroundAPolygon) {
 TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
   for (const ContactRule& rule : {mohr_coulomb(100, 0.3, 5), cohesive(100, 0.5, 0.02, 5)}) {
     ContactRig rig(block_on_bar(rule));
-    follow(
-        rig, [](double s) { return Vec2(0.015 * s, -0.01); }, 10);
+    follow(rig, [](double s) { return Vec2(0.015 * s, -0.01); }, 10);
     EXPECT_EQ(rig.dissipated, 0);
     const double shear = rig.force(1).x(), tangential = 0.5 * std::abs(shear) * 0.015;
     rig.dissipated = 0;
@@ -290,8 +306,7 @@ TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
 // EXACT: surfaces that meet again start without slip.
 TEST(ContactSlip, NewContactStartsWithoutSlip) {
   ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
-  follow(
-      rig, [](double s) { return Vec2(0.015 * s, -0.02); }, 10);
+  follow(rig, [](double s) { return Vec2(0.015 * s, -0.02); }, 10);
   EXPECT_LT(rig.force(1).x(), -0.1);
   rig.move(1, {0, 0.1});
   rig.step();
@@ -303,8 +318,7 @@ TEST(ContactSlip, NewContactStartsWithoutSlip) {
 // EXACT: evaluations that are not accepted leave no trace.
 TEST(ContactSlip, RejectedTrialsLeaveNoTrace) {
   ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
-  follow(
-      rig, [](double s) { return Vec2(0.005 * s, -0.02); }, 5);
+  follow(rig, [](double s) { return Vec2(0.005 * s, -0.02); }, 5);
   rig.evaluate();
   const Vec2 before = rig.force(1);
   for (const double x : {0.01, -0.015, 0.008}) {
