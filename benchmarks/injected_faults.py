@@ -55,14 +55,28 @@ def run(command: list[str], folder: Path) -> str:
     return result.stdout
 
 
+def including(entry: dict[str, str], file: Path) -> str | None:
+    """The text of a compiled file if it includes the other: where several files are compiled at once."""
+    unit = Path(entry["file"])
+    if not unit.name.startswith("unity_"):
+        return None
+    text = unit.read_text()
+    return text if f'#include "{file}"' in text else None
+
+
 def compiled(build: Path, place: Place, statement: str, scratch: Path) -> Path:
-    """The file with the statement, as an object."""
+    """The file with the statement, and what is compiled together with it, as an object."""
     source, faulty = scratch / Path(place.file).name, scratch / "faulty.o"
     source.write_text(place.with_fault(statement))
     entries = json.loads((build / "compile_commands.json").read_text())
     sound = next((entry for entry in entries if Path(entry["file"]) == ROOT / place.file), None)
     if sound is None:
-        raise RuntimeError(f"{build} does not compile {place.file} by itself: g++ takes several files at once; clang++-19 is needed")
+        sound, text = next(((entry, text) for entry in entries if (text := including(entry, ROOT / place.file))), (None, ""))
+        if sound is None:
+            raise RuntimeError(f"{build} does not compile {place.file}")
+        unit = scratch / "unit.cpp"
+        unit.write_text(text.replace(f'#include "{ROOT / place.file}"', f'#include "{source}"'))
+        source = unit
     words = [str(source) if word == sound["file"] else word for word in shlex.split(sound["command"])]
     words[words.index("-o") + 1] = str(faulty)
     run(words, Path(sound["directory"]))

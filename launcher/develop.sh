@@ -63,8 +63,10 @@ run_tests() {
     ready test verify study movie
   fi
   prepare "$preset" "$target" pliant_tests
-  # Tests run side by side: their threads must neither be bound to the same cores nor wait actively.
+  # Tests run side by side, on one thread each if they ask for no number: threads must neither be bound to the same cores
+  # nor wait actively. The thread sanitizer needs several.
   export OMP_PROC_BIND=${OMP_PROC_BIND-false} OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
+  [ "$preset" = tsan ] || export OMP_NUM_THREADS=${OMP_NUM_THREADS-1}
   set_sanitizer_defaults
   local counts="$root/build/$preset/tests.xml"
   rm -f "$counts"
