@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::Matrix2d;
 using Eigen::MatrixXd;
 
-Scene free_disc(int nodes, const DiscretisationSettings& settings, double angle = 0, double size = 1) {
+Scene resting_disc(int nodes, const DiscretisationSettings& settings, double angle = 0, double size = 1) {
   Scene scene = empty_scene(1e9);
   scene.discretisation = settings;
   scene.shapes = {disc_shape("disc", 2, nodes)};
@@ -44,7 +44,7 @@ MatrixXd linear_stiffness(const Discretisation& d) {
 TEST(NaturalModes, stiffness_is_the_linear_one_of_the_table) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
                                             DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
-    const Model model = build_model(free_disc(61, {.method = method}));
+    const Model model = build_model(resting_disc(61, {.method = method}));
     const MatrixXd exact = linear_stiffness(model.shapes[0].space),
                    found = small_motions(model, model.bodies[0]).stiffness;
     EXPECT_LT((found - exact).cwiseAbs().maxCoeff(), 1e-10 * exact.cwiseAbs().maxCoeff());
@@ -56,7 +56,7 @@ TEST(NaturalModes, stiffness_is_the_linear_one_of_the_table) {
 TEST(NaturalModes, frequencies_go_with_the_size_and_not_with_the_angle) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
     const auto frequencies = [&](double angle, double size) {
-      const Model model = build_model(free_disc(61, {.mass = mass}, angle, size));
+      const Model model = build_model(resting_disc(61, {.mass = mass}, angle, size));
       return natural_modes(small_motions(model, model.bodies[0]));
     };
     const NaturalModes plain = frequencies(0, 1), other = frequencies(0.7, 0.5);
@@ -71,7 +71,7 @@ TEST(NaturalModes, frequencies_go_with_the_size_and_not_with_the_angle) {
 /// mass with lumped mass.
 TEST(NaturalModes, inverse_mass_keeps_rigid_motion) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
-    const Model model = build_model(free_disc(61, {.mass = mass}));
+    const Model model = build_model(resting_disc(61, {.mass = mass}));
     const MatrixXd inverse = small_motions(model, model.bodies[0]).inverse_mass;
     const std::vector<double>& lumped = model.shapes[0].space.mass_at_unit_density;
     const Eigen::Map<const Eigen::VectorXd> masses(lumped.data(), static_cast<Index>(lumped.size()));
@@ -93,7 +93,7 @@ TEST(NaturalModes, of_two_masses) {
 }
 
 TEST(NaturalModes, too_many_nodes_are_refused) {
-  const Model model = build_model(free_disc(most_modal_nodes + 100, {.method = DiscretisationMethod::t3}));
+  const Model model = build_model(resting_disc(most_modal_nodes + 100, {.method = DiscretisationMethod::t3}));
   EXPECT_THROW(small_motions(model, model.bodies[0]), InputError);
 }
 

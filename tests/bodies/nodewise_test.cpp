@@ -19,9 +19,9 @@ namespace {
 using testing::Random;
 
 /// Of the pile's grains: all of a size of their own.
-const std::vector<double> sizes{1.01, 0.99, 1.02, 1, 0.97};
-const BuildOptions always_nodewise{.least_sparse_nodes = 0, .unite_topologies = true, .scales = sizes};
-const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .unite_topologies = true, .scales = sizes};
+const std::vector<double> pile_sizes{1.01, 0.99, 1.02, 1, 0.97};
+const BuildOptions always_nodewise{.least_sparse_nodes = 0, .unite_topologies = true, .scales = pile_sizes};
+const BuildOptions never_nodewise{.least_sparse_nodes = 1 << 30, .unite_topologies = true, .scales = pile_sizes};
 
 /// Two discs of 603 nodes (two regions, with padding) and one of 60 of another law, on a floor under rigid grains.
 Scene pile(DiscretisationMethod method, Integrator integrator = Integrator::verlet) {
@@ -42,16 +42,7 @@ Scene pile(DiscretisationMethod method, Integrator integrator = Integrator::verl
   return scene;
 }
 
-/// Sums of some twenty terms in another order, times what a disc's stiffness makes of rounded positions.
-constexpr double rounding = 1e-12;
-
 class Nodewise : public ::testing::TestWithParam<std::tuple<DiscretisationMethod, Integrator>> {};
-
-void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i)
-    ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
-}
 
 TEST_P(Nodewise, bodies_move_as_those_in_lanes) {
   const auto [method, integrator] = GetParam();
@@ -70,14 +61,14 @@ TEST_P(Nodewise, bodies_move_as_those_in_lanes) {
     const Body &body = nodewise.bodies[b], &other = lanes.bodies[b];
     if (body.kind != BodyKind::compliant) continue;
     const State &x = here.bench.state, &y = there.bench.state;
-    expect_equal_points(nodal_values(nodewise, body, x.position), nodal_values(lanes, other, y.position), rounding,
-                        "node");
-    expect_equal_points(outline_values(nodewise, body, x.position), outline_values(lanes, other, y.position), rounding,
-                        "outline node");
+    expect_equal_points(nodal_values(nodewise, body, x.position), nodal_values(lanes, other, y.position),
+                        rounding_of_order, "node");
+    expect_equal_points(outline_values(nodewise, body, x.position), outline_values(lanes, other, y.position),
+                        rounding_of_order, "outline node");
     expect_equal_points(nodal_values(nodewise, body, x.reduced_momentum),
-                        nodal_values(lanes, other, y.reduced_momentum), 100 * rounding,
+                        nodal_values(lanes, other, y.reduced_momentum), 100 * rounding_of_order,
                         "velocity");  // a frequency of 100
-    EXPECT_LT((mean_value(nodewise, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding)
+    EXPECT_LT((mean_value(nodewise, body, x.position) - mean_value(lanes, other, y.position)).norm(), rounding_of_order)
         << "EXACT";
   }
   const EnergyBalance a = here.auditor.audit(here.bench.state), b = there.auditor.audit(there.bench.state);

@@ -67,15 +67,6 @@ Model nodewise(Model model) {
   return model;
 }
 
-/// Sums of some twenty terms in another order.
-constexpr double rounding = 1e-12;
-
-void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
-  ASSERT_EQ(a.size(), b.size());
-  for (std::size_t i = 0; i < a.size(); ++i)
-    ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
-}
-
 class SameTopology : public ::testing::TestWithParam<std::tuple<DiscretisationMethod, Integrator, Extras>> {};
 
 TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
@@ -94,10 +85,10 @@ TEST_P(SameTopology, bodies_move_as_nodewise_ones) {
   for (std::size_t b = 0; b < alone.bodies.size(); ++b) {
     const Body &body = united.bodies[b], &other = alone.bodies[b];
     if (body.kind != BodyKind::compliant) continue;
-    expect_equal_points(nodal_values(united, body, x.position), nodal_values(alone, other, y.position), rounding,
-                        "node");
+    expect_equal_points(nodal_values(united, body, x.position), nodal_values(alone, other, y.position),
+                        rounding_of_order, "node");
     expect_equal_points(nodal_values(united, body, x.reduced_momentum), nodal_values(alone, other, y.reduced_momentum),
-                        100 * rounding,
+                        100 * rounding_of_order,
                         "velocity");  // a frequency of 100
   }
   const EnergyBalance a = here.auditor.audit(x), b = there.auditor.audit(y);

@@ -51,7 +51,7 @@ Scene scene_of(bool shared, Integrator integrator, DiscretisationMethod method) 
   return scene;
 }
 
-BuildOptions sizes() {
+BuildOptions with_all_sizes() {
   BuildOptions options;
   for (const Grain& grain : grains_of_all_sizes) options.scales.push_back(grain.size);
   return options;
@@ -59,13 +59,13 @@ BuildOptions sizes() {
 
 /// Tables of two sizes of a shape differ by the solver's 1e-12; what is compared below is of order 1, over some hundred
 /// steps.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_tables = 1e-9;
 
 class Sizes : public ::testing::TestWithParam<std::tuple<Integrator, DiscretisationMethod>> {};
 
 TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
   const auto [integrator, method] = GetParam();
-  Steered here(build_model(scene_of(true, integrator, method), sizes()));
+  Steered here(build_model(scene_of(true, integrator, method), with_all_sizes()));
   Steered there(build_model(scene_of(false, integrator, method)));
   const Model &model = here.bench.model, &twin = there.bench.model;
   ASSERT_EQ(model.batches.size(), 1U) << "one group, one batch";
@@ -82,13 +82,14 @@ TEST_P(Sizes, of_one_shape_move_as_bodies_of_their_own_shapes) {
                                std::pair(&here.bench.state.reduced_momentum, &there.bench.state.reduced_momentum)}) {
       const Points values = nodal_values(model, body, *q), expected = nodal_values(twin, other, *p);
       for (std::size_t i = 0; i < values.size(); ++i)
-        EXPECT_LT((values[i] - expected[i]).norm(), rounding) << "EXACT, body " << b;
-      EXPECT_LT((mean_value(model, body, *q) - mean_value(twin, other, *p)).norm(), rounding) << "EXACT";
+        EXPECT_LT((values[i] - expected[i]).norm(), rounding_of_tables) << "EXACT, body " << b;
+      EXPECT_LT((mean_value(model, body, *q) - mean_value(twin, other, *p)).norm(), rounding_of_tables) << "EXACT";
     }
   }
   for (std::size_t i = 0; i < here.bench.state.position.rigid.size(); ++i) {
-    EXPECT_NEAR(here.bench.state.position.rigid[i], there.bench.state.position.rigid[i], rounding) << "EXACT";
-    EXPECT_NEAR(here.bench.state.reduced_momentum.rigid[i], there.bench.state.reduced_momentum.rigid[i], rounding)
+    EXPECT_NEAR(here.bench.state.position.rigid[i], there.bench.state.position.rigid[i], rounding_of_tables) << "EXACT";
+    EXPECT_NEAR(here.bench.state.reduced_momentum.rigid[i], there.bench.state.reduced_momentum.rigid[i],
+                rounding_of_tables)
         << "EXACT";
   }
   const EnergyBalance audit = here.auditor.audit(here.bench.state);
@@ -110,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(All, Sizes,
 
 /// EXACT: bodies of one shape and size share their outline, others have their own; lanes carry what belongs to each.
 TEST(BodySizes, share_what_is_equal) {
-  const Model model = build_model(scene_of(true, Integrator::verlet, DiscretisationMethod::mls), sizes());
+  const Model model = build_model(scene_of(true, Integrator::verlet, DiscretisationMethod::mls), with_all_sizes());
   const auto outline = [&](int body) { return model.bodies[body].outline; };
   EXPECT_EQ(outline(3), outline(5));
   EXPECT_NE(outline(3), outline(2));

@@ -28,7 +28,7 @@ Scene two_boxes(Integrator integrator, double end) {
   return scene;
 }
 
-BoundaryCondition pressure_on(const std::string& grains, const History& pressure, bool following) {
+BoundaryCondition pressure_on_a_side(const std::string& grains, const History& pressure, bool following) {
   BoundaryCondition condition;
   condition.kind = BoundaryCondition::Kind::pressure;
   condition.grains = grains;
@@ -77,9 +77,9 @@ TEST(Impulse, of_pulses_by_force_and_moment) {
 TEST(Impulse, of_pulses_by_pressures) {
   for (const Integrator integrator : both) {
     Scene scene = two_boxes(integrator, 3);
-    scene.boundary = {pressure_on("hard", pulse, true), pressure_on("hard", constant(0.2), true),
-                      pressure_on("hard", pulse, false), pressure_on("soft", pulse, false),
-                      pressure_on("soft", constant(0.2), false)};
+    scene.boundary = {pressure_on_a_side("hard", pulse, true), pressure_on_a_side("hard", constant(0.2), true),
+                      pressure_on_a_side("hard", pulse, false), pressure_on_a_side("soft", pulse, false),
+                      pressure_on_a_side("soft", constant(0.2), false)};
     scene.boundary[1].window = scene.boundary[4].window = {0.517, 0.5181};
     const double window = 0.2 * 0.0011, mass = 2;
     const Speeds end = speeds_at_end(scene);
@@ -92,8 +92,8 @@ TEST(Impulse, of_pulses_by_pressures) {
 /// EXACT: on the geometry at hand, which is the outline's at either end of each step, whatever it has been deformed to.
 TEST(Impulse, of_a_following_pressure_on_a_deforming_outline) {
   Scene scene = two_boxes(Integrator::verlet, 3);
-  scene.boundary = {pressure_on("soft", {{0, 0.3, 0.31, 1}, {0, 0.8, 0.1, 0.4}}, true),
-                    pressure_on("soft", constant(0.5), true)};
+  scene.boundary = {pressure_on_a_side("soft", {{0, 0.3, 0.31, 1}, {0, 0.8, 0.1, 0.4}}, true),
+                    pressure_on_a_side("soft", constant(0.5), true)};
   scene.boundary[1].window = {0.2, 0.7};
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -175,7 +175,7 @@ TEST(Impulse, of_windows_closes_the_balance) {
   drive.grains = "hard";
   drive.x = {AxisCondition::Mode::force, constant(0.4), 0, {0.3, 0.9}};
   drive.y = {AxisCondition::Mode::force, constant(0.7), 0.6, {0.2, 1.7}};
-  scene.boundary = {drive, pressure_on("hard", constant(0.2), false)};
+  scene.boundary = {drive, pressure_on_a_side("hard", constant(0.2), false)};
   scene.boundary[1].window = {0.517, 0.7};
   const Model model = build_model(scene);
   Simulation simulation(model);

@@ -28,10 +28,6 @@ BoundaryCondition pressure_on(const std::string& grains, double pressure, bool f
 
 OutlinePart side(const Vec2& outward) { return {.kind = OutlinePart::Kind::side, .side = outward}; }
 
-Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
-  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
-}
-
 double largest_force(const Bench& bench) {
   double result = 0;
   for (const Lanes& f : bench.state.force.compliant) result = std::max(result, std::abs(f[0]));

@@ -13,11 +13,11 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-constexpr double stiffness = 100;  ///< kn
-constexpr double fall = 0.01;      ///< speed of the fall
+constexpr double floor_stiffness = 100;  ///< kn
+constexpr double fall = 0.01;            ///< speed of the fall
 
 ContactRule rough_and_bouncing(double friction, double restitution) {
-  ContactRule rule = mohr_coulomb(stiffness, friction);
+  ContactRule rule = mohr_coulomb(floor_stiffness, friction);
   rule.restitution = restitution;
   return rule;
 }
@@ -82,11 +82,11 @@ TEST(ObliqueImpact, a_sticking_block_swings_sideways_while_it_is_pressed) {
   for (const double e : {0.3, 0.6})
     for (const double ratio : {0.3, 0.8}) {
       ContactRule rule = rough_and_bouncing(1e5, e);
-      rule.shear_stiffness = ratio * stiffness;
+      rule.shear_stiffness = ratio * floor_stiffness;
       const Impact hit = impact(thrown_block(rule, slide, 0.004), 0.5);
       const double z = damping_ratio(e, false), pressed = 2 * std::acos(z) / std::sqrt(1 - z * z);
       // Touch begins and ends within a step, and the dashpot sees half a step less.
-      const double tolerance = 3 * std::sqrt(stiffness) * hit.longest_step;
+      const double tolerance = 3 * std::sqrt(floor_stiffness) * hit.longest_step;
       EXPECT_LT(tolerance, 0.02);
       EXPECT_NEAR(hit.after[0] / slide, std::cos(std::sqrt(ratio) * pressed), tolerance) << "e " << e << " " << ratio;
     }

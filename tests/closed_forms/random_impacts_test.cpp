@@ -9,7 +9,7 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-constexpr double stiffness = 1e5;
+constexpr double face_stiffness = 1e5;
 
 Points random_shape(Random& random) {
   const double wide = std::tan(random.uniform(5, 15) * M_PI / 180);
@@ -29,7 +29,7 @@ Scene random_impact(Random& random, double safety, bool corrects) {
   Scene scene = bare_scene();
   scene.contact.quadrature = ContactQuadrature::segments;
   scene.contact.energy_consistent = corrects;
-  scene.contacts = {frictionless(stiffness)};
+  scene.contacts = {frictionless(face_stiffness)};
   scene.time.safety = safety;
   scene.time.end = 100;
   for (int body = 0; body < 2; ++body) {

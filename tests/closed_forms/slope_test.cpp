@@ -13,7 +13,7 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-constexpr double friction = 0.3, stiffness = 1e4, young = 2000, poisson = 0.4, mass = 0.5, height = 0.5;
+constexpr double friction = 0.3, slope_stiffness = 1e4, young = 2000, poisson = 0.4, mass = 0.5, height = 0.5;
 
 struct Block {
   int segments;    ///< on its face
@@ -46,7 +46,7 @@ Scene on_a_slope(const Block& block, double speed, const History& down, const Hi
   if (block.compliant) scene.shapes[0].nodes = block.segments * block.segments + 14;
   scene.grains = {grains("block", "block", block.compliant ? BodyKind::compliant : BodyKind::rigid,
                          {{block.place, height / 2}}, moving({speed, 0}))};
-  scene.contacts = {mohr_coulomb(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(slope_stiffness, friction)};
   scene.contact.energy_consistent = false;  // forces of the correction after contact have no friction
   return scene;
 }
@@ -85,7 +85,7 @@ TEST(BlockOnASlope, slips_as_coulomb_says) {
   for_blocks([&](const Block& block) {
     Slider slider(on_a_slope(block, speed, down, press));
     slider.advance(1);
-    const double pressed = 0.75 * std::cos(slope), depth = mass * std::cos(slope) / stiffness;
+    const double pressed = 0.75 * std::cos(slope), depth = mass * std::cos(slope) / slope_stiffness;
     const double step = slider.velocity().x() * slider.longest_step, entering = step / block.spacing;
     EXPECT_NEAR(slider.velocity().x() + friction * slider.velocity().y(),
                 speed + 0.75 * std::sin(slope) - friction * pressed,
@@ -100,7 +100,7 @@ TEST(BlockOnASlope, slips_as_coulomb_says) {
 /// back, but for half of the tilt.
 TEST(BlockOnASlope, sticks_as_coulomb_says) {
   const double slope = 10 * std::numbers::pi / 180, pull = mass * std::sin(slope);
-  const double shear = pull / stiffness, tilt = pull * 3 * height * height / stiffness;
+  const double shear = pull / slope_stiffness, tilt = pull * 3 * height * height / slope_stiffness;
   const double lean = pull * (height * 2 * (1 + poisson) / (3 * young) +
                               3 * std::pow(height, 3) * (1 - poisson * poisson) / (5 * young));
   const History down{{0, 0.5, 1, 1.5, 2, 2.5}, {0, 0, std::sin(slope), std::sin(slope), 0, 0}};

@@ -9,7 +9,8 @@ namespace {
 
 using namespace testing;
 
-const ContactRule rules[] = {frictionless(100), mohr_coulomb(100, 0.3, 0.05, 0.2), cohesive(100, 0.5, 0.05, 0.4)};
+const ContactRule balance_rules[] = {frictionless(100), mohr_coulomb(100, 0.3, 0.05, 0.2),
+                                     cohesive(100, 0.5, 0.05, 0.4)};
 
 // Two bodies in touch, of random outline, the second compliant if asked for, with slip from a small relative motion.
 Scene pair_scene(Random& random, const ContactRule& rule, bool compliant) {
@@ -70,7 +71,7 @@ TEST(ContactBalance, ForceAndMoment) {
   for (int sample = 0; sample < 90; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 300);
-    ContactRig rig(pair_scene(random, rules[sample % 3], sample % 2));
+    ContactRig rig(pair_scene(random, balance_rules[sample % 3], sample % 2));
     load(rig, random, 0.01);
     const Balance b = balance_of(rig);
     loaded += b.magnitude > 0.1;
@@ -81,7 +82,7 @@ TEST(ContactBalance, ForceAndMoment) {
 
 // EXACT: across the period the moment balances about the image in touch.
 TEST(ContactBalance, AcrossThePeriod) {
-  for (const ContactRule& rule : rules) {
+  for (const ContactRule& rule : balance_rules) {
     Scene scene = bare_scene();
     scene.period = 10;
     scene.contacts = {rule};

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/random.hpp"
+#include "support/contact_rig.hpp"
 
 namespace pliant {
 namespace {
 
-using testing::Random;
+using testing::overlap, testing::Random;
 
 struct Boxes {
   Model model;
@@ -31,10 +31,6 @@ Boxes random_boxes(Random& random, int count, int walls, std::optional<double> p
     if (i >= count) result.boxes[i].x_min = 0, result.boxes[i].x_max = period.value_or(0) * 0.9;
   }
   return result;
-}
-
-bool overlap(double a_min, double a_max, double b_min, double b_max, double margin) {
-  return a_min <= b_max + margin && b_min <= a_max + margin;
 }
 
 // All pairs, all images, of a body itself too: what docs/method.md 4 asks for.

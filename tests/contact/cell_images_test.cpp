@@ -20,10 +20,6 @@ Scene cell_scene(const Vec2& periods) {
   return scene;
 }
 
-bool overlap(double a_min, double a_max, double b_min, double b_max, double margin) {
-  return a_min <= b_max + margin && b_min <= a_max + margin;
-}
-
 // EXACT: the same pairs and images as brute force, in cells of any tilt and in flat ones.
 TEST(CellBroadPhase, equals_all_pairs) {
   Random random(3);
@@ -78,13 +74,13 @@ Points forces_on(const ContactRig& rig, int body) {
   return forces;
 }
 
-double largest_difference(const Points& a, const Points& b) {
+double largest_force_difference(const Points& a, const Points& b) {
   double largest = 0;
   for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, (a[k] - b[k]).norm());
   return largest;
 }
 
-double largest(const Points& forces) {
+double largest_force(const Points& forces) {
   double most = 0;
   for (const Vec2& f : forces) most = std::max(most, f.norm());
   return most;
@@ -109,8 +105,8 @@ TEST(CellImages, touch_over_edges_and_corners_as_inside) {
         rig->evaluate();
       }
       for (int body = 0; body < 2; ++body) {
-        EXPECT_GT(largest(forces_on(inside, body)), 0.1);
-        EXPECT_LT(largest_difference(forces_on(inside, body), forces_on(across, body)), 1e-12);
+        EXPECT_GT(largest_force(forces_on(inside, body)), 0.1);
+        EXPECT_LT(largest_force_difference(forces_on(inside, body), forces_on(across, body)), 1e-12);
       }
     }
 }
@@ -127,7 +123,7 @@ TEST(CellImages, of_a_body_itself_along_both_periods) {
   a.evaluate(), b.evaluate();
   EXPECT_EQ(9 * a.totals.contacts, b.totals.contacts);
   EXPECT_GT(a.totals.contacts, 8);
-  for (int body = 0; body < 9; ++body) EXPECT_LT(largest_difference(forces_on(a, 0), forces_on(b, body)), 1e-12);
+  for (int body = 0; body < 9; ++body) EXPECT_LT(largest_force_difference(forces_on(a, 0), forces_on(b, body)), 1e-12);
 }
 
 // EXACT: a cell sheared by whole periods is the same lattice.
@@ -145,7 +141,7 @@ TEST(CellImages, of_a_cell_sheared_by_whole_periods_are_the_same) {
     EXPECT_GT(upright.totals.contacts, 12);
     EXPECT_EQ(upright.totals.contacts, sheared.totals.contacts);
     for (int body = 0; body < 4; ++body)
-      EXPECT_LT(largest_difference(forces_on(upright, body), forces_on(sheared, body)), 1e-12);
+      EXPECT_LT(largest_force_difference(forces_on(upright, body), forces_on(sheared, body)), 1e-12);
   }
 }
 

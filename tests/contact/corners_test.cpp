@@ -14,17 +14,18 @@ namespace {
 
 using namespace testing;
 
-constexpr double stiffness = 100, depth = 0.004;
+constexpr double block_depth = 0.004;
 
-/// A block of unit width over a longer bar, face to face and `depth` inside, shifted along it.
-Scene block_on_bar(const ContactRule& rule, int segments, double bar_spacing, double shift, bool compliant = false) {
+/// A block of unit width over a longer bar, face to face and `block_depth` inside, shifted along it.
+Scene shifted_block_on_bar(const ContactRule& rule, int segments, double bar_spacing, double shift,
+                           bool compliant = false) {
   Scene scene = bare_scene();
   scene.contacts = {rule};
   add_body(scene, outline_shape("bar", rectangle(2.4, 0.5, bar_spacing)), BodyKind::rigid, {0, 0});
   add_body(scene,
            outline_shape("block", rectangle(1, 0.5, 1.0 / segments),
                          compliant ? std::optional(segments * segments + 14) : std::nullopt),
-           compliant ? BodyKind::compliant : BodyKind::rigid, {shift, 0.5 - depth});
+           compliant ? BodyKind::compliant : BodyKind::rigid, {shift, 0.5 - block_depth});
   return scene;
 }
 
@@ -39,17 +40,17 @@ double shared(double shift) { return std::max(0.0, std::min(0.5 + shift, 1.2) - 
 // nearer there: kn d (L - d/2) in all, and an energy of kn d^2/2 (L - d/3). Off the bar's end the block is pushed by
 // the derivative of that along the way, kn d^2/2. Rounding of 40 nodes' forces.
 TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
-  const double energy = 0.5 * stiffness * depth * depth;
+  const double energy = 0.5 * kn * block_depth * block_depth;
   for (const int segments : {4, 6, 8, 16})
     for (const double spacing : spacings)
       for (const double shift : {0.0, 0.1, 0.0317, -0.25, 0.9, -1.03, 1.45, -1.53})
         for (const bool compliant : {false, true}) {
           if (compliant && segments > 8) continue;  // enough
           SCOPED_TRACE(fmt::format("{} segments, spacing {}, shift {}, {}", segments, spacing, shift, compliant));
-          ContactRig rig(block_on_bar(frictionless(stiffness), segments, spacing, shift, compliant));
+          ContactRig rig(shifted_block_on_bar(frictionless(kn), segments, spacing, shift, compliant));
           rig.evaluate();
-          EXPECT_NEAR(rig.force(1).y(), stiffness * depth * (shared(shift) - depth / 2), 1e-12);
-          EXPECT_NEAR(rig.totals.stored, energy * (shared(shift) - depth / 3), 1e-14);
+          EXPECT_NEAR(rig.force(1).y(), kn * block_depth * (shared(shift) - block_depth / 2), 1e-12);
+          EXPECT_NEAR(rig.totals.stored, energy * (shared(shift) - block_depth / 3), 1e-14);
           const double off = shift > 0.7 ? energy : shift < -0.7 ? -energy : 0;
           EXPECT_NEAR(rig.force(1).x(), off, 1e-12);
         }
@@ -58,7 +59,7 @@ TEST(Corners, FlatFacesTouchOverWhatTheyShare) {
 // EXACT: the strength of a face is that of its length, and of what is within reach at both ends: the side above one,
 // and what lies past the other, at distances r, which pull by the upright part gap/r of their direction.
 TEST(Corners, AFaceIsAsStrongAsItIsLong) {
-  const double strength = 0.5, reach = 0.03, gap = strength / stiffness;
+  const double strength = 0.5, reach = 0.03, gap = strength / kn;
   const auto pull = [&](double r) { return strength * (reach - r) / (reach - gap); };
   double past_end = 0;
   constexpr int parts = 100'000;
@@ -71,8 +72,8 @@ TEST(Corners, AFaceIsAsStrongAsItIsLong) {
   for (const int segments : {4, 6, 16})
     for (const double spacing : spacings)
       for (const double shift : {0.0, 0.0317, 0.62}) {
-        ContactRig rig(block_on_bar(cohesive(stiffness, strength, reach, 0), segments, spacing, shift));
-        rig.move(1, {0, depth + gap});
+        ContactRig rig(shifted_block_on_bar(cohesive(kn, strength, reach, 0), segments, spacing, shift));
+        rig.move(1, {0, block_depth + gap});
         rig.evaluate();
         // The sum's points: kinks cost the square of a part.
         EXPECT_NEAR(-rig.force(1).y(), strength * shared(shift) + of_ends, 1e-9) << segments << " " << spacing;
@@ -83,7 +84,7 @@ TEST(Corners, AFaceIsAsStrongAsItIsLong) {
 // the energy's change, and on the bar no step meets more than rounding.
 TEST(Corners, NothingLocks) {
   for (const double spacing : spacings) {
-    ContactRig rig(block_on_bar(frictionless(stiffness), 8, spacing, -0.6));
+    ContactRig rig(shifted_block_on_bar(frictionless(kn), 8, spacing, -0.6));
     double largest = 0;
     for (int step = 0; step < 500; ++step) {
       rig.step();
@@ -100,14 +101,14 @@ TEST(Corners, NothingLocks) {
 TEST(Corners, ACornerPokesByTheSquareOfItsDepth) {
   for (const double spacing : {0.5, 0.013, 0.003}) {
     Scene scene = bare_scene();
-    scene.contacts = {frictionless(stiffness)};
+    scene.contacts = {frictionless(kn)};
     add_body(scene, outline_shape("bar", rectangle(3, 0.5, spacing)), BodyKind::rigid, {0, 0});
     add_body(scene, outline_shape("block", rectangle(1, 1, 0.1)), BodyKind::rigid, {0, 0}, M_PI / 4);
     ContactRig rig(scene);
-    rig.move(1, {0.0017, 0.25 + std::sqrt(0.5) - depth});
+    rig.move(1, {0.0017, 0.25 + std::sqrt(0.5) - block_depth});
     rig.evaluate();
     EXPECT_NEAR(rig.force(1).x(), 0, 1e-12);
-    EXPECT_NEAR(rig.force(1).y(), stiffness * depth * depth * (std::sqrt(0.5) + 0.25), 1e-12);
+    EXPECT_NEAR(rig.force(1).y(), kn * block_depth * block_depth * (std::sqrt(0.5) + 0.25), 1e-12);
   }
 }
 
@@ -119,7 +120,7 @@ TEST(Corners, CornersMeet) {
       for (const double turn : {0.0, 0.1}) {
         SCOPED_TRACE(fmt::format("{} degrees, {} aside, turned by {}", half_angle, aside, turn));
         Scene scene = bare_scene();
-        scene.contacts = {frictionless(stiffness)};
+        scene.contacts = {frictionless(kn)};
         const double wide = std::tan(half_angle * M_PI / 180);
         add_body(scene, outline_shape("square", rectangle(1, 1, 0.1)), BodyKind::rigid, {0, 0}, M_PI / 4);
         add_body(scene, outline_shape("tip", {{0, 0}, {wide, 1}, {-wide, 1}}), BodyKind::rigid, {0, 0}, turn);
@@ -129,7 +130,7 @@ TEST(Corners, CornersMeet) {
         rig.move(1, place - rig.node(1, 0));
         rig.evaluate();
         EXPECT_GT(rig.totals.contacts, 0);
-        EXPECT_GT(rig.force(1).y(), 0.1 * stiffness * 0.01 * 0.05);
+        EXPECT_GT(rig.force(1).y(), 0.1 * kn * 0.01 * 0.05);
         EXPECT_LT((rig.force(0) + rig.force(1)).norm(), 1e-14);
       }
 }
@@ -160,12 +161,12 @@ struct Passage {
 // 1/2 k l d^2, over a step h, an eighth of that is h / d. When a corner touched its nearest face, whatever it stood for
 // there, two thirds of that energy came and went.
 TEST(Corners, PassWithoutJumps) {
-  constexpr double segment = 0.2, deep = 0.1 * segment, unit = 0.5 * stiffness * segment * deep * deep;
+  constexpr double segment = 0.2, deep = 0.1 * segment, unit = 0.5 * kn * segment * deep * deep;
   constexpr int steps = 4000;
   Random random(7);
   int touched = 0;
   for (int sample = 0; sample < 80; ++sample) {
-    const Passage passage(random, segment, stiffness);
+    const Passage passage(random, segment, kn);
     ContactRig rig(passage.scene);
     rig.move(1, rig.node(0, 0) + passage.start - rig.node(1, 0));
     double stored = 0, work = 0;
@@ -188,7 +189,7 @@ double stored_by_first(const ContactRig& rig) {
   double energy = 0;
   for (const TouchingPair& pair : inspect_contacts(rig.model, rig.contact, rig.outlines, rig.trial))
     for (const ContactPoint& point : pair.points)
-      if (point.slave == 0) energy += 0.25 * stiffness * point.length * point.gap * point.gap;
+      if (point.slave == 0) energy += 0.25 * kn * point.length * point.gap * point.gap;
   return energy;
 }
 
@@ -197,14 +198,14 @@ double stored_by_first(const ContactRig& rig) {
 // corner was nearest to, the lesser side's part of the energy came and went at the bottom. What the notch's own nodes
 // store beside the corner is another matter (docs/limits.md), and is let go.
 TEST(Corners, PassANotchWithoutJumps) {
-  constexpr double segment = 0.2, deep = 0.1 * segment, unit = 0.5 * stiffness * segment * deep * deep;
+  constexpr double segment = 0.2, deep = 0.1 * segment, unit = 0.5 * kn * segment * deep * deep;
   constexpr int steps = 1000;
   Random random(8);
   int touched = 0;
   for (int sample = 0; sample < 40; ++sample) {
     const double rise = 3 * std::tan(random.uniform(0.05, 0.5)), shift = random.uniform(-0.3, 0.3);
     Scene scene = bare_scene();
-    scene.contacts = {frictionless(stiffness)};
+    scene.contacts = {frictionless(kn)};
     const Points notched{{shift, 0}, {-3, rise}, {-3, -1}, {3, -1}, {3, rise}};
     add_body(scene, outline_shape("notched", refined(notched, random.uniform(0.07, 0.3))), BodyKind::rigid, {0, 0});
     add_body(scene, outline_shape("other", refined(regular(6, 1, 0), segment)), BodyKind::rigid, {0, 0},
@@ -239,7 +240,7 @@ TEST(Corners, FacesChangedAreNoSlip) {
   constexpr int steps = 200;
   for (const double friction : {0.2, 5.0}) {
     Scene scene = bare_scene();
-    scene.contacts = {mohr_coulomb(stiffness, friction)};
+    scene.contacts = {mohr_coulomb(kn, friction)};
     add_body(scene, outline_shape("bar", rectangle(2, 1, segment)), BodyKind::rigid, {0, 0});
     const Points tip = refined({{0, 0}, {0.5, 0.5 * std::sqrt(3)}, {-0.5, 0.5 * std::sqrt(3)}}, segment);
     add_body(scene, outline_shape("tip", tip), BodyKind::rigid, {0, 0});

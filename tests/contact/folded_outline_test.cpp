@@ -9,7 +9,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double stiffness = 100, friction = 0.3;
+constexpr double lip_friction = 0.3;
 
 /// Moves the node 0 of body 1 to a place and accepts the step.
 void step_to(ContactRig& rig, const Vec2& place) {
@@ -40,7 +40,7 @@ Vec2 under_lip(const ContactRig& rig, double distance, double depth) {
 
 Scene crease_scene() {
   Scene scene = nodal_scene();
-  scene.contacts = {mohr_coulomb(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(kn, lip_friction)};
   add_body(scene, outline_shape("block", creased_corner), BodyKind::rigid, {0, 0});
   add_body(scene, pin(out_of_lip), BodyKind::rigid, {20, 20});
   return scene;
@@ -58,9 +58,9 @@ TEST(FoldedOutline, TheNearestFaceCounts) {
   for (const double shallow : {-0.1, 0.1, 0.2, 0.3, 0.4}) step_to(rig, under_lip(rig, 3.8, shallow));
   for (double distance = 3.8; distance > 2.2; distance -= 0.02) {
     step_to(rig, under_lip(rig, distance, depth));
-    const Vec2 force = rig.force(1, 0) / (tip_weight(rig) * stiffness * depth);
+    const Vec2 force = rig.force(1, 0) / (tip_weight(rig) * kn * depth);
     EXPECT_NEAR(force.dot(out_of_lip), 1, 1e-12) << distance;
-    EXPECT_LE(std::abs(force.dot(lip)), friction + 1e-12) << distance;
+    EXPECT_LE(std::abs(force.dot(lip)), lip_friction + 1e-12) << distance;
   }
 }
 
@@ -78,15 +78,15 @@ TEST(FoldedOutline, SlidingUnderALipDissipatesForceTimesWay) {
   slide(longest, shortest);
   rig.dissipated = 0;
   slide(shortest, longest);
-  const double pressure = stiffness * depth, turn = 2 * friction * depth;  // kt = kn
-  EXPECT_NEAR(rig.dissipated, tip_weight(rig) * friction * pressure * (longest - shortest - turn), 1e-10);
+  const double pressure = kn * depth, turn = 2 * lip_friction * depth;  // kt = kn
+  EXPECT_NEAR(rig.dissipated, tip_weight(rig) * lip_friction * pressure * (longest - shortest - turn), 1e-10);
 }
 
 // EXACT: a tip that crosses a narrow slit at once, straight from beside one flank into the other, has slid along
 // neither. The distance along the outline from the one to the other, around the bottom of the slit, is 0.82.
 TEST(FoldedOutline, SlipDoesNotRunAroundASlit) {
   Scene scene = nodal_scene();
-  scene.contacts = {mohr_coulomb(stiffness, friction)};
+  scene.contacts = {mohr_coulomb(kn, lip_friction)};
   Points block;
   // Counter-clockwise: bottom, right side, top to the slit, down, up again, top.
   for (const Vec2& corner : {Vec2(-1, -2), Vec2(1, -2), Vec2(1, 0)}) block.push_back(corner);
@@ -106,7 +106,7 @@ TEST(FoldedOutline, SlipDoesNotRunAroundASlit) {
   EXPECT_LT(std::abs(rig.dissipated), 1e-14);
   // Of the pin's two sides the one that lies along the flank counts: half of its tip's length, half of that in this
   // pass.
-  EXPECT_NEAR(rig.force(1, 0).x(), tip_weight(rig) * stiffness * 0.03, 1e-12);
+  EXPECT_NEAR(rig.force(1, 0).x(), tip_weight(rig) * kn * 0.03, 1e-12);
 }
 
 }  // namespace

@@ -10,14 +10,14 @@ namespace {
 
 using namespace testing;
 
-constexpr double friction = 0.3, depth = 0.02;
+constexpr double floor_friction = 0.3, depth_in_floor = 0.02;
 
 // A block of 1.03 x 0.5 on a floor of period 4, nodes every 0.1 on both.
-Scene block_on_floor(double x, const ContactRule& rule = mohr_coulomb(100, friction)) {
+Scene block_on_floor(double x, const ContactRule& rule = mohr_coulomb(100, floor_friction)) {
   Scene scene = nodal_scene();
   scene.period = 4;
   scene.contacts = {rule};
-  add_body(scene, outline_shape("block", rectangle(1.03, 0.5, 0.1)), BodyKind::rigid, {x, 0.25 - depth});
+  add_body(scene, outline_shape("block", rectangle(1.03, 0.5, 0.1)), BodyKind::rigid, {x, 0.25 - depth_in_floor});
   scene.walls = {free_wall("floor", Wall::Solid::below, 0, 0.1)};
   return scene;
 }
@@ -38,8 +38,8 @@ void expect_steady_sliding(double direction, int moved_body) {
     ++sampled;
     const Vec2 f = rig.force(0);
     const double sign = moved_body == 0 ? -direction : direction;
-    EXPECT_NEAR(f.x() / f.y(), sign * friction, 1e-12) << "step " << step;
-    EXPECT_NEAR(f.y(), 100 * depth * 1.0, 0.15) << "step " << step;
+    EXPECT_NEAR(f.x() / f.y(), sign * floor_friction, 1e-12) << "step " << step;
+    EXPECT_NEAR(f.y(), 100 * depth_in_floor * 1.0, 0.15) << "step " << step;
   }
   EXPECT_EQ(sampled, 120);
 }
@@ -121,7 +121,7 @@ TEST(ContactHistory, SurvivesARefresh) {
 // 0.29.
 TEST(ContactHistory, PassesTheSeamOfTheOutline) {
   Scene scene = nodal_scene();
-  scene.contacts = {mohr_coulomb(100, friction)};
+  scene.contacts = {mohr_coulomb(100, floor_friction)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.02 * i, 0});
   ContactRig rig(scene);
   constexpr int steps = 1600;
@@ -142,7 +142,7 @@ TEST(ContactHistory, PassesTheSeamOfTheOutline) {
 TEST(ContactHistory, FacetsSlideAlikeAllAroundTheOutline) {
   constexpr int sides = 40, per_facet = 40;
   Scene scene = nodal_scene();
-  scene.contacts = {mohr_coulomb(100, friction)};
+  scene.contacts = {mohr_coulomb(100, floor_friction)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, sides), BodyKind::rigid, {1.98 * i, 0});
   for (const int direction : {1, -1}) {
     ContactRig rig(scene);
@@ -154,7 +154,7 @@ TEST(ContactHistory, FacetsSlideAlikeAllAroundTheOutline) {
       if (step < 3 * per_facet) continue;
       ASSERT_LT((forces[step] - forces[step - per_facet]).norm(), 1e-10) << "step " << step;
     }
-    EXPECT_NEAR(std::abs(forces.back().y() / forces.back().x()), friction, 0.1) << "it slides";
+    EXPECT_NEAR(std::abs(forces.back().y() / forces.back().x()), floor_friction, 0.1) << "it slides";
     EXPECT_GT(rig.contact.refreshes(), sides) << "all around";
   }
 }

@@ -35,7 +35,7 @@ double longest(const std::vector<double>& x) {
 }
 
 /// From a point to a segment in x alone, by the nearest image of its first node.
-double distance(double point, double a, double b, double period) {
+double distance_in_x(double point, double a, double b, double period) {
   double off = point - a;
   if (period > 0) off -= period * std::round(off / period);
   return std::max({0.0, std::min(0.0, b - a) - off, off - std::max(0.0, b - a)});
@@ -56,10 +56,10 @@ TEST(NodeStrips, finds_what_a_scan_finds) {
             point,
             [&](int s) {
               seen.insert(s);
-              nearest = std::min(nearest, distance(point, x[s], x[s + 1], period));
+              nearest = std::min(nearest, distance_in_x(point, x[s], x[s + 1], period));
             },
             [&] { return nearest; });
-        for (int s = 0; s < count; ++s) scanned = std::min(scanned, distance(point, x[s], x[s + 1], period));
+        for (int s = 0; s < count; ++s) scanned = std::min(scanned, distance_in_x(point, x[s], x[s + 1], period));
         EXPECT_EQ(nearest, scanned) << count << " nodes, period " << period << ", from " << point;
         for (int s : seen) EXPECT_EQ(seen.count(s), 1U);
       }

@@ -57,7 +57,7 @@ ContactRule sticky() {
   return rule;
 }
 
-struct Seen {
+struct ImageContact {
   int contacts = 0;
   double stored = 0, dissipated = 0, momentum = 0;
 };
@@ -65,10 +65,10 @@ struct Seen {
 /// Steps both to the end. Each step rounds positions of up to 4 by 2^-52 of that at most, and the bound of a step by
 /// what finite differences over 1e-6 of the nodal distance make of such a rounding, 1e-9, which moves the error of the
 /// integration, less than 1e-3, by 1e-12.
-Seen run_both(const Scene& single, const Scene& twice) {
+ImageContact run_both(const Scene& single, const Scene& twice) {
   const Model one = build_model(single), two = build_model(twice);
   Simulation a(one), b(two);
-  Seen seen;
+  ImageContact seen;
   while (a.state().time < single.time.end) {
     seen.contacts = std::max(seen.contacts, a.step(single.time.end).evaluation.contact.contacts);
     if (a.state().steps % 20 != 0) continue;
@@ -99,7 +99,7 @@ class OwnImage : public ::testing::TestWithParam<BodyKind> {};
 TEST_P(OwnImage, is_another_body_in_twice_the_period) {
   for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.4), sticky()}) {
     SCOPED_TRACE(static_cast<int>(rule.law));
-    const Seen seen = run_both(ellipses(GetParam(), 1, rule), ellipses(GetParam(), 2, rule));
+    const ImageContact seen = run_both(ellipses(GetParam(), 1, rule), ellipses(GetParam(), 2, rule));
     EXPECT_GT(seen.contacts, 3) << "it must touch, or this test says nothing";
     EXPECT_GT(seen.stored, 1e-4);
     EXPECT_EQ(seen.dissipated > 1e-6, rule.law != ContactLawKind::frictionless);
@@ -110,7 +110,7 @@ TEST_P(OwnImage, is_another_body_in_twice_the_period) {
 INSTANTIATE_TEST_SUITE_P(Kinds, OwnImage, ::testing::Values(BodyKind::compliant, BodyKind::rigid));
 
 TEST(OwnImages, meet_between_plates) {
-  const Seen seen = run_both(squeezed_blocks(1), squeezed_blocks(2));
+  const ImageContact seen = run_both(squeezed_blocks(1), squeezed_blocks(2));
   EXPECT_GT(seen.contacts, 30);
   const auto force = [](int copies) {
     const Scene scene = squeezed_blocks(copies);

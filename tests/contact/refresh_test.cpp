@@ -30,7 +30,7 @@ struct Course {
 };
 
 /// On a floor that drifts in y as they do, or on none.
-Scene two_rows(Random& random, const Course& course, bool floor) {
+Scene rows_on_course(Random& random, const Course& course, bool floor) {
   Scene scene = bare_scene();
   scene.contacts = {frictionless(100)};
   for (int i = 0; i < 12; ++i) {
@@ -44,19 +44,19 @@ Scene two_rows(Random& random, const Course& course, bool floor) {
   return scene;
 }
 
-struct Seen {
+struct RefreshCounts {
   int evaluations = 0, refreshes = 0, contacts = 0;
 };
 
 /// INDEPENDENT: candidates found just now give the same forces as those found before.
-Seen watch(int sample, const Course& course) {
+RefreshCounts watch(int sample, const Course& course) {
   Random random(sample + 400);
   const bool floor = sample % 2 == 0;
-  const Scene scene = two_rows(random, course, floor);
+  const Scene scene = rows_on_course(random, course, floor);
   ContactRig rig(scene), fresh(scene);
   Points before;
   for (int body = 0; body < 12; ++body) before.push_back(course.at(body, 0));
-  Seen seen;
+  RefreshCounts seen;
   for (int step = 1; step <= 40; ++step) {
     for (int body = 0; body < 12; ++body) {
       const Vec2 to = course.at(body, step) + Vec2{random.uniform(-0.004, 0.004), random.uniform(-0.004, 0.004)};
@@ -93,7 +93,7 @@ TEST(Refresh, does_not_see_a_drift) {
   int refreshes = 0, evaluations = 0;
   for (int sample = 1; sample < 20; sample += 2)
     for (const double slide : {0.0, 0.01}) {
-      const Seen still = watch(sample, {{0, 0}, slide}), drifting = watch(sample, {{5, -3}, slide});
+      const RefreshCounts still = watch(sample, {{0, 0}, slide}), drifting = watch(sample, {{5, -3}, slide});
       EXPECT_EQ(drifting.refreshes, still.refreshes);
       refreshes += still.refreshes, evaluations += still.evaluations;
     }
@@ -103,7 +103,7 @@ TEST(Refresh, does_not_see_a_drift) {
 /// EXACT: where one body of twelve moves, pairs without it are searched at the start alone.
 TEST(Refresh, searches_pairs_that_moved) {
   Random random(400);
-  ContactRig rig(two_rows(random, {}, false));
+  ContactRig rig(rows_on_course(random, {}, false));
   rig.evaluate();
   const long at_first = rig.contact.pairs_searched();
   const std::vector<ContactPair> contact_pairs = rig.contact.contact_pairs();
@@ -128,7 +128,7 @@ TEST(Refresh, searches_pairs_that_moved) {
 /// EXACT: bodies that shake where they are are searched at the start alone, however often others are.
 TEST(Refresh, does_not_search_what_only_shakes) {
   Random random(400);
-  ContactRig rig(two_rows(random, {}, false));
+  ContactRig rig(rows_on_course(random, {}, false));
   rig.evaluate();
   const long at_first = rig.contact.pairs_searched();
   long refreshes = 0;
@@ -169,7 +169,7 @@ struct Carried {
 void follow_history(int sample, Carried& carried) {
   Random random(sample + 400);
   const Course course{{0, 0}, 0.002};
-  Scene scene = two_rows(random, course, false);
+  Scene scene = rows_on_course(random, course, false);
   scene.contacts = {mohr_coulomb(100, 0.5, 1)};
   ContactRig rig(scene);
   rig.step();
@@ -212,7 +212,7 @@ TEST(Refresh, carries_the_history_along) {
 /// EXACT: the bound of stiffness follows the one body that moves; those that it does not meet keep theirs.
 TEST(Refresh, bound_of_stiffness_follows) {
   Random random(400);
-  ContactRig rig(two_rows(random, {}, false));
+  ContactRig rig(rows_on_course(random, {}, false));
   rig.evaluate();
   const std::vector<double> compliance(rig.model.bodies.size(), 1.0);
   StiffnessBound bound(rig.model);
@@ -240,7 +240,7 @@ TEST(Refresh, bound_of_stiffness_holds_on_the_way) {
   int touching = 0, layouts = 0;
   for (int sample = 0; sample < 80; ++sample) {
     Random random(sample / 2 + 400);
-    Scene scene = two_rows(random, {}, false);
+    Scene scene = rows_on_course(random, {}, false);
     scene.contact.quadrature = sample % 2 == 0 ? ContactQuadrature::nodes : ContactQuadrature::segments;
     ContactRig rig(scene);
     StiffnessBound bound(rig.model);

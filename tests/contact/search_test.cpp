@@ -10,11 +10,9 @@ namespace {
 
 using namespace testing;
 
-constexpr double stiffness = 100;
-
 // Coordinates of size L carry errors of eps L, so gaps do; a node adds up a few records of stiffness times length 1.
 // 1e-16 x 10 x 100 x some ten records and reactions: 1e-12, of forces of order 1.
-constexpr double rounding = 2e-12;
+constexpr double force_rounding = 2e-12;
 
 std::pair<double, double> segment_lengths(const ContactRig& rig) {
   std::pair<double, double> result{1e300, 0};
@@ -31,19 +29,18 @@ void expect_equal(const ContactRig& rig, const ContactOracle::Result& expected) 
   EXPECT_EQ(rig.totals.contacts, expected.contacts);
   for (std::size_t b = 0; b < rig.model.bodies.size(); ++b)
     for (int k = 0; k < rig.count(static_cast<int>(b)); ++k)
-      EXPECT_LT((rig.force(static_cast<int>(b), k) - expected.force[b][k]).norm(), rounding)
+      EXPECT_LT((rig.force(static_cast<int>(b), k) - expected.force[b][k]).norm(), force_rounding)
           << "body " << b << ", node " << k;
-  EXPECT_NEAR(rig.totals.stored, expected.stored, rounding);
-  EXPECT_NEAR(rig.totals.dissipated, expected.dissipated, rounding);
+  EXPECT_NEAR(rig.totals.stored, expected.stored, force_rounding);
+  EXPECT_NEAR(rig.totals.dissipated, expected.dissipated, force_rounding);
   // The engine's measure is the longest segment near the contact.
   const auto [shortest, longest] = segment_lengths(rig);
-  EXPECT_LE(rig.totals.deepest, expected.deepest / shortest + rounding);
-  EXPECT_GE(rig.totals.deepest, expected.deepest / longest - rounding);
+  EXPECT_LE(rig.totals.deepest, expected.deepest / shortest + force_rounding);
+  EXPECT_GE(rig.totals.deepest, expected.deepest / longest - force_rounding);
 }
 
-const ContactRule rules[] = {frictionless(stiffness), mohr_coulomb(stiffness, 0.3, 0.05, 0.2),
-                             cohesive(stiffness, 0.5, 0.02, 0.4), smoothed(frictionless(stiffness), 0.05),
-                             smoothed(mohr_coulomb(stiffness, 0.3, 0.05), 0.1)};
+const ContactRule search_rules[] = {frictionless(kn), mohr_coulomb(kn, 0.3, 0.05, 0.2), cohesive(kn, 0.5, 0.02, 0.4),
+                                    smoothed(frictionless(kn), 0.05), smoothed(mohr_coulomb(kn, 0.3, 0.05), 0.1)};
 constexpr int rule_count = 5;
 
 // Two bodies of given kinds pressed into each other; false when a node lies too deep for the contact box.
@@ -70,7 +67,7 @@ TEST(ContactSearch, EqualsBruteForceOnRandomOutlines) {
           SCOPED_TRACE("kinds " + std::to_string(kind_a) + " " + std::to_string(kind_b) + ", rule " +
                        std::to_string(rule) + ", sample " + std::to_string(sample));
           Random random(1000 * samples + 7);
-          compared += compare_pair(random, rules[rule], kind_a, kind_b);
+          compared += compare_pair(random, search_rules[rule], kind_a, kind_b);
           if (::testing::Test::HasFailure()) return;
         }
   EXPECT_GT(compared, samples / 2);
@@ -99,7 +96,7 @@ TEST(ContactSearch, EqualsBruteForceInAPeriodicHeap) {
   for (int sample = 0; sample < 12; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 50);
-    const ContactRule& rule = rules[sample % rule_count];
+    const ContactRule& rule = search_rules[sample % rule_count];
     ContactRig rig(heap(random, rule, sample % 2 == 0));
     rig.evaluate();
     const ContactOracle::Result expected = ContactOracle(rig, rule).evaluate();
@@ -127,7 +124,7 @@ TEST(ContactSearch, MissesNoContactWithinTheSkin) {
                      std::to_string(sample));
         Random random(1000 * samples + 3);
         Scene scene = nodal_scene();
-        const ContactRule& rule = rules[sample % rule_count];
+        const ContactRule& rule = search_rules[sample % rule_count];
         scene.contacts = {rule};
         for (const int kind : {kind_a, kind_b}) add_random_body(scene, random, kind);
         ContactRig rig(scene);
@@ -172,7 +169,7 @@ void follow_heap(const ContactRule& rule) {
   EXPECT_GT(rig.dissipated, 0.001);
 }
 
-TEST(ContactSearch, MissesNoContactInAMovingHeap) { follow_heap(rules[2]); }
+TEST(ContactSearch, MissesNoContactInAMovingHeap) { follow_heap(search_rules[2]); }
 
 // Two bodies fly at each other, turning, from beyond every margin until they overlap; each step is far below the skin.
 void approach(Random& random, const ContactRule& rule) {
@@ -204,7 +201,7 @@ TEST(ContactSearch, SeesBodiesComing) {
   for (int sample = 0; sample < 30; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 4000);
-    approach(random, rules[sample % rule_count]);
+    approach(random, search_rules[sample % rule_count]);
   }
 }
 
@@ -213,7 +210,7 @@ TEST(ContactSearch, SeesBodiesComing) {
 TEST(ContactSearch, AsksForARefreshInTime) {
   const auto asks = [](double first, double second, double turn) {
     Scene scene = nodal_scene();
-    scene.contacts = {rules[0]};
+    scene.contacts = {search_rules[0]};
     for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.01 * i, 0});
     ContactRig rig(scene);
     rig.refresh();
@@ -240,7 +237,7 @@ TEST(ContactSearch, BreaksTiesTheSameWay) {
   const auto force_at = [](double x) {
     Scene scene = nodal_scene();
     scene.period = 4;
-    scene.contacts = {rules[0]};
+    scene.contacts = {search_rules[0]};
     add_body(scene, outline_shape("disc", regular(24, 1, -M_PI / 2)), BodyKind::rigid, {x, 0.98});
     scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.25 * (1 + 1e-9))};
     ContactRig rig(scene);
@@ -251,7 +248,7 @@ TEST(ContactSearch, BreaksTiesTheSameWay) {
   EXPECT_GT(std::abs(plain.x()), 0.01 * plain.y()) << "of the one segment's normal";
   // Gaps of coordinates up to 4000 carry errors of 5e-13.
   for (const double x : {1 - 1e-12, 1 + 1e-12, 1.0 + 4, 1.0 - 4 * 7, 1.0 + 4 * 1000})
-    EXPECT_LT((force_at(x) - plain).norm(), 1e-12 * stiffness * 20) << x;
+    EXPECT_LT((force_at(x) - plain).norm(), 1e-12 * kn * 20) << x;
 }
 
 // EXACT, bit by bit (docs/design.md 5): one thread or five.
@@ -261,7 +258,7 @@ TEST(ContactSearch, DoesNotDependOnThreads) {
     const int before = omp_get_max_threads();
     omp_set_num_threads(threads);
     Random random(50);
-    ContactRig rig(heap(random, rules[2], true));
+    ContactRig rig(heap(random, search_rules[2], true));
     rig.step();
     for (int body = 0; body < 8; ++body) rig.move(body, {0.003 * body, -0.002});
     rig.step();
@@ -276,7 +273,7 @@ TEST(ContactSearch, DoesNotDependOnThreads) {
 // EXACT: bodies apart have no contacts, and none is left behind by a refresh.
 TEST(ContactSearch, BodiesApartDoNotTouch) {
   Scene scene = nodal_scene();
-  scene.contacts = {rules[2]};
+  scene.contacts = {search_rules[2]};
   for (int i = 0; i < 3; ++i) add_body(scene, polygonal_disc("disc", 2, 40), BodyKind::rigid, {2.5 * i, 0});
   ContactRig rig(scene);
   rig.step();

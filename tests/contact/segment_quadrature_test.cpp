@@ -14,9 +14,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double stiffness = 100;
-
-Scene integrated(const ContactRule& rule) {
+Scene integrated_scene(const ContactRule& rule) {
   Scene scene = bare_scene();
   scene.contact.quadrature = ContactQuadrature::segments;
   scene.contacts = {rule};
@@ -24,7 +22,7 @@ Scene integrated(const ContactRule& rule) {
 }
 
 Scene random_pair(Random& random, const ContactRule& rule) {
-  Scene scene = integrated(rule);
+  Scene scene = integrated_scene(rule);
   add_random_body(scene, random, random.below(5));
   add_random_body(scene, random, random.below(5));
   return scene;
@@ -88,7 +86,7 @@ GradientErrors gradient_errors(const ContactRule& rule, double least_depth, doub
     if (rig.totals.contacts == 0) continue;
     const auto [error, size] = worst_gradient(rig, step);
     result.errors.push_back(error / size);
-    result.beyond += error > 0.5 * step * stiffness * segment + size * rounding / step;
+    result.beyond += error > 0.5 * step * kn * segment + size * rounding / step;
   }
   std::ranges::sort(result.errors);
   return result;
@@ -103,13 +101,13 @@ TEST(SegmentQuadrature, ForcesAreTheGradientOfTheEnergy) {
     EXPECT_EQ(found.beyond, 0);
     EXPECT_LT(found.errors[found.errors.size() * 9 / 10], 1e-8);
   };
-  check(frictionless(stiffness), 0.005, 0.06);
-  check(smoothed(frictionless(stiffness), 0.1), 0.005, 0.06);
-  check(mohr_coulomb(stiffness, 0, 0, 1), -0.01, 0.03);
-  check(cohesive(stiffness, 0.5, 0.02, 0), -0.01, 0.03);
+  check(frictionless(kn), 0.005, 0.06);
+  check(smoothed(frictionless(kn), 0.1), 0.005, 0.06);
+  check(mohr_coulomb(kn, 0, 0, 1), -0.01, 0.03);
+  check(cohesive(kn, 0.5, 0.02, 0), -0.01, 0.03);
 }
 
-bool is_inside(const Points& outline, const Vec2& point) {
+bool has_inside(const Points& outline, const Vec2& point) {
   bool inside = false;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
@@ -120,7 +118,7 @@ bool is_inside(const Points& outline, const Vec2& point) {
   return inside;
 }
 
-double distance(const Points& outline, const Vec2& point) {
+double distance_to_edges(const Points& outline, const Vec2& point) {
   double least = 1e300;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2 a = outline[i], along = outline[(i + 1) % outline.size()] - a;
@@ -137,11 +135,11 @@ double integral(const Points& slave, const Points& master, int parts) {
     const Vec2 a = slave[i], along = slave[(i + 1) % slave.size()] - a;
     for (int k = 0; k < parts; ++k) {
       const Vec2 point = a + (k + 0.5) / parts * along;
-      if (!is_inside(master, point)) continue;
-      sum += std::pow(distance(master, point), 2) * along.norm() / parts;
+      if (!has_inside(master, point)) continue;
+      sum += std::pow(distance_to_edges(master, point), 2) * along.norm() / parts;
     }
   }
-  return stiffness / 4 * sum;
+  return kn / 4 * sum;
 }
 
 // INDEPENDENT: the energy is kn/4 times the integral of the squared distance of each outline inside the other to that,
@@ -151,21 +149,21 @@ TEST(SegmentQuadrature, EnergyIsTheIntegralOfTheSquaredDepth) {
   for (int sample = 0; sample < 40; ++sample) {
     SCOPED_TRACE(sample);
     Random random(sample + 1);
-    ContactRig rig(random_pair(random, frictionless(stiffness)));
+    ContactRig rig(random_pair(random, frictionless(kn)));
     press_together(rig, random, random.uniform(0.005, 0.06));
     rig.step();
     constexpr int parts = 4000;
     const double length = std::max(rig.model.outline_of(0).longest, rig.model.outline_of(1).longest) / parts;
     const double expected =
         integral(rig.outline(0), rig.outline(1), parts) + integral(rig.outline(1), rig.outline(0), parts);
-    EXPECT_NEAR(rig.totals.stored, expected, stiffness / 4 * length * length * (0.5 / 12 + 8 * length));
+    EXPECT_NEAR(rig.totals.stored, expected, kn / 4 * length * length * (0.5 / 12 + 8 * length));
   }
 }
 
 /// A block of unit width over a longer bar, face to face and `deep` inside.
 constexpr double deep = 0.004;
-Scene block_on_bar(const ContactRule& rule, int segments, double spacing, double shift) {
-  Scene scene = integrated(rule);
+Scene integrated_block_on_bar(const ContactRule& rule, int segments, double spacing, double shift) {
+  Scene scene = integrated_scene(rule);
   add_body(scene, outline_shape("bar", rectangle(2.4, 0.5, spacing)), BodyKind::rigid, {0, 0});
   add_body(scene, outline_shape("block", rectangle(1, 0.5, 1.0 / segments)), BodyKind::rigid, {shift, 0.5 - deep});
   return scene;
@@ -179,10 +177,10 @@ TEST(SegmentQuadrature, FlatFacesNeitherLockNorCog) {
     for (const double spacing : {0.25, 0.1, 0.037})
       for (const double shift : {0.0, 0.1, 0.0317, -0.25}) {
         SCOPED_TRACE(fmt::format("{} segments, spacing {}, shift {}", segments, spacing, shift));
-        ContactRig rig(block_on_bar(frictionless(stiffness), segments, spacing, shift));
+        ContactRig rig(integrated_block_on_bar(frictionless(kn), segments, spacing, shift));
         rig.step();
-        const double ends = stiffness * deep * deep / 2;
-        EXPECT_NEAR(rig.force(1).y(), stiffness * deep - ends, 1e-12);
+        const double ends = kn * deep * deep / 2;
+        EXPECT_NEAR(rig.force(1).y(), kn * deep - ends, 1e-12);
         EXPECT_NEAR(rig.force(1).x(), 0, 1e-13);
       }
 }
@@ -190,7 +188,7 @@ TEST(SegmentQuadrature, FlatFacesNeitherLockNorCog) {
 /// Largest change of the force in steps along a way of a corner past a corner, over the largest force.
 double largest_jump(ContactQuadrature quadrature, std::uint64_t seed, int steps) {
   Random random(seed);
-  Scene scene = integrated(frictionless(stiffness));
+  Scene scene = integrated_scene(frictionless(kn));
   scene.contact.quadrature = quadrature;
   add_body(scene, outline_shape("square", rectangle(1, 1, 0.2)), BodyKind::rigid, {0, 0});
   add_body(scene, outline_shape("tip", refined({{0, 0}, {0.4, 0.8}, {-0.4, 0.8}}, 0.2)), BodyKind::rigid, {0, 0},

@@ -19,7 +19,7 @@ Scene scene_of_steps() {
 
 // A block of 1.01 x 0.5 on a long bar, nodes every 0.1. The bar's nodes beside the block's corners are 0.055 inside and
 // 0.045 outside: within +-0.018 none comes near another face.
-Scene block_on_bar(const ContactRule& rule) {
+Scene sliding_block_on_bar(const ContactRule& rule) {
   Scene scene = scene_of_steps();
   scene.contacts = {rule};
   add_body(scene, outline_shape("bar", rectangle(4, 1, 0.1)), BodyKind::rigid, {0, -0.5});
@@ -72,7 +72,7 @@ Vec2 back_and_forth(double s) { return {0.018 * std::sin(2 * M_PI * s), -0.02 - 
 // do. Rounding of 200 steps.
 TEST(ContactSlip, WorkIsStoredOrDissipated) {
   for (const ContactRule& rule : {mohr_coulomb(100, 0.3), mohr_coulomb(100, 0.2, 0.3), cohesive(100, 0.5, 0.02, 0.6)}) {
-    ContactRig rig(block_on_bar(rule));
+    ContactRig rig(sliding_block_on_bar(rule));
     const WorkBalance balance = follow(rig, back_and_forth, 200);
     EXPECT_GT(balance.dissipated, 0.005);
     EXPECT_LT(std::abs(balance.defect()), 1e-13);
@@ -81,7 +81,7 @@ TEST(ContactSlip, WorkIsStoredOrDissipated) {
 
 // EXACT: while everything sticks, a closed path dissipates nothing and gives the work back.
 TEST(ContactSlip, StickingGivesTheWorkBack) {
-  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3, 10)));
+  ContactRig rig(sliding_block_on_bar(mohr_coulomb(100, 0.3, 10)));
   const WorkBalance balance = follow(rig, back_and_forth, 100);
   EXPECT_EQ(balance.dissipated, 0);
   EXPECT_LT(std::abs(balance.work), 1e-13);
@@ -92,7 +92,7 @@ TEST(ContactSlip, StickingGivesTheWorkBack) {
 // starts, 0.012 after a turn.
 TEST(ContactSlip, HysteresisLoop) {
   constexpr double depth = 0.02, friction = 0.3, amplitude = 0.018;
-  ContactRig rig(block_on_bar(mohr_coulomb(100, friction)));
+  ContactRig rig(sliding_block_on_bar(mohr_coulomb(100, friction)));
   const Path swing = [](double s) { return Vec2(amplitude * (std::abs(4 * s - 2) - 1), -depth); };
   follow(rig, swing, 36);
   rig.rigid(1)[0] = 0.05, rig.rigid(1)[1] = 0.25;
@@ -288,7 +288,7 @@ TEST(ContactSlip, WayAroundAPolygon) {
 // EXACT: a bond torn open under shear sets its tangential energy free: all of it is dissipated, none lost.
 TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
   for (const ContactRule& rule : {mohr_coulomb(100, 0.3, 5), cohesive(100, 0.5, 0.02, 5)}) {
-    ContactRig rig(block_on_bar(rule));
+    ContactRig rig(sliding_block_on_bar(rule));
     follow(rig, [](double s) { return Vec2(0.015 * s, -0.01); }, 10);
     EXPECT_EQ(rig.dissipated, 0);
     const double shear = rig.force(1).x(), tangential = 0.5 * std::abs(shear) * 0.015;
@@ -305,7 +305,7 @@ TEST(ContactSlip, OpeningDissipatesTheTangentialEnergy) {
 
 // EXACT: surfaces that meet again start without slip.
 TEST(ContactSlip, NewContactStartsWithoutSlip) {
-  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
+  ContactRig rig(sliding_block_on_bar(mohr_coulomb(100, 0.3)));
   follow(rig, [](double s) { return Vec2(0.015 * s, -0.02); }, 10);
   EXPECT_LT(rig.force(1).x(), -0.1);
   rig.move(1, {0, 0.1});
@@ -317,7 +317,7 @@ TEST(ContactSlip, NewContactStartsWithoutSlip) {
 
 // EXACT: evaluations that are not accepted leave no trace.
 TEST(ContactSlip, RejectedTrialsLeaveNoTrace) {
-  ContactRig rig(block_on_bar(mohr_coulomb(100, 0.3)));
+  ContactRig rig(sliding_block_on_bar(mohr_coulomb(100, 0.3)));
   follow(rig, [](double s) { return Vec2(0.005 * s, -0.02); }, 5);
   rig.evaluate();
   const Vec2 before = rig.force(1);

@@ -95,7 +95,7 @@ double bound_of(Loaded& loaded) {
   return w * w;
 }
 
-const ContactRule rules[] = {frictionless(300), mohr_coulomb(300, 0.5, 1), cohesive(300, 1, 0.02, 5)};
+const ContactRule bounded_rules[] = {frictionless(300), mohr_coulomb(300, 0.5, 1), cohesive(300, 1, 0.02, 5)};
 
 // How loose a bound may be: 2 for neighbours that the fastest motion does not move against each other, and half as much
 // again for nodes within the skin that are not in touch yet.
@@ -137,7 +137,7 @@ void expect_the_floor(const Scene& scene, double stiffness) {
 }
 
 TEST(StiffnessBound, RigidBodies) {
-  for (const ContactRule& rule : rules)
+  for (const ContactRule& rule : bounded_rules)
     for (const double y : {0.0, 0.7}) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
@@ -153,7 +153,7 @@ TEST(StiffnessBound, RigidBodies) {
 }
 
 TEST(StiffnessBound, BlockBetweenWalls) {
-  for (const ContactRule& rule : rules) {
+  for (const ContactRule& rule : bounded_rules) {
     Scene scene = bare_scene();
     scene.period = 3;
     scene.contacts = {rule};
@@ -164,7 +164,7 @@ TEST(StiffnessBound, BlockBetweenWalls) {
 }
 
 TEST(StiffnessBound, CompliantAndRigidBodies) {
-  for (const ContactRule& rule : rules)
+  for (const ContactRule& rule : bounded_rules)
     for (const bool both : {false, true}) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
@@ -177,7 +177,7 @@ TEST(StiffnessBound, CompliantAndRigidBodies) {
 
 // Outline nodes share their accelerations with inner ones.
 TEST(StiffnessBound, MassScaling) {
-  for (const ContactRule& rule : rules) {
+  for (const ContactRule& rule : bounded_rules) {
     Scene scene = bare_scene();
     scene.contacts = {rule};
     scene.discretisation.mass_scaling = 3;
@@ -189,7 +189,7 @@ TEST(StiffnessBound, MassScaling) {
 
 // A cluster squeezed from all sides: every disc has six partners.
 TEST(StiffnessBound, Cluster) {
-  for (const ContactRule& rule : rules) {
+  for (const ContactRule& rule : bounded_rules) {
     Scene scene = bare_scene();
     scene.contacts = {rule};
     scene.shapes = {polygonal_disc("disc", 1, 36)};
@@ -202,7 +202,7 @@ TEST(StiffnessBound, Cluster) {
 
 // Neighbours that move against each other: twice the stiffness that each alone would see.
 TEST(StiffnessBound, StackOfPlates) {
-  for (const ContactRule& rule : rules) {
+  for (const ContactRule& rule : bounded_rules) {
     Scene scene = bare_scene();
     scene.contacts = {rule};
     scene.shapes = {outline_shape("plate", rectangle(2, 0.2, 0.1))};
@@ -214,7 +214,7 @@ TEST(StiffnessBound, StackOfPlates) {
 // EXACT: it holds until the next refresh, wherever bodies go within the skin.
 TEST(StiffnessBound, HoldsUntilTheNextRefresh) {
   Random random(5);
-  for (const ContactRule& rule : rules)
+  for (const ContactRule& rule : bounded_rules)
     for (int sample = 0; sample < 10; ++sample) {
       Scene scene = bare_scene();
       scene.contacts = {rule};
@@ -241,7 +241,7 @@ TEST(StiffnessBound, CornerInASoftCorner) {
   double closest = 0;
   for (int sample = 0; sample < 60; ++sample) {
     Scene scene = bare_scene();
-    scene.contacts = {rules[sample % 3]};
+    scene.contacts = {bounded_rules[sample % 3]};
     scene.contacts[0].stiffness = 3e4;
     add_body(scene, outline_shape("bar", rectangle(0.6, 0.3, 0.1), 28), BodyKind::compliant, {0, 0});
     const double turn = random.uniform(-0.7, 0.7);

@@ -78,14 +78,14 @@ TEST(VerletList, tells_whether_what_was_searched_holds_on_trial) {
 }
 
 /// After a step.
-struct Seen {
+struct SearchedStep {
   bool searched;
   int contacts, pairs;            ///< nodes in touch; pairs with candidates
   std::vector<double> stiffness;  ///< [bodies] bounds, N/m
 };
 
 /// Bodies of all forms that move, turn and shake, seen along axes that are turned by an angle.
-std::vector<Seen> searches_along(double angle) {
+std::vector<SearchedStep> searches_along(double angle) {
   const Eigen::Rotation2Dd turned(angle);
   Random random(21);
   Scene scene = bare_scene();
@@ -106,14 +106,14 @@ std::vector<Seen> searches_along(double angle) {
     spin.push_back(skin * random.uniform(-0.2, 0.2));
   }
   StiffnessBound bound(rig.model);
-  std::vector<Seen> result;
+  std::vector<SearchedStep> result;
   for (int step = 0; step < 300; ++step) {
     for (int i = 0; i < 30; ++i) {
       const Vec2 shake{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)};
       rig.move(i, turned * (velocity[i] + skin * shake));
       rig.turn(i, spin[i]);
     }
-    Seen seen{rig.evaluate(), rig.totals.contacts, 0, {}};
+    SearchedStep seen{rig.evaluate(), rig.totals.contacts, 0, {}};
     rig.commit();
     if (seen.searched) bound.update(rig.contact, std::vector<double>(30, 1.0));
     for (int i = 0; i < 30; ++i) {
@@ -130,12 +130,12 @@ std::vector<Seen> searches_along(double angle) {
 /// depends on both. Coordinates of 5 gather errors of 300 times 1e-15, shares of segments of 0.1 ten times as much, and
 /// some hundred nodes add up such shares of their stiffness, 100 times 0.1.
 TEST(VerletList, searches_along_no_axes) {
-  const std::vector<Seen> plain = searches_along(0);
-  const auto searches = std::ranges::count_if(plain, [](const Seen& seen) { return seen.searched; });
+  const std::vector<SearchedStep> plain = searches_along(0);
+  const auto searches = std::ranges::count_if(plain, [](const SearchedStep& seen) { return seen.searched; });
   EXPECT_GT(searches, 20);
   EXPECT_LT(searches, 280);
   for (const double angle : {0.65, 1.3, 2.2}) {
-    const std::vector<Seen> turned = searches_along(angle);
+    const std::vector<SearchedStep> turned = searches_along(angle);
     for (std::size_t step = 0; step < plain.size(); ++step) {
       SCOPED_TRACE("step " + std::to_string(step) + ", turned by " + std::to_string(angle));
       ASSERT_EQ(turned[step].searched, plain[step].searched);

@@ -45,14 +45,14 @@ Outer example() {
   return outer;
 }
 
-std::string saved(Outer outer) {
+std::string saved_outer(Outer outer) {
   std::string bytes;
   SaveLeaf save(bytes);
   Walk{save}("outer", outer);
   return bytes;
 }
 
-void load(const std::string& bytes, Outer& outer) {
+void load_outer(const std::string& bytes, Outer& outer) {
   LoadLeaf leaf(bytes);
   Walk{leaf}("outer", outer);
   EXPECT_TRUE(leaf.empty());
@@ -61,7 +61,7 @@ void load(const std::string& bytes, Outer& outer) {
 std::string complaint(const std::string& bytes) {
   Outer outer;
   try {
-    load(bytes, outer);
+    load_outer(bytes, outer);
   } catch (const ArchiveError& error) {
     return error.what();
   }
@@ -71,7 +71,7 @@ std::string complaint(const std::string& bytes) {
 TEST(Archive, every_bit_comes_back) {
   Outer outer;
   outer.texts = {"not", "empty", "before"};
-  load(saved(example()), outer);
+  load_outer(saved_outer(example()), outer);
   EXPECT_TRUE(std::signbit(outer.number));
   EXPECT_EQ(outer.text, example().text);
   EXPECT_EQ(outer.texts, example().texts);
@@ -79,11 +79,11 @@ TEST(Archive, every_bit_comes_back) {
   EXPECT_TRUE(std::isnan(outer.inner.lanes[1][3]));
   EXPECT_TRUE(outer.inner.flag);
   EXPECT_EQ(outer.derived, 2) << "loaded() follows the members";
-  EXPECT_EQ(saved(outer), saved(example()));
+  EXPECT_EQ(saved_outer(outer), saved_outer(example()));
 }
 
 TEST(Archive, another_layout_is_refused_by_name) {
-  const std::string bytes = saved(example());
+  const std::string bytes = saved_outer(example());
   std::string renamed = bytes, narrow = bytes;
   renamed.replace(renamed.find("outer.inner.flag"), 16, "outer.inner.flog");
   EXPECT_EQ(complaint(renamed), "'outer.inner.flog' stands where 'outer.inner.flag' is expected");
@@ -94,14 +94,14 @@ TEST(Archive, another_layout_is_refused_by_name) {
 
 /// Before there is an attempt to make room for them.
 TEST(Archive, more_elements_than_there_are_bytes_are_refused) {
-  std::string many = saved(example());
+  std::string many = saved_outer(example());
   const std::string name = "outer.texts.size";
   many[many.find(name) + name.size() + 1 + 2 * sizeof(std::uint64_t) + 5] = 1;  // 2^40 and some
   EXPECT_EQ(complaint(many), "'outer.texts' has another size");
 }
 
 TEST(Archive, bytes_that_end_early_are_refused_wherever_they_end) {
-  const std::string bytes = saved(example());
+  const std::string bytes = saved_outer(example());
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(complaint(bytes.substr(0, size)), "none") << size << " of " << bytes.size();
 }

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-Discretisation disc(int nodes, DiscretisationMethod method, Mass mass) {
+Discretisation disc_of_mass(int nodes, DiscretisationMethod method, Mass mass) {
   ShapeSpec shape;
   shape.name = "disc", shape.diameter = 2, shape.nodes = nodes;
   DiscretisationSettings settings;
@@ -23,7 +23,7 @@ double ratio(const Discretisation& space) {
 
 /// Row sums of linear triangles put a third of each triangle's mass on each of its corners.
 TEST(InertiaRatio, is_that_of_thirds_on_corners) {
-  const Discretisation space = disc(60, DiscretisationMethod::t3, Mass::lumped);
+  const Discretisation space = disc_of_mass(60, DiscretisationMethod::t3, Mass::lumped);
   const Points& x = space.mesh.nodes;
   double thirds = 0, exact = 0;
   for (const Triangle& t : space.mesh.triangles) {
@@ -39,8 +39,8 @@ TEST(InertiaRatio, is_that_of_thirds_on_corners) {
 /// times the rim's area h, and the correction leaves E v.D^-1 E v, of order h^2 times h.
 TEST(InertiaRatio, excess_falls_with_the_node_distance) {
   for (const auto& [mass, order] : {std::pair(Mass::lumped, 2), std::pair(Mass::corrected, 3)}) {
-    const double coarse = ratio(disc(168, DiscretisationMethod::t3, mass)) - 1,
-                 fine = ratio(disc(672, DiscretisationMethod::t3, mass)) - 1;
+    const double coarse = ratio(disc_of_mass(168, DiscretisationMethod::t3, mass)) - 1,
+                 fine = ratio(disc_of_mass(672, DiscretisationMethod::t3, mass)) - 1;
     EXPECT_GT(fine, 0);
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.5) << "RATE: between meshes that are not similar";
   }
@@ -50,9 +50,10 @@ TEST(InertiaRatio, of_the_default_method) {
   const double lumped[] = {6.8, 2.3, 0.53}, corrected[] = {0.49, 0.081, 0.0084};  // FROZEN, %
   const int nodes[] = {60, 168, 672};
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(100 * (ratio(disc(nodes[i], DiscretisationMethod::mls, Mass::lumped)) - 1), lumped[i], 0.05)
+    EXPECT_NEAR(100 * (ratio(disc_of_mass(nodes[i], DiscretisationMethod::mls, Mass::lumped)) - 1), lumped[i], 0.05)
         << nodes[i];
-    EXPECT_NEAR(100 * (ratio(disc(nodes[i], DiscretisationMethod::mls, Mass::corrected)) - 1), corrected[i], 5e-3)
+    EXPECT_NEAR(100 * (ratio(disc_of_mass(nodes[i], DiscretisationMethod::mls, Mass::corrected)) - 1), corrected[i],
+                5e-3)
         << nodes[i];
   }
 }

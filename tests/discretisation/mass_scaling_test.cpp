@@ -21,7 +21,7 @@ Scene scaled(Scene scene) {
   return scene;
 }
 
-Discretisation disc(int nodes, DiscretisationMethod method) {
+Discretisation scaled_mass_disc(int nodes, DiscretisationMethod method) {
   DiscretisationSettings settings;
   settings.method = method, settings.mass_scaling = scaling;
   return discretise(make_field_mesh(disc_shape("disc", 2, nodes)), settings);
@@ -39,7 +39,7 @@ Eigen::MatrixXd dense(const ShapeRows& rows) {
 /// in a disc is one across an edge. C has no negative entries.
 TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::es_t3}) {
-    const Discretisation space = disc(90, method);
+    const Discretisation space = scaled_mass_disc(90, method);
     const Eigen::MatrixXd c = dense(space.mass_correction);
     EXPECT_GE(c.minCoeff(), 0);
     EXPECT_TRUE(space.correction_averages);
@@ -105,7 +105,7 @@ TEST(MassScaling, lets_grains_fall_as_before) {
 /// velocities.
 TEST(MassScaling, slows_smooth_motions_by_the_cube_of_the_node_distance) {
   const auto excess = [](int nodes) {
-    const Discretisation space = disc(nodes, DiscretisationMethod::t3);
+    const Discretisation space = scaled_mass_disc(nodes, DiscretisationMethod::t3);
     return stretching_ratio(space.mesh, space.mass_at_unit_density, space.mass_correction) - 1;
   };
   const double coarse = excess(168), fine = excess(672);

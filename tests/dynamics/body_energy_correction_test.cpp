@@ -68,12 +68,12 @@ void make_faster(State& state, double share) {
   for (Lanes& y : state.reduced_momentum.compliant) y *= 1 + share;
 }
 
-struct Case {
+struct MassCase {
   Mass mass;
   BuildOptions options;
 };
 
-class BodyEnergyError : public ::testing::TestWithParam<Case> {};
+class BodyEnergyError : public ::testing::TestWithParam<MassCase> {};
 
 TEST_P(BodyEnergyError, is_excess_energy_and_is_removed_from_vibrations) {
   const auto& [mass, options] = GetParam();
@@ -101,11 +101,11 @@ TEST_P(BodyEnergyError, is_excess_energy_and_is_removed_from_vibrations) {
         << "EXACT: v = C y, the eigenvalues of C lie in [1, 2]: " << removed / error;
 }
 
-const Case cases[] = {{Mass::lumped, {1 << 30, true, {}}},
-                      {Mass::lumped, {1 << 30, true, {1, 0.1}}},
-                      {Mass::lumped, {0, false, {}}},
-                      {Mass::corrected, {1 << 30, true, {}}},
-                      {Mass::corrected, {0, false, {}}}};
+const MassCase cases[] = {{Mass::lumped, {1 << 30, true, {}}},
+                          {Mass::lumped, {1 << 30, true, {1, 0.1}}},
+                          {Mass::lumped, {0, false, {}}},
+                          {Mass::corrected, {1 << 30, true, {}}},
+                          {Mass::corrected, {0, false, {}}}};
 INSTANTIATE_TEST_SUITE_P(LanesAndNodewise, BodyEnergyError, ::testing::ValuesIn(cases));
 
 TEST(BodyEnergyCorrection, take_a_hundred_thousandth_a_step_at_most) {

@@ -1,6 +1,5 @@
 // Cells with two periods that are deformed.
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <cmath>
 #include <limits>
@@ -26,7 +25,7 @@ void deform(Scene& scene, const Vec2& periods, double rate, double until) {
   scene.cell = cell;
 }
 
-constexpr int columns = 3, rows = 3;
+constexpr int cell_columns = 3, cell_rows = 3;
 
 /// Discs of both kinds that nearly touch, out of order in their cell. `shift`: of all; `images`: of each disc, by
 /// whole periods.
@@ -34,9 +33,9 @@ Scene packed_cell(double end, double rate, const Vec2& shift = {0, 0}, bool imag
   Scene scene = empty_scene(end);
   scene.shapes = {disc_shape("disc", 1, 60), disc_shape("small", 0.9, 40)};
   testing::Random random(2);
-  const Vec2 periods(columns * 1.02, rows * 1.03);
-  for (int i = 0; i < columns; ++i)
-    for (int j = 0; j < rows; ++j) {
+  const Vec2 periods(cell_columns * 1.02, cell_rows * 1.03);
+  for (int i = 0; i < cell_columns; ++i)
+    for (int j = 0; j < cell_rows; ++j) {
       Vec2 centre{1.02 * i + random.uniform(0, 0.04), 1.03 * j + 0.3 * (i % 2) + random.uniform(0, 0.04)};
       const int across = random.below(7) - 3;
       const int up = random.below(5) - 2;
@@ -71,7 +70,7 @@ TEST(Cell, carries_free_matter_along) {
 }
 
 /// Outlines back in the cell of the first telling.
-double difference(const Scene& first, const Simulation& a, const Simulation& b) {
+double largest_distance(const Scene& first, const Simulation& a, const Simulation& b) {
   const Eigen::Matrix2d f = deformation_gradient(first, a.state());
   double largest = 0;
   for (std::size_t body = 0; body < a.model().bodies.size(); ++body) {
@@ -98,7 +97,7 @@ TEST(Cell, does_not_know_its_origin_or_which_images_bodies_are) {
     advance(elsewhere, end);
     EXPECT_EQ(elsewhere.state().steps, simulation.state().steps);
     const double rounding = 12 * std::numeric_limits<double>::epsilon() * static_cast<double>(elsewhere.state().steps);
-    EXPECT_LT(difference(scene, simulation, elsewhere), 100 * rounding + 1e-12);
+    EXPECT_LT(largest_distance(scene, simulation, elsewhere), 100 * rounding + 1e-12);
   }
 }
 
@@ -153,16 +152,6 @@ TEST(Cell, work_is_that_of_contacts_and_inertia) {
     inertia += contact_force(simulation, static_cast<int>(b)) * centres[b].transpose();
   EXPECT_GT(work.norm(), 0.1);
   EXPECT_LT((work - forces - inertia).norm(), 1e-11);
-}
-
-std::uint64_t hash_after(const Model& model, int threads, double time) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  Simulation simulation(model);
-  advance(simulation, time);
-  const std::uint64_t hash = state_hash(simulation.state());
-  omp_set_num_threads(before);
-  return hash;
 }
 
 // EXACT: the same bits with one and two threads.

@@ -57,10 +57,6 @@ Viscous viscous_forces(const Bench& bench) {
   return result;
 }
 
-Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
-  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
-}
-
 const Eigen::Matrix2d large_strain = matrix(1.3, 0.3, -0.1, 0.8);
 
 TEST(KelvinVoigt, does_not_resist_rigid_motion) {

@@ -1,23 +1,11 @@
 // The same bits for any number of threads, and twice (docs/design.md 5).
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {
 namespace {
-
-std::uint64_t hash_after(const Model& model, int threads, double time) {
-  const int before = omp_get_max_threads();
-  omp_set_num_threads(threads);
-  Simulation simulation(model);
-  advance(simulation, time);
-  simulation.energy_balance();
-  const std::uint64_t hash = state_hash(simulation.state());
-  omp_set_num_threads(before);
-  return hash;
-}
 
 class Determinism : public ::testing::TestWithParam<Integrator> {};
 

@@ -64,7 +64,7 @@ struct End {
   std::vector<Points> outlines;  ///< of the grains in their own order, back where the plain telling has them
 };
 
-End run(const Telling& telling, Integrator integrator, Grit grit = Grit::viscous) {
+End run_as_told(const Telling& telling, Integrator integrator, Grit grit = Grit::viscous) {
   Scene scene = cloud(telling, grit);
   scene.time.integrator = integrator;
   const Model model = build_model(scene);
@@ -83,7 +83,7 @@ End run(const Telling& telling, Integrator integrator, Grit grit = Grit::viscous
   return end;
 }
 
-double largest_difference(const End& a, const End& b) {
+double largest_distance_of_ends(const End& a, const End& b) {
   double largest = 0;
   for (std::size_t body = 0; body < a.outlines.size(); ++body)
     for (std::size_t i = 0; i < a.outlines[body].size(); ++i)
@@ -104,7 +104,7 @@ double tolerance(const End& end, double reach) {
 class Invariance : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(Invariance, same_steps_and_motion) {
-  const End plain = run({}, GetParam());
+  const End plain = run_as_told({}, GetParam());
   EXPECT_GT(plain.contacts, 20);
   Telling permuted, moving{{}, {500, -490}}, turned{{}, {0, 0}, M_PI / 2}, askew{{}, {0, 0}, 0.65},
       all{{}, {0, 700}, -2.2};
@@ -117,11 +117,12 @@ TEST_P(Invariance, same_steps_and_motion) {
       {"permuted", permuted}, {"moving", moving}, {"turned", turned}, {"askew", askew}, {"all", all}};
   for (const auto& [name, telling] : tellings) {
     SCOPED_TRACE(name);
-    const End end = run(telling, GetParam());
+    const End end = run_as_told(telling, GetParam());
     EXPECT_EQ(end.steps, plain.steps) << "EXACT";
     EXPECT_EQ(end.rejections, plain.rejections) << "EXACT";
     EXPECT_EQ(end.refreshes, plain.refreshes) << "EXACT";
-    const double bound = tolerance(plain, 10 + 5 * telling.drift.norm()), difference = largest_difference(end, plain);
+    const double bound = tolerance(plain, 10 + 5 * telling.drift.norm()),
+                 difference = largest_distance_of_ends(end, plain);
     EXPECT_LT(difference, bound) << "EXACT: rounding";
     RecordProperty(name, std::to_string(difference / bound));
   }
@@ -130,14 +131,15 @@ TEST_P(Invariance, same_steps_and_motion) {
 /// EXACT: the energy correction of undamped bodies does not depend on the observer. Rounded positions are a share of
 /// 1e-12 of what vibrates.
 TEST(Invariance, undamped_bodies_are_corrected_equally) {
-  const End plain = run({}, Integrator::verlet, Grit::undamped);
+  const End plain = run_as_told({}, Integrator::verlet, Grit::undamped);
   EXPECT_GT(plain.steps, 400) << "the balance has started, and was corrected";
   for (const Telling& telling : {Telling{{}, {5, -4.9}}, Telling{{}, {0, 0}, 0.65}, Telling{{}, {-500, 70}, 2.2}}) {
     SCOPED_TRACE(telling.drift.x());
-    const End end = run(telling, Integrator::verlet, Grit::undamped);
+    const End end = run_as_told(telling, Integrator::verlet, Grit::undamped);
     EXPECT_EQ(end.steps, plain.steps) << "EXACT";
     EXPECT_EQ(end.refreshes, plain.refreshes) << "EXACT";
-    EXPECT_LT(largest_difference(end, plain), tolerance(plain, 10 + 10 * telling.drift.norm())) << "EXACT: rounding";
+    EXPECT_LT(largest_distance_of_ends(end, plain), tolerance(plain, 10 + 10 * telling.drift.norm()))
+        << "EXACT: rounding";
   }
 }
 

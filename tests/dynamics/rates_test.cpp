@@ -76,7 +76,7 @@ struct Run {
   double imbalance = 0;  ///< the largest, J/m
 };
 
-Run run(const Scene& scene, int steps) {
+Run run_equal_steps(const Scene& scene, int steps) {
   Steered here(build_model(scene));
   Run result;
   for (int i = 1; i <= steps; ++i) {
@@ -100,7 +100,7 @@ void expect_second_order(const std::vector<double>& errors) {
 constexpr int steps[] = {200, 400, 800};
 
 /// x'' = -w^2 x - 2 z w x' from x, v at the start: x at t.
-double swing(double w, double z, double x, double v, double t) {
+double damped_swing(double w, double z, double x, double v, double t) {
   const std::complex<double> root = std::sqrt(std::complex<double>(z * z - 1)), fast = w * (-z - root),
                              slow = w * (-z + root);
   return (((slow * x - v) * std::exp(fast * t) - (fast * x - v) * std::exp(slow * t)) / (slow - fast)).real();
@@ -119,10 +119,10 @@ void expect_swing(Scene scene, std::size_t rigid_body, double depth, double pull
     const double mass = start.model.rigid_bodies[rigid_body].dof[1].mass;
     const double w2 = (start.state.force.rigid[at] - pull) / mass / depth, w = std::sqrt(w2);
     const double rest = pull / mass / w2;  // of the equilibrium above the undeformed place
-    const Run end = run(scene, count);
+    const Run end = run_equal_steps(scene, count);
     const double moved = end.state.position.rigid[at] - start.state.position.rigid[at];
     const double x0 = -depth - rest;
-    errors.push_back(std::abs(moved + x0 - swing(w, rate(w) / (2 * w), x0, 0, scene.time.end)));
+    errors.push_back(std::abs(moved + x0 - damped_swing(w, rate(w) / (2 * w), x0, 0, scene.time.end)));
     imbalances.push_back(end.imbalance);
     EXPECT_GT(end.state.damped, 1e-6);
   }
@@ -160,10 +160,10 @@ TEST(Rate, of_dashpots_beside_loads) {
 /// Against steps a sixteenth of the finest, which leaves 1/256 of the error.
 void expect_second_order_of(Scene scene) {
   without_error_control(scene, 0.9);
-  const State exact = run(scene, 16 * steps[2]).state;
+  const State exact = run_equal_steps(scene, 16 * steps[2]).state;
   std::vector<double> errors, imbalances;
   for (const int count : steps) {
-    const Run end = run(scene, count);
+    const Run end = run_equal_steps(scene, count);
     errors.push_back(distance(end.state, exact));
     imbalances.push_back(end.imbalance);
     EXPECT_GT(end.state.damped, 1e-3);
@@ -172,7 +172,7 @@ void expect_second_order_of(Scene scene) {
   expect_second_order(imbalances);
 }
 
-Scene swinging_disc(Mass mass) {
+Scene stretched_disc(Mass mass) {
   Scene scene = free_disc(40, 4, stretching(0.2));
   scene.discretisation.mass = mass;
   return scene;
@@ -180,7 +180,7 @@ Scene swinging_disc(Mass mass) {
 
 TEST(Rate, of_mass_damping) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
-    Scene scene = swinging_disc(mass);
+    Scene scene = stretched_disc(mass);
     scene.materials[0].mass_damping = 0.7;
     expect_second_order_of(scene);
   }
@@ -188,7 +188,7 @@ TEST(Rate, of_mass_damping) {
 
 TEST(Rate, of_viscosity) {
   for (const Mass mass : {Mass::lumped, Mass::corrected}) {
-    Scene scene = swinging_disc(mass);
+    Scene scene = stretched_disc(mass);
     scene.materials[0].viscosity = 0.05;
     expect_second_order_of(scene);
   }
@@ -196,7 +196,7 @@ TEST(Rate, of_viscosity) {
 
 /// With a target that moves, and that sets in and ends where no equal step would.
 TEST(Rate, of_supports_dashpots) {
-  Scene scene = swinging_disc(Mass::lumped);
+  Scene scene = stretched_disc(Mass::lumped);
   BoundaryCondition support;
   support.kind = BoundaryCondition::Kind::support;
   support.grains = "disc";

@@ -141,7 +141,7 @@ struct Parts {
 };
 
 /// Names of the parts that differ.
-std::string difference(Simulation& a, Simulation& b) {
+std::string different_parts(Simulation& a, Simulation& b) {
   Parts parts[2];
   Walk{parts[0]}("simulation", a);
   Walk{parts[1]}("simulation", b);
@@ -192,7 +192,7 @@ TEST_P(Restart, same_bits_from_any_step_with_any_number_of_threads) {
         ASSERT_EQ(state_hash(resumed.state()), hashes[step]) << "step " << step << ", saved at " << first;
         resumed.step(1000);
       }
-      EXPECT_EQ(difference(resumed, whole), "") << "saved at " << first << ", " << threads << " threads";
+      EXPECT_EQ(different_parts(resumed, whole), "") << "saved at " << first << ", " << threads << " threads";
       EXPECT_EQ(resumed.energy_balance().energy.mechanical(), whole.energy_balance().energy.mechanical());
       EXPECT_EQ(resumed.balance_error(resumed.energy_balance().energy),
                 whole.balance_error(whole.energy_balance().energy));

@@ -70,16 +70,16 @@ Scene with_a_branch() {
   return scene;
 }
 
-struct Case {
+struct StartCase {
   const char* name;
   std::function<Scene()> scene;
   Integrator integrator;
 };
 
 /// What ctest lists beside the test's name.
-void PrintTo(const Case& one, std::ostream* out) { *out << one.name; }
+void PrintTo(const StartCase& one, std::ostream* out) { *out << one.name; }
 
-class AStart : public ::testing::TestWithParam<Case> {};
+class AStart : public ::testing::TestWithParam<StartCase> {};
 
 /// Equal steps from exact times: what is left is the rounding of forces that are computed anew, 1e-15 of the largest,
 /// 1, over masses of 1e-2, which grows no faster than the square of 200 steps of 2e-3 in positions.
@@ -113,11 +113,11 @@ TEST_P(AStart, goes_on_as_the_run_did) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, AStart,
-                         ::testing::Values(Case{"friction", with_friction, Integrator::verlet},
-                                           Case{"bonds", with_bonds, Integrator::verlet},
-                                           Case{"torn_bonds", torn_bonds, Integrator::verlet},
-                                           Case{"branch", with_a_branch, Integrator::verlet},
-                                           Case{"doubling", with_friction, Integrator::step_doubling}),
+                         ::testing::Values(StartCase{"friction", with_friction, Integrator::verlet},
+                                           StartCase{"bonds", with_bonds, Integrator::verlet},
+                                           StartCase{"torn_bonds", torn_bonds, Integrator::verlet},
+                                           StartCase{"branch", with_a_branch, Integrator::verlet},
+                                           StartCase{"doubling", with_friction, Integrator::step_doubling}),
                          [](const auto& info) { return info.param.name; });
 
 /// A block at rest on a slope, held by friction.

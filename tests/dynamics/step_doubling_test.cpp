@@ -13,7 +13,7 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-Scene swinging_disc() {
+Scene doubling_disc() {
   Scene scene = free_disc(60, 1e9, stretching(0.3));
   scene.time.integrator = Integrator::step_doubling;
   scene.time.target = 1e300;  // no control: the tests give the steps
@@ -21,8 +21,8 @@ Scene swinging_disc() {
 }
 
 /// The state after 3 time units in equal steps.
-State swing(double dt) {
-  Bench bench(swinging_disc());
+State doubled_swing(double dt) {
+  Bench bench(doubling_disc());
   StepDoubling integrator(bench.forces, bench.state);
   for (int step = 0; step < std::lround(3 / dt); ++step) {
     bench.control.next_dt = dt;
@@ -32,7 +32,7 @@ State swing(double dt) {
 }
 
 TEST(StepDoubling, order_one) {
-  const State states[] = {swing(0.005), swing(0.0025), swing(0.00125), swing(0.000625)};
+  const State states[] = {doubled_swing(0.005), doubled_swing(0.0025), doubled_swing(0.00125), doubled_swing(0.000625)};
   for (int i = 0; i < 2; ++i) {
     const double order = observed_order(distance(states[i], states[i + 1]), distance(states[i + 1], states[i + 2]));
     EXPECT_NEAR(order, 1, 0.1) << "RATE";
@@ -86,7 +86,7 @@ double distance_at(const Model& model, const Body& body, std::size_t node) {
 }
 
 /// max |u2 - u1| / d over all nodes of all bodies, componentwise.
-double largest_difference(const Model& model, const Dofs& one, const Dofs& two) {
+double largest_relative_difference(const Model& model, const Dofs& one, const Dofs& two) {
   double largest = 0;
   for (const Body& body : model.bodies) {
     const Points a = nodes_of(model, body, one), b = nodes_of(model, body, two);
@@ -131,7 +131,7 @@ int compare_estimates(const Scene& scene) {
     euler_step(bench.model, one, before.force, report.dt);
     euler_step(bench.model, two, before.force, report.dt / 2);
     euler_step(bench.model, two, force_at(forces, before, two, report.dt / 2), report.dt / 2);
-    const double expected = largest_difference(bench.model, one.position, two.position);
+    const double expected = largest_relative_difference(bench.model, one.position, two.position);
     // EXACT but for cancellation: differences of 1e-4 d between positions of order 1, to 1e-16 each.
     EXPECT_NEAR(report.error, expected, 1e-14 + 1e-9 * expected) << "EXACT, t = " << before.time;
     compared += report.error > 0;
@@ -156,8 +156,9 @@ TEST(StepDoubling, keeps_the_two_half_steps) {
   Euler two{before.position, before.reduced_momentum};
   euler_step(bench.model, two, before.force, report.dt / 2);
   euler_step(bench.model, two, force_at(forces, before, two, report.dt / 2), report.dt / 2);
-  EXPECT_LT(largest_difference(bench.model, two.position, bench.state.position), 1e-14) << "EXACT: rounding";
-  EXPECT_LT(largest_difference(bench.model, two.velocity, bench.state.reduced_momentum), 1e-14) << "EXACT: rounding";
+  EXPECT_LT(largest_relative_difference(bench.model, two.position, bench.state.position), 1e-14) << "EXACT: rounding";
+  EXPECT_LT(largest_relative_difference(bench.model, two.velocity, bench.state.reduced_momentum), 1e-14)
+      << "EXACT: rounding";
 }
 
 /// EXACT: dashpots know a body as immovable from 0.1 to 0.2, and both halves of a step have the same laws.

@@ -44,10 +44,6 @@ TEST_P(InternalBound, lies_within_its_margin_above_the_true_eigenvalue) {
       << "INDEPENDENT: a Rayleigh quotient is at most w^2; 1e-4: finite differences";
 }
 
-Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
-  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
-}
-
 INSTANTIATE_TEST_SUITE_P(Discs, InternalBound,
                          ::testing::Values(std::pair(40, matrix(1, 0, 0, 1)), std::pair(100, matrix(1, 0, 0, 1)),
                                            std::pair(60, matrix(0.6, 0, 0, 1.2)),

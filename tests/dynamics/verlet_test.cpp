@@ -12,7 +12,7 @@ namespace pliant::dynamics_tests {
 namespace {
 
 /// A disc that swings for 3 time units (a period of the oval mode is 2.7) in equal steps.
-State swing(double dt) {
+State verlet_swing(double dt) {
   Scene scene = free_disc(60, 1e9, stretching(0.3));
   without_error_control(scene, 1);
   Bench bench(scene);
@@ -25,7 +25,7 @@ State swing(double dt) {
 }
 
 TEST(Verlet, order_two_with_equal_steps) {
-  const State states[] = {swing(0.01), swing(0.005), swing(0.0025), swing(0.00125)};
+  const State states[] = {verlet_swing(0.01), verlet_swing(0.005), verlet_swing(0.0025), verlet_swing(0.00125)};
   for (int i = 0; i < 2; ++i) {
     const double order = std::log2(distance(states[i], states[i + 1]) / distance(states[i + 1], states[i + 2]));
     EXPECT_NEAR(order, 2, 0.2) << "RATE, steps " << 0.01 / (1 << i) << " and halves";
@@ -34,7 +34,7 @@ TEST(Verlet, order_two_with_equal_steps) {
 
 /// The whole integrator, its step set by the bound: growing from the first step, and following w_b of the deformed
 /// disc.
-State swing_at_safety(double safety) {
+State verlet_swing_at_safety(double safety) {
   Scene scene = free_disc(60, 3, stretching(0.3));
   without_error_control(scene, safety);
   const Model model = build_model(scene);
@@ -44,9 +44,9 @@ State swing_at_safety(double safety) {
 }
 
 TEST(Verlet, order_two_when_safety_sets_the_step) {
-  const State truth = swing_at_safety(0.005);
-  const double errors[] = {distance(swing_at_safety(0.2), truth), distance(swing_at_safety(0.1), truth),
-                           distance(swing_at_safety(0.05), truth)};
+  const State truth = verlet_swing_at_safety(0.005);
+  const double errors[] = {distance(verlet_swing_at_safety(0.2), truth), distance(verlet_swing_at_safety(0.1), truth),
+                           distance(verlet_swing_at_safety(0.05), truth)};
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(observed_order(errors[i], errors[i + 1]), 2, 0.4) << "RATE";
 }
 

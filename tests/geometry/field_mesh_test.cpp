@@ -16,7 +16,7 @@ using testing::error_of;
 using testing::outline_of;
 using testing::triangle_area;
 
-double least_angle(const FieldMesh& mesh) {
+double least_degrees(const FieldMesh& mesh) {
   double least = std::numbers::pi;
   for (const Triangle& t : mesh.triangles)
     for (int k = 0; k < 3; ++k) {
@@ -82,7 +82,7 @@ TEST(FieldMesh, HasNoSliversAndKeepsOffTheOutline) {
     SCOPED_TRACE(shape.name);
     const FieldMesh mesh = make_field_mesh(shape);
     const Points outline = outline_of(mesh);
-    EXPECT_GT(least_angle(mesh), 25);
+    EXPECT_GT(least_degrees(mesh), 25);
     for (std::size_t i = outline.size(); i < mesh.nodes.size(); ++i)
       EXPECT_GT(distance_to_outline(outline, mesh.nodes[i]), 0.6 * perimeter(outline) / mesh.outline_count);
   }

@@ -41,7 +41,7 @@ Points lobes() {
 }
 
 /// Grains that hold 60 cells at this spacing.
-std::map<std::string, Points> grains() {
+std::map<std::string, Points> grain_outlines() {
   return {{"square", refined({{0, 0}, {2.4, 0}, {2.4, 2.4}, {0, 2.4}}, spacing)},
           {"square of four nodes, far from the origin", {{500, 500}, {502.4, 500}, {502.4, 502.4}, {500, 502.4}}},
           {"disc", disc_of(120)},
@@ -101,7 +101,7 @@ void check_edges(const Points& outline, const std::vector<Points>& cells) {
 // EXACT: cells are simple polygons with the area of the grain in sum. Each edge is one of the outline, or occurs once
 // more, reversed, in another cell, with the same bits. Both together exclude overlaps and gaps.
 TEST(GrainCells, CoverTheGrainWithCommonNodes) {
-  for (const auto& [name, outline] : grains())
+  for (const auto& [name, outline] : grain_outlines())
     for (const int count : {2, 5, 20, 60})
       for (const std::uint64_t seed : {1, 2, 3}) {
         SCOPED_TRACE(name + ", " + std::to_string(count) + " cells, seed " + std::to_string(seed));
@@ -155,7 +155,7 @@ TEST(GrainCells, OneCellIsTheGrain) {
 // EXACT: a cell needs 6.25 square spacings, and the square has 576, so 92 cells fit. With one cell of half the area of
 // 99 others it has 576/199 of them; 46 such cells fit.
 TEST(GrainCells, TooManyAreRefused) {
-  const Points outline = grains().at("square");
+  const Points outline = grain_outlines().at("square");
   const auto refusal = [&](const std::vector<double>& areas) {
     return error_of([&] { cut_into_cells(outline, areas, spacing, 1); });
   };

@@ -57,12 +57,12 @@ inline void expect_refused(const std::string& message, const std::string& start,
   EXPECT_NE(message.find(phrase), std::string::npos) << message;
 }
 
-inline const Points square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+inline const Points square_of_2{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
 
 inline void expect_square(const Points& found, double unit) {
   ASSERT_EQ(found.size(), 4U);
   EXPECT_NEAR(signed_area(found), 4 * unit * unit, 1e-15 * unit * unit);
-  for (const Vec2& corner : square)
+  for (const Vec2& corner : square_of_2)
     EXPECT_TRUE(std::any_of(found.begin(), found.end(),
                             [&](const Vec2& p) { return (p - unit * corner).norm() < 1e-15 * unit; }));
 }

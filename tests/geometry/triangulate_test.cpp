@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-std::string refusal(const Points& points, int outline_count) {
+std::string triangulation_refusal(const Points& points, int outline_count) {
   try {
     triangulate_inside(points, outline_count);
   } catch (const InputError& error) {
@@ -29,14 +29,17 @@ TEST(Triangulate, CoversTheInside) {
 // EXACT. What touches splits an edge in two: the inside would be told from the outside by chance.
 TEST(Triangulate, PointsOnTheOutlineAreRefused) {
   const Points touching{{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}};
-  EXPECT_NE(refusal(touching, 5).find("a point lies on the outline's edge from point 1 to 2"), std::string::npos);
+  EXPECT_NE(triangulation_refusal(touching, 5).find("a point lies on the outline's edge from point 1 to 2"),
+            std::string::npos);
   const Points on_a_side{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 0.5}};
-  EXPECT_NE(refusal(on_a_side, 4).find("a point lies on the outline's edge from point 2 to 3"), std::string::npos);
+  EXPECT_NE(triangulation_refusal(on_a_side, 4).find("a point lies on the outline's edge from point 2 to 3"),
+            std::string::npos);
 }
 
 TEST(Triangulate, CrossingAndCoincidingAreRefused) {
-  EXPECT_NE(refusal({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 4).find("crosses itself"), std::string::npos);
-  EXPECT_NE(refusal({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 0}}, 4).find("5 points, only 4"), std::string::npos);
+  EXPECT_NE(triangulation_refusal({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 4).find("crosses itself"), std::string::npos);
+  EXPECT_NE(triangulation_refusal({{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 0}}, 4).find("5 points, only 4"),
+            std::string::npos);
 }
 
 }  // namespace

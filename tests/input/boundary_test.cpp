@@ -107,11 +107,11 @@ TEST(History, SlopeIsThatOfThePieceAfterAKink) {
   EXPECT_EQ(history.slope(3), 0);
 }
 
-struct Refused {
+struct BadCondition {
   std::string name, text, phrase;
 };
 
-class BadBoundary : public ::testing::TestWithParam<Refused> {};
+class BadBoundary : public ::testing::TestWithParam<BadCondition> {};
 
 // EXACT: words of the message.
 TEST_P(BadBoundary, IsRefusedWithReason) {
@@ -125,44 +125,49 @@ TEST_P(BadBoundary, IsRefusedWithReason) {
   }
 }
 
-const std::string boxes = "[[boundary]]\nof = \"boxes\"\n";
-const std::string stones = "[[boundary]]\nof = \"stones\"\n";
+const std::string on_boxes = "[[boundary]]\nof = \"boxes\"\n";
+const std::string on_stones = "[[boundary]]\nof = \"stones\"\n";
 const std::string of_cells = "cells = 4\nseed = 1\n";  // a key of the grains before
 
 // EXACT: what does the same to all cells may act on a whole grain, and one cell may bear anything.
 TEST(Boundary, MovesBreakableGrains) {
   const std::string text = rigid_set + of_cells;
-  EXPECT_NO_THROW(with(text + stones + "x = { velocity = 1 }\ny = \"fixed\"\nangle = \"fixed\"\n"));
+  EXPECT_NO_THROW(with(text + on_stones + "x = { velocity = 1 }\ny = \"fixed\"\nangle = \"fixed\"\n"));
   EXPECT_NO_THROW(with(text + "[[boundary]]\nof = \"stones 7\"\ny = { force = 1 }\nangle = { moment = 1 }\n"));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Boundary, BadBoundary,
     ::testing::Values(
-        Refused{"UnknownTarget", "[[boundary]]\nof = \"boxs\"\npressure = 1\n", "nearest: boxes"},
-        Refused{"WallAsTarget", "[[boundary]]\nof = \"floor\"\npressure = 1\n", "as in \"grains 17\""},
-        Refused{"NumberTooLarge", "[[boundary]]\nof = \"boxes 2\"\npressure = 1\n", "a number from 0 to 1"},
-        Refused{"Nothing", boxes, "missing key 'pressure'"},
-        Refused{"Mixed", "[[boundary]]\nof = \"grains\"\nx = \"fixed\"\n", "mixes rigid and compliant"},
-        Refused{"Both", boxes + "x = \"fixed\"\npressure = 1\n", "unknown key 'pressure'"},
-        Refused{"AllFree", boxes + "x = \"free\"\n", "does nothing"},
-        Refused{"AngleOfCompliant", boxes + "x = \"fixed\"\nangle = \"fixed\"\n", "unknown key 'angle'"},
-        Refused{"ForceOnSupport", boxes + "x = { force = 1 }\n", "unknown key 'force'"},
-        Refused{"StiffnessOfRigid", stones + "x = \"fixed\"\nstiffness = 1\n", "unknown key 'stiffness'"},
-        Refused{"TwoDrivesOfAnAxis", stones + "x = \"fixed\"\n[[boundary]]\nof = \"stones 1\"\nx = { force = 1 }\n",
-                "driven by an earlier"},
-        Refused{"ForceOnCells", of_cells + stones + "y = { force = 1 }\n", "name one, as in \"stones 0\""},
-        Refused{"RotationOfCells", of_cells + stones + "angle = { velocity = 1 }\n", "name one, as in \"stones 0\""},
-        Refused{"TwoParts", boxes + "pressure = 1\npart = { side = \"top\", angles = [0, 1] }\n", "one of angles"},
-        Refused{"NoPart", boxes + "pressure = 1\npart = { }\n", "one of angles"},
-        Refused{"EqualAngles", boxes + "pressure = 1\npart = { angles = [1, 1] }\n", "two different"},
-        Refused{"TurnedBox", boxes + "pressure = 1\npart = { box = [[1, 0], [0, 1]] }\n", "left < right"},
-        Refused{"UnknownSide", boxes + "pressure = 1\npart = { side = \"tip\" }\n", "nearest: top"},
-        Refused{"DirectionOfFollowing", boxes + "pressure = 1\ndirection = [0, 1]\n", "unknown key 'direction'"},
-        Refused{"NoDirection", boxes + "pressure = 1\nmode = \"oriented\"\ndirection = [0, 0]\n", "[0, 0]"},
-        Refused{"EndsBeforeItStarts", boxes + "pressure = 1\nfrom = \"2 us\"\nuntil = \"1 us\"\n", "after 'from'"},
-        Refused{"DampedVelocity", stones + "x = { velocity = 1, damping = 1 }\n", "unknown key 'damping'"},
-        Refused{"NegativeDamping", boxes + "x = \"fixed\"\ndamping = -1\n", ">= 0"}),
+        BadCondition{"UnknownTarget", "[[boundary]]\nof = \"boxs\"\npressure = 1\n", "nearest: boxes"},
+        BadCondition{"WallAsTarget", "[[boundary]]\nof = \"floor\"\npressure = 1\n", "as in \"grains 17\""},
+        BadCondition{"NumberTooLarge", "[[boundary]]\nof = \"boxes 2\"\npressure = 1\n", "a number from 0 to 1"},
+        BadCondition{"Nothing", on_boxes, "missing key 'pressure'"},
+        BadCondition{"Mixed", "[[boundary]]\nof = \"grains\"\nx = \"fixed\"\n", "mixes rigid and compliant"},
+        BadCondition{"Both", on_boxes + "x = \"fixed\"\npressure = 1\n", "unknown key 'pressure'"},
+        BadCondition{"AllFree", on_boxes + "x = \"free\"\n", "does nothing"},
+        BadCondition{"AngleOfCompliant", on_boxes + "x = \"fixed\"\nangle = \"fixed\"\n", "unknown key 'angle'"},
+        BadCondition{"ForceOnSupport", on_boxes + "x = { force = 1 }\n", "unknown key 'force'"},
+        BadCondition{"StiffnessOfRigid", on_stones + "x = \"fixed\"\nstiffness = 1\n", "unknown key 'stiffness'"},
+        BadCondition{"TwoDrivesOfAnAxis",
+                     on_stones + "x = \"fixed\"\n[[boundary]]\nof = \"stones 1\"\nx = { force = 1 }\n",
+                     "driven by an earlier"},
+        BadCondition{"ForceOnCells", of_cells + on_stones + "y = { force = 1 }\n", "name one, as in \"stones 0\""},
+        BadCondition{"RotationOfCells", of_cells + on_stones + "angle = { velocity = 1 }\n",
+                     "name one, as in \"stones 0\""},
+        BadCondition{"TwoParts", on_boxes + "pressure = 1\npart = { side = \"top\", angles = [0, 1] }\n",
+                     "one of angles"},
+        BadCondition{"NoPart", on_boxes + "pressure = 1\npart = { }\n", "one of angles"},
+        BadCondition{"EqualAngles", on_boxes + "pressure = 1\npart = { angles = [1, 1] }\n", "two different"},
+        BadCondition{"TurnedBox", on_boxes + "pressure = 1\npart = { box = [[1, 0], [0, 1]] }\n", "left < right"},
+        BadCondition{"UnknownSide", on_boxes + "pressure = 1\npart = { side = \"tip\" }\n", "nearest: top"},
+        BadCondition{"DirectionOfFollowing", on_boxes + "pressure = 1\ndirection = [0, 1]\n",
+                     "unknown key 'direction'"},
+        BadCondition{"NoDirection", on_boxes + "pressure = 1\nmode = \"oriented\"\ndirection = [0, 0]\n", "[0, 0]"},
+        BadCondition{"EndsBeforeItStarts", on_boxes + "pressure = 1\nfrom = \"2 us\"\nuntil = \"1 us\"\n",
+                     "after 'from'"},
+        BadCondition{"DampedVelocity", on_stones + "x = { velocity = 1, damping = 1 }\n", "unknown key 'damping'"},
+        BadCondition{"NegativeDamping", on_boxes + "x = \"fixed\"\ndamping = -1\n", ">= 0"}),
     [](const auto& info) { return info.param.name; });
 
 // EXACT

@@ -14,13 +14,13 @@ using scene_tests::stones;
 const std::string places = "packing = { kind = \"positions\", positions = [[1, 1], [3, 1]] }\n";
 const std::string contact = "[[contacts]]\nbetween = \"all\"\nlaw = \"frictionless\"\nstiffness = 1\n";
 
-std::string scene_with(const std::string& domain, const std::string& rest = {}) {
+std::string scene_in_cell(const std::string& domain, const std::string& rest = {}) {
   return stones + places + contact + "[domain]\nperiods = [4, 3]\n" + domain + rest;
 }
 
 // EXACT: periods, histories of the gradient and of stress, and how stress moves the cell.
 TEST(CellInput, reads_gradients_and_stresses) {
-  const SceneFile file(scene_with(R"([domain.cell]
+  const SceneFile file(scene_in_cell(R"([domain.cell]
 xx = [[0, 1], ["2 s", 0.5]]
 xy = [["1 s", 0], ["2 s", 3]]
 stress_yy = [[0, 0], ["1 s", "-2 kPa"]]
@@ -53,27 +53,27 @@ TEST(CellInput, fills_the_cell) {
   EXPECT_EQ(packing.count, 51) << "0.5 x 80 over pi/4";
 }
 
-struct Refused {
+struct BadCell {
   std::string text, message;
 };
 
 // EXACT: words of the messages.
 TEST(CellInput, is_refused_with_the_reason) {
   const std::string wall = "[[walls]]\nname = \"floor\"\nmaterial = \"stone\"\nsolid = \"below\"\nlevel = 0\n";
-  const Refused all[] = {
-      {scene_with("period = 4\n"), "both it and 'period' are given"},
-      {scene_with("gravity = [0, -9.81]\n"), "nothing bears it in a cell with two periods"},
-      {scene_with("", wall), "wall 'floor' has no place in a cell with two periods"},
-      {scene_with("[domain.cell]\nxx = [[0, 0.9], [1, 0.8]]\n"), "has 0.9 at t = 0; allowed: 1"},
-      {scene_with("[domain.cell]\nxy = 0.1\n"), "has 0.1 at t = 0; allowed: 0"},
-      {scene_with("[domain.cell]\nxx = [[0, 1], [1, -0.5]]\n"), "the area of the cell is -0.5 times"},
-      {scene_with("[domain.cell]\nxx = [[0, 1], [1, -1]]\nyy = [[0, 1], [1, -1]]\n"),
+  const BadCell all[] = {
+      {scene_in_cell("period = 4\n"), "both it and 'period' are given"},
+      {scene_in_cell("gravity = [0, -9.81]\n"), "nothing bears it in a cell with two periods"},
+      {scene_in_cell("", wall), "wall 'floor' has no place in a cell with two periods"},
+      {scene_in_cell("[domain.cell]\nxx = [[0, 0.9], [1, 0.8]]\n"), "has 0.9 at t = 0; allowed: 1"},
+      {scene_in_cell("[domain.cell]\nxy = 0.1\n"), "has 0.1 at t = 0; allowed: 0"},
+      {scene_in_cell("[domain.cell]\nxx = [[0, 1], [1, -0.5]]\n"), "the area of the cell is -0.5 times"},
+      {scene_in_cell("[domain.cell]\nxx = [[0, 1], [1, -1]]\nyy = [[0, 1], [1, -1]]\n"),
        "the area of the cell is 0 times"},
-      {scene_with("[domain.cell]\nxx = 1\nstress_xx = 0\n"), "both it and 'xx' are given"},
-      {scene_with("[domain.cell]\ndamping = 1\n"), "allowed: a number, >= 0 and < 1"},
-      {scene_with("",
-                  "[[probes]]\nname = \"s\"\nquantity = \"solid_fraction\"\nof = \"all\"\nperiod = 1\nbetween = "
-                  "[\"a\", \"b\"]\n"),
+      {scene_in_cell("[domain.cell]\nxx = 1\nstress_xx = 0\n"), "both it and 'xx' are given"},
+      {scene_in_cell("[domain.cell]\ndamping = 1\n"), "allowed: a number, >= 0 and < 1"},
+      {scene_in_cell("",
+                     "[[probes]]\nname = \"s\"\nquantity = \"solid_fraction\"\nof = \"all\"\nperiod = 1\nbetween = "
+                     "[\"a\", \"b\"]\n"),
        "unknown wall"},
       {stones + places + contact + "[domain]\nperiods = [4, 0.9]\n", "allowed: less than the period, 0.9 m"},
       {stones + places + contact + "[domain]\nperiods = [4]\n", "an array of 2 elements"},
@@ -87,7 +87,7 @@ TEST(CellInput, is_refused_with_the_reason) {
            "[domain]\nperiods = [4, 4]\n",
        "unknown key 'bottom'"},
   };
-  for (const Refused& one : all) {
+  for (const BadCell& one : all) {
     const std::string message = error_of(one.text);
     EXPECT_NE(message.find(one.message), std::string::npos) << one.text << "\n" << message;
   }
@@ -95,7 +95,7 @@ TEST(CellInput, is_refused_with_the_reason) {
 
 // EXACT: what is against a frame at rest, or moves no cell.
 TEST(CellInput, has_no_frame_at_rest) {
-  std::string text = scene_with("");
+  std::string text = scene_in_cell("");
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string other = text;
     return other.replace(other.find(from), from.size(), to);

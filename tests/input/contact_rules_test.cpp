@@ -29,7 +29,7 @@ std::string rule(const std::string& between, double stiffness) {
          "\n";
 }
 
-std::string error_of(const std::string& text) {
+std::string rule_error(const std::string& text) {
   try {
     read_scene(SceneFile(text).path());
   } catch (const InputError& error) {
@@ -78,25 +78,25 @@ TEST(ContactRules, PartiesAreFew) {
 TEST(ContactRules, RefusesWhatIsAmbiguous) {
   const std::string two_sums =
       with_rules(rule("\"all\"", 1) + rule("[\"floor\", \"hard\"]", 2) + rule("[\"grains\", \"hard\"]", 3));
-  const std::string message = error_of(two_sums);
+  const std::string message = rule_error(two_sums);
   EXPECT_NE(message.find("'between' in [[contacts]] 3"), std::string::npos) << message;
   EXPECT_NE(message.find("'floor' of 'hard'"), std::string::npos) << message;
   EXPECT_NE(message.find("as the rule between [floor, hard] does"), std::string::npos) << message;
-  EXPECT_EQ(error_of(two_sums + rule("[\"floor\", \"grains\"]", 4)), "no error");
+  EXPECT_EQ(rule_error(two_sums + rule("[\"floor\", \"grains\"]", 4)), "no error");
   std::string same_name = with_rules(rule("[\"hard\", \"all\"]", 1) + rule("\"all\"", 2));
-  EXPECT_EQ(error_of(same_name), "no error");
+  EXPECT_EQ(rule_error(same_name), "no error");
   same_name.replace(same_name.find("\"boxes\""), 7, "\"hard\"");
-  EXPECT_NE(error_of(same_name).find("'hard' is a material and also grains or a wall"), std::string::npos);
+  EXPECT_NE(rule_error(same_name).find("'hard' is a material and also grains or a wall"), std::string::npos);
 }
 
 // EXACT: each pair that can meet needs a rule; a wall does not meet itself.
 TEST(ContactRules, EveryPairNeedsOne) {
   const std::string floor_only = rule("[\"soft\", \"soft\"]", 1) + rule("[\"soft\", \"hard\"]", 1) +
                                  rule("[\"lid\", \"all\"]", 1) + rule("[\"hard\", \"hard\"]", 1);
-  EXPECT_NE(error_of(with_rules(floor_only)).find("says as much of"), std::string::npos);
+  EXPECT_NE(rule_error(with_rules(floor_only)).find("says as much of"), std::string::npos);
   const std::string complete = floor_only + rule("[\"lid\", \"soft\"]", 1) + rule("[\"lid\", \"hard\"]", 1);
-  EXPECT_EQ(error_of(with_rules(complete)), "no error");
-  EXPECT_NE(error_of(with_rules(rule("[\"soft\", \"all\"]", 1))).find("'hard' and 'hard'"), std::string::npos);
+  EXPECT_EQ(rule_error(with_rules(complete)), "no error");
+  EXPECT_NE(rule_error(with_rules(rule("[\"soft\", \"all\"]", 1))).find("'hard' and 'hard'"), std::string::npos);
 }
 
 /// Compliant and rigid discs apart from each other, and walls, which need a period.
@@ -153,14 +153,14 @@ TEST(ContactRules, ALoneBodyNeedsNoneWithItself) {
 TEST(ContactRules, RestitutionIsOfRigidPairs) {
   const std::string between = rule("[\"soft\", \"hard\"]", 1), own = rule("[\"soft\", \"soft\"]", 1);
   const std::string bounces = "restitution = 0.5\n";
-  EXPECT_EQ(error_of(few_bodies("", 1, 1, 0, between + own + bounces)), "no error");
-  const std::string text = few_bodies("", 2, 1, 0, between + own + bounces), message = error_of(text);
+  EXPECT_EQ(rule_error(few_bodies("", 1, 1, 0, between + own + bounces)), "no error");
+  const std::string text = few_bodies("", 2, 1, 0, between + own + bounces), message = rule_error(text);
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find(bounces)), '\n');
   EXPECT_NE(message.find(".toml:" + std::to_string(line) + ":15: 'restitution' in [[contacts]] 2"), std::string::npos)
       << message;
   EXPECT_NE(message.find("take 'restitution' out of this rule"), std::string::npos) << message;
   EXPECT_NE(message.find("between = [\"hard\", \"hard\"]"), std::string::npos) << message;
-  EXPECT_EQ(error_of(few_bodies("", 2, 1, 0, between + own + "restitution = 1\n")), "no error");
+  EXPECT_EQ(rule_error(few_bodies("", 2, 1, 0, between + own + "restitution = 1\n")), "no error");
 }
 
 }  // namespace

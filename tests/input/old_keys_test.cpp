@@ -23,14 +23,14 @@ const std::vector<Renamed> keys{
     {"method", "recipe"}, {"asperities", "caps"}, {"species", "mix"}, {"species_order", "mix_order"}};
 
 /// The good scene with all of these keys, by their present or their old names.
-std::string scene_with(std::string Renamed::* name) {
+std::string scene_by_names(std::string Renamed::* name) {
   std::string text = edited({{"seed = 7", "seed = 7\nspecies_order = \"random\""}});
   for (const Renamed& key : keys) text.replace(text.find("\n" + key.now + " =") + 1, key.now.size(), key.*name);
   return text;
 }
 
 TEST(OldKeys, AreReadAsTheNewOnesWithAWarningAtTheirPlace) {
-  const std::string text = scene_with(&Renamed::formerly), present = scene_with(&Renamed::now);
+  const std::string text = scene_by_names(&Renamed::formerly), present = scene_by_names(&Renamed::now);
   const SceneFile old(text);
   const Scene scene = read_scene(old.path());
   ASSERT_EQ(scene.warnings.size(), keys.size());

@@ -16,7 +16,7 @@ using scene_tests::good_scene;
 using scene_tests::SceneFile;
 
 /// The good scene with some of its text replaced.
-Scene changed(std::vector<std::pair<std::string, std::string>> changes) {
+Scene scene_changed(std::vector<std::pair<std::string, std::string>> changes) {
   std::string text = good_scene;
   for (const auto& [from, to] : changes) {
     const auto at = text.find(from);
@@ -35,7 +35,7 @@ const std::string lattice = "kind = \"hexagonal\", columns = 10, rows = 4, pitch
 TEST(ReadPacking, ShapesOutOfRangeAndPartsThatAMeshLacks) {
   const auto message_of = [](const std::string& shape) {
     try {
-      changed({{disc, shape}});
+      scene_changed({{disc, shape}});
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -58,7 +58,7 @@ TEST(ReadPacking, AFilesDoubtfulAnglesAndPlacesTooFarOff) {
   const auto with_file = [](const std::string& rows) {
     const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "read_packing_far.csv";
     std::ofstream(file) << rows;
-    return changed(
+    return scene_changed(
         {{lattice, "kind = \"file\", file = \"" + file.string() + "\""}, {"angle = \"random\"\nseed", "seed"}});
   };
   const std::vector<std::string> warnings = with_file("x [um],y [um],angle\n1,1,0\n3,3,30\n").warnings;
@@ -76,7 +76,7 @@ TEST(ReadPacking, AFilesDoubtfulAnglesAndPlacesTooFarOff) {
 }
 
 TEST(ReadPacking, VariantsAreShapesOfTheirOwn) {
-  const Scene scene = changed({{disc, pebble + "\nvariants = 3"}});
+  const Scene scene = scene_changed({{disc, pebble + "\nvariants = 3"}});
   ASSERT_EQ(scene.shapes.size(), 4U);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(scene.shapes[i].name, "disc." + std::to_string(i + 1));
@@ -91,11 +91,11 @@ TEST(ReadPacking, VariantsAreShapesOfTheirOwn) {
     EXPECT_EQ(shares[i].first, static_cast<int>(i));
     EXPECT_DOUBLE_EQ(shares[i].second, 1.0 / 3);
   }
-  EXPECT_EQ(changed({{disc, pebble}}).shapes[0].name, "disc") << "without variants it has no family";
+  EXPECT_EQ(scene_changed({{disc, pebble}}).shapes[0].name, "disc") << "without variants it has no family";
 }
 
 TEST(ReadPacking, SeveralShapes) {
-  const Scene scene = changed(
+  const Scene scene = scene_changed(
       {{disc, pebble + "\nvariants = 2"},
        {"shape = \"disc\"\n", "shapes = [{ shape = \"box\", share = 0.4 }, { shape = \"disc\", share = 0.6 }]\n"}});
   const auto shares = scene.shape_shares(scene.grains[0]);
@@ -104,20 +104,20 @@ TEST(ReadPacking, SeveralShapes) {
 }
 
 TEST(ReadPacking, OrderOfAMix) {
-  EXPECT_EQ(changed({}).grains[0].species_order, SpeciesOrder::random);
-  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nspecies_order = \"random\""}}).grains[0].species_order,
+  EXPECT_EQ(scene_changed({}).grains[0].species_order, SpeciesOrder::random);
+  EXPECT_EQ(scene_changed({{"seed = 7", "seed = 7\nspecies_order = \"random\""}}).grains[0].species_order,
             SpeciesOrder::random);
-  EXPECT_EQ(changed({{"seed = 7", "seed = 7\nspecies_order = \"in turn\""}}).grains[0].species_order,
+  EXPECT_EQ(scene_changed({{"seed = 7", "seed = 7\nspecies_order = \"in turn\""}}).grains[0].species_order,
             SpeciesOrder::in_turn);
-  const Scene unseeded = changed({{"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}});
+  const Scene unseeded = scene_changed({{"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}});
   EXPECT_EQ(unseeded.grains[0].species_order, SpeciesOrder::in_turn) << "nothing is random, so no seed is needed";
 }
 
 TEST(ReadPacking, FittedShapesKeepTheirDescriptors) {
   const Scene scene =
-      changed({{disc, pebble + "\nvariants = \"each\""},
-               {lattice, "kind = \"fourier-voronoi\", bottom = 0, top = \"7 um\", solid_fraction = 0.5"},
-               {"angle = \"random\"\n", ""}});
+      scene_changed({{disc, pebble + "\nvariants = \"each\""},
+                     {lattice, "kind = \"fourier-voronoi\", bottom = 0, top = \"7 um\", solid_fraction = 0.5"},
+                     {"angle = \"random\"\n", ""}});
   EXPECT_EQ(scene.shapes[0].descriptors, (std::vector<double>{0.1, 0.05}));
   EXPECT_EQ(scene.grains[0].packing.count, std::lround(0.5 * 70 / (std::numbers::pi / 4)));
   EXPECT_FALSE(scene.grains[0].angle);
@@ -125,7 +125,7 @@ TEST(ReadPacking, FittedShapesKeepTheirDescriptors) {
 
 TEST(ReadPacking, CountsFollowSolidFractionAndSizes) {
   const std::string sizes = "seed = 7\nsize = { distribution = \"uniform\", low = 0.5, high = 1.5 }";
-  const Scene scene = changed(
+  const Scene scene = scene_changed(
       {{lattice, "kind = \"random\", bottom = \"-2 um\", top = \"5 um\", solid_fraction = 0.6"}, {"seed = 7", sizes}});
   const Packing& packing = scene.grains[0].packing;
   EXPECT_EQ(packing.kind, PackingKind::random);
@@ -135,14 +135,15 @@ TEST(ReadPacking, CountsFollowSolidFractionAndSizes) {
   EXPECT_EQ(packing.count, std::lround(0.6 * 70 / (std::numbers::pi / 4 * 13 / 12)));
   EXPECT_EQ(packing.grain_count(), packing.count);
   EXPECT_EQ(scene.grains[0].size.kind, SizeDistribution::Kind::uniform);
-  const Scene counted = changed({{lattice, "kind = \"random\", bottom = 0, top = \"5 um\", count = 12"}});
+  const Scene counted = scene_changed({{lattice, "kind = \"random\", bottom = 0, top = \"5 um\", count = 12"}});
   EXPECT_EQ(counted.grains[0].packing.grain_count(), 12);
   EXPECT_FALSE(counted.grains[0].packing.solid_fraction);
 }
 
 TEST(ReadPacking, RoundedPolygonsAreCurves) {
-  const Scene scene = changed({{"[0, \"1 um\"]]", "[0, \"1 um\"]]\nrounding = \"0.2 um\""},
-                               {disc, "kind = \"regular\"\nsides = 4\ndiameter = \"1 um\"\nrounding = \"0.1 um\""}});
+  const Scene scene =
+      scene_changed({{"[0, \"1 um\"]]", "[0, \"1 um\"]]\nrounding = \"0.2 um\""},
+                     {disc, "kind = \"regular\"\nsides = 4\ndiameter = \"1 um\"\nrounding = \"0.1 um\""}});
   EXPECT_EQ(scene.shapes[0].kind, ShapeKind::curve);
   EXPECT_EQ(scene.shapes[1].kind, ShapeKind::curve);
   EXPECT_NEAR(signed_area(scene.shapes[1].points), (1 - (4 - std::numbers::pi) * 0.04) * 1e-12, 1e-24);
@@ -159,10 +160,10 @@ struct Quarter {
 TEST(ReadPacking, OutlinesFromFiles) {
   const Quarter quarter;
   const std::string file = "kind = \"file\"\nfile = \"quarter.csv\"\n";
-  const Scene own = changed({{disc, file + "unit = \"um\""}});
+  const Scene own = scene_changed({{disc, file + "unit = \"um\""}});
   EXPECT_EQ(own.shapes[0].kind, ShapeKind::polygon);
   EXPECT_NEAR(signed_area(own.shapes[0].points), 8e-12, 1e-26);
-  const Scene scaled = changed({{disc, file + "diameter = \"1 um\"\noutline = \"curve\""}});
+  const Scene scaled = scene_changed({{disc, file + "diameter = \"1 um\"\noutline = \"curve\""}});
   EXPECT_EQ(scaled.shapes[0].kind, ShapeKind::curve);
   EXPECT_NEAR(signed_area(scaled.shapes[0].points), std::numbers::pi / 4 * 1e-12, 1e-26);
 }
@@ -181,20 +182,20 @@ const std::string positions = "kind = \"positions\", positions = [[\"2 um\", \"8
 TEST(ReadPacking, GrainsFromAFile) {
   const Beside file("grains_from_a_file.csv", "x,y,scale\n1,2,0.5\n3,4,9.9\n");
   const std::string from_file = "kind = \"file\", file = \"grains_from_a_file.csv\", unit = \"um\"";
-  const Packing packing = changed({{lattice, from_file}}).grains[0].packing;
+  const Packing packing = scene_changed({{lattice, from_file}}).grains[0].packing;
   EXPECT_EQ(packing.kind, PackingKind::positions);
   EXPECT_EQ(packing.positions, (Points{Vec2(1, 2) * 1e-6, Vec2(3, 4) * 1e-6}));
   EXPECT_EQ(packing.scales, (std::vector<double>{0.5, 9.9}));
   EXPECT_EQ(packing.grain_count(), 2);
-  EXPECT_EQ(
-      changed({{lattice, from_file}, {"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}}).grains.size(),
-      2U);
+  EXPECT_EQ(scene_changed({{lattice, from_file}, {"angle = \"random\"\nseed = 7", "species_order = \"in turn\""}})
+                .grains.size(),
+            2U);
 }
 
 TEST(ReadPacking, FilesThatSayTooMuchAreRefused) {
   const auto message = [](const std::vector<std::pair<std::string, std::string>>& changes) -> std::string {
     try {
-      changed(changes);
+      scene_changed(changes);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -225,7 +226,7 @@ TEST(ReadPacking, FilesThatSayTooMuchAreRefused) {
 TEST(ReadPacking, InPlaceIsWhereThePointsLie) {
   const std::string corners = R"([[0, 0], ["1 um", 0], ["1 um", "1 um"], [0, "1 um"]])";
   const std::string moved = R"([["4 um", "6 um"], ["5 um", "6 um"], ["5 um", "7 um"], ["4 um", "7 um"]])";
-  const Scene scene = changed(
+  const Scene scene = scene_changed(
       {{positions, "kind = \"in place\", origin = [0, \"1 um\"]"}, {corners, moved}, {"angle = \"45 deg\"\n", ""}});
   const Packing& packing = scene.grains[1].packing;
   ASSERT_EQ(packing.positions.size(), 1U);

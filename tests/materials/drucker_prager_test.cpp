@@ -7,33 +7,27 @@
 #include <cmath>
 
 #include "materials/drucker_prager.hpp"
-#include "support/random.hpp"
+#include "support/material_points.hpp"
 
 namespace pliant {
 namespace {
 
-using Law = DruckerPrager<double>;
-using Values = Law::Record;
-constexpr Values virgin{1, 0, 1, 1, 0, 0, 0};
-constexpr double mu = 0.8, bulk = 1.9, friction = 0.9, dilatancy = 0.3, cohesion = 0.07, hardening = 0.05;
-/// Of some hundred operations on numbers of order one.
-constexpr double rounding = 5e-14;
+using namespace testing;
+
+using DruckerPragerRecord = DruckerPrager<double>::Record;
+constexpr DruckerPragerRecord drucker_prager_virgin{1, 0, 1, 1, 0, 0, 0};
+constexpr double friction = 0.9, dilatancy = 0.3, cohesion = 0.07, cone_hardening = 0.05;
 
 template <class T = double>
-DruckerPrager<T> law(double along = dilatancy) {
-  return {T{} + mu, T{} + bulk, T{} + friction, T{} + along, T{} + cohesion, T{} + hardening};
+DruckerPrager<T> drucker_prager_law(double along = dilatancy) {
+  return {T{} + shear_modulus, T{} + bulk_modulus, T{} + friction, T{} + along, T{} + cohesion, T{} + cone_hardening};
 }
 
-Tensor<double> deformation(testing::Random& random, double size) {
-  return {1 + random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size),
-          1 + random.uniform(-size, size)};
-}
-
-Values some_record(testing::Random& random) {
-  Values record = virgin;
+DruckerPragerRecord random_drucker_prager_record(testing::Random& random) {
+  DruckerPragerRecord record = drucker_prager_virgin;
   for (int i = 0; i < 3; ++i) {
-    Values next;
-    law().over(1).respond(deformation(random, 0.25), record, next);
+    DruckerPragerRecord next;
+    drucker_prager_law().over(1).respond(random_deformation(random, 0.25), record, next);
     record = next;
   }
   return record;
@@ -42,12 +36,12 @@ Values some_record(testing::Random& random) {
 enum class Branch { elastic, cone, apex };
 
 /// The law once more in three dimensions, by eigenvectors: the increment of flow by bisection of the yield function.
-struct InSpace {
+struct DruckerPragerInSpace {
   Eigen::Matrix3d tau, metric;
   double flow = 0;
   Branch branch = Branch::elastic;
 
-  InSpace(const Tensor<double>& F, const Values& old) {
+  DruckerPragerInSpace(const Tensor<double>& F, const DruckerPragerRecord& old) {
     Eigen::Matrix3d f = Eigen::Matrix3d::Identity(), C = f;
     f.topLeftCorner<2, 2>() << F.xx, F.xy, F.yx, F.yy;
     C.topLeftCorner<2, 2>() << old[0], old[1], old[1], old[2];
@@ -56,19 +50,23 @@ struct InSpace {
     const Eigen::Vector3d strain = 0.5 * b.eigenvalues().array().log();
     double volume = strain.sum();
     Eigen::Vector3d deviator = strain.array() - strain.mean();
-    const double q = std::sqrt(6.0) * mu * deviator.norm(), strength = cohesion + hardening * old[4];
+    const double q = std::sqrt(6.0) * shear_modulus * deviator.norm(), strength = cohesion + cone_hardening * old[4];
     const auto on_cone = [&](double x) {
-      return q - 3 * mu * x + friction * bulk * (volume - dilatancy * x) - strength - hardening * x;
+      return q - 3 * shear_modulus * x + friction * bulk_modulus * (volume - dilatancy * x) - strength -
+             cone_hardening * x;
     };
-    const auto on_apex = [&](double x) { return friction * bulk * (volume - friction * x) - strength - hardening * x; };
+    const auto on_apex = [&](double x) {
+      return friction * bulk_modulus * (volume - friction * x) - strength - cone_hardening * x;
+    };
     if (on_cone(0) > 0) {
-      branch = on_cone(q / (3 * mu)) > 0 ? Branch::apex : Branch::cone;
+      branch = on_cone(q / (3 * shear_modulus)) > 0 ? Branch::apex : Branch::cone;
       flow = branch == Branch::apex ? root(on_apex) : root(on_cone);
-      deviator *= branch == Branch::apex ? 0 : 1 - 3 * mu * flow / q;
+      deviator *= branch == Branch::apex ? 0 : 1 - 3 * shear_modulus * flow / q;
       volume -= flow * (branch == Branch::apex ? friction : dilatancy);
     }
     const Eigen::Matrix3d n = b.eigenvectors();
-    tau = n * Eigen::Vector3d(bulk * volume + 2 * mu * deviator.array()).asDiagonal() * n.transpose();
+    tau =
+        n * Eigen::Vector3d(bulk_modulus * volume + 2 * shear_modulus * deviator.array()).asDiagonal() * n.transpose();
     const Eigen::Vector3d elastic = (2 * (deviator.array() + volume / 3)).exp();
     metric = f.inverse() * n * elastic.asDiagonal() * n.transpose() * f.inverse().transpose();
   }
@@ -88,21 +86,21 @@ TEST(DruckerPrager, return_map_is_that_of_three_dimensions) {
   testing::Random random(1);
   int count[3] = {};
   for (int sample = 0; sample < 600; ++sample) {
-    const Values old = sample < 20 ? virgin : some_record(random);
-    const Tensor<double> F = deformation(random, sample % 3 == 0 ? 0.02 : 0.3);
-    Values now;
-    const Response<double> found = law().over(0.5).respond(F, old, now);
-    const InSpace expected(F, old);
+    const DruckerPragerRecord old = sample < 20 ? drucker_prager_virgin : random_drucker_prager_record(random);
+    const Tensor<double> F = random_deformation(random, sample % 3 == 0 ? 0.02 : 0.3);
+    DruckerPragerRecord now;
+    const Response<double> found = drucker_prager_law().over(0.5).respond(F, old, now);
+    const DruckerPragerInSpace expected(F, old);
     ++count[static_cast<int>(expected.branch)];
-    EXPECT_NEAR(now[4] - old[4], expected.flow, rounding);
-    EXPECT_NEAR(now[0], expected.metric(0, 0), 10 * rounding);
-    EXPECT_NEAR(now[1], expected.metric(0, 1), 10 * rounding);
-    EXPECT_NEAR(now[2], expected.metric(1, 1), 10 * rounding);
-    EXPECT_NEAR(now[3], expected.metric(2, 2), 10 * rounding);
-    EXPECT_NEAR(law().sigma_zz(F, now) * found.J, expected.tau(2, 2), 10 * rounding);
-    EXPECT_NEAR(found.P.xx * F.xx + found.P.xy * F.xy, expected.tau(0, 0), 10 * rounding);
-    EXPECT_NEAR(found.P.xx * F.yx + found.P.xy * F.yy, expected.tau(0, 1), 10 * rounding);
-    EXPECT_NEAR(found.P.yx * F.yx + found.P.yy * F.yy, expected.tau(1, 1), 10 * rounding);
+    EXPECT_NEAR(now[4] - old[4], expected.flow, rounding_of_flow);
+    EXPECT_NEAR(now[0], expected.metric(0, 0), 10 * rounding_of_flow);
+    EXPECT_NEAR(now[1], expected.metric(0, 1), 10 * rounding_of_flow);
+    EXPECT_NEAR(now[2], expected.metric(1, 1), 10 * rounding_of_flow);
+    EXPECT_NEAR(now[3], expected.metric(2, 2), 10 * rounding_of_flow);
+    EXPECT_NEAR(drucker_prager_law().sigma_zz(F, now) * found.J, expected.tau(2, 2), 10 * rounding_of_flow);
+    EXPECT_NEAR(found.P.xx * F.xx + found.P.xy * F.xy, expected.tau(0, 0), 10 * rounding_of_flow);
+    EXPECT_NEAR(found.P.xx * F.yx + found.P.xy * F.yy, expected.tau(0, 1), 10 * rounding_of_flow);
+    EXPECT_NEAR(found.P.yx * F.yx + found.P.yy * F.yy, expected.tau(1, 1), 10 * rounding_of_flow);
   }
   for (const int branch : count) EXPECT_GT(branch, 50);
 }
@@ -114,23 +112,25 @@ TEST(DruckerPrager, lanes_agree_with_single_points) {
     Tensor<Lanes> F{};
     DruckerPrager<Lanes>::Record old, now;
     Tensor<double> points[lane_count];
-    Values before[lane_count];
+    DruckerPragerRecord before[lane_count];
     for (int lane = 0; lane < lane_count; ++lane) {
-      points[lane] = deformation(random, lane < 6 ? 0.3 : 0.01), before[lane] = lane < 6 ? some_record(random) : virgin;
+      points[lane] = random_deformation(random, lane < 6 ? 0.3 : 0.01),
+      before[lane] = lane < 6 ? random_drucker_prager_record(random) : drucker_prager_virgin;
       F.xx[lane] = points[lane].xx, F.xy[lane] = points[lane].xy;
       F.yx[lane] = points[lane].yx, F.yy[lane] = points[lane].yy;
       for (std::size_t k = 0; k < old.size(); ++k) old[k][lane] = before[lane][k];
     }
-    const Response<Lanes> found = law<Lanes>().over(0.4).weighted(broadcast(3)).respond(F, old, now);
+    const Response<Lanes> found = drucker_prager_law<Lanes>().over(0.4).weighted(broadcast(3)).respond(F, old, now);
     for (int lane = 0; lane < lane_count; ++lane) {
-      Values single;
-      const Response<double> expected = law().over(0.4).weighted(3.0).respond(points[lane], before[lane], single);
-      EXPECT_NEAR(found.P.xx[lane], expected.P.xx, 10 * rounding);
-      EXPECT_NEAR(found.P.xy[lane], expected.P.xy, 10 * rounding);
-      EXPECT_NEAR(found.P.yx[lane], expected.P.yx, 10 * rounding);
-      EXPECT_NEAR(found.P.yy[lane], expected.P.yy, 10 * rounding);
-      EXPECT_NEAR(found.loss[lane], expected.loss, 10 * rounding);
-      for (std::size_t k = 0; k < old.size(); ++k) EXPECT_NEAR(now[k][lane], single[k], 10 * rounding);
+      DruckerPragerRecord single;
+      const Response<double> expected =
+          drucker_prager_law().over(0.4).weighted(3.0).respond(points[lane], before[lane], single);
+      EXPECT_NEAR(found.P.xx[lane], expected.P.xx, 10 * rounding_of_flow);
+      EXPECT_NEAR(found.P.xy[lane], expected.P.xy, 10 * rounding_of_flow);
+      EXPECT_NEAR(found.P.yx[lane], expected.P.yx, 10 * rounding_of_flow);
+      EXPECT_NEAR(found.P.yy[lane], expected.P.yy, 10 * rounding_of_flow);
+      EXPECT_NEAR(found.loss[lane], expected.loss, 10 * rounding_of_flow);
+      for (std::size_t k = 0; k < old.size(); ++k) EXPECT_NEAR(now[k][lane], single[k], 10 * rounding_of_flow);
     }
   }
 }
@@ -143,10 +143,10 @@ TEST(DruckerPrager, collapses_as_mohr_and_coulomb) {
   material.law = MaterialLaw::drucker_prager;
   material.young = 1, material.poisson = 0.3;
   material.friction_angle = material.dilatancy_angle = 0.5, material.cohesion = 1e-3;
-  const Law matched = Law::of(material);
+  const auto matched = DruckerPrager<double>::of(material);
   const double p = 2e-3, N = std::pow(std::tan(0.25 * M_PI + 0.25), 2);
   const double expected = -(N * p + 2 * material.cohesion * std::sqrt(N));
-  Values record = virgin, now;
+  DruckerPragerRecord record = drucker_prager_virgin, now;
   double lateral = 0, axial_stress = 0;
   const int steps = 400;
   for (int k = 1; k <= steps; ++k) {
@@ -182,10 +182,10 @@ TEST(DruckerPrager, work_is_stored_or_dissipated) {
     for (int i = 0; i < 2; ++i) {
       const int steps = 1000 << 4 * i;
       const double dt = 2.0 / steps;
-      Values record = virgin, next;
+      DruckerPragerRecord record = drucker_prager_virgin, next;
       double doing = 0, dissipated = 0, work = 0;
       for (int k = 1; k <= steps; ++k) {
-        const auto response = law(along).over(dt).respond(path(k * dt), record, next);
+        const auto response = drucker_prager_law(along).over(dt).respond(path(k * dt), record, next);
         EXPECT_GE(response.loss, 0);
         dissipated += response.loss;
         const Tensor<double> P = response.P, v = rate(k * dt);
@@ -194,7 +194,7 @@ TEST(DruckerPrager, work_is_stored_or_dissipated) {
         doing = now, record = next;
       }
       EXPECT_GT(dissipated, 5e-3);
-      errors[i] = std::abs(work - dissipated - law().energy(path(2), record)) / dissipated;
+      errors[i] = std::abs(work - dissipated - drucker_prager_law().energy(path(2), record)) / dissipated;
     }
     EXPECT_NEAR(std::log2(errors[0] / errors[1]) / 4, 2, 0.5) << errors[0] << " " << errors[1];
     EXPECT_LT(errors[1], 1e-5);

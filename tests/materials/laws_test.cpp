@@ -2,20 +2,16 @@
 #include <Eigen/LU>
 
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "core/lanes.hpp"
 #include "materials/with_law.hpp"
-#include "support/random.hpp"
+#include "support/material_points.hpp"
 
 namespace pliant {
 namespace {
 
-using testing::Random;
-using Complex = std::complex<double>;
-constexpr double mu = 0.7, lambda = 2.1;
-constexpr double tiny = 1e-30;  // complex step: no cancellation
+using namespace testing;
 
 /// A form of law, as a type that tests can be listed by.
 template <template <class> class Law>
@@ -53,21 +49,14 @@ T energy_3d(const Tensor<T>& F, T c) {
 
 using Matrix = Eigen::Matrix2d;
 
-Matrix matrix(const Tensor<double>& t) {
+Matrix as_matrix(const Tensor<double>& t) {
   Matrix m;
   m << t.xx, t.xy, t.yx, t.yy;
   return m;
 }
-Tensor<double> tensor(const Matrix& m) { return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)}; }
+Tensor<double> as_tensor(const Matrix& m) { return {m(0, 0), m(0, 1), m(1, 0), m(1, 1)}; }
 
-// F + i tiny e_kl; entries in the order xx, xy, yx, yy.
-Tensor<Complex> stepped(const Tensor<double>& F, int entry) {
-  Complex f[4] = {F.xx, F.xy, F.yx, F.yy};
-  f[entry] += Complex(0, tiny);
-  return {f[0], f[1], f[2], f[3]};
-}
-
-Tensor<double> random_deformation(Random& random) {
+Tensor<double> random_large_deformation(Random& random) {
   for (;;) {
     const Tensor<double> F{1 + random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5),
                            1 + random.uniform(-0.5, 0.5)};
@@ -83,7 +72,7 @@ Matrix rotation(double angle) {
 
 template <class Law>
 Matrix stress(const Matrix& F, double m = mu, double l = lambda) {
-  return matrix(Law::template with<double>(m, l).respond(tensor(F)).P);
+  return as_matrix(Law::template with<double>(m, l).respond(as_tensor(F)).P);
 }
 
 // Tangent dP_ij/dF_kl, 4 x 4.
@@ -103,22 +92,22 @@ using Laws = ::testing::Types<Form<NeoHookean>, Form<NeoHookeanQuadratic>, Form<
 TYPED_TEST_SUITE(Materials, Laws);
 
 // Rounding of some twenty operations on numbers of order one.
-constexpr double rounding = 1e-14;
+constexpr double rounding_of_laws = 1e-14;
 
 // EXACT: P = dpsi/dF, with psi in three dimensions written anew above and its derivative by complex step.
 TYPED_TEST(Materials, StressIsTheDerivativeOfTheEnergy) {
   Random random(1);
   for (int sample = 0; sample < 200; ++sample) {
-    const Tensor<double> F = random_deformation(random);
-    const Matrix P = stress<TypeParam>(matrix(F));
+    const Tensor<double> F = random_large_deformation(random);
+    const Matrix P = stress<TypeParam>(as_matrix(F));
     for (int ij = 0; ij < 4; ++ij) {
       const double own = TypeParam::template with<Complex>().energy(stepped(F, ij)).imag() / tiny;
       const double anew = energy_3d<TypeParam, Complex>(stepped(F, ij), Complex(1)).imag() / tiny;
-      EXPECT_NEAR(P(ij / 2, ij % 2), own, 10 * rounding);
-      EXPECT_NEAR(P(ij / 2, ij % 2), anew, 10 * rounding);
+      EXPECT_NEAR(P(ij / 2, ij % 2), own, 10 * rounding_of_laws);
+      EXPECT_NEAR(P(ij / 2, ij % 2), anew, 10 * rounding_of_laws);
     }
-    EXPECT_NEAR(TypeParam::template with<double>().energy(F), (energy_3d<TypeParam, double>(F, 1.0)), rounding);
-    EXPECT_DOUBLE_EQ(TypeParam::template with<double>().respond(F).J, matrix(F).determinant());
+    EXPECT_NEAR(TypeParam::template with<double>().energy(F), (energy_3d<TypeParam, double>(F, 1.0)), rounding_of_laws);
+    EXPECT_DOUBLE_EQ(TypeParam::template with<double>().respond(F).J, as_matrix(F).determinant());
   }
 }
 
@@ -126,10 +115,10 @@ TYPED_TEST(Materials, StressIsTheDerivativeOfTheEnergy) {
 TYPED_TEST(Materials, OutOfPlaneStress) {
   Random random(2);
   for (int sample = 0; sample < 200; ++sample) {
-    const Tensor<double> F = random_deformation(random);
+    const Tensor<double> F = random_large_deformation(random);
     const Tensor<Complex> complex{F.xx, F.xy, F.yx, F.yy};
     const double derivative = energy_3d<TypeParam, Complex>(complex, Complex(1, tiny)).imag() / tiny;
-    EXPECT_NEAR(TypeParam::template with<double>().sigma_zz(F), derivative / determinant(F), 10 * rounding);
+    EXPECT_NEAR(TypeParam::template with<double>().sigma_zz(F), derivative / determinant(F), 10 * rounding_of_laws);
   }
 }
 
@@ -137,15 +126,15 @@ TYPED_TEST(Materials, OutOfPlaneStress) {
 TYPED_TEST(Materials, ObjectivityAndIsotropy) {
   Random random(3);
   for (int sample = 0; sample < 200; ++sample) {
-    const Matrix F = matrix(random_deformation(random)), Q = rotation(random.uniform(0, 2 * std::numbers::pi));
+    const Matrix F = as_matrix(random_large_deformation(random)), Q = rotation(random.uniform(0, 2 * std::numbers::pi));
     const Matrix P = stress<TypeParam>(F);
-    EXPECT_LT((stress<TypeParam>(Q * F) - Q * P).norm(), 10 * rounding);
-    EXPECT_LT((stress<TypeParam>(F * Q) - P * Q).norm(), 10 * rounding);
+    EXPECT_LT((stress<TypeParam>(Q * F) - Q * P).norm(), 10 * rounding_of_laws);
+    EXPECT_LT((stress<TypeParam>(F * Q) - P * Q).norm(), 10 * rounding_of_laws);
     const Matrix kirchhoff = P * F.transpose();
-    EXPECT_NEAR(kirchhoff(0, 1), kirchhoff(1, 0), 10 * rounding);
-    EXPECT_NEAR(TypeParam::template with<double>().energy(tensor(Q * F)),
-                TypeParam::template with<double>().energy(tensor(F)), rounding);
-    EXPECT_LT(stress<TypeParam>(Q).norm(), rounding);
+    EXPECT_NEAR(kirchhoff(0, 1), kirchhoff(1, 0), 10 * rounding_of_laws);
+    EXPECT_NEAR(TypeParam::template with<double>().energy(as_tensor(Q * F)),
+                TypeParam::template with<double>().energy(as_tensor(F)), rounding_of_laws);
+    EXPECT_LT(stress<TypeParam>(Q).norm(), rounding_of_laws);
   }
 }
 
@@ -153,8 +142,8 @@ TYPED_TEST(Materials, ObjectivityAndIsotropy) {
 TYPED_TEST(Materials, TangentIsSymmetric) {
   Random random(4);
   for (int sample = 0; sample < 200; ++sample) {
-    const Eigen::Matrix4d A = tangent<TypeParam>(random_deformation(random));
-    EXPECT_LT((A - A.transpose()).norm(), 100 * rounding);
+    const Eigen::Matrix4d A = tangent<TypeParam>(random_large_deformation(random));
+    EXPECT_LT((A - A.transpose()).norm(), 100 * rounding_of_laws);
   }
 }
 
@@ -162,17 +151,17 @@ TYPED_TEST(Materials, TangentIsSymmetric) {
 TYPED_TEST(Materials, HookeAtSmallStrain) {
   Eigen::Matrix4d hooke;
   hooke << lambda + 2 * mu, 0, 0, lambda, 0, mu, mu, 0, 0, mu, mu, 0, lambda, 0, 0, lambda + 2 * mu;
-  EXPECT_LT((tangent<TypeParam>({1, 0, 0, 1}) - hooke).norm(), rounding);
+  EXPECT_LT((tangent<TypeParam>({1, 0, 0, 1}) - hooke).norm(), rounding_of_laws);
 }
 
 // A closed, smooth loop of large strains.
-Matrix loop(double s) {
+Matrix closed_loop(double s) {
   const double t = 2 * std::numbers::pi * s;
   Matrix F;
   F << 1.1 + 0.3 * std::cos(t), 0.3 * std::sin(t), -0.2 * std::sin(2 * t), 0.95 + 0.2 * std::sin(t);
   return F;
 }
-Matrix loop_rate(double s) {
+Matrix closed_loop_rate(double s) {
   const double w = 2 * std::numbers::pi, t = w * s;
   Matrix F;
   F << -0.3 * w * std::sin(t), 0.3 * w * std::cos(t), -0.4 * w * std::cos(2 * t), 0.2 * w * std::cos(t);
@@ -186,7 +175,7 @@ TYPED_TEST(Materials, ClosedCycleReturnsTheEnergy) {
   double work = 0, magnitude = 0;
   for (int k = 0; k < points; ++k) {
     const double s = static_cast<double>(k) / points;
-    const double power = stress<TypeParam>(loop(s)).cwiseProduct(loop_rate(s)).sum();
+    const double power = stress<TypeParam>(closed_loop(s)).cwiseProduct(closed_loop_rate(s)).sum();
     work += power / points;
     magnitude += std::abs(power) / points;
   }
@@ -198,9 +187,10 @@ TYPED_TEST(Materials, ClosedCycleReturnsTheEnergy) {
 TYPED_TEST(Materials, UnitsChangeNothing) {
   Random random(5);
   for (int sample = 0; sample < 50; ++sample) {
-    const Matrix F = matrix(random_deformation(random));
+    const Matrix F = as_matrix(random_large_deformation(random));
     for (const double unit : {1e-9, 1e9})
-      EXPECT_LT((stress<TypeParam>(F, unit * mu, unit * lambda) / unit - stress<TypeParam>(F)).norm(), 10 * rounding);
+      EXPECT_LT((stress<TypeParam>(F, unit * mu, unit * lambda) / unit - stress<TypeParam>(F)).norm(),
+                10 * rounding_of_laws);
   }
 }
 
@@ -211,19 +201,19 @@ TYPED_TEST(Materials, LanesEqualScalars) {
     Tensor<Lanes> F{};
     Tensor<double> scalar[lane_count];
     for (int lane = 0; lane < lane_count; ++lane) {
-      scalar[lane] = random_deformation(random);
+      scalar[lane] = random_large_deformation(random);
       F.xx[lane] = scalar[lane].xx, F.xy[lane] = scalar[lane].xy;
       F.yx[lane] = scalar[lane].yx, F.yy[lane] = scalar[lane].yy;
     }
     const Response<Lanes> response = TypeParam::with(broadcast(mu), broadcast(lambda)).respond(F);
     const Lanes energy = TypeParam::with(broadcast(mu), broadcast(lambda)).energy(F);
     for (int lane = 0; lane < lane_count; ++lane) {
-      const Matrix P = stress<TypeParam>(matrix(scalar[lane]));
-      EXPECT_NEAR(response.P.xx[lane], P(0, 0), rounding);
-      EXPECT_NEAR(response.P.xy[lane], P(0, 1), rounding);
-      EXPECT_NEAR(response.P.yx[lane], P(1, 0), rounding);
-      EXPECT_NEAR(response.P.yy[lane], P(1, 1), rounding);
-      EXPECT_NEAR(energy[lane], TypeParam::template with<double>().energy(scalar[lane]), rounding);
+      const Matrix P = stress<TypeParam>(as_matrix(scalar[lane]));
+      EXPECT_NEAR(response.P.xx[lane], P(0, 0), rounding_of_laws);
+      EXPECT_NEAR(response.P.xy[lane], P(0, 1), rounding_of_laws);
+      EXPECT_NEAR(response.P.yx[lane], P(1, 0), rounding_of_laws);
+      EXPECT_NEAR(response.P.yy[lane], P(1, 1), rounding_of_laws);
+      EXPECT_NEAR(energy[lane], TypeParam::template with<double>().energy(scalar[lane]), rounding_of_laws);
     }
   }
 }
@@ -231,7 +221,7 @@ TYPED_TEST(Materials, LanesEqualScalars) {
 // EXACT: the numbers of docs/method.md 3, mu = 1, lambda = 4; sixteen digits were given, 2e-15 is the last of them.
 TEST(NeoHookeanOracle, StressAndEnergy) {
   const Tensor<double> F{1.2, 0.3, -0.1, 0.85};
-  const Matrix P = matrix(NeoHookean<double>{1, 4}.respond(F).P);
+  const Matrix P = as_matrix(NeoHookean<double>{1, 4}.respond(F).P);
   EXPECT_NEAR(P(0, 0), 0.5484633887391133, 2e-15);
   EXPECT_NEAR(P(0, 1), 0.2233486339693074, 2e-15);
   EXPECT_NEAR(P(1, 0), 0.1299540980920776, 2e-15);
@@ -255,7 +245,7 @@ TEST(WithLaw, ChoosesTheLaw) {
     Material material;
     material.law = law, material.young = 2.8, material.poisson = 0.4;  // mu = 1, lambda = 4
     EXPECT_NEAR(with_law(material, [&]<class Law>(const Law& l) { return energy_of(l, F, Record<Law, double>{}); }),
-                expected, rounding);
+                expected, rounding_of_laws);
     LawConstants constants;
     for (int lane = 0; lane < lane_count; ++lane) {
       set_law_constants(material, lane, constants);
@@ -264,8 +254,8 @@ TEST(WithLaw, ChoosesTheLaw) {
     const Tensor<Lanes> in_lanes{broadcast(F.xx), broadcast(F.xy), broadcast(F.yx), broadcast(F.yy)};
     const Lanes found =
         with_law(law, constants, [&]<class Law>(const Law& l) { return energy_of(l, in_lanes, Record<Law>{}); });
-    EXPECT_NEAR(found[0], expected, rounding);
-    EXPECT_NEAR(found[3], 8 * expected, 8 * rounding);
+    EXPECT_NEAR(found[0], expected, rounding_of_laws);
+    EXPECT_NEAR(found[3], 8 * expected, 8 * rounding_of_laws);
   };
   energy(MaterialLaw::neo_hookean, NeoHookean<double>{1, 4}.energy(F));
   energy(MaterialLaw::neo_hookean_quadratic, NeoHookeanQuadratic<double>{1, 4}.energy(F));

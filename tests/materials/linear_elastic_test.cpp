@@ -3,26 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <complex>
 #include <numbers>
 
 #include "bodies/nodal.hpp"
 #include "bodies/small_strain.hpp"
 #include "dynamics/true_spectrum.hpp"
 #include "setup/build_model.hpp"
-#include "support/random.hpp"
+#include "support/material_points.hpp"
 #include "support/simulations.hpp"
 
 namespace pliant::dynamics_tests {
 namespace {
-
-constexpr double mu = 0.7, lambda = 2.1, tiny = 1e-30;
-using Complex = std::complex<double>;
-
-Tensor<double> random_deformation(testing::Random& random, double size) {
-  return {1 + random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size),
-          1 + random.uniform(-size, size)};
-}
 
 // EXACT: P = dpsi/dF by complex step, and sigma_zz = lambda tr e.
 TEST(LinearElastic, StressIsTheDerivativeOfTheEnergy) {
@@ -48,7 +39,7 @@ Scene disc_of(MaterialLaw law) {
 }
 
 /// Largest difference of the forces of both laws over the largest force, at random displacements of a size.
-double difference(double size) {
+double difference_of_forces(double size) {
   Bench linear(disc_of(MaterialLaw::linear_elastic)), finite(disc_of(MaterialLaw::neo_hookean));
   testing::Random random(2);
   for (std::size_t i = 0; i < linear.model.compliant_size; ++i) {
@@ -69,8 +60,8 @@ double difference(double size) {
 
 // RATE: second-order terms are a share of the strain; displacements of 1e-6 between nodes 0.2 apart strain by 1e-5.
 TEST(LinearElastic, AgreesWithNeoHookeanAtSmallStrains) {
-  EXPECT_LT(difference(1e-6), 1e-4);
-  EXPECT_NEAR(observed_order(difference(1e-4), difference(1e-6), 100), 1, 0.1);
+  EXPECT_LT(difference_of_forces(1e-6), 1e-4);
+  EXPECT_NEAR(observed_order(difference_of_forces(1e-4), difference_of_forces(1e-6), 100), 1, 0.1);
 }
 
 // EXACT: the tangents at rest are the same; central differences of 1e-6 have third-order terms of 1e-10.

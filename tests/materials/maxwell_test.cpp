@@ -3,70 +3,48 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 #include "bodies/body_view.hpp"
-#include "bodies/initial_state.hpp"
-#include "bodies/internal_forces.hpp"
 #include "materials/neo_hookean_maxwell.hpp"
 #include "results/point_states.hpp"
 #include "setup/build_model.hpp"
-#include "support/random.hpp"
-#include "support/simulations.hpp"
+#include "support/material_discs.hpp"
+#include "support/material_points.hpp"
 
 namespace pliant::dynamics_tests {
 namespace {
 
-using Complex = std::complex<double>;
-using Law = NeoHookeanMaxwell<double>;
-using Values = Law::Record;
-constexpr double mu = 0.7, lambda = 2.1, branch = 1.3, relaxation_time = 0.4, tiny = 1e-30;
-constexpr Values at_rest{0, 0, 0, 1, 0, 1};
+using MaxwellRecord = NeoHookeanMaxwell<double>::Record;
+constexpr double branch = 1.3, relaxation_time = 0.4;
+constexpr MaxwellRecord at_rest{0, 0, 0, 1, 0, 1};
 /// Of some fifty operations on numbers of order one.
-constexpr double rounding = 2e-14;
+constexpr double rounding_of_relaxation = 2e-14;
 
 template <class T = double>
-NeoHookeanMaxwell<T> law() {
+NeoHookeanMaxwell<T> maxwell_law() {
   return {mu, lambda, branch, relaxation_time};
 }
 
-Tensor<double> random_deformation(testing::Random& random, double size = 0.4) {
-  return {1 + random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size),
-          1 + random.uniform(-size, size)};
-}
-
 /// Some state that a point may have come to.
-Values random_record(testing::Random& random) {
-  Values record = at_rest;
+MaxwellRecord random_maxwell_record(testing::Random& random) {
+  MaxwellRecord record = at_rest;
   for (int i = 0; i < 3; ++i) {
-    Values next;
-    law().over(random.uniform(0.1, 0.4)).respond(random_deformation(random), record, next);
+    MaxwellRecord next;
+    maxwell_law().over(random.uniform(0.1, 0.4)).respond(random_deformation(random), record, next);
     record = next;
   }
   return record;
-}
-
-Tensor<double> turned(const Tensor<double>& F, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * F.xx - s * F.yx, c * F.xy - s * F.yy, s * F.xx + c * F.yx, s * F.xy + c * F.yy};
-}
-
-void expect_near(const Tensor<double>& a, const Tensor<double>& b, double error) {
-  EXPECT_NEAR(a.xx, b.xx, error);
-  EXPECT_NEAR(a.xy, b.xy, error);
-  EXPECT_NEAR(a.yx, b.yx, error);
-  EXPECT_NEAR(a.yy, b.yy, error);
 }
 
 // EXACT: at once, before anything relaxes, P = dpsi/dF, by complex step.
 TEST(NeoHookeanMaxwell, stress_is_the_derivative_of_the_energy) {
   testing::Random random(1);
   for (int sample = 0; sample < 50; ++sample) {
-    const Values old = random_record(random);
+    const MaxwellRecord old = random_maxwell_record(random);
     const Tensor<double> F = random_deformation(random);
-    Values now;
-    const Tensor<double> P = law().respond(F, old, now).P;
+    MaxwellRecord now;
+    const Tensor<double> P = maxwell_law().respond(F, old, now).P;
     const double entries[4] = {P.xx, P.xy, P.yx, P.yy};
     for (int entry = 0; entry < 4; ++entry) {
       Complex f[4] = {F.xx, F.xy, F.yx, F.yy};
@@ -74,9 +52,9 @@ TEST(NeoHookeanMaxwell, stress_is_the_derivative_of_the_energy) {
       NeoHookeanMaxwell<Complex>::Record before, after;
       std::copy(old.begin(), old.end(), before.begin());
       const Tensor<Complex> stepped{f[0], f[1], f[2], f[3]};
-      law<Complex>().respond(stepped, before, after);
-      const double slope = law<Complex>().energy(stepped, after).imag() / tiny;
-      EXPECT_NEAR(entries[entry], slope, 100 * rounding);
+      maxwell_law<Complex>().respond(stepped, before, after);
+      const double slope = maxwell_law<Complex>().energy(stepped, after).imag() / tiny;
+      EXPECT_NEAR(entries[entry], slope, 100 * rounding_of_relaxation);
     }
   }
 }
@@ -85,19 +63,19 @@ TEST(NeoHookeanMaxwell, stress_is_the_derivative_of_the_energy) {
 TEST(NeoHookeanMaxwell, is_objective_and_dissipates) {
   testing::Random random(2);
   for (int sample = 0; sample < 50; ++sample) {
-    const Values old = random_record(random);
+    const MaxwellRecord old = random_maxwell_record(random);
     const Tensor<double> F = random_deformation(random);
     const double angle = random.uniform(0, 2 * std::numbers::pi);
-    Values now, now_turned;
-    const auto straight = law().over(0.1).respond(F, old, now);
-    const auto round = law().over(0.1).respond(turned(F, angle), old, now_turned);
-    expect_near(round.P, turned(straight.P, angle), 100 * rounding);
-    EXPECT_NEAR(round.power, straight.power, 100 * rounding);
+    MaxwellRecord now, now_turned;
+    const auto straight = maxwell_law().over(0.1).respond(F, old, now);
+    const auto round = maxwell_law().over(0.1).respond(turned(F, angle), old, now_turned);
+    expect_near(round.P, turned(straight.P, angle), 100 * rounding_of_relaxation);
+    EXPECT_NEAR(round.power, straight.power, 100 * rounding_of_relaxation);
     EXPECT_GT(straight.power, 0);
-    EXPECT_GT(law().energy(F, now), 0);
-    const auto none = law().over(0.1).respond(turned({1, 0, 0, 1}, angle), at_rest, now);
-    expect_near(none.P, {0, 0, 0, 0}, rounding);
-    EXPECT_NEAR(none.power, 0, rounding);
+    EXPECT_GT(maxwell_law().energy(F, now), 0);
+    const auto none = maxwell_law().over(0.1).respond(turned({1, 0, 0, 1}, angle), at_rest, now);
+    expect_near(none.P, {0, 0, 0, 0}, rounding_of_relaxation);
+    EXPECT_NEAR(none.power, 0, rounding_of_relaxation);
   }
 }
 
@@ -106,14 +84,14 @@ TEST(NeoHookeanMaxwell, relaxes_exponentially) {
   testing::Random random(3);
   for (const int steps : {1, 7}) {
     const Tensor<double> F = random_deformation(random);
-    Values record;
-    const Tensor<double> start = law().respond(F, at_rest, record).P;
+    MaxwellRecord record;
+    const Tensor<double> start = maxwell_law().respond(F, at_rest, record).P;
     const Tensor<double> relaxed = NeoHookean<double>{mu, lambda}.respond(F).P;
     constexpr double time = 0.9;
     Tensor<double> P{};
     for (int i = 0; i < steps; ++i) {
-      Values next;
-      P = law().over(time / steps).respond(F, record, next).P;
+      MaxwellRecord next;
+      P = maxwell_law().over(time / steps).respond(F, record, next).P;
       record = next;
     }
     const double left = std::exp(-time / relaxation_time);
@@ -121,7 +99,7 @@ TEST(NeoHookeanMaxwell, relaxes_exponentially) {
     expect_near(P,
                 {expected(start.xx, relaxed.xx), expected(start.xy, relaxed.xy), expected(start.yx, relaxed.yx),
                  expected(start.yy, relaxed.yy)},
-                10 * rounding);
+                10 * rounding_of_relaxation);
     EXPECT_GT(std::abs(start.xy - relaxed.xy), 0.01);
   }
 }
@@ -129,12 +107,14 @@ TEST(NeoHookeanMaxwell, relaxes_exponentially) {
 /// Shear strain after `time` under a small shear stress that is there from the start, over the stress.
 double creep(double time, int steps) {
   constexpr double stress = 1e-7;
-  Values record = at_rest, now;
+  MaxwellRecord record = at_rest, now;
   double shear = stress / (mu + branch);  // at once
-  law().respond({1, shear, 0, 1}, record, now);
+  maxwell_law().respond({1, shear, 0, 1}, record, now);
   record = now;
   for (int i = 0; i < steps; ++i) {
-    const auto stress_at = [&](double g) { return law().over(time / steps).respond({1, g, 0, 1}, record, now).P.xy; };
+    const auto stress_at = [&](double g) {
+      return maxwell_law().over(time / steps).respond({1, g, 0, 1}, record, now).P.xy;
+    };
     for (int k = 0; k < 3; ++k) {  // all but straight: secants
       const double slope = (stress_at(shear + 1e-8) - stress_at(shear)) / 1e-8;
       shear += (stress - stress_at(shear)) / slope;
@@ -174,20 +154,20 @@ TEST(NeoHookeanMaxwell, work_is_stored_or_dissipated) {
       const Tensor<double> rate = loop_rate(t);
       return P.xx * rate.xx + P.xy * rate.xy + P.yx * rate.yx + P.yy * rate.yy;
     };
-    Values record;
-    const auto at_start = law().respond(loop(0), at_rest, record);
-    const double start = law().energy(loop(0), record);
+    MaxwellRecord record;
+    const auto at_start = maxwell_law().respond(loop(0), at_rest, record);
+    const double start = maxwell_law().energy(loop(0), record);
     double power = at_start.power, doing = rate_of_work(0, at_start.P), dissipated = 0, work = 0;
     for (int k = 1; k <= steps; ++k) {
-      Values next;
-      const auto response = law().over(dt).respond(loop(k * dt), record, next);
+      MaxwellRecord next;
+      const auto response = maxwell_law().over(dt).respond(loop(k * dt), record, next);
       dissipated += 0.5 * dt * (power + response.power);
       work += 0.5 * dt * (doing + rate_of_work(k * dt, response.P));
       power = response.power, doing = rate_of_work(k * dt, response.P);
       record = next;
     }
     EXPECT_GT(dissipated, 0.05);
-    errors[i] = std::abs(work - dissipated - law().energy(loop(2), record) + start);
+    errors[i] = std::abs(work - dissipated - maxwell_law().energy(loop(2), record) + start);
   }
   EXPECT_NEAR(errors[0] / errors[1], 4, 0.2) << errors[0] << " " << errors[1];
   EXPECT_LT(errors[1], 1e-4);
@@ -200,51 +180,12 @@ Material viscoelastic(double modulus = branch, double time = relaxation_time) {
   return material;
 }
 
-/// A disc after three deformations, a tenth of a second apart.
-struct Deformed {
-  Model model;
-  Dofs position = initial_positions(model), force = zero_dofs(model);
-  Memory memory = initial_memory(model);
-
-  explicit Deformed(const BuildOptions& options) : model(build_model(scene(), options)) {
-    position = initial_positions(model), force = zero_dofs(model), memory = initial_memory(model);
-    testing::Random random(4);
-    for (int step = 0; step < 3; ++step) {
-      move(random);
-      add_forces();
-    }
-  }
-  static Scene scene() {
-    Scene scene = free_disc(60, 1);
-    scene.materials[0] = viscoelastic();
-    return scene;
-  }
-  void move(testing::Random& random) {
-    const Body& body = model.bodies[0];
-    for (int i = 0; i < model.shape_of(body).nodes(); ++i) {
-      const auto node = static_cast<std::size_t>(i);
-      const Vec2 x = BodyView(model, body, position)[node], noise{random.uniform(-1, 1), random.uniform(-1, 1)};
-      set_node(BodyOffsets(model, body), node, x + 0.01 * noise + 0.05 * Vec2(x.y() * x.y(), x.x()), position);
-    }
-    fill_padding(model, position);
-  }
-  void add_forces() {
-    const Batch& batch = model.batches[model.bodies[0].batch];
-    Memory next = memory;
-    BatchMotion motion = motion_of(batch, position, memory);
-    motion.elapsed = 0.1, motion.new_memory = next.material.data() + batch.memory;
-    force = zero_dofs(model);
-    add_internal_forces(model, batch, motion, &force.compliant[batch.offset]);
-    memory = std::move(next);
-  }
-};
-
 // EXACT: of bodies in lanes and of nodewise ones the same forces, memories and stresses.
 TEST(NeoHookeanMaxwell, layouts_agree) {
   BuildOptions nodewise, lanes;
   nodewise.least_sparse_nodes = 0, lanes.least_sparse_nodes = 1 << 30;
   nodewise.unite_topologies = lanes.unite_topologies = false;
-  const Deformed a(nodewise), b(lanes);
+  const DeformedDisc a(viscoelastic(), 4, nodewise), b(viscoelastic(), 4, lanes);
   ASSERT_NE(a.model.batches[0].layout, b.model.batches[0].layout);
   const BodyView one(a.model, a.model.bodies[0], a.force), other(b.model, b.model.bodies[0], b.force);
   double largest_force = 0;
@@ -253,7 +194,9 @@ TEST(NeoHookeanMaxwell, layouts_agree) {
     largest_force = std::max(largest_force, one[i].norm());
   }
   EXPECT_GT(largest_force, 0.01);
-  const auto states = [](const Deformed& d) { return point_states(d.model, d.model.bodies[0], d.position, d.memory); };
+  const auto states = [](const DeformedDisc& d) {
+    return point_states(d.model, d.model.bodies[0], d.position, d.memory);
+  };
   const auto s = states(a), t = states(b);
   for (std::size_t g = 0; g < s.size(); ++g) {
     EXPECT_NEAR(s[g].stress.xx, t[g].stress.xx, 1e-12);
@@ -262,21 +205,13 @@ TEST(NeoHookeanMaxwell, layouts_agree) {
   }
 }
 
-Scene oscillating_disc(Integrator integrator) {
-  Scene scene = free_disc(60, 1e9, stretching(0.4));
-  scene.materials[0] = viscoelastic();
-  scene.time.integrator = integrator;
-  scene.time.tolerance = 1;
-  return scene;
-}
-
 // RATE: the energy balance of a disc that swings and comes to rest close, at second order in the step with Verlet once
 // steps are short for all modes, at first with step doubling; most of its energy is dissipated.
 TEST(NeoHookeanMaxwell, books_of_a_disc_close) {
   for (const Integrator integrator : {Integrator::verlet, Integrator::step_doubling}) {
     double errors[2];
     for (int i = 0; i < 2; ++i) {
-      Scene scene = oscillating_disc(integrator);
+      Scene scene = oscillating_disc(viscoelastic(), integrator);
       scene.time.safety = 0.1 / (1 << i);
       scene.time.target = 1e-6 / (1 << 2 * i);
       const Model model = build_model(scene);
@@ -296,7 +231,7 @@ TEST(NeoHookeanMaxwell, books_of_a_disc_close) {
 // of the modulus, sqrt(31) at most. Within the limit of stability Verlet keeps E - dt^2/8 a.M a of small vibrations, so
 // that E swings by at most (w dt)^2/4 <= safety^2 of itself; steps of the soft disc make it grow without end.
 TEST(NeoHookeanMaxwell, step_bound_counts_the_branch) {
-  Scene scene = oscillating_disc(Integrator::verlet);
+  Scene scene = oscillating_disc(viscoelastic(), Integrator::verlet);
   scene.materials[0] = viscoelastic(30, 1e6);
   const Model stiff = build_model(scene);
   Simulation simulation(stiff);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace dynamics_tests;
 
-constexpr double strength = 0.2, energy_1 = 0.002, energy_2 = 0.004, stiffness = 100, end = 0.6;
+constexpr double strength = 0.2, energy_1 = 0.002, energy_2 = 0.004, end = 0.6;
 constexpr int outputs = 60;
 
 /// Two squares of E = 1, joined at x = 0. All matter moves away from there at first, with a shear.
@@ -21,7 +21,7 @@ Scene pulled_apart() {
   Scene scene = bare_scene();
   scene.file = "test.toml";
   scene.time.end = end;
-  scene.contacts = {frictionless(stiffness)};
+  scene.contacts = {frictionless(kn)};
   scene.contact.energy_consistent = false;  // the reference solver has no energy correction
   for (const double x : {-0.5, 0.5}) {
     ShapeSpec square = box_shape("", 1, 1, 0.125);
@@ -33,7 +33,7 @@ Scene pulled_apart() {
   }
   BondRule rule;
   rule.first = rule.second = "all";
-  rule.stiffness = stiffness;
+  rule.stiffness = kn;
   rule.strength = strength, rule.cohesion = 1.5 * strength, rule.friction = 0;
   rule.fracture_energy = energy_1, rule.shear_fracture_energy = energy_2;
   scene.bonds = {rule};
@@ -41,17 +41,17 @@ Scene pulled_apart() {
 }
 
 /// Forces on the second square over time, and the energy that its bonds have lost.
-struct History {
+struct Tearing {
   std::vector<Vec2> force;
   double lost = 0;
 };
 
-History by_engine(double safety) {
+Tearing tearing_by_engine(double safety) {
   Scene scene = pulled_apart();
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);
-  History history;
+  Tearing history;
   for (int i = 1; i <= outputs; ++i) {
     advance(simulation, end * i / outputs);
     history.force.push_back(contact_force(simulation, 1));
@@ -60,10 +60,10 @@ History by_engine(double safety) {
   return history;
 }
 
-History by_reference(int steps_per_output) {
+Tearing tearing_by_reference(int steps_per_output) {
   ReferenceRun run(pulled_apart(), {});
   const reference::Body& pulled = run.system.bodies().all()[1];
-  History history;
+  Tearing history;
   for (int step = 1; step <= outputs * steps_per_output; ++step) {
     run.stepping.step(end * step / (outputs * steps_per_output));
     if (step % steps_per_output != 0) continue;
@@ -78,7 +78,7 @@ History by_reference(int steps_per_output) {
   return history;
 }
 
-double largest_difference(const History& a, const History& b) {
+double largest_force_difference(const Tearing& a, const Tearing& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.force.size(); ++i) largest = std::max(largest, (a.force[i] - b.force[i]).norm());
   return largest;
@@ -91,16 +91,16 @@ double largest_difference(const History& a, const History& b) {
 /// softening: 0.75 % there, 3 % and 12 % for dt = 1/200 and 1/100. The engine's steps are a tenth as long, or less.
 TEST(BondPaths, forces_of_squares_that_are_pulled_apart) {
   LargestFigures figures;
-  const History engine = by_engine(0.01);
+  const Tearing engine = tearing_by_engine(0.01);
   double peak = 0;
   for (const Vec2& force : engine.force) peak = std::max(peak, force.norm());
   EXPECT_GT(peak, 0.8 * strength);
   EXPECT_LT(engine.force.back().norm(), 1e-12);
   std::vector<double> steps, errors;
   for (const int parts : {1, 2, 4}) {
-    const History reference = by_reference(parts);
+    const Tearing reference = tearing_by_reference(parts);
     steps.push_back(1.0 / parts);
-    errors.push_back(largest_difference(engine, reference) / strength);
+    errors.push_back(largest_force_difference(engine, reference) / strength);
     EXPECT_LT(errors.back(), 0.12 / (parts * parts)) << parts;
     EXPECT_NEAR(reference.lost, engine.lost, 0.12 / (parts * parts) * engine.lost) << parts;
     figures.note("force of a tear, steps of 1/" + std::to_string(100 * parts), errors.back());

@@ -13,15 +13,15 @@ namespace {
 
 using namespace testing;
 
-constexpr double stiffness = 100, strength = 1, cohesion = 1.5, energy_1 = 0.03, energy_2 = 0.05;
+constexpr double bond_strength = 1, bond_cohesion = 1.5, bond_energy_1 = 0.03, bond_energy_2 = 0.05;
 
 /// Bonds of unequal strengths, energies and stiffnesses, beside contact with friction: each term of the law counts.
-BondRule bond_rule(double gap = 0) {
+BondRule full_bond_rule(double gap = 0) {
   BondRule rule;
   rule.first = rule.second = "all";
-  rule.stiffness = stiffness, rule.shear_stiffness = 0.7 * stiffness;
-  rule.strength = strength, rule.cohesion = cohesion;
-  rule.fracture_energy = energy_1, rule.shear_fracture_energy = energy_2;
+  rule.stiffness = kn, rule.shear_stiffness = 0.7 * kn;
+  rule.strength = bond_strength, rule.cohesion = bond_cohesion;
+  rule.fracture_energy = bond_energy_1, rule.shear_fracture_energy = bond_energy_2;
   rule.friction = 0.6;
   rule.gap = gap;
   return rule;
@@ -33,14 +33,14 @@ constexpr double frictions[] = {0.3, 0.6};
 /// Bonds under the higher friction fatigue.
 Scene bonded(Scene scene, double friction, double gap = 0) {
   scene.contacts = {mohr_coulomb(130, friction)};
-  scene.bonds = {bond_rule(gap)};
+  scene.bonds = {full_bond_rule(gap)};
   BondRule& rule = scene.bonds[0];
   if (friction == frictions[1]) rule.fatigue_threshold = 0.2, rule.fatigue_rate = 0.3, rule.shear_fatigue_rate = 0.5;
   return scene;
 }
 
 /// Largest differences of all states that were compared, and what the states were.
-struct Compared {
+struct ComparedBonds {
   double force = 0;   ///< over the largest force
   double energy = 0;  ///< stored, and lost in a step, J/m
   double damage = 0;
@@ -86,7 +86,7 @@ class BothBonds {
   }
 
   ContactRig rig;
-  Compared found;
+  ComparedBonds found;
 
  private:
   /// Bonds stand in another order there.
@@ -139,7 +139,7 @@ void go_through_states(BothBonds& both, Random& random, int states = 20, double 
 }
 
 /// INDEPENDENT: two programs at the same positions, with the same history. Tolerance: that of verify/frozen_states.
-void expect_same(const Compared& found, const std::string& name, double friction) {
+void expect_same(const ComparedBonds& found, const std::string& name, double friction) {
   LargestFigures figures;
   figures.note("bonds: " + name, found.force);
   EXPECT_LE(found.force, 1e-11) << name;

@@ -23,13 +23,13 @@ using reference::System;
 using reference::TimeStepping;
 using reference::Vector;
 
-constexpr double stiffness = 1000, strength = 1, cohesion = 2, energy_1 = 0.01, energy_2 = 0.03;
+constexpr double stiff_kn = 1000, stiff_strength = 1, stiff_cohesion = 2, stiff_energy_1 = 0.01, stiff_energy_2 = 0.03;
 
-BondRule bond_rule() {
+BondRule stiff_bond_rule() {
   BondRule rule;
   rule.first = rule.second = "all";
-  rule.stiffness = stiffness, rule.strength = strength, rule.cohesion = cohesion;
-  rule.fracture_energy = energy_1, rule.shear_fracture_energy = energy_2;
+  rule.stiffness = stiff_kn, rule.strength = stiff_strength, rule.cohesion = stiff_cohesion;
+  rule.fracture_energy = stiff_energy_1, rule.shear_fracture_energy = stiff_energy_2;
   rule.friction = 0;
   return rule;
 }
@@ -39,13 +39,13 @@ Scene two_squares(BodyKind kind, double gap = 0) {
   Scene scene = bare_scene();
   scene.file = "test.toml";
   scene.time.end = 1;
-  scene.contacts = {frictionless(stiffness)};
+  scene.contacts = {frictionless(stiff_kn)};
   for (const double x : {-0.5, 0.5 + gap}) {
     ShapeSpec square = box_shape("", 1, 1, 0.25);
     if (kind == BodyKind::compliant) square.nodes = 41;
     add_body(scene, square, kind, {x, 0});
   }
-  scene.bonds = {bond_rule()};
+  scene.bonds = {stiff_bond_rule()};
   return scene;
 }
 
@@ -57,7 +57,7 @@ AxisCondition at_rate(double rate) {
 }
 
 /// Moves a rigid grain along a straight line.
-void drive(Scene& scene, const std::string& grain, const Vec2& velocity) {
+void drive_straight(Scene& scene, const std::string& grain, const Vec2& velocity) {
   BoundaryCondition condition;
   condition.grains = grain;
   condition.x = at_rate(velocity.x()), condition.y = at_rate(velocity.y()), condition.angle = at_rate(0);
@@ -100,15 +100,16 @@ TEST(ReferenceBonds, work_of_separation_in_one_mode) {
   LargestFigures figures;
   for (const bool in_shear : {false, true}) {
     Scene scene = two_squares(BodyKind::rigid);
-    drive(scene, "grain0", {0, 0});
-    drive(scene, "grain1", in_shear ? Vec2(0, 0.04) : Vec2(0.04, 0));
+    drive_straight(scene, "grain0", {0, 0});
+    drive_straight(scene, "grain1", in_shear ? Vec2(0, 0.04) : Vec2(0.04, 0));
     const Separation found = separate(scene, 80);
-    EXPECT_NEAR(found.work, in_shear ? energy_2 : energy_1, 1e-13);
+    EXPECT_NEAR(found.work, in_shear ? stiff_energy_2 : stiff_energy_1, 1e-13);
     EXPECT_NEAR(found.lost, found.work, 1e-13);
-    EXPECT_NEAR(found.peak, in_shear ? cohesion : strength, 1e-11);
+    EXPECT_NEAR(found.peak, in_shear ? stiff_cohesion : stiff_strength, 1e-11);
     EXPECT_EQ(found.stored, 0);
     EXPECT_EQ(found.counts.torn, 4);
-    figures.note("work of separation in one mode", std::abs(found.work / (in_shear ? energy_2 : energy_1) - 1));
+    figures.note("work of separation in one mode",
+                 std::abs(found.work / (in_shear ? stiff_energy_2 : stiff_energy_1) - 1));
   }
 }
 
@@ -118,16 +119,17 @@ TEST(ReferenceBonds, work_of_separation_in_mixed_modes) {
   LargestFigures figures;
   for (const double angle : {0.3, 0.7, 1.2}) {
     Scene scene = two_squares(BodyKind::rigid);
-    drive(scene, "grain0", {0, 0});
-    drive(scene, "grain1", 0.04 * Vec2(std::cos(angle), std::sin(angle)));
+    drive_straight(scene, "grain0", {0, 0});
+    drive_straight(scene, "grain1", 0.04 * Vec2(std::cos(angle), std::sin(angle)));
     constexpr int steps = 1000;
     const Separation found = separate(scene, steps);
     // with equal stiffnesses the shares of the modes in the energy are cos^2 and sin^2 of the angle of the opening
     const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2), step = 0.04 / steps;
-    const double energy = 1 / (c / energy_1 + s / energy_2);
-    EXPECT_NEAR(found.work, energy, stiffness * step * step / 4) << angle;
+    const double energy = 1 / (c / stiff_energy_1 + s / stiff_energy_2);
+    EXPECT_NEAR(found.work, energy, stiff_kn * step * step / 4) << angle;
     EXPECT_NEAR(found.lost, found.work, 1e-13) << angle;
-    EXPECT_NEAR(found.peak, 1 / std::sqrt(c / std::pow(strength, 2) + s / std::pow(cohesion, 2)), stiffness * step)
+    EXPECT_NEAR(found.peak, 1 / std::sqrt(c / std::pow(stiff_strength, 2) + s / std::pow(stiff_cohesion, 2)),
+                stiff_kn * step)
         << angle;
     EXPECT_EQ(found.counts.torn, 4);
     figures.note("work of separation in mixed modes", std::abs(found.work / energy - 1));
@@ -152,17 +154,17 @@ TEST(ReferenceBonds, work_of_separation_of_compliant_squares) {
   for (const Vec2& direction : {Vec2(1, 0), Vec2(0, 1), Vec2(0.6, 0.8)}) {
     Scene scene = two_squares(BodyKind::compliant);
     scene.materials[0].young = 1e4;
-    scene.bonds[0].cohesion = strength, scene.bonds[0].shear_fracture_energy = energy_1;
+    scene.bonds[0].cohesion = stiff_strength, scene.bonds[0].shear_fracture_energy = stiff_energy_1;
     pull_side(scene, "grain0", {-1, 0}, {0, 0});
     pull_side(scene, "grain1", {1, 0}, 0.03 * direction);
     constexpr int steps = 150;
     const double step = 0.03 / steps;
     const Separation found = separate(scene, steps);
-    EXPECT_NEAR(found.work, energy_1, 2 * stiffness * step * step / 4);
-    EXPECT_NEAR(found.lost, found.work, 2 * stiffness * step * step / 4);
-    EXPECT_LT(found.stored, 1e-10 * energy_1);
+    EXPECT_NEAR(found.work, stiff_energy_1, 2 * stiff_kn * step * step / 4);
+    EXPECT_NEAR(found.lost, found.work, 2 * stiff_kn * step * step / 4);
+    EXPECT_LT(found.stored, 1e-10 * stiff_energy_1);
     EXPECT_EQ(found.counts.torn, 4);
-    figures.note("work of separation of compliant squares", std::abs(found.work / energy_1 - 1));
+    figures.note("work of separation of compliant squares", std::abs(found.work / stiff_energy_1 - 1));
     figures.note("energy balance of compliant squares", found.balance_error);
   }
 }
@@ -177,7 +179,7 @@ Scene cemented() {
   add_body(scene, outline_shape("", rectangle(1.5, 1, 0.21), 40), BodyKind::compliant, {0.7, 0.505});
   add_body(scene, outline_shape("", rectangle(1.49, 1, 0.26)), BodyKind::rigid, {2.2, 0.503}, 0.003);
   scene.walls = {flat_wall("floor", Wall::Solid::below, 0, 0.37)};
-  BondRule rule = bond_rule();
+  BondRule rule = stiff_bond_rule();
   rule.gap = 0.03;
   rule.stiffness = 100, rule.shear_stiffness = 70;
   rule.fracture_energy = 0.03, rule.shear_fracture_energy = 0.05, rule.friction = 0.6;
@@ -304,7 +306,7 @@ TEST(ReferenceBonds, cells_touch_without_force) {
     scene.shapes = {disc_shape("disc", 2, 220)};
     add_grain(scene, "disc", BodyKind::compliant, {0.3, 0.2});
     scene.grains[0].cells.assign(6, 1.0), scene.grains[0].seed = seed;
-    scene.bonds = {bond_rule()};
+    scene.bonds = {stiff_bond_rule()};
     scene.bonds[0].friction = 0.3;
     System system(scene);
     Motion motion = stirred(system, 0, 0);
@@ -319,8 +321,8 @@ TEST(ReferenceBonds, cells_touch_without_force) {
 TEST(ReferenceBonds, are_made_at_their_time) {
   for (const bool statics : {true, false}) {
     Scene scene = two_squares(BodyKind::rigid);
-    drive(scene, "grain0", {0, 0});
-    drive(scene, "grain1", {0.001, 0});
+    drive_straight(scene, "grain0", {0, 0});
+    drive_straight(scene, "grain1", {0.001, 0});
     scene.bonds[0].from = 0.25, scene.bonds[0].gap = 0.01;
     System system(scene);
     reference::SolverOptions options;
@@ -331,7 +333,7 @@ TEST(ReferenceBonds, are_made_at_their_time) {
     run.step(0.4);
     ASSERT_EQ(system.bonds().all().size(), 4u);
     EXPECT_NEAR(system.bonds().all()[0].rest_gap[0], 0.00025, 1e-15);
-    EXPECT_NEAR(run.forces().bonds.stored, 0.5 * stiffness * std::pow(0.00015, 2), 1e-15);
+    EXPECT_NEAR(run.forces().bonds.stored, 0.5 * stiff_kn * std::pow(0.00015, 2), 1e-15);
     EXPECT_LT(run.balance().balance_error(), 1e-12);
   }
 }
@@ -343,7 +345,7 @@ TEST(ReferenceBonds, refuse_what_they_do_not_have) {
     change(scene.bonds[0]);
     EXPECT_THROW(System{scene}, InputError);
   };
-  refused([](BondRule& rule) { rule.fracture_energy = strength * strength / (2 * stiffness); });
+  refused([](BondRule& rule) { rule.fracture_energy = stiff_strength * stiff_strength / (2 * stiff_kn); });
   refused([](BondRule& rule) { rule.weibull_modulus = 4; });
 }
 

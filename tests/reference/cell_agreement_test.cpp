@@ -40,7 +40,7 @@ Scene crowded_cell(Random& random, const ContactRule& rule, ContactQuadrature qu
 }
 
 /// Sets the cell of a rig, and moves the centres of bodies along.
-void deform(ContactRig& rig, const Eigen::Matrix2d& vectors) {
+void deform_cell(ContactRig& rig, const Eigen::Matrix2d& vectors) {
   const Eigen::Matrix2d growth = vectors * matrix_of(rig.q.lattice).inverse() - Eigen::Matrix2d::Identity();
   for (std::size_t b = 0; b < rig.model.bodies.size(); ++b) {
     Vec2 centre(0, 0);
@@ -90,7 +90,7 @@ CellDifference compare_in_cells(const ContactRule& rule, ContactQuadrature quadr
     for (int state = 0; state < 5; ++state) {
       if (state > 0) stir(rig, random, 0.003);
       const double time = 0.3 * (sample % 4) + 0.002 * state;  // also far sheared
-      deform(rig, scene.cell->gradient_at(time) * matrix_of(initial_lattice(scene)));
+      deform_cell(rig, scene.cell->gradient_at(time) * matrix_of(initial_lattice(scene)));
       if (state == 0) rig.refresh();
       const StepStart start{before, 1};
       rig.totals = rig.contact.forces(rig.outlines, rig.committed, rig.trial, rig.forces, state > 0 ? &start : nullptr);

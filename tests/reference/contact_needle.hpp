@@ -13,8 +13,6 @@
 
 namespace pliant::testing {
 
-constexpr double kn = 100;  ///< stiffness in these tests, Pa/m
-
 // A polygon with edges of 1 that turn by 30 degrees, and a needle whose tip alone comes near.
 struct Needle {
   explicit Needle(const ContactRule& rule, int sides = 12) : corners(regular(sides, 0.5 / std::sin(M_PI / sides))) {

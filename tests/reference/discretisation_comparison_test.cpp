@@ -15,7 +15,7 @@ namespace {
 using namespace testing;
 
 /// Of the largest entry of each kind.
-constexpr double tolerance = 1e-11;
+constexpr double entry_tolerance = 1e-11;
 
 /// Largest difference of two lists of sparse rows, zeros where one has no entry.
 double difference(const std::vector<reference::Row>& own, const ShapeRows& engine) {
@@ -85,7 +85,7 @@ Eigen::SparseMatrix<double> engine_mass(const Discretisation& engine) {
   return mass;
 }
 
-double largest(const Eigen::SparseMatrix<double>& matrix) {
+double largest_entry(const Eigen::SparseMatrix<double>& matrix) {
   double result = 0;
   for (int c = 0; c < matrix.outerSize(); ++c)
     for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, c); entry; ++entry)
@@ -93,7 +93,7 @@ double largest(const Eigen::SparseMatrix<double>& matrix) {
   return result;
 }
 
-void compare(const ShapeSpec& shape, DiscretisationSettings settings, LargestFigures& figures) {
+void compare_spaces(const ShapeSpec& shape, DiscretisationSettings settings, LargestFigures& figures) {
   SCOPED_TRACE(described(shape, settings));
   const FieldMesh mesh = make_field_mesh(shape);
   settings.mass = Mass::corrected;
@@ -111,20 +111,20 @@ void compare(const ShapeSpec& shape, DiscretisationSettings settings, LargestFig
   const Eigen::SparseMatrix<double> rest = own.consistent - engine_mass(engine);
   const double mass_scale = own.lumped.maxCoeff();
   const auto expect_agreement = [&](const char* what, double error) {
-    EXPECT_LT(error, tolerance) << what;
+    EXPECT_LT(error, entry_tolerance) << what;
     figures.note(std::string(what) + ": " + name_of(settings), error);
   };
   expect_agreement("shape functions", values);
   expect_agreement("weights", points.weight / weight_scale);
   expect_agreement("gradients", points.gradient / gradient_scale);
   expect_agreement("lumped mass", lumped / mass_scale);
-  expect_agreement("consistent mass", largest(rest) / mass_scale);
+  expect_agreement("consistent mass", largest_entry(rest) / mass_scale);
 }
 
 TEST(ReferenceAgainstEngine, discretisations_agree) {
   LargestFigures figures;
   for (const ShapeSpec& shape : reference_shapes())
-    for (const DiscretisationSettings& settings : reference_methods()) compare(shape, settings, figures);
+    for (const DiscretisationSettings& settings : reference_methods()) compare_spaces(shape, settings, figures);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 
 using namespace testing;
 
-Scene integrated(Scene scene) {
+Scene by_segments(Scene scene) {
   scene.contact.quadrature = ContactQuadrature::segments;
   scene.contact.energy_consistent = false;  // the reference solver has no energy correction
   scene.skin = 1;                           // so that no state asks for new candidates
@@ -74,7 +74,7 @@ Scene random_outlines(Random& random, const ContactRule& rule, int sample) {
   scene.contacts = {rule};
   add_random_body(scene, random, sample % 5);
   add_random_body(scene, random, sample / 5 % 5);
-  return integrated(scene);
+  return by_segments(scene);
 }
 
 struct Law {
@@ -188,7 +188,7 @@ TEST(IntegratedContact, EngineAgreesInACrowd) {
       Random random(sample + 1000);
       Scene scene = crowd(random, {rule}, sample % 2 == 0);
       if (sample % 4 < 2) scene.contact.length = ContactLength::current;
-      BothIntegrals both(integrated(scene));
+      BothIntegrals both(by_segments(scene));
       all.add_states(both, random);
     }
     return all;
@@ -211,7 +211,7 @@ TEST(IntegratedContact, EngineAgreesOnOwnImages) {
     for (int sample = 0; sample < 20; ++sample) {
       Random random(sample + 60);
       const bool deforms = rule.law == ContactLawKind::frictionless && sample % 2 == 0;
-      BothIntegrals both(integrated(lone_body(random, deforms ? BodyKind::compliant : BodyKind::rigid, rule)));
+      BothIntegrals both(by_segments(lone_body(random, deforms ? BodyKind::compliant : BodyKind::rigid, rule)));
       all.add_states(both, random);
     }
     return all;
@@ -234,7 +234,7 @@ TEST(IntegratedContact, EngineAgreesInANotch) {
       notched[1] *= random.uniform(0.1, 0.3);
       add_body(scene, outline_shape("notched", notched), BodyKind::rigid, {0, 0}, M_PI / 6);
       add_body(scene, outline_shape("needle", needle), BodyKind::rigid, {0, 0}, random.uniform(-0.2, 0.2));
-      BothIntegrals both(integrated(scene));
+      BothIntegrals both(by_segments(scene));
       const double direction = random.uniform(-0.4, 0.4), depth = random.uniform(0.01, 0.05);
       both.rig.move(1,
                     both.rig.node(0, 1) - both.rig.node(1, 0) - depth * Vec2(std::sin(direction), std::cos(direction)));
@@ -258,7 +258,7 @@ TEST(IntegratedContact, EngineAgreesBesideShortEdges) {
           block{{0.1, 0}, {0.4, 0}, {0.4, 1}, {0.1, 1}};
       add_body(scene, outline_shape("step", refined(step, spacing)), BodyKind::rigid, {0, 0});
       add_body(scene, outline_shape("block", block), BodyKind::rigid, {0, 0}, 0.01);
-      BothIntegrals both(integrated(scene));
+      BothIntegrals both(by_segments(scene));
       both.rig.move(0, Vec2(-1, -1) - both.rig.node(0, 0));
       both.rig.move(1, Vec2(0.1, height) - both.rig.node(1, 0));
       Comparison all;

@@ -14,8 +14,6 @@ namespace {
 using namespace testing;
 using reference::ContactResult;
 
-constexpr double kn = 100;
-
 Scene integrated(const ContactRule& rule) {
   Scene scene = bare_scene();
   scene.contact.quadrature = ContactQuadrature::segments;

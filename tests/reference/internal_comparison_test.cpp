@@ -18,7 +18,7 @@ namespace {
 
 using namespace testing;
 
-constexpr double tolerance = 1e-11;  ///< of the largest force, energy or stress
+constexpr double force_tolerance = 1e-11;  ///< of the largest force, energy or stress
 
 /// Grains of three shapes, of different sizes, angles and stiffnesses, each in a state of its own. Grains of small
 /// strains start unturned: the scene allows no other.
@@ -42,7 +42,7 @@ Scene some_grains(MaterialLaw law, const DiscretisationSettings& settings, int c
 }
 
 /// Smooth large strains and a little noise, in units of the body's size.
-void deform(const Model& model, const Body& body, Random& random, Dofs& q) {
+void deform_body(const Model& model, const Body& body, Random& random, Dofs& q) {
   const BodyOffsets offsets(model, body);
   const BodyView view(model, body, q);
   const double a = random.uniform(-0.15, 0.15), b = random.uniform(-0.15, 0.15), c = random.uniform(-0.15, 0.15);
@@ -66,9 +66,9 @@ struct Both {
   explicit Both(const Scene& scene, const BuildOptions& options = {})
       : model(build_model(scene, options)), q(initial_positions(model)), rate(zero_dofs(model)) {
     Random random(5);
-    for (const Body& body : model.bodies) deform(model, body, random, q);
+    for (const Body& body : model.bodies) deform_body(model, body, random, q);
     Dofs moved = q;
-    for (const Body& body : model.bodies) deform(model, body, random, moved);
+    for (const Body& body : model.bodies) deform_body(model, body, random, moved);
     for (std::size_t i = 0; i < q.compliant.size(); ++i) rate.compliant[i] = moved.compliant[i] - q.compliant[i];
   }
   reference::InternalForces reference_of(const Body& body) const {
@@ -99,12 +99,12 @@ double compare_forces(const Both& both) {
     const Eigen::VectorXd engine = of_body(both.model, body, f);
     const double scale = engine.cwiseAbs().maxCoeff(), error = (state.residual + engine).cwiseAbs().maxCoeff() / scale;
     EXPECT_GT(scale, 1e-3);
-    EXPECT_LT(error, tolerance) << body.name;
-    EXPECT_NEAR(state.energy, energy[static_cast<std::size_t>(body.batch)][body.lane], tolerance * state.energy);
+    EXPECT_LT(error, force_tolerance) << body.name;
+    EXPECT_NEAR(state.energy, energy[static_cast<std::size_t>(body.batch)][body.lane], force_tolerance * state.energy);
     worst = std::max(worst, error);
     const Eigen::VectorXd damping = of_body(both.model, body, viscous);
     EXPECT_LE((own.damping(q, v, false).residual + damping).cwiseAbs().maxCoeff(),
-              tolerance * damping.cwiseAbs().maxCoeff())
+              force_tolerance * damping.cwiseAbs().maxCoeff())
         << body.name;
   }
   return worst;
@@ -122,11 +122,11 @@ double compare_stresses(const std::vector<reference::PointStress>& own, const st
     const PointState& b = engine[g];
     scale = std::max({scale, std::abs(b.stress.xx), std::abs(b.stress.yy)});
     error = std::max({error, std::abs(a.zz - b.stress.zz), std::abs(a.energy - b.energy)});
-    EXPECT_NEAR(a.jacobian, b.jacobian, tolerance);
+    EXPECT_NEAR(a.jacobian, b.jacobian, force_tolerance);
     if (small) continue;
     error = std::max({error, std::abs(a.xx - b.stress.xx), std::abs(a.yy - b.stress.yy), std::abs(a.xy - b.stress.xy)});
   }
-  EXPECT_LT(error, tolerance * scale);
+  EXPECT_LT(error, force_tolerance * scale);
   return error / scale;
 }
 
@@ -137,14 +137,14 @@ double compare_stresses(const Both& both, const Body& body) {
                           law == MaterialLaw::linear_elastic);
 }
 
-const MaterialLaw all_laws[] = {
+const MaterialLaw engine_laws[] = {
     MaterialLaw::neo_hookean,    MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
     MaterialLaw::linear_elastic, MaterialLaw::neo_hookean_maxwell,   MaterialLaw::von_mises};
 
 TEST(ReferenceAgainstEngine, internal_and_viscous_forces_agree) {
   LargestFigures figures;
   for (const DiscretisationSettings& settings : reference_methods())
-    for (const MaterialLaw law : all_laws) {
+    for (const MaterialLaw law : engine_laws) {
       SCOPED_TRACE(name_of(settings) + ", law " + std::to_string(static_cast<int>(law)));
       figures.note("internal forces: " + name_of(settings), compare_forces(Both(some_grains(law, settings))));
     }
@@ -232,7 +232,7 @@ TEST(ReferenceAgainstEngine, maxwell_branches_agree) {
   for (const bool nodewise : {false, true}) {
     const Remembering both(nodewise ? BuildOptions{0, false, {}} : BuildOptions{1 << 30, false, {}});
     EXPECT_EQ(both.model.batches[0].layout == Layout::nodewise, nodewise);
-    EXPECT_LT(difference_after(both, 0), tolerance);
+    EXPECT_LT(difference_after(both, 0), force_tolerance);
     const double coarse = difference_after(both, 0.04), fine = difference_after(both, 0.02);
     EXPECT_NEAR(coarse / fine, 8, 1.2) << coarse << " " << fine;
     EXPECT_LT(fine, 1e-4);
@@ -261,7 +261,7 @@ TEST(ReferenceAgainstEngine, maxwell_tangent_is_the_derivative) {
 /// Points in the order of the background triangles on both sides.
 TEST(ReferenceAgainstEngine, stresses_agree) {
   LargestFigures figures;
-  for (const MaterialLaw law : all_laws) {
+  for (const MaterialLaw law : engine_laws) {
     const Both both(some_grains(law, settings_of(DiscretisationMethod::mls)));
     for (std::size_t b = 0; b < both.model.bodies.size(); b += 7)
       figures.note("stresses: mls, support 8", compare_stresses(both, both.model.bodies[b]));
@@ -294,7 +294,7 @@ void compare_plastic_increments(MaterialLaw law) {
     for (const Body& body : both.model.bodies) own.push_back(both.reference_of(body));
     double flowed = 0;
     for (int increment = 0; increment < 4; ++increment) {
-      for (const Body& body : both.model.bodies) deform(both.model, body, random, q);
+      for (const Body& body : both.model.bodies) deform_body(both.model, body, random, q);
       Dofs force = zero_dofs(both.model);
       Memory next = memory;
       std::vector<PointTotals> totals;
@@ -309,21 +309,21 @@ void compare_plastic_increments(MaterialLaw law) {
         const reference::InternalState state = own[b].evaluate(of_body(both.model, body, q), false, 0.5);
         own[b].accept(state.history);
         const Eigen::VectorXd engine = of_body(both.model, body, force);
-        EXPECT_LT((state.residual + engine).cwiseAbs().maxCoeff(), tolerance * engine.cwiseAbs().maxCoeff());
+        EXPECT_LT((state.residual + engine).cwiseAbs().maxCoeff(), force_tolerance * engine.cwiseAbs().maxCoeff());
         const PointTotals& total = totals[static_cast<std::size_t>(body.batch)];
         const double loss = total.loss[nodewise ? 0 : body.lane] * body.scale * body.scale;
         double energy = 0, largest = 0;
         const std::vector<PointState> states = point_states(both.model, body, q, memory);
         for (std::size_t g = 0; g < states.size(); ++g) {
           energy += states[g].weight * states[g].energy;
-          EXPECT_NEAR(states[g].plastic_strain, state.history[g].plastic_strain, tolerance);
+          EXPECT_NEAR(states[g].plastic_strain, state.history[g].plastic_strain, force_tolerance);
           largest = std::max(largest, states[g].plastic_strain);
         }
         // With the plastic metrics of the end, in and out of the plane.
         compare_stresses(own[b].stresses(of_body(both.model, body, q)), states, false);
-        EXPECT_NEAR(state.energy, energy, tolerance * energy);
+        EXPECT_NEAR(state.energy, energy, force_tolerance * energy);
         if (law == MaterialLaw::von_mises)
-          EXPECT_NEAR(state.loss, loss, 3 * std::pow(largest, 2) * loss + tolerance * energy);
+          EXPECT_NEAR(state.loss, loss, 3 * std::pow(largest, 2) * loss + force_tolerance * energy);
         flowed = std::max(flowed, largest);
       }
     }

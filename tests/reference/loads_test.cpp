@@ -26,7 +26,7 @@ struct Outcome {
   Vector energies;  ///< kinetic, strain, boundary, dissipated, external work, J/m
 };
 
-Outcome by_engine(Scene scene, double safety) {
+Outcome loaded_by_engine(Scene scene, double safety) {
   without_error_control(scene, safety);
   const Model model = build_model(scene);
   Simulation simulation(model);
@@ -36,7 +36,7 @@ Outcome by_engine(Scene scene, double safety) {
           (Vector(5) << e.kinetic, e.strain, e.boundary, e.dissipated, e.external_work).finished()};
 }
 
-Outcome by_reference(const Scene& scene, int steps, const SolverOptions& options = {}) {
+Outcome loaded_by_reference(const Scene& scene, int steps, const SolverOptions& options = {}) {
   ReferenceRun run(scene, options);
   run.run(steps);
   const EnergyBalance& b = run.stepping.balance();
@@ -48,8 +48,8 @@ Outcome by_reference(const Scene& scene, int steps, const SolverOptions& options
 /// it changed is left; as much again is allowed, because the engine's steps are halved but for what it takes to meet
 /// points of histories.
 void expect_agreement(const Scene& scene, int steps, double safety, double most_left = 2e-3) {
-  const Outcome engine = by_engine(scene, safety), finer_engine = by_engine(scene, safety / 2);
-  const Outcome reference = by_reference(scene, steps), finer = by_reference(scene, 2 * steps);
+  const Outcome engine = loaded_by_engine(scene, safety), finer_engine = loaded_by_engine(scene, safety / 2);
+  const Outcome reference = loaded_by_reference(scene, steps), finer = loaded_by_reference(scene, 2 * steps);
   const auto compare = [=](const Vector& a, const Vector& coarse_a, const Vector& b, const Vector& coarse_b,
                            double size) {
     const double left = (a - coarse_a).cwiseAbs().maxCoeff() + (b - coarse_b).cwiseAbs().maxCoeff();

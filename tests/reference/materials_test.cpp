@@ -18,10 +18,10 @@ using namespace pliant::testing;
 using Complex = std::complex<double>;
 
 constexpr double tiny = 1e-30;  // complex step: no cancellation
-constexpr double rounding = 1e-13;
+constexpr double material_rounding = 1e-13;
 
-const MaterialLaw all_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
-                                MaterialLaw::linear_elastic};
+const MaterialLaw elastic_laws[] = {MaterialLaw::neo_hookean, MaterialLaw::neo_hookean_quadratic, MaterialLaw::melody,
+                                    MaterialLaw::linear_elastic};
 
 Material material_of(MaterialLaw law, double young = 2.8, double poisson = 0.4) {
   Material material{"soft", law, 1, young, poisson};
@@ -55,7 +55,7 @@ TEST(ReferenceMaterials, exact_value) {
 
 TEST(ReferenceMaterials, stress_is_the_derivative_by_complex_step) {
   Random random(1);
-  for (const MaterialLaw law : all_laws)
+  for (const MaterialLaw law : elastic_laws)
     for (int sample = 0; sample < 50; ++sample) {
       const Material material = material_of(law);
       Deformation<double> F = random_deformation(random);
@@ -65,14 +65,14 @@ TEST(ReferenceMaterials, stress_is_the_derivative_by_complex_step) {
         Complex f[5] = {F.xx, F.xy, F.yx, F.yy, F.zz};
         f[i] += Complex(0, tiny);
         const Complex stepped = strain_energy(material, Deformation<Complex>{f[0], f[1], f[2], f[3], f[4]});
-        EXPECT_NEAR(psi.gradient[i], stepped.imag() / tiny, rounding) << "EXACT: law " << int(law);
+        EXPECT_NEAR(psi.gradient[i], stepped.imag() / tiny, material_rounding) << "EXACT: law " << int(law);
       }
     }
 }
 
 TEST(ReferenceMaterials, tangent_is_the_limit_of_differences) {
   Random random(2);
-  for (const MaterialLaw law : all_laws)
+  for (const MaterialLaw law : elastic_laws)
     for (int sample = 0; sample < 20; ++sample) {
       const Material material = material_of(law);
       const Deformation<double> F = random_deformation(random);
@@ -97,7 +97,7 @@ TEST(ReferenceMaterials, tangent_is_the_limit_of_differences) {
 TEST(ReferenceMaterials, small_strains_of_all_laws_are_those_of_hooke) {
   Eigen::Matrix4d hooke;  // mu = 1, lambda = 4; order xx, xy, yx, yy
   hooke << 6, 0, 0, 4, 0, 1, 1, 0, 0, 1, 1, 0, 4, 0, 0, 6;
-  for (const MaterialLaw law : all_laws) {
+  for (const MaterialLaw law : elastic_laws) {
     const Jet<4> psi = strain_energy(material_of(law), variables<4>({1, 0, 0, 1}));
     EXPECT_LT(psi.gradient.norm(), 1e-14) << "EXACT";
     EXPECT_LT((psi.hessian - hooke).norm(), 1e-13) << "EXACT: law " << int(law);
@@ -131,7 +131,7 @@ const DiscretisationMethod all_methods[] = {DiscretisationMethod::mls, Discretis
 
 TEST(ReferenceInternalForces, residual_and_tangent_are_the_limits_of_differences) {
   for (const DiscretisationMethod method : all_methods)
-    for (const MaterialLaw law : all_laws) {
+    for (const MaterialLaw law : elastic_laws) {
       Sample sample(method, law, 7);
       sample.material.viscosity = 0.3;
       const InternalForces forces = sample.forces();
@@ -159,7 +159,7 @@ TEST(ReferenceInternalForces, residual_and_tangent_are_the_limits_of_differences
 TEST(ReferenceInternalForces, start_at_rest_and_do_not_see_rotations) {
   for (const DiscretisationMethod method :
        {DiscretisationMethod::mls, DiscretisationMethod::t3, DiscretisationMethod::es_t3})
-    for (const MaterialLaw law : all_laws) {
+    for (const MaterialLaw law : elastic_laws) {
       const Sample sample(method, law, 8);
       const InternalState state = sample.forces().evaluate(sample.rest, false);
       EXPECT_LT(state.residual.cwiseAbs().maxCoeff(), 1e-12) << "EXACT";
@@ -169,7 +169,7 @@ TEST(ReferenceInternalForces, start_at_rest_and_do_not_see_rotations) {
 }
 
 TEST(ReferenceInternalForces, affine_states_have_the_stress_of_their_law) {
-  for (const MaterialLaw law : all_laws) {
+  for (const MaterialLaw law : elastic_laws) {
     const Sample sample(DiscretisationMethod::mls, law, 9);
     const InternalForces forces = sample.forces();
     const Deformation<double> G{1.1, 0.2, -0.05, 0.9};

@@ -65,7 +65,7 @@ TEST(ReferenceNewton, converges_quadratically_with_all_that_is_unsymmetric_or_de
   }
 }
 
-Scene pressed(const ContactRule& rule) {
+Scene pressed_disc(const ContactRule& rule) {
   Scene scene = on_a_floor(1, 8, 0.2, {0, 0});
   scene.shapes = {disc_shape("disc", 2, 60)};
   scene.grains = {grains("disc", "disc", BodyKind::compliant, {{4, 0.99}}, moving({0.3, -0.5}))};
@@ -74,13 +74,13 @@ Scene pressed(const ContactRule& rule) {
 }
 
 TEST(ReferenceNewton, converges_quadratically_in_frictionless_contact) {
-  ReferenceRun run(pressed(frictionless(40)), {});
+  ReferenceRun run(pressed_disc(frictionless(40)), {});
   run.stepping.step(0.02);
   expect_quadratic(run.stepping.step(0.12));
 }
 
 TEST(ReferenceNewton, converges_quadratically_in_sticking_contact) {
-  ReferenceRun run(pressed(mohr_coulomb(40, 5)), {});
+  ReferenceRun run(pressed_disc(mohr_coulomb(40, 5)), {});
   run.stepping.step(0.02);
   const double before = run.stepping.balance().dissipated_by_contact;
   expect_quadratic(run.stepping.step(0.12));

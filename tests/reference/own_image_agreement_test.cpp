@@ -20,13 +20,13 @@ void stir_lone(ContactRig& rig, Random& random) {
     for (int i = 0; i < 2 * rig.model.shape_of(batch).nodes(); ++i) rig.q.compliant[batch.offset + i][0] += by() / 4;
 }
 
-struct Compared {
+struct ComparedImages {
   double difference = 0, sheared = 0;
   int contacts = 0, own = 0;
 };
 
 /// INDEPENDENT: two programs. Tolerance: that of verify/frozen_states; energies, of order 0.1, the same.
-void compare(ContactRig& rig, reference::Contacts& contacts, Compared& all) {
+void compare_images(ContactRig& rig, reference::Contacts& contacts, ComparedImages& all) {
   EXPECT_FALSE(rig.evaluate());
   const reference::ContactResult result = contacts.evaluate(outline_points(rig));
   const Points forces = forces_on_nodes(result, outline_points(rig).size());
@@ -53,7 +53,7 @@ void compare(ContactRig& rig, reference::Contacts& contacts, Compared& all) {
 
 TEST(OwnImageAgreement, forces_of_all_laws) {
   LargestFigures figures;
-  Compared all;
+  ComparedImages all;
   for (const ContactRule& rule : {frictionless(100), mohr_coulomb(100, 0.3, 0.05, 0.2), cohesive(100, 0.5, 0.02, 0.4)})
     for (int sample = 0; sample < 20 && !HasFailure(); ++sample) {
       SCOPED_TRACE(sample);
@@ -62,10 +62,10 @@ TEST(OwnImageAgreement, forces_of_all_laws) {
       ContactRig rig(scene);
       reference::Contacts contacts(scene, reference_outlines(rig.model));
       rig.refresh();
-      compare(rig, contacts, all);
+      compare_images(rig, contacts, all);
       for (int state = 0; state < 4; ++state) {
         stir_lone(rig, random);
-        compare(rig, contacts, all);
+        compare_images(rig, contacts, all);
       }
     }
   EXPECT_GT(all.own, 500);

@@ -33,7 +33,7 @@ Points random_comb(testing::Random& random, bool on_lattice) {
   return lower;
 }
 
-void compare(const Points& outline, const Points& places, LargestFigures& figures) {
+void compare_paths(const Points& outline, const Points& places, LargestFigures& figures) {
   const InnerPaths paths(outline);
   const reference::BodyDistances own(outline);
   for (const Vec2& from : places)
@@ -58,13 +58,13 @@ TEST(ReferenceAgainstEngine, distances_through_bodies_agree) {
       if (on_lattice) x = x.array().round();
       if (is_inside(outline, x) && distance_to_outline(outline, x) > 1e-3) places.push_back(x);
     }
-    compare(outline, places, figures);
+    compare_paths(outline, places, figures);
   }
   for (const ShapeSpec& shape : {l_shape(120), fork(120), reference_shapes().back()}) {
     FieldMesh mesh = make_field_mesh(shape);
     const double unit = mean_node_distance(mesh);
     for (Vec2& x : mesh.nodes) x /= unit;
-    compare(outline_of(mesh), mesh.nodes, figures);
+    compare_paths(outline_of(mesh), mesh.nodes, figures);
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 using namespace pliant::testing;
 
 /// Rounding of sums of some twenty products of order one, in mean node distances.
-constexpr double rounding = 1e-13;
+constexpr double space_rounding = 1e-13;
 
 FieldMesh in_node_distances(FieldMesh mesh) {
   const double unit = mean_node_distance(mesh);
@@ -51,10 +51,10 @@ TEST(ReferenceShapeFunctions, reproduce_linear_functions) {
           one += row.value[i], place += row.value[i] * from;
           zero += point.gradient[i], identity += from * point.gradient[i].transpose();
         }
-        EXPECT_NEAR(one, 1, rounding) << "EXACT";
-        EXPECT_LT(place.norm(), rounding) << "EXACT";
-        EXPECT_LT(zero.norm(), 10 * rounding) << "EXACT";
-        EXPECT_LT((identity - Eigen::Matrix2d::Identity()).norm(), 10 * rounding) << "EXACT";
+        EXPECT_NEAR(one, 1, space_rounding) << "EXACT";
+        EXPECT_LT(place.norm(), space_rounding) << "EXACT";
+        EXPECT_LT(zero.norm(), 10 * space_rounding) << "EXACT";
+        EXPECT_LT((identity - Eigen::Matrix2d::Identity()).norm(), 10 * space_rounding) << "EXACT";
       }
     }
 }
@@ -165,18 +165,19 @@ TEST(ReferenceSpace, weights_and_masses_sum_to_area_and_moments) {
       const PolygonProperties polygon = polygon_properties(outline_of(mesh));
       double area = 0, moment = 0;
       for (const Point& point : space.points) area += point.weight;
-      EXPECT_NEAR(area / polygon.area, 1, rounding) << "EXACT";
-      EXPECT_NEAR(space.lumped.sum() / polygon.area, 1, rounding) << "EXACT";
+      EXPECT_NEAR(area / polygon.area, 1, space_rounding) << "EXACT";
+      EXPECT_NEAR(space.lumped.sum() / polygon.area, 1, space_rounding) << "EXACT";
       const Eigen::VectorXd ones = Eigen::VectorXd::Ones(space.lumped.size());
-      EXPECT_LT((space.consistent * ones - space.lumped).cwiseAbs().maxCoeff(), rounding * space.lumped.maxCoeff())
+      EXPECT_LT((space.consistent * ones - space.lumped).cwiseAbs().maxCoeff(),
+                space_rounding * space.lumped.maxCoeff())
           << "EXACT: row sums";
       for (int c = 0; c < 2; ++c) {
         Eigen::VectorXd x(space.lumped.size());
         for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = mesh.nodes[static_cast<std::size_t>(i)][c];
         moment += x.dot(space.consistent * x);
-        EXPECT_LT(std::abs(x.dot(space.lumped)), rounding * polygon.area * x.cwiseAbs().maxCoeff()) << "EXACT";
+        EXPECT_LT(std::abs(x.dot(space.lumped)), space_rounding * polygon.area * x.cwiseAbs().maxCoeff()) << "EXACT";
       }
-      EXPECT_NEAR(moment / polygon.polar_moment, 1, rounding) << "EXACT: linear functions and a rule of degree 4";
+      EXPECT_NEAR(moment / polygon.polar_moment, 1, space_rounding) << "EXACT: linear functions and a rule of degree 4";
     }
 }
 

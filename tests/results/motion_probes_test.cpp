@@ -11,7 +11,7 @@
 namespace pliant::dynamics_tests {
 namespace {
 
-constexpr double rounding = 1e-12;
+constexpr double motion_rounding = 1e-12;
 
 /// A rigid disc that flies and spins under gravity, and a compliant one that rests out of reach without it.
 Scene thrown_disc(double end) {
@@ -30,24 +30,25 @@ TEST(MotionProbes, rigid_flight) {
   const Vec2 centre(1.5, 3), velocity(0.5, -1);  // 3 + 1 - 2/2
   const double angle = 0.5, spin = 0.3;
   const std::vector<double> x = measured(simulation, probe_of("position", "stone"));
-  EXPECT_NEAR((Vec2(x[0], x[1]) - centre).norm(), 0, rounding) << "EXACT: verlet is exact under constant force";
-  EXPECT_NEAR(x[2], angle, rounding) << "EXACT";
-  EXPECT_NEAR((measured_vector(simulation, probe_of("displacement", "stone")) - Vec2(0.5, 0)).norm(), 0, rounding);
+  EXPECT_NEAR((Vec2(x[0], x[1]) - centre).norm(), 0, motion_rounding) << "EXACT: verlet is exact under constant force";
+  EXPECT_NEAR(x[2], angle, motion_rounding) << "EXACT";
+  EXPECT_NEAR((measured_vector(simulation, probe_of("displacement", "stone")) - Vec2(0.5, 0)).norm(), 0,
+              motion_rounding);
   const Vec2 rotation = measured_vector(simulation, probe_of("rotation", "stone"));
-  EXPECT_NEAR(rotation.x(), 0.3, rounding) << "EXACT: from the start";
-  EXPECT_NEAR(rotation.y(), spin, rounding) << "EXACT";
+  EXPECT_NEAR(rotation.x(), 0.3, motion_rounding) << "EXACT: from the start";
+  EXPECT_NEAR(rotation.y(), spin, motion_rounding) << "EXACT";
   const Vec2 a = measured_vector(simulation, probe_of("acceleration", "stone"));
-  EXPECT_NEAR((a - Vec2(0, -2)).norm(), 0, rounding) << "EXACT";
+  EXPECT_NEAR((a - Vec2(0, -2)).norm(), 0, motion_rounding) << "EXACT";
   // EXACT at a node: r turned by the angle; v + w x r; a - w^2 r; displacement less r at the start.
   const Vec2 reference = model.outlines[model.bodies[0].outline].points[5];
   const Vec2 r = Eigen::Rotation2Dd(angle) * reference, start = Eigen::Rotation2Dd(0.2) * reference;
   const auto at_five = [&](const char* quantity) {
     return measured_vector(simulation, at_node(5, probe_of(quantity, "stone")));
   };
-  EXPECT_NEAR((at_five("position") - centre - r).norm(), 0, rounding);
-  EXPECT_NEAR((at_five("velocity") - velocity - spin * Vec2(-r.y(), r.x())).norm(), 0, rounding);
-  EXPECT_NEAR((at_five("acceleration") - a + spin * spin * r).norm(), 0, rounding);
-  EXPECT_NEAR((at_five("displacement") - Vec2(0.5, 0) - r + start).norm(), 0, rounding);
+  EXPECT_NEAR((at_five("position") - centre - r).norm(), 0, motion_rounding);
+  EXPECT_NEAR((at_five("velocity") - velocity - spin * Vec2(-r.y(), r.x())).norm(), 0, motion_rounding);
+  EXPECT_NEAR((at_five("acceleration") - a + spin * spin * r).norm(), 0, motion_rounding);
+  EXPECT_NEAR((at_five("displacement") - Vec2(0.5, 0) - r + start).norm(), 0, motion_rounding);
 }
 
 TEST(MotionProbes, compliant_flight) {
@@ -58,7 +59,8 @@ TEST(MotionProbes, compliant_flight) {
   Simulation simulation(model);
   EXPECT_NEAR(measured(simulation, probe_of("rotation", "disc"))[1], 1e-3, 1e-15) << "EXACT: as given";
   advance(simulation, 0.5);
-  EXPECT_NEAR((measured_vector(simulation, probe_of("displacement", "disc")) - Vec2(0.05, -0.025)).norm(), 0, rounding)
+  EXPECT_NEAR((measured_vector(simulation, probe_of("displacement", "disc")) - Vec2(0.05, -0.025)).norm(), 0,
+              motion_rounding)
       << "EXACT";
   // EXACT but for the spin's own strain, of order (spin t)^2 = 2.5e-7, of the angle.
   EXPECT_NEAR(measured(simulation, probe_of("rotation", "disc"))[0], 5e-4, 5e-4 * 1e-6);
@@ -93,7 +95,7 @@ TEST(MotionProbes, reductions_go_over_bodies) {
   EXPECT_TRUE(std::isnan(measured(simulation, probe_of("position", "compliant"))[0])) << "EXACT: none there";
   EXPECT_EQ(measured(simulation, probe_of("force", "compliant"))[0], 0) << "EXACT: a sum of nothing";
   const double area = polygon_properties(model.outlines[0].points).area;
-  EXPECT_NEAR(measured(simulation, probe_of("area", "pair"))[0], 2 * area, rounding) << "EXACT";
+  EXPECT_NEAR(measured(simulation, probe_of("area", "pair"))[0], 2 * area, motion_rounding) << "EXACT";
 }
 
 TEST(MotionProbes, a_node_must_be_there) {
@@ -126,12 +128,12 @@ TEST(ForceProbes, origins_add_up_to_mass_times_acceleration) {
     for (const char* origin : {"force", "body_force", "applied_force", "reaction_force"})
       sum += measured_vector(simulation, probe_of(origin, body.name));
     if (body.kind == BodyKind::compliant)
-      EXPECT_NEAR(measured_vector(simulation, probe_of("internal_force", body.name)).norm(), 0, rounding)
+      EXPECT_NEAR(measured_vector(simulation, probe_of("internal_force", body.name)).norm(), 0, motion_rounding)
           << "EXACT: rounding of nodal forces of order 0.1";
     const Vec2 total = measured_vector(simulation, probe_of("total_force", body.name)),
                acceleration = measured_vector(simulation, probe_of("acceleration", body.name));
-    EXPECT_NEAR((sum - total).norm(), 0, rounding) << "EXACT: " << body.name;
-    EXPECT_NEAR((body.mass * acceleration - total).norm(), 0, rounding) << "EXACT: " << body.name;
+    EXPECT_NEAR((sum - total).norm(), 0, motion_rounding) << "EXACT: " << body.name;
+    EXPECT_NEAR((body.mass * acceleration - total).norm(), 0, motion_rounding) << "EXACT: " << body.name;
   }
 }
 
@@ -142,16 +144,17 @@ TEST(ForceProbes, walls) {
   const int upper = static_cast<int>(model.bodies.size()) - 1, lower = upper - 1;
   const double pressure = 0.05, mass = 6;  // half of the ramp to 0.1 by t = 2; thickness 1, density 1, period 6
   const Vec2 applied = measured_vector(simulation, probe_of("applied_force", "upper"));
-  EXPECT_NEAR((applied - Vec2(0, -pressure * 6 + 0.01 * mass)).norm(), 0, rounding)
+  EXPECT_NEAR((applied - Vec2(0, -pressure * 6 + 0.01 * mass)).norm(), 0, motion_rounding)
       << "EXACT: pressure times period, and what bears its weight";
   EXPECT_NEAR((measured_vector(simulation, probe_of("body_force", "upper")) - Vec2(0, -0.01 * mass)).norm(), 0,
-              rounding);
+              motion_rounding);
   // EXACT: the drive along x gives 0.1 in 2, so mass x 0.05, beside what contact takes.
   const Vec2 shear = measured_vector(simulation, probe_of("reaction_force", "upper"));
-  EXPECT_NEAR(shear.x(), mass * 0.05 - contact_force(simulation, upper).x(), rounding);
+  EXPECT_NEAR(shear.x(), mass * 0.05 - contact_force(simulation, upper).x(), motion_rounding);
   EXPECT_EQ(shear.y(), 0) << "EXACT: loaded, not imposed";
   const Vec2 held = measured_vector(simulation, probe_of("reaction_force", "lower"));
-  EXPECT_NEAR((held + contact_force(simulation, lower) + Vec2(0, -0.01 * mass)).norm(), 0, rounding) << "EXACT: rest";
+  EXPECT_NEAR((held + contact_force(simulation, lower) + Vec2(0, -0.01 * mass)).norm(), 0, motion_rounding)
+      << "EXACT: rest";
   EXPECT_GT(contact_force(simulation, upper).norm(), 1e-3) << "the wall is touched";
 }
 
@@ -164,7 +167,8 @@ TEST(ForceProbes, nodes_carry_the_bodys_force) {
     Vec2 sum(0, 0);
     for (int k = 0; k < model.outlines[body.outline].count; ++k)
       sum += measured_vector(simulation, at_node(k, probe_of("force", body.name)));
-    EXPECT_NEAR((sum - measured_vector(simulation, probe_of("force", body.name))).norm(), 0, rounding) << "EXACT";
+    EXPECT_NEAR((sum - measured_vector(simulation, probe_of("force", body.name))).norm(), 0, motion_rounding)
+        << "EXACT";
   }
 }
 
@@ -175,7 +179,7 @@ TEST(EnergyProbes, bodies_add_up_to_the_balance) {
   const Energies e = simulation.energy_balance().energy;
   double kinetic = measured(simulation, probe_of("kinetic_energy", "all"))[0];
   for (const char* wall : {"lower", "upper"}) kinetic += measured(simulation, probe_of("kinetic_energy", wall))[0];
-  EXPECT_NEAR(kinetic, e.kinetic, rounding * e.kinetic) << "EXACT";
+  EXPECT_NEAR(kinetic, e.kinetic, motion_rounding * e.kinetic) << "EXACT";
   const double strain = measured(simulation, probe_of("strain_energy", "compliant"))[0];
   EXPECT_NEAR(strain, e.strain, 1e-10 * e.strain) << "EXACT: logarithms of J near 1 keep 1e-10 of the energy";
   EXPECT_GT(e.strain, 1e-6);
@@ -189,7 +193,7 @@ TEST(EnergyProbes, works_by_origin) {
   advance(simulation, 1);
   const std::vector<double> works = measured(simulation, probe_of("works"));
   const Energies e = simulation.energy_balance().energy;
-  EXPECT_NEAR(works[0] + works[1], e.external_work, rounding) << "EXACT";
+  EXPECT_NEAR(works[0] + works[1], e.external_work, motion_rounding) << "EXACT";
   EXPECT_EQ(works[2], e.dissipated) << "EXACT: no damping";
   EXPECT_EQ(works[3], 0) << "EXACT: no damping";
   double mass = 0;
@@ -197,7 +201,7 @@ TEST(EnergyProbes, works_by_origin) {
   const double fall = measured(simulation, probe_of("position", "all"))[1] - before,
                sink = measured_vector(simulation, probe_of("position", "upper")).y() - upper_before.y();
   // EXACT: all grains have one mass; the upper wall of mass 6 sinks too.
-  EXPECT_NEAR(works[1], -0.01 * (mass * fall + 6 * sink), rounding);
+  EXPECT_NEAR(works[1], -0.01 * (mass * fall + 6 * sink), motion_rounding);
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ class DeformedDisc : public ::testing::Test {
   std::vector<PointState> states_;
 };
 
-constexpr double rounding = 1e-11;  ///< of table gradients that reproduce linear fields to 1e-12, on a radius of 1
+constexpr double gradient_rounding =
+    1e-11;  ///< of table gradients that reproduce linear fields to 1e-12, on a radius of 1
 
 TEST_F(DeformedDisc, stress_is_that_of_the_law) {
   // EXACT: s = mu/J (F F^T - 1) + lambda ln J/J; the initial turn drops out.
@@ -47,12 +48,12 @@ TEST_F(DeformedDisc, stress_is_that_of_the_law) {
   const Matrix s =
       (deformation * deformation.transpose() - Matrix::Identity() + 4 * std::log(J) * Matrix::Identity()) / J;
   for (const PointState& p : states_) {
-    EXPECT_NEAR(p.jacobian, J, rounding);
-    EXPECT_NEAR(p.stress.xx, s(0, 0), rounding);
-    EXPECT_NEAR(p.stress.yy, s(1, 1), rounding);
-    EXPECT_NEAR(p.stress.xy, s(0, 1), rounding);
-    EXPECT_NEAR(p.stress.zz, 4 * std::log(J) / J, rounding);
-    EXPECT_NEAR(p.energy, 0.0872207960699283, rounding) << "EXACT: psi/mu of an independent evaluation";
+    EXPECT_NEAR(p.jacobian, J, gradient_rounding);
+    EXPECT_NEAR(p.stress.xx, s(0, 0), gradient_rounding);
+    EXPECT_NEAR(p.stress.yy, s(1, 1), gradient_rounding);
+    EXPECT_NEAR(p.stress.xy, s(0, 1), gradient_rounding);
+    EXPECT_NEAR(p.stress.zz, 4 * std::log(J) / J, gradient_rounding);
+    EXPECT_NEAR(p.energy, 0.0872207960699283, gradient_rounding) << "EXACT: psi/mu of an independent evaluation";
   }
 }
 
@@ -60,16 +61,16 @@ TEST_F(DeformedDisc, strain_is_turned_back) {
   // EXACT: (F^T F - 1)/2 with F from the placed grain on.
   const Matrix E = 0.5 * (deformation.transpose() * deformation - Matrix::Identity());
   for (const PointState& p : states_) {
-    EXPECT_NEAR(p.strain[0], E(0, 0), rounding);
-    EXPECT_NEAR(p.strain[1], E(1, 1), rounding);
-    EXPECT_NEAR(p.strain[2], E(0, 1), rounding);
+    EXPECT_NEAR(p.strain[0], E(0, 0), gradient_rounding);
+    EXPECT_NEAR(p.strain[1], E(1, 1), gradient_rounding);
+    EXPECT_NEAR(p.strain[2], E(0, 1), gradient_rounding);
   }
 }
 
 TEST_F(DeformedDisc, weights_are_the_area) {
   double area = 0;
   for (const PointState& p : states_) area += p.weight;
-  EXPECT_NEAR(area, model_.bodies[0].area, rounding) << "EXACT";
+  EXPECT_NEAR(area, model_.bodies[0].area, gradient_rounding) << "EXACT";
 }
 
 TEST(StressInvariants, are_those_of_the_tensor) {
@@ -128,14 +129,14 @@ TEST(StressProbes, mean_stress_is_the_virial_of_the_forces) {
   for (const PointState& p : point_states(model, body, state.position, state.memory)) area += p.weight * p.jacobian;
   const std::vector<double> s = measured(simulation, probe_of("stress", "soft"));
   EXPECT_LT(s[1], -0.05) << "it is pressed";
-  EXPECT_NEAR(s[0], virial(0, 0) / area, rounding);
-  EXPECT_NEAR(s[1], virial(1, 1) / area, rounding);
-  EXPECT_NEAR(s[2], virial(0, 1) / area, rounding);
-  EXPECT_NEAR(s[2], virial(1, 0) / area, rounding);
+  EXPECT_NEAR(s[0], virial(0, 0) / area, gradient_rounding);
+  EXPECT_NEAR(s[1], virial(1, 1) / area, gradient_rounding);
+  EXPECT_NEAR(s[2], virial(0, 1) / area, gradient_rounding);
+  EXPECT_NEAR(s[2], virial(1, 0) / area, gradient_rounding);
   // EXACT: invariants of the mean.
-  EXPECT_NEAR(s[4] + s[5], s[0] + s[1], rounding);
-  EXPECT_NEAR(s[6], von_mises({s[0], s[1], s[2], s[3]}), rounding);
-  EXPECT_NEAR(s[8], -(s[0] + s[1] + s[3]) / 3, rounding);
+  EXPECT_NEAR(s[4] + s[5], s[0] + s[1], gradient_rounding);
+  EXPECT_NEAR(s[6], von_mises({s[0], s[1], s[2], s[3]}), gradient_rounding);
+  EXPECT_NEAR(s[8], -(s[0] + s[1] + s[3]) / 3, gradient_rounding);
 }
 
 TEST(StressProbes, extremes_and_nodes_are_local) {
@@ -175,20 +176,20 @@ TEST(StressProbes, contact_stress_is_love_and_weber) {
   const Matrix expected = contact_moment(simulation, 0) + contact_moment(simulation, 1);
   const double area = rows_of(probe_of("area", "all"))[0];
   const std::vector<double> all = rows_of(probe_of("contact_stress", "all"));
-  EXPECT_NEAR(all[0], expected(0, 0) / area, rounding) << "EXACT";
-  EXPECT_NEAR(all[1], expected(0, 1) / area, rounding) << "EXACT";
-  EXPECT_NEAR(all[2], expected(1, 0) / area, rounding) << "EXACT";
-  EXPECT_NEAR(all[3], expected(1, 1) / area, rounding) << "EXACT";
-  EXPECT_NEAR(all[6], -0.5 * (all[0] + all[3]), rounding) << "EXACT";
+  EXPECT_NEAR(all[0], expected(0, 0) / area, gradient_rounding) << "EXACT";
+  EXPECT_NEAR(all[1], expected(0, 1) / area, gradient_rounding) << "EXACT";
+  EXPECT_NEAR(all[2], expected(1, 0) / area, gradient_rounding) << "EXACT";
+  EXPECT_NEAR(all[3], expected(1, 1) / area, gradient_rounding) << "EXACT";
+  EXPECT_NEAR(all[6], -0.5 * (all[0] + all[3]), gradient_rounding) << "EXACT";
   EXPECT_LT(all[3], 0) << "pressed";
   // EXACT: over the gap between the walls, 4 wide and 3.02 + 1.01 - 0.15 high.
   Probe layer = probe_of("contact_stress", "all");
   layer.between = {"upper", "lower"};
-  EXPECT_NEAR(rows_of(layer)[3], expected(1, 1) / (4 * 3.88), rounding);
+  EXPECT_NEAR(rows_of(layer)[3], expected(1, 1) / (4 * 3.88), gradient_rounding);
   // EXACT: the box holds the centre of the rigid disc alone, one period off.
   Probe boxed = probe_of("contact_stress", "all");
   boxed.box = ProbeBox{{5, 1}, {7, 3}};
-  EXPECT_NEAR(rows_of(boxed)[3], contact_moment(simulation, 1)(1, 1) / 4, rounding);
+  EXPECT_NEAR(rows_of(boxed)[3], contact_moment(simulation, 1)(1, 1) / 4, gradient_rounding);
 }
 
 }  // namespace

@@ -94,6 +94,11 @@ class ContactRig {
   double dissipated = 0;
 };
 
+/// Whether two intervals have less than a margin between them.
+inline bool overlap(double a_min, double a_max, double b_min, double b_max, double margin) {
+  return a_min <= b_max + margin && b_min <= a_max + margin;
+}
+
 /// A random body of one of the kinds that contact has to cope with; its size is about 1.
 inline Points random_outline(Random& random, int kind) {
   switch (kind) {

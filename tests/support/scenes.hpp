@@ -40,6 +40,8 @@ inline InitialVelocity stretching(double rate) {
 
 // ---- contact rules
 
+inline constexpr double kn = 100;  ///< stiffness of contact in many tests, Pa/m
+
 inline ContactRule contact_rule(ContactLawKind law, double stiffness, double friction = 0) {
   ContactRule rule;
   rule.first = rule.second = "all";

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +17,24 @@ namespace pliant::dynamics_tests {
 
 using namespace testing;
 
+inline Eigen::Matrix2d matrix(double xx, double xy, double yx, double yy) {
+  return (Eigen::Matrix2d() << xx, xy, yx, yy).finished();
+}
+
 inline void advance(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step(until);
+}
+
+/// Hash of the state, and so of all its bits, that a run on some threads has at a time.
+inline std::uint64_t hash_after(const Model& model, int threads, double time) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  Simulation simulation(model);
+  advance(simulation, time);
+  simulation.energy_balance();
+  const std::uint64_t hash = state_hash(simulation.state());
+  omp_set_num_threads(before);
+  return hash;
 }
 
 /// Position, or velocity, of a rigid body: x, y, angle.

@@ -35,6 +35,15 @@ struct Steered {
   }
 };
 
+/// Of sums of some twenty terms in another order, times what a disc's stiffness makes of rounded positions.
+constexpr double rounding_of_order = 1e-12;
+
+inline void expect_equal_points(const Points& a, const Points& b, double tolerance, const char* what) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    ASSERT_LT((a[i] - b[i]).norm(), tolerance) << "EXACT: " << what << " " << i;
+}
+
 /// INDEPENDENT: the stability bounds agree to a share that power iterations from elsewhere may differ by.
 inline void expect_same_bound(const Steered& here, const Steered& there, double share) {
   if (here.verlet) EXPECT_NEAR(here.verlet->bound().largest_dt() / there.verlet->bound().largest_dt(), 1, share);
