@@ -63,8 +63,10 @@ run_tests() {
     ready test verify study movie
   fi
   prepare "$preset" "$target" pliant_tests
-  # Tests run side by side, on one thread each if they ask for no number: threads must neither be bound to the same cores
-  # nor wait actively. The thread sanitizer needs several.
+  # One more than there are cores: some wait, for clocks and for each other. nproc obeys what is exported below.
+  local jobs=$(($(nproc) + 1))
+  # Tests run side by side, on one thread each if they ask for no number. Threads must neither be bound to the same
+  # cores nor wait actively. The thread sanitizer needs several.
   export OMP_PROC_BIND=${OMP_PROC_BIND-false} OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
   [ "$preset" = tsan ] || export OMP_NUM_THREADS=${OMP_NUM_THREADS-1}
   set_sanitizer_defaults
@@ -74,8 +76,7 @@ run_tests() {
   folders=$(sed -n 's/^PLIANT_TEST_FOLDERS:STRING=//p' "$root/build/$preset/CMakeCache.txt" 2>/dev/null)
   [ "${folders:-.*}" = '.*' ] || say "of the unit tests those of $folders"
   say "testing build/$preset"
-  # One more than there are cores: some wait, for clocks and for each other.
-  ctest --test-dir "$root/build/$preset" -j $(($(nproc) + 1)) --output-on-failure --no-tests=error \
+  ctest --test-dir "$root/build/$preset" -j "$jobs" --output-on-failure --no-tests=error \
     --output-junit "$counts" "${rest[@]}" </dev/null | without_passed
   local code=${PIPESTATUS[0]}
   [ ! -f "$counts" ] || count_tests "$counts"
@@ -95,8 +96,7 @@ read_verify_options() {  # sets preset, full and folders
   for argument in ${rest[@]+"${rest[@]}"}; do
     case $argument in
       --full) full=1; continue ;;
-      --fast) speed=-lE; continue ;;
-      --slow) speed=-LE; continue ;;
+      --fast | --slow) speed=${argument#--}; continue ;;
       --mutate)
         echo "pliant: verify: --mutate comes first: ./pliant verify --mutate [MUTATION...]; see --help" >&2
         exit 2
@@ -110,11 +110,17 @@ read_verify_options() {  # sets preset, full and folders
     fi
     folders+=("$root/verify/$argument")
   done
-  if [ -n "$speed" ] && [ ${#folders[@]} = 0 ]; then  # those that tests/CMakeLists.txt takes for tests, or the others
-    mapfile -t folders < <(grep $speed '^CASE = Case\(__file__, .*fast=True' "$root"/verify/*/check_*.py |
-      xargs -n 1 dirname)
-  fi
-  [ ${#folders[@]} -gt 0 ] || folders=("$root/verify")
+  [ ${#folders[@]} -gt 0 ] || mapfile -t folders < <(cases_by_length "${speed:-all}" "$full")
+}
+
+cases_by_length() {  # fast, slow or all; 1 if long ones too: folders, by what each CASE says of itself
+  local file says speed
+  for file in "$root"/verify/*/check_*.py; do
+    says=$(grep -m 1 '^CASE = Case(__file__' "$file") speed=slow
+    [[ $says == *fast=True* ]] && speed=fast  # tests/CMakeLists.txt takes these for tests
+    [[ $says == *long=True* && -z $2 ]] && continue
+    [[ $1 != "$speed" && $1 != all ]] || dirname "$file"
+  done
 }
 
 verify() {

@@ -107,11 +107,12 @@ class Run:
 class Case:
     """A folder of verify/: its scenes, its results, its checks.
 
-    Fast cases run in ./pliant test too. Cases with the largest cost, in minutes of one core, start first.
+    Fast cases run in ./pliant test too. Long ones run where they are named and with --full. Cases with the largest cost,
+    in minutes of one core, start first.
     """
 
-    def __init__(self, file: str, fast: bool = False, cost: float = 1) -> None:
-        self.fast, self.cost = fast, cost
+    def __init__(self, file: str, fast: bool = False, long: bool = False, cost: float = 1) -> None:
+        self.fast, self.long, self.cost = fast, long, cost
         self.folder = Path(file).resolve().parent
         self.name = self.folder.name
         self.out = OUT / self.name

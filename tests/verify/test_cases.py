@@ -20,9 +20,10 @@ def test_a_case_is_whole(case: str) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_the_table_says_which_are_fast(case: str) -> None:
-    fast = re.search(r"^CASE = Case\(__file__, .*fast=True", (VERIFY / case / f"check_{case}.py").read_text(), re.M)
-    assert (ROWS[case] == "yes") == bool(fast)
+def test_the_table_says_which_are_fast_and_which_are_long(case: str) -> None:
+    said = re.search(r"^CASE = Case\(__file__(.*)\)$", (VERIFY / case / f"check_{case}.py").read_text(), re.M)[1]
+    assert (ROWS[case] == "yes") == ("fast=True" in said)
+    assert (ROWS[case] == "`--full`") == ("long=True" in said)
 
 
 def test_the_table_has_no_other_rows() -> None:

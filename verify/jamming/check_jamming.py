@@ -17,7 +17,7 @@ from pictures import COLOURS, MARKERS, describe, legend, panels, save
 from pliant.frames import Frames
 from verification import FULL, Case, Label
 
-CASE = Case(__file__, cost=4)
+CASE = Case(__file__, long=True, cost=6)
 
 LARGE = 1.4  # diameter; the small one is 1
 AREA = DISCS / 2 * math.pi / 4 * (1 + LARGE**2)

@@ -13,7 +13,7 @@ from fields import frames_of
 from pictures import describe, panels, save
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__, cost=7 if FULL else 1.5)
+CASE = Case(__file__, long=True, cost=9 if FULL else 2)
 
 WIDTH, TIP = 0.1, np.array([0.05, 0.025])  # of the plate, and the end of the notch, m
 STRENGTH = 1e9  # Pa

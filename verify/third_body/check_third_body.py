@@ -16,7 +16,7 @@ from third_body_layer import AFTERMATH, BREAK, DIAMETER, PLATEAU, PRESSED, SAMPL
 from time_means import Mean, block_means
 from verification import FULL, ROOT, Case, Label, Run
 
-CASE = Case(__file__, cost=5)
+CASE = Case(__file__, long=True, cost=6)
 
 PITCH, ROW_PITCH = 0.87e-6, 1.002e-6  # m
 COLUMNS, ROWS = 10, 20

@@ -24,7 +24,7 @@ from two_bodies_push import SLIPS, Across, Along, Push, Sliding
 from two_bodies_study import LAWS, Rests, RestStudy, Setup, Study, read
 from verification import FULL, Case, Label
 
-CASE = Case(__file__, cost=12)
+CASE = Case(__file__, long=True, cost=12)
 KINDS = (Discs, CornerFirst, FaceFirst, Along, Across)
 FROZEN = [*discs.AGAIN, *polygon.AGAIN, *push.AGAIN]
 SAME_NODES = {"discs": Squeeze(size=discs.SAME_NODES, pause=40.0),
