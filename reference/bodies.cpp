@@ -10,8 +10,6 @@
 namespace pliant::reference {
 namespace {
 
-Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
-
 /// D (2 D - M)^-1 D: inverse of the engine's inverse mass 2 D^-1 - D^-1 M D^-1. It is dense: all nodes of a body are
 /// coupled.
 Eigen::MatrixXd corrected_mass(const Space& space) {

@@ -25,6 +25,9 @@ enum class MassMatrix {
   consistent
 };
 
+/// v turned by a right angle.
+inline Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
+
 /// Body with its range of the vector of degrees of freedom: absolute positions of the field nodes, or x, y, angle.
 struct Body {
   PlacedBody placed;

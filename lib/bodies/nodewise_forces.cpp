@@ -48,7 +48,7 @@ void store_columns(const Tensor<Lanes>& P, StressColumns* to) {
   for (int lane = 0; lane < lane_count; ++lane) std::memcpy(&to[lane], &points[lane], sizeof(StressColumns));
 }
 
-const double* flat(const Lanes* values) { return reinterpret_cast<const double*>(values); }
+const double* numbers_of(const Lanes* values) { return reinterpret_cast<const double*>(values); }
 
 template <class Law>
 PointTotals stresses_of(const Law law, const NodewiseShape& shape, const Batch& batch, const Chunk& points,
@@ -56,11 +56,11 @@ PointTotals stresses_of(const Law law, const NodewiseShape& shape, const Batch& 
   PointTotals totals;
   for (int p = points.first; p < points.last; p += lane_count) {
     Tensor<Lanes> rate{};
-    if constexpr (has_rate<Law>) rate = deformation_gradients(shape, p, flat(motion.velocity));
+    if constexpr (has_rate<Law>) rate = deformation_gradients(shape, p, numbers_of(motion.velocity));
     Record<Law> now;
     const Response<Lanes> response =
-        respond(law.weighted(load(&shape.weight[p])), deformation_gradients(shape, p, flat(motion.position)), rate,
-                load_record<Law>(batch, motion, p / lane_count), now);
+        respond(law.weighted(load(&shape.weight[p])), deformation_gradients(shape, p, numbers_of(motion.position)),
+                rate, load_record<Law>(batch, motion, p / lane_count), now);
     store_record<Law>(batch, motion, p / lane_count, now);
     totals.least_jacobian = min(response.J, totals.least_jacobian);
     if constexpr (dissipates<Law>) totals.power += response.power;
@@ -75,7 +75,7 @@ double energy_of_chunk(const Law& law, const NodewiseShape& shape, const Batch& 
                        const BatchMotion& motion) {
   Lanes total{};
   for (int p = first; p < last; p += lane_count)
-    total += load(&shape.weight[p]) * energy_of(law, deformation_gradients(shape, p, flat(motion.position)),
+    total += load(&shape.weight[p]) * energy_of(law, deformation_gradients(shape, p, numbers_of(motion.position)),
                                                 load_record<Law>(batch, motion, p / lane_count));
   return sum(total);
 }

@@ -11,14 +11,15 @@
 namespace pliant {
 namespace {
 
-/// Field of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
-struct Field {
+/// FieldOfBodies of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
+struct FieldOfBodies {
   const Dofs& values;
   bool has_origin;
 };
 
 template <bool scaled, class Rows>
-void show_batch(const Model& model, const Batch& batch, const Rows& rows, const Field& field, OutlineField& outlines) {
+void show_batch(const Model& model, const Batch& batch, const Rows& rows, const FieldOfBodies& field,
+                OutlineField& outlines) {
   const CompliantShape& shape = model.shape_of(batch);
   const Lanes* q = &field.values.compliant[batch.offset];
   const int* bodies = &model.groups[batch.group].bodies[batch.first];
@@ -53,7 +54,7 @@ void show_batch(const Model& model, const Batch& batch, const Rows& rows, const 
 }
 
 /// Computes one chunk of a nodewise body's outline nodes.
-void show_chunk(const Model& model, const Chunk& chunk, const Field& field, OutlineField& outlines) {
+void show_chunk(const Model& model, const Chunk& chunk, const FieldOfBodies& field, OutlineField& outlines) {
   const Batch& batch = model.batches[chunk.batch];
   const int number = model.groups[batch.group].bodies[batch.first];
   const Body& body = model.bodies[number];
@@ -70,7 +71,7 @@ void show_chunk(const Model& model, const Chunk& chunk, const Field& field, Outl
   }
 }
 
-void update_nodewise_outlines(const Model& model, const Field& field, OutlineField& outlines) {
+void update_nodewise_outlines(const Model& model, const FieldOfBodies& field, OutlineField& outlines) {
   parallel_for(static_cast<int>(model.outline_chunks.size()),
                [&](int c) { show_chunk(model, model.outline_chunks[c], field, outlines); });
   for (std::size_t b = static_cast<std::size_t>(model.lane_batches); b < model.batches.size(); ++b) {
@@ -83,8 +84,8 @@ void update_nodewise_outlines(const Model& model, const Field& field, OutlineFie
 /// Computes a field at the outline nodes of some compliant bodies, and calls of_rigid(r) for the first `rigid` of their
 /// rigid bodies.
 template <class OfRigid>
-void show(const Model& model, const OwnBodies& bodies, const Field& field, OutlineField& outlines, std::size_t rigid,
-          OfRigid&& of_rigid) {
+void show(const Model& model, const OwnBodies& bodies, const FieldOfBodies& field, OutlineField& outlines,
+          std::size_t rigid, OfRigid&& of_rigid) {
   const auto of_batch = [&](int number) {
     const Batch& batch = model.batches[bodies.batches[number]];
     with_tables(model, batch, [&](const auto& tables) {

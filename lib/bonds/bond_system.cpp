@@ -75,8 +75,8 @@ PointLanes operator-(const PointLanes& a, const PointLanes& b) { return {a.x - b
 PointLanes operator*(const Lanes& f, const PointLanes& a) { return {f * a.x, f * a.y}; }
 Lanes dot(const PointLanes& a, const PointLanes& b) { return a.x * b.x + a.y * b.y; }
 
-PointLanes gather(const OutlineField& field, LaneBits index) {
-  return {pliant::gather(field.x.data(), index), pliant::gather(field.y.data(), index)};
+PointLanes points_of(const OutlineField& field, LaneBits index) {
+  return {gather(field.x.data(), index), gather(field.y.data(), index)};
 }
 
 }  // namespace
@@ -231,8 +231,9 @@ BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& p
                          eight.shift[0] * lattice.ay + eight.shift[1] * lattice.by};
   PointLanes at[2], apart[2];
   for (int end = 0; end < 2; ++end) {
-    at[end] = gather(position, eight.nodes.end[end]);
-    const PointLanes first = gather(position, eight.nodes.master[end]), next = gather(position, eight.nodes.next[end]);
+    at[end] = points_of(position, eight.nodes.end[end]);
+    const PointLanes first = points_of(position, eight.nodes.master[end]),
+                     next = points_of(position, eight.nodes.next[end]);
     apart[end] = first + eight.xi[end] * (next - first) + shift - at[end];
   }
   const PointLanes middle = at[1] - at[0] + broadcast(0.5) * (apart[1] - apart[0]);

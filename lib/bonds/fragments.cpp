@@ -14,14 +14,14 @@ bool holds(const BondHistory& history, std::size_t bond) {
   return history.damage(bond, 0) < 1 || history.damage(bond, 1) < 1;
 }
 
-/// Neighbour of a body by a bond that holds.
-struct Neighbour {
+/// LinkedBody of a body by a bond that holds.
+struct LinkedBody {
   int body;
   Images images;
 };
 
-std::vector<std::vector<Neighbour>> links(const Model& model, const BondSystem& bonds, const BondHistory& history) {
-  std::vector<std::vector<Neighbour>> of_body(model.bodies.size());
+std::vector<std::vector<LinkedBody>> links(const Model& model, const BondSystem& bonds, const BondHistory& history) {
+  std::vector<std::vector<LinkedBody>> of_body(model.bodies.size());
   for (std::size_t i = 0; i < bonds.bonds().size(); ++i) {
     const Bond& bond = bonds.bonds()[i];
     if (!holds(history, i) || model.bodies[bond.master].wall) continue;
@@ -50,22 +50,22 @@ struct AreaMoments {
 double Fragment::diameter() const { return std::sqrt(4 / std::numbers::pi * area); }
 
 std::vector<Fragment> find_fragments(const Model& model, const BondSystem& bonds, const BondHistory& history) {
-  const std::vector<std::vector<Neighbour>> neighbours = links(model, bonds, history);
+  const std::vector<std::vector<LinkedBody>> neighbours = links(model, bonds, history);
   std::vector<char> seen(model.bodies.size(), 0);
   std::vector<Fragment> fragments;
   for (int start = 0; start < static_cast<int>(model.bodies.size()); ++start) {
     if (seen[start] || model.bodies[start].wall) continue;
-    std::vector<Neighbour> members{{start, {}}};
+    std::vector<LinkedBody> members{{start, {}}};
     seen[start] = 1;
     for (std::size_t i = 0; i < members.size(); ++i)
-      for (const Neighbour& link : neighbours[members[i].body])
+      for (const LinkedBody& link : neighbours[members[i].body])
         if (!seen[link.body]) {
           seen[link.body] = 1;
           members.push_back({link.body, members[i].images + link.images});
         }
-    std::ranges::sort(members, {}, &Neighbour::body);
+    std::ranges::sort(members, {}, &LinkedBody::body);
     Fragment& fragment = fragments.emplace_back();
-    for (const Neighbour& member : members) {
+    for (const LinkedBody& member : members) {
       fragment.bodies.push_back(member.body);
       fragment.images.push_back(member.images);
       fragment.mass += model.bodies[member.body].mass, fragment.area += model.bodies[member.body].area;

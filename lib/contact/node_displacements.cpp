@@ -57,7 +57,7 @@ std::pair<double, double> displacement_at(const OutlineField& now, const Outline
 }
 
 /// Displacements of eight nodes.
-std::pair<Lanes, Lanes> displacements_at(const OutlineField& now, const OutlineField& reference, int node) {
+std::pair<Lanes, Lanes> node_displacements_at(const OutlineField& now, const OutlineField& reference, int node) {
   return {load(&now.x[node]) - load(&reference.x[node]), load(&now.y[node]) - load(&reference.y[node])};
 }
 
@@ -70,7 +70,7 @@ DisplacementDisc displacement_disc(const Model& model, int body, const OutlineFi
                                    const OutlineField& reference) {
   const int first = model.outline_offset[body], count = model.outline_of(body).count;
   const DisplacementDisc middle = about_four(count, [&](int i) { return displacement_at(now, reference, first + i); });
-  return widened(middle, count, [&](int i) { return displacements_at(now, reference, first + i); });
+  return widened(middle, count, [&](int i) { return node_displacements_at(now, reference, first + i); });
 }
 
 DisplacementDisc displacement_between(const DisplacementDisc& from, const DisplacementDisc& to) {
@@ -142,7 +142,7 @@ void NodeDisplacements::set_reference(int entry, const DisplacementsSoFar& displ
   const DisplacementDisc middle =
       about_four(count, [&](int i) { return displacement_at(displacements.now, displacements.reference, first + i); });
   start_[entry] = widened(middle, count, [&](int i) {
-    const auto [x, y] = displacements_at(displacements.now, displacements.reference, first + i);
+    const auto [x, y] = node_displacements_at(displacements.now, displacements.reference, first + i);
     if (keeps)
       store_displacements(&x_[at_[entry] + i], x - common.x), store_displacements(&y_[at_[entry] + i], y - common.y);
     return std::pair(x, y);
@@ -163,7 +163,7 @@ DisplacementDisc NodeDisplacements::displacement(int entry, const DisplacementsS
     return std::pair(x - common.x - x_then[i], y - common.y - y_then[i]);
   });
   return widened(middle, count, [&](int i) {
-    const auto [x, y] = displacements_at(displacements.now, displacements.reference, first + i);
+    const auto [x, y] = node_displacements_at(displacements.now, displacements.reference, first + i);
     return std::pair(x - common.x - load_displacements(x_then + i), y - common.y - load_displacements(y_then + i));
   });
 }
@@ -184,7 +184,7 @@ void NodeDisplacements::reset_reference(int entry, const DisplacementsSoFar& dis
     return std::pair(common.x - back.x + (x_then[i] - (dx - back.x)), common.y - back.y + (y_then[i] - (dy - back.y)));
   });
   start = widened(middle, count, [&](int i) {
-    const auto [dx, dy] = displacements_at(displacements.now, displacements.reference, first + i);
+    const auto [dx, dy] = node_displacements_at(displacements.now, displacements.reference, first + i);
     const Lanes back_x = load_displacements(x_then + i) - (dx - back.x),
                 back_y = load_displacements(y_then + i) - (dy - back.y);
     store_displacements(x_then + i, back_x), store_displacements(y_then + i, back_y);

@@ -7,14 +7,14 @@
 namespace pliant {
 namespace {
 
-constexpr double shape_parameter = 1.0, exponent = 1.03;
+constexpr double shape_parameter = 1.0, shape_exponent = 1.03;
 
 double radial(double squared_distance) {
-  return std::pow(squared_distance + shape_parameter * shape_parameter, exponent);
+  return std::pow(squared_distance + shape_parameter * shape_parameter, shape_exponent);
 }
 
 Vec2 radial_gradient(const Vec2& r) {
-  return 2 * exponent * std::pow(r.squaredNorm() + shape_parameter * shape_parameter, exponent - 1) * r;
+  return 2 * shape_exponent * std::pow(r.squaredNorm() + shape_parameter * shape_parameter, shape_exponent - 1) * r;
 }
 
 std::vector<int> supporting_nodes(const MlsNodes& nodes, const Vec2& x) {

@@ -86,10 +86,10 @@ void refuse_far(const std::string& file, const FilePoints& found, double scale) 
                                found.points[i].x(), found.points[i].y(), largest_length));
 }
 
-FilePoints without_repeats(const FilePoints& whole) {
+FilePoints file_points_without_repeats(const FilePoints& whole) {
   FilePoints result;
   result.unit = whole.unit;
-  for (const std::size_t i : pliant::without_repeats(whole.points)) {
+  for (const std::size_t i : without_repeats(whole.points)) {
     result.points.push_back(whole.points[i]);
     result.lines.push_back(whole.lines[i]);
   }
@@ -131,7 +131,7 @@ std::vector<Points> read_outline_file(const std::filesystem::path& file, const s
   for (const FilePoints& whole : found) {
     const double scale = unit_of(name, whole, unit);
     refuse_far(name, whole, scale);
-    const FilePoints one = without_repeats(whole);
+    const FilePoints one = file_points_without_repeats(whole);
     require_outline(name, one, most_points);
     Points outline = one.points;
     for (Vec2& p : outline) p *= scale;

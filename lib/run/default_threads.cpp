@@ -23,16 +23,16 @@ std::string line_of(const fs::path& file) {
   return line;
 }
 
-double ratio(double quota, double period) {
+double cores_by_quota(double quota, double period) {
   return quota > 0 && period > 0 ? quota / period : std::numeric_limits<double>::infinity();
 }
 
 /// Processors' time that a control group grants in each period: cpu.max of version 2, two files of version 1.
 double granted(const fs::path& group) {
   double quota = 0, period = 0;
-  if (std::istringstream(line_of(group / "cpu.max")) >> quota >> period) return ratio(quota, period);
+  if (std::istringstream(line_of(group / "cpu.max")) >> quota >> period) return cores_by_quota(quota, period);
   quota = std::atof(line_of(group / "cpu.cfs_quota_us").c_str());
-  return ratio(quota, std::atof(line_of(group / "cpu.cfs_period_us").c_str()));
+  return cores_by_quota(quota, std::atof(line_of(group / "cpu.cfs_period_us").c_str()));
 }
 
 /// The least that this process's groups and those above them grant.

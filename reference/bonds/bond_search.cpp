@@ -11,8 +11,8 @@
 namespace pliant::reference {
 namespace {
 
-constexpr double touching = 1e-6;  ///< rounding of common nodes, over the mean segment of the slave
-constexpr double furthest = 0.5;   ///< of a master, over the same
+constexpr double common_node_rounding = 1e-6;  ///< rounding of common nodes, over the mean segment of the slave
+constexpr double furthest_node = 0.5;          ///< of a master, over the same
 /// Share of a segment that the master's points span at least along it. Else both are at one place, such as a corner.
 constexpr double least_span = 0.5;
 
@@ -47,9 +47,9 @@ Found nearest(const PresentOutline& master, const Vec2& to) {
 }
 
 /// Box around an outline.
-struct Extent {
+struct OutlineBox {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  explicit Extent(const PresentOutline& outline) {
+  explicit OutlineBox(const PresentOutline& outline) {
     for (int i = 0; i < outline.count(); ++i)
       low = low.cwiseMin(outline.node(i)), high = high.cwiseMax(outline.node(i));
   }
@@ -65,7 +65,7 @@ class Search {
     const bool swaps = !outlines_[static_cast<std::size_t>(b)].wall && mean_spacing(of(b)) < mean_spacing(of(a));
     const int slave = swaps ? b : a, master = swaps ? a : b;
     if (of(master).wall) return join_image(slave, master, {});
-    const Extent ours(PresentOutline(of(slave), x_)), theirs(PresentOutline(of(master), x_));
+    const OutlineBox ours(PresentOutline(of(slave), x_)), theirs(PresentOutline(of(master), x_));
     const Vec2 around = Vec2::Constant(std::max(gap_, mean_spacing(of(slave))));
     for (const Image& image : periods_.between(ours.low - theirs.high - around, ours.high - theirs.low + around))
       join_image(slave, master, image);
@@ -93,7 +93,8 @@ class Search {
   /// Sets the distances at rest. Returns whether the segment is bonded.
   bool holds(Bond& bond, const std::array<Found, 2>& found, const BondPoints& points) const {
     const double spacing = mean_spacing(of(bond.slave));
-    const double across = std::max(gap_, touching * spacing), away = std::max(across, furthest * spacing);
+    const double across = std::max(gap_, common_node_rounding * spacing),
+                 away = std::max(across, furthest_node * spacing);
     if (found[0].distance > away || found[1].distance > away) return false;
     const Vec2 edge = points[1] - points[0];
     if ((points[3] - points[2]).dot(edge) < least_span * edge.squaredNorm()) return false;

@@ -186,7 +186,7 @@ struct Contacts::Implementation {
              ContactMemory& memory) {
     const int segment = memory.segment;
     const PresentBody& on = bodies[encounter.master];
-    Motion motion;
+    MotionAlong motion;
     if (before.beside && law.shears())
       motion = motion_along(on.outline, {outlines[encounter.master], past}, before, segment, at);
     const Response response = respond(law, before.slip, at.gap.value, motion.by_element.value);
@@ -207,7 +207,7 @@ struct Contacts::Implementation {
     result.elements.push_back(std::move(element));
   }
 
-  static ContactElement make_element(const PresentOutline& master, const Projection& at, const Motion& motion,
+  static ContactElement make_element(const PresentOutline& master, const Projection& at, const MotionAlong& motion,
                                      const Response& response, double length) {
     const Jet<6>::Gradient by_gap = at.gap.gradient, by_motion = motion.by_element.gradient, rate = at.rate();
     const double p = length * response.pressure, shear = length * response.shear;

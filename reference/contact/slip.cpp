@@ -44,7 +44,7 @@ class Way {
     for (auto& [node, derivative] : motion_.others) derivative = -derivative;
   }
 
-  const Motion& motion() const { return motion_; }
+  const MotionAlong& motion() const { return motion_; }
 
  private:
   /// Derivatives by the present segment's own nodes go to the element.
@@ -58,7 +58,7 @@ class Way {
 
   const PresentOutline &master_, &past_;
   int segment_;
-  Motion motion_;
+  MotionAlong motion_;
 };
 
 /// The old segment, numbered so that the path to the present one is the short one.
@@ -87,8 +87,8 @@ Jet<6> across_fold(const PresentOutline& master, const ContactMemory& memory, in
 
 }  // namespace
 
-Motion motion_along(const PresentOutline& master, const PresentOutline& past, const ContactMemory& memory, int segment,
-                    const Projection& now) {
+MotionAlong motion_along(const PresentOutline& master, const PresentOutline& past, const ContactMemory& memory,
+                         int segment, const Projection& now) {
   const int old = old_segment(master, memory.segment, segment);
   Way way(master, past, segment);
   const Jet<6> length = 0.5 * (now.length + past.length(segment)), gap = 0.5 * (now.gap + memory.gap),

@@ -18,7 +18,7 @@
 namespace pliant::reference {
 namespace {
 
-double area(const FieldMesh& mesh, const Triangle& t) {
+double triangle_area(const FieldMesh& mesh, const Triangle& t) {
   return pliant::cross(mesh.nodes[t[1]] - mesh.nodes[t[0]], mesh.nodes[t[2]] - mesh.nodes[t[0]]) / 2;
 }
 
@@ -28,7 +28,7 @@ Vec2 place(const FieldMesh& mesh, const Triangle& t, const Eigen::Vector3d& bary
 
 double mean_node_distance(const FieldMesh& mesh) {
   double sum = 0;
-  for (const Triangle& t : mesh.triangles) sum += area(mesh, t);
+  for (const Triangle& t : mesh.triangles) sum += triangle_area(mesh, t);
   return std::sqrt(sum / double(mesh.nodes.size()));
 }
 
@@ -38,7 +38,7 @@ std::vector<Point> gauss_points(const FieldMesh& mesh, const MovingLeastSquares&
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const QuadraturePoint& at : triangle_rule(count)) {
       points.push_back(mls.gradients(place(mesh, mesh.triangles[t], at.place)));
-      points.back().weight = at.share * area(mesh, mesh.triangles[t]);
+      points.back().weight = at.share * triangle_area(mesh, mesh.triangles[t]);
       points.back().triangles = {int(t)};
     }
   return points;
@@ -48,7 +48,7 @@ std::vector<Point> gauss_points(const FieldMesh& mesh, const MovingLeastSquares&
 void add_linear_triangle(std::map<int, Vec2>& sum, const FieldMesh& mesh, const Triangle& t, double weight) {
   for (int corner = 0; corner < 3; ++corner) {
     const Vec2 opposite = mesh.nodes[t[(corner + 2) % 3]] - mesh.nodes[t[(corner + 1) % 3]];
-    const Vec2 gradient = Vec2(-opposite.y(), opposite.x()) / (2 * area(mesh, t));
+    const Vec2 gradient = Vec2(-opposite.y(), opposite.x()) / (2 * triangle_area(mesh, t));
     sum.try_emplace(t[corner], Vec2::Zero()).first->second += weight * gradient;
   }
 }
@@ -58,7 +58,7 @@ Point mean_point(const FieldMesh& mesh, const std::vector<int>& triangles, doubl
   Point point;
   std::map<int, Vec2> sum;
   for (int t : triangles) {
-    const double weight = share * area(mesh, mesh.triangles[t]);
+    const double weight = share * triangle_area(mesh, mesh.triangles[t]);
     add_linear_triangle(sum, mesh, mesh.triangles[t], weight);
     point.weight += weight;
   }
@@ -105,7 +105,7 @@ void add_masses(Space& space, const std::function<Row(const Triangle&, const Eig
       const Row row = functions(t, at.place);
       for (std::size_t i = 0; i < row.node.size(); ++i)
         entries.emplace_back(int(weights.size()), row.node[i], row.value[i]);
-      weights.push_back(at.share * area(space.mesh, t));
+      weights.push_back(at.share * triangle_area(space.mesh, t));
     }
   Eigen::SparseMatrix<double> values(Eigen::Index(weights.size()), Eigen::Index(space.mesh.nodes.size()));
   values.setFromTriplets(entries.begin(), entries.end());

@@ -150,7 +150,7 @@ Rows kinetic_energy(const View& view, const Probe&, const std::vector<const Body
   return rows;
 }
 
-Rows strain_energy(const View& view, const Probe&, const std::vector<const Body*>& bodies) {
+Rows energy_of_strain(const View& view, const Probe&, const std::vector<const Body*>& bodies) {
   Rows rows;
   for (const Body* body : bodies) {
     const std::vector<PointStress> points = view.stresses_of(*body);
@@ -238,7 +238,7 @@ const std::map<std::string, Measurement>& measures() {
       {"works", works},
       {"bonds", bonds},
       {"kinetic_energy", kinetic_energy},
-      {"strain_energy", strain_energy},
+      {"strain_energy", energy_of_strain},
       {"area", area},
       {"diameter", diameter},
       {"cell_stress", stress_of_cell},

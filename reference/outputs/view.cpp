@@ -9,8 +9,6 @@
 namespace pliant::reference {
 namespace {
 
-Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
-
 /// Nodes of a rigid body, rotated about its centre.
 Points turned(const Body& body, const Vec2& centre, double angle) {
   Points points;
