@@ -13,7 +13,7 @@ from fields import frames_of
 from pictures import COLOURS, describe, legend, panels, save
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__, cost=12 if FULL else 2)
+CASE = Case(__file__, long=True, cost=12 if FULL else 6)
 
 RADIUS, STRENGTH, COHESION = 0.005, 4e6, 12e6  # m, Pa, Pa
 MODULUS = 1e9 / (1 - 0.25**2)  # E', Pa
@@ -21,7 +21,7 @@ ZONE = 0.1 * 2 * RADIUS  # E' G/strength^2, m
 ENERGY = ZONE * STRENGTH**2 / MODULUS
 SPACING = 2 * RADIUS / 40
 SEEDS = [1, 2, 3]
-SIZES = [20] + ([60, 120, 180] if FULL else [])
+SIZES = [20, 60] + ([120, 180] if FULL else [])
 LOAD = np.pi * RADIUS * STRENGTH  # N/m, of a point load whose tension across the loaded diameter is the strength
 
 

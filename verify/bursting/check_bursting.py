@@ -12,7 +12,7 @@ from fields import frames_of
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from verification import FULL, Case, Label, Run, observed_order
 
-CASE = Case(__file__, cost=6 if FULL else 2)
+CASE = Case(__file__, long=True, cost=6 if FULL else 2)
 
 END = 150e-6  # s
 ENERGY = 1200.0  # of a crack, J/m2

@@ -19,7 +19,7 @@ from pictures import COLOURS, MARKERS, describe, draw_rate, draw_ratios, legend,
 from squeeze import LONG_PAUSE, OUTLINE, METHODS, Rests, Squeeze, both_ways, by_reference, worst_over_reference
 from verification import FULL, Case, Label
 
-CASE = Case(__file__)
+CASE = Case(__file__, long=True, cost=2)
 NODES = [168, 340, 700, 1400] if FULL else [168, 340, 700]
 APPROACHES = (0.05, 0.0625, 0.075, 0.0875, 0.1)
 RATIOS = [0.4, 0.49]

@@ -17,7 +17,7 @@ from oracle_tables import read_oracle
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__)
+CASE = Case(__file__, long=True, cost=3)
 
 METHODS = ["mls", "mls-gauss", "t3", "es-t3"]
 MASSES = ["lumped", "corrected"]

@@ -13,7 +13,7 @@ import pytest
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save
 from verification import FULL, Case, Label, Run
 
-CASE = Case(__file__, cost=8)
+CASE = Case(__file__, long=True, cost=8)
 ORACLES = Path(__file__).resolve().parent / "oracles"
 METHODS = ["mls", "es-t3", "t3"]
 FINE = METHODS if FULL else ["mls"]  # of the bar on the finer mesh, two thirds of the cost of the case

@@ -15,7 +15,7 @@ from motion import SINGLE, read_motion
 from pictures import COLOURS, MARKERS, describe, draw_rate, legend, panels, save, set_ticks
 from verification import Case, Label, Run
 
-CASE = Case(__file__, cost=2)
+CASE = Case(__file__, long=True, cost=2)
 
 SLOW, FAST = 0.05, 1.4  # rad/s, of the initially round disc: rims at 0.05 and 1.4 of S waves
 MASSES = ["lumped", "corrected"]
