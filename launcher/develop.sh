@@ -233,9 +233,9 @@ fuzz() {
 lint() {
   prepare lint build_info
   # Not the two main files and the triangulation: a fifth of the time, for headers of CLI11 and CGAL.
-  local targets=("$root"/build/lint/CMakeFiles/pliant_{scene,lib,reference}.dir)
   local files=("$@")
-  [ $# -gt 0 ] || mapfile -t files < <(find "${targets[@]}" -name 'unity_*.cxx' | sort)
+  [ $# -gt 0 ] || mapfile -t files < <(grep -oE '"file": "[^"]*' "$root/build/lint/compile_commands.json" |
+    cut -d '"' -f 4 | grep -E 'pliant_(scene|lib|reference)\.dir/Unity/')
   [ $# -gt 0 ] && say "clang-tidy over $# files" || say "clang-tidy over lib/ and reference/"
   printf '%s\0' "${files[@]}" |
     xargs -0 -n 1 -P "$(nproc)" clang-tidy-19 --quiet -p "$root/build/lint" 2>"$root/build/lint.log" ||

@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-/// FieldOfBodies of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
+/// Field of compliant bodies: positions, relative to their bodies' centres, or a field without origin.
 struct FieldOfBodies {
   const Dofs& values;
   bool has_origin;

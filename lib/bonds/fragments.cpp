@@ -14,7 +14,7 @@ bool holds(const BondHistory& history, std::size_t bond) {
   return history.damage(bond, 0) < 1 || history.damage(bond, 1) < 1;
 }
 
-/// LinkedBody of a body by a bond that holds.
+/// Body that a bond which holds links to another.
 struct LinkedBody {
   int body;
   Images images;

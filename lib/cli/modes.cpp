@@ -17,7 +17,7 @@ namespace pliant {
 namespace {
 
 /// Bodies that vibrate alike: of one shape, size and material.
-struct ModesOfKind {
+struct AlikeBodies {
   const Body* body = nullptr;  ///< the first of them
   int bodies = 0;
 };
@@ -43,15 +43,15 @@ bool is_asked_for(const Model& model, const Body& body, const std::string& name)
                                allowed_names(name, names), names.front()));
 }
 
-std::vector<ModesOfKind> kinds_of(const Model& model, const std::string& name) {
-  std::vector<ModesOfKind> kinds;
+std::vector<AlikeBodies> kinds_of(const Model& model, const std::string& name) {
+  std::vector<AlikeBodies> kinds;
   bool known = false;
   for (const Body& body : model.bodies) {
     if (!is_asked_for(model, body, name)) continue;
     known = true;
     if (body.kind != BodyKind::compliant) continue;
     const auto found =
-        std::find_if(kinds.begin(), kinds.end(), [&](const ModesOfKind& kind) { return alike(*kind.body, body); });
+        std::find_if(kinds.begin(), kinds.end(), [&](const AlikeBodies& kind) { return alike(*kind.body, body); });
     if (found != kinds.end())
       ++found->bodies;
     else
@@ -89,7 +89,7 @@ void write_matrices(const std::filesystem::path& folder, const Body& body, const
       matrix_market(motions.inverse_mass, "inverse mass of " + body.name + ", m/kg; node 0, node 1 ...; of x as of y"));
 }
 
-void print_table(const ModesOfKind& kind, int nodes, const NaturalModes& modes, int count) {
+void print_table(const AlikeBodies& kind, int nodes, const NaturalModes& modes, int count) {
   fmt::print("{}{}: {} nodes, {} motions without stiffness{}\n", kind.body->name,
              kind.bodies > 1 ? fmt::format(" and {} like it", kind.bodies - 1) : "", nodes, modes.motions_at_rest,
              modes.motions_at_rest == 3 ? "" : ", not the 3 of a rigid body: the others are mechanisms");
@@ -108,7 +108,7 @@ void print_modes(const Scene& scene, const ModesRequest& request) {
   never_nodewise.least_sparse_nodes = std::numeric_limits<int>::max();
   const Model model = build_model(scene, never_nodewise);
   nlohmann::ordered_json json{{"scene", scene.name}, {"unit", "rad/s"}, {"bodies", nlohmann::json::array()}};
-  for (const ModesOfKind& kind : kinds_of(model, request.body)) {
+  for (const AlikeBodies& kind : kinds_of(model, request.body)) {
     const SmallMotions motions = small_motions(model, *kind.body);
     const NaturalModes modes = natural_modes(motions);
     const int nodes = model.shape_of(*kind.body).nodes(),

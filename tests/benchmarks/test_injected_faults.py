@@ -1,4 +1,4 @@
-"""benchmarks/injected_faults.py: places and commands; ./pliant bench faults itself runs in continuous integration. All EXACT."""
+"""benchmarks/injected_faults.py: places and commands; ./pliant bench faults itself is run by hand. All EXACT."""
 
 from __future__ import annotations
 

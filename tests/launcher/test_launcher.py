@@ -190,6 +190,21 @@ def test_every_command_has_help_with_an_example(launcher: Launcher, command: str
     assert not launcher.log.exists(), "help must not build"
 
 
+@pytest.mark.parametrize(("options", "cases"), [([], "fast plain"), (["--fast"], "fast"), (["--slow"], "plain"),
+                                                (["--full"], "fast long plain"), (["--full", "--slow"], "long plain"),
+                                                (["long"], "long")])
+def test_verify_runs_cases_by_their_length(launcher: Launcher, options: list[str], cases: str) -> None:
+    for name, says in {"fast": ", fast=True", "plain": ", cost=2", "long": ", long=True, cost=9 if 1 else 3"}.items():
+        folder = launcher.root / "verify" / name
+        folder.mkdir(parents=True)
+        (folder / f"check_{name}.py").write_text(
+            f"import os\ndef Case(*_, **__): pass\nCASE = Case(__file__{says})\n"
+            f"def test_it():\n    open(os.environ['LOG'] + '.{name}.ran', 'w')\n")
+    (launcher.root / "verify/pytest.ini").write_text("[pytest]\npython_files = check_*.py\n")
+    assert launcher("verify", *options).returncode == 0
+    assert " ".join(sorted(file.name.split(".")[-2] for file in launcher.log.parent.glob("*.ran"))) == cases
+
+
 @pytest.mark.parametrize("arguments", [["no_such_case"], ["--ful"], ["../verify/orders_free"], [""], ["*"], ["fem"],
                                        ["--full", "--mutate"], ["--units"], ["--scenes"], ["--preset", "lint"]])
 def test_unknown_cases_of_verify_are_refused(launcher: Launcher, arguments: list[str]) -> None:

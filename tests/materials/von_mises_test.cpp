@@ -242,12 +242,12 @@ Tensor<double> path_rate(double t) {
 }
 
 /// Work that is neither stored nor dissipated, over the dissipated one.
-double unbalanced(const VonMises<double>& von_mises_law, int steps) {
+double unbalanced(const VonMises<double>& law, int steps) {
   const double dt = 2.0 / steps;
   VonMisesRecord record = von_mises_virgin, next;
   double doing = 0, dissipated = 0, work = 0;
   for (int k = 1; k <= steps; ++k) {
-    const auto response = von_mises_law.over(dt).respond(path(k * dt), record, next);
+    const auto response = law.over(dt).respond(path(k * dt), record, next);
     EXPECT_GE(response.loss, 0);
     dissipated += response.loss;
     const double now = power(response.P, path_rate(k * dt));
@@ -255,7 +255,7 @@ double unbalanced(const VonMises<double>& von_mises_law, int steps) {
     doing = now, record = next;
   }
   EXPECT_GT(dissipated, 0.05);
-  return std::abs(work - dissipated - von_mises_law.energy(path(2), record)) / dissipated;
+  return std::abs(work - dissipated - law.energy(path(2), record)) / dissipated;
 }
 
 // RATE: along a path at large strains the work of the stress is stored or dissipated: but for the second order of steps

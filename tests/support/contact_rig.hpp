@@ -94,7 +94,7 @@ class ContactRig {
   double dissipated = 0;
 };
 
-/// Whether two intervals have less than a margin between them.
+/// Whether two intervals have at most a margin between them.
 inline bool overlap(double a_min, double a_max, double b_min, double b_max, double margin) {
   return a_min <= b_max + margin && b_min <= a_max + margin;
 }

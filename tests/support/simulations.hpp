@@ -25,7 +25,7 @@ inline void advance(Simulation& simulation, double until) {
   while (simulation.state().time < until) simulation.step(until);
 }
 
-/// Hash of the state, and so of all its bits, that a run on some threads has at a time.
+/// Hash of the state at a time, of a run on this many threads. It covers all bits.
 inline std::uint64_t hash_after(const Model& model, int threads, double time) {
   const int before = omp_get_max_threads();
   omp_set_num_threads(threads);
