@@ -10,7 +10,7 @@ from conftest import ROOT, Launcher, write_script
 
 STAGES = {"system": "make_system", "newcomer": "tests/fresh/newcomer", "test": "pliant test -LE ^case$", "lint": "pliant lint",
           "gate": "pliant bench gate", "gcc": "pliant test --preset gcc --scenes",
-          "gcc_cases": "pliant verify --preset gcc --fast",
+          "gcc_cases": "pliant verify --fast",
           "fuzz": "pliant fuzz --seconds 10", "memory": "pliant test --preset fuzz --scenes", "units": "core|files: pliant test --preset fuzz --units",
           "determinism": r"counting gcc: pliant test -R ^cli\.determinism$ -V", "verify": "pliant verify --slow"}
 
