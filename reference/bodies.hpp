@@ -25,7 +25,7 @@ enum class MassMatrix {
   consistent
 };
 
-/// v turned by a right angle.
+/// v turned to the left by a right angle.
 inline Vec2 turned_left(const Vec2& v) { return {-v.y(), v.x()}; }
 
 /// Body with its range of the vector of degrees of freedom: absolute positions of the field nodes, or x, y, angle.

@@ -16,7 +16,7 @@ constexpr double same_place = 1e-6;
 /// Deepest overlap of surfaces that are bonded, over the same spacing: where contact warns of its depth.
 constexpr double deepest = 0.5;
 /// Least distance of the masters of a segment's ends, over its length. Nearer ones are no surface along the segment.
-constexpr double least_facing_length = 0.5;
+constexpr double least_facing_share = 0.5;
 
 bool is_named(const Model& model, int body, const std::string& name) {
   const Body& b = model.bodies[body];
@@ -122,7 +122,7 @@ std::optional<Bond> bond_of(const Model& model, const OutlineField& position, co
   const BondGeometry at = geometry_of(model, position, bond);
   const int first = model.outline_offset[sides.slave] + segment;
   const Vec2 edge = position.at(first + 1) - position.at(first);
-  if ((edge + at.apart[1] - at.apart[0]).dot(edge) < least_facing_length * edge.squaredNorm()) return {};
+  if ((edge + at.apart[1] - at.apart[0]).dot(edge) < least_facing_share * edge.squaredNorm()) return {};
   for (int end = 0; end < 2; ++end) {
     bond.rest_gap[end] = at.normal.dot(at.apart[end]), bond.rest_slip[end] = at.tangent.dot(at.apart[end]);
     if (bond.rest_gap[end] > near) return {};

@@ -17,7 +17,7 @@ namespace {
 
 // Grains in cells with a common edge would touch. They are reduced by this share, so that rounding cannot make them
 // overlap.
-constexpr double tile_clearance = 1e-6;
+constexpr double cell_clearance = 1e-6;
 
 /// Shape for placement in cells.
 struct Body {
@@ -142,7 +142,7 @@ std::vector<ShapeSpec> pack_voronoi(std::vector<Placement>& grains, const std::v
   parallel_for(static_cast<int>(grains.size()), [&](int i) {
     const Body& body = bodies.at(grains[i].shape);
     fits[i] = largest_in_cell(cells[i], body.reach);
-    fits[i].scale *= 1 - tile_clearance;
+    fits[i].scale *= 1 - cell_clearance;
     areas[i] = body.area;
   });
   set_sizes(grains, fits, areas, region.area(), solid_fraction);
