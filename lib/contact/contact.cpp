@@ -132,22 +132,25 @@ bool ContactSystem::rebuild_list(const Outlines& outlines, const OutlineField& t
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
   const std::vector<int> to_search = verlet_list_.pairs_to_search(outlines.position);
   remember(outlines, to_search);
-  const std::vector<ContactPair> found = search(to_search);
+  const bool all_anew = !same_pairs && static_cast<int>(to_search.size()) == verlet_list_.count();
+  std::vector<ContactPair> found = search(to_search, all_anew ? std::move(spare_pairs_) : std::vector<ContactPair>{});
   found_ = to_search;  // contact pairs are ordered as the pairs, unless there is self-contact
   const auto carry = [&](const ContactPair& old, const ContactPair& now) {
     if (corrects_energy()) carry_forces(model_, old, history.last.forces, now, history.last.forces);
   };
-  if (!same_pairs || !table_.replace(to_search, found, history, carry)) lay_out_anew(found, history);
+  if (!same_pairs || !table_.replace(to_search, found, history, carry)) lay_out_anew(std::move(found), history);
   parallel_for(static_cast<int>(found_.size()),
                [&](int i) { locate_new_contacts(view(contact_pairs()[found_[i]]), history); });
   return verlet_list_.hold(to_search, trial);
 }
 
-std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
-  std::vector<ContactPair> found(pairs.size());
+/// Contact pairs of these pairs of bodies, in the memory of others.
+std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs, std::vector<ContactPair> found) {
+  found.resize(pairs.size());
   parallel_for_uneven(static_cast<int>(found.size()), 4, [&](int i) {
     const BodyPair& pair = verlet_list_[pairs[i]];
     ContactPair& contact_pair = found[i];
+    contact_pair = {};
     contact_pair.first = pair.first, contact_pair.second = pair.second, contact_pair.images = pair.images;
     contact_pair.law = laws_.between(pair.first, pair.second, refreshed_.time);
     contact_pair.integrated = integrates(pair.first, pair.second);
@@ -160,8 +163,9 @@ std::vector<ContactPair> ContactSystem::search(const std::vector<int>& pairs) {
   return found;
 }
 
-/// Lays out one contact pair per pair of bodies, either just found or kept.
-void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history) {
+/// One contact pair per pair of bodies, either just found or kept.
+std::vector<ContactPair> ContactSystem::found_or_kept(std::vector<ContactPair> found) {
+  if (static_cast<int>(found.size()) == verlet_list_.count()) return found;
   std::vector<ContactPair> all = std::move(spare_pairs_);
   all.resize(static_cast<std::size_t>(verlet_list_.count()));
   parallel_for(verlet_list_.count(), [&](int p) {
@@ -171,6 +175,11 @@ void ContactSystem::lay_out_anew(const std::vector<ContactPair>& found, ContactH
     const int just_found = find_pair(found, contact_pair, p);
     contact_pair = just_found < 0 ? contact_pairs()[find_pair(contact_pairs(), contact_pair, p)] : found[just_found];
   });
+  return all;
+}
+
+void ContactSystem::lay_out_anew(std::vector<ContactPair> found, ContactHistory& history) {
+  std::vector<ContactPair> all = found_or_kept(std::move(found));
   if (model_.scene.contact.self_contact) add_self_pairs(all);
   std::swap(before_, history.last);
   const std::vector<ContactPair>& old = spare_pairs_ = table_.lay_out(std::move(all), history);
@@ -269,7 +278,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   const Blocks pairs{table_.count(), 256};
   block_totals_.assign(static_cast<std::size_t>(pairs.count()), {});
   const auto add_up = [&](int b) { pairs.for_each_in(b, [&](int p) { block_totals_[b].add(now.totals[p]); }); };
-  parallel_for(bodies, gather, pairs.count(), add_up);
+  parallel_for(shares_by_cost(table_.gathering_cost()), gather, pairs.count(), add_up);
   if (model_.halo) {
     const double* const entries[] = {now.forces.x.data(), now.forces.y.data()};
     double* const sums[] = {force.x.data(), force.y.data()};

@@ -107,8 +107,9 @@ class ContactSystem {
   void remember(const Outlines& outlines, const std::vector<int>& pairs);
   bool period_is_over(const RunClock& clock) const;
   void warn_of_missed_contacts(const OutlineField& position);
-  std::vector<ContactPair> search(const std::vector<int>& pairs);
-  void lay_out_anew(const std::vector<ContactPair>& found, ContactHistory& history);
+  std::vector<ContactPair> search(const std::vector<int>& pairs, std::vector<ContactPair> found);
+  std::vector<ContactPair> found_or_kept(std::vector<ContactPair> found);
+  void lay_out_anew(std::vector<ContactPair> found, ContactHistory& history);
   void carry_step(const std::vector<ContactPair>& old, StepForces& last) const;
   void make_room(StepForces& evaluated) const;
   bool integrates(int first, int second) const;

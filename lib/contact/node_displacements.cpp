@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/archive.hpp"
-#include "core/lanes.hpp"
+#include "core/parallel.hpp"
 
 namespace pliant {
 namespace {
@@ -97,17 +97,19 @@ bool NodeDisplacements::keeps_nodes(int entry) const { return model_->outline_of
 void NodeDisplacements::lay_out(int first) {
   at_.resize(body_.size());
   common_.resize(body_.size());
-  std::size_t at = first == 0 ? 0 : x_.size();
-  for (int e = first; e < count(); ++e) {
-    at_[e] = static_cast<int>(at);
-    if (keeps_nodes(e)) at += static_cast<std::size_t>(padded(model_->outline_of(body_[e]).count));
-  }
-  x_.resize(at), y_.resize(at);
+  parallel_for(count() - first, [&](int i) {
+    const int e = first + i;
+    at_[e] = keeps_nodes(e) ? padded(model_->outline_of(body_[e]).count) : 0;
+  });
+  int at = first == 0 ? 0 : static_cast<int>(x_.size());
+  for (int e = first; e < count(); ++e) at_[e] = std::exchange(at, at + at_[e]);
+  x_.resize(static_cast<std::size_t>(at)), y_.resize(static_cast<std::size_t>(at));
 }
 
 void NodeDisplacements::set_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
-  start_.assign(body_.size(), unknown_displacement);
+  start_.resize(body_.size());
+  parallel_for(count(), [&](int e) { start_[e] = unknown_displacement; });
   lay_out(0);
 }
 

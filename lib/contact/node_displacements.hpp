@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "bodies/model.hpp"
+#include "core/lanes.hpp"
 
 namespace pliant {
 
@@ -74,9 +75,9 @@ class NodeDisplacements {
   std::vector<DisplacementDisc> start_;  ///< [entries] displacements from the reference at set_reference()
   // The same node by node, for small bodies: that of the first node, and those of the others relative to it. These
   // remain small however far all nodes drift, so that floats suffice.
-  std::vector<Common> common_;  ///< [entries], m
-  std::vector<float> x_, y_;    ///< m
-  std::vector<int> at_;         ///< [entries] index of the first nodes
+  std::vector<Common> common_;                      ///< [entries], m
+  std::vector<float, LineAllocator<float>> x_, y_;  ///< m
+  std::vector<int> at_;                             ///< [entries] index of the first nodes
 };
 
 }  // namespace pliant

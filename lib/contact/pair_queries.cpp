@@ -77,7 +77,7 @@ void add_projected(const Projection& p, int lane, double skin, double stiffness,
 }
 
 /// Adds one half pass: half the tributary lengths times the stiffness.
-void add_pass_stiffness(const PairView& view, int slave_side, const double (&factor)[2], std::vector<double>& entries) {
+void add_pass_stiffness(const PairView& view, int slave_side, const double (&factor)[2], LinedNumbers& entries) {
   const double stiffness = stiffness_of(view.contact_pair.law), outward = reach_of(view.contact_pair.law) + view.skin;
   const HalfPass pass = make_half_pass(view, slave_side, runs_in_table(view.contact_pair));
   fill_window(view, 1 - slave_side);
@@ -98,7 +98,7 @@ void add_pass_stiffness(const PairView& view, int slave_side, const double (&fac
 
 }  // namespace
 
-void add_patch_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries) {
+void add_patch_stiffness(const PairView& view, const double (&factor)[2], LinedNumbers& entries) {
   if (view.contact_pair.integrated) return add_integrated_stiffness(view, factor, entries);
   for (int slave_side = 0; slave_side < 2; ++slave_side)
     if (view.contact_pair.nodes[slave_side].count > 0) add_pass_stiffness(view, slave_side, factor, entries);

@@ -22,6 +22,6 @@ bool overlaps(const PairView& view);
 /// before the next search. Entries are those of the contact pair's nodes in force buffers. A slave node gets half its
 /// tributary length times the stiffness. The two nodes of the master segment share that; a compliant master's node gets
 /// at least all of the largest slave that may slide onto it. All is multiplied by the factor of the node's side.
-void add_patch_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries);
+void add_patch_stiffness(const PairView& view, const double (&factor)[2], LinedNumbers& entries);
 
 }  // namespace pliant

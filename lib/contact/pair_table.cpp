@@ -12,8 +12,13 @@
 namespace pliant {
 namespace {
 
-/// Capacity with spare room, for contact pairs that outgrow their places before the next layout.
-int with_spare(int needed) { return padded(needed + needed / 4) + 32 * lane_count; }
+/// Capacity with spare room, for contact pairs that outgrow their places before the next layout. The present one is kept
+/// while it leaves some and is not far too large: memory of another size would be given out anew, page by page.
+int with_spare(int needed, int present) {
+  constexpr int few = 16 * lane_count;
+  const bool fits = present >= needed + needed / 8 + few && present <= needed + needed / 2 + 4 * few;
+  return fits ? present : padded(needed + needed / 4) + 2 * few;
+}
 
 /// Transfers the records of one side's nodes from another contact pair of the same bodies to cleared ones.
 void carry(const Model& model, const ContactPair& from, const ContactHistory& old, const ContactPair& to, int side,
@@ -52,34 +57,24 @@ bool find_room(int wanted, int had, int room, int& used, int& at) {
 
 }  // namespace
 
-int find_pair(const std::vector<ContactPair>& pairs, const ContactPair& wanted, int near) {
-  const int size = static_cast<int>(pairs.size());
-  int low = std::clamp(near, 0, size), high = low;  // the first that does not come before it lies in [low, high]
-  for (int step = 1; low > 0 && !comes_before(pairs[low - 1], wanted); step *= 2)
-    high = low - 1, low = std::max(0, low - step);
-  for (int step = 1; high < size && comes_before(pairs[high], wanted); step *= 2)
-    low = high + 1, high = std::min(size, high + step);
-  const auto at = std::partition_point(pairs.begin() + low, pairs.begin() + high,
-                                       [&](const ContactPair& p) { return comes_before(p, wanted); });
-  return at == pairs.end() || comes_before(wanted, *at) ? -1 : static_cast<int>(at - pairs.begin());
-}
-
 std::vector<ContactPair> PairTable::lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history) {
   if (!std::ranges::is_sorted(contact_pairs, comes_before)) std::ranges::sort(contact_pairs, comes_before);
   assign_places(contact_pairs);
-  record_room_ = with_spare(records_), entry_room_ = with_spare(entries_);
+  record_room_ = with_spare(records_, record_room_), entry_room_ = with_spare(entries_, entry_room_);
   ContactHistory& next = spare_;
   next.resize(record_room_);
-  next.clear(records_, record_room_ - records_);
   if (model_.scene.corrects_energy()) next.start_energy_errors(contact_pairs.size());
-  parallel_for(static_cast<int>(contact_pairs.size()), [&](int p) {
+  const auto transfer = [&](int p) {
     const ContactPair& contact_pair = contact_pairs[p];
     for (int side = 0; side < 2; ++side) next.clear(contact_pair.record[side], padded(contact_pair.nodes[side].count));
     const int from = find_pair(contact_pairs_, contact_pair, p);
     if (from < 0) return;
     for (int side = 0; side < 2; ++side) carry(model_, contact_pairs_[from], history, contact_pair, side, next);
     if (!next.energy_error.empty()) next.copy_energy_error(history, from, p);
-  });
+  };
+  const Blocks spare{record_room_ - records_, 4096};
+  const auto clear = [&](int b) { next.clear(records_ + spare[b].begin, spare[b].end - spare[b].begin); };
+  parallel_for(static_cast<int>(contact_pairs.size()), transfer, spare.count(), clear);
   std::swap(history, next);
   history.layout = laid_out_ = ++layout_;
   moved_from_ = none;
@@ -222,6 +217,11 @@ void PairTable::index() {
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) arc_begin_[b + 1] += arc_begin_[b];
   std::vector<int> next(arc_begin_.begin(), arc_begin_.end() - 1);
   for (auto& [first, second] : slot_) first = next[first]++, second = next[second]++;
+  const std::vector<int>& own = model_.own.bodies;
+  gathering_cost_.resize(own.size() + 1);
+  gathering_cost_[0] = 0;
+  for (std::size_t i = 0; i < own.size(); ++i)
+    gathering_cost_[i + 1] = gathering_cost_[i] + 1 + arc_begin_[own[i] + 1] - arc_begin_[own[i]];
   arcs_.resize(2 * contact_pairs_.size());
   parallel_for(count(), [&](int p) {
     for (int side = 0; side < 2; ++side) arcs_[slot_[p][side]] = arc_of(contact_pairs_[p], side);

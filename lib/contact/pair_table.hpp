@@ -9,6 +9,7 @@
 #include "contact/contact_pair.hpp"
 #include "contact/history.hpp"
 #include "core/parallel.hpp"
+#include "core/sorted_search.hpp"
 
 namespace pliant {
 
@@ -35,9 +36,10 @@ void for_each_shared(const Model& model, const ContactPair& contact_pair, int si
   }
 }
 
-/// Index in ordered contact pairs of the one with the bodies and the part of `wanted`; -1: none. The search goes
-/// outwards from the index `near`: pairs of two lists of the same bodies have much the same indices.
-int find_pair(const std::vector<ContactPair>& pairs, const ContactPair& wanted, int near);
+/// Index in ordered contact pairs of the one with the bodies and the part of `wanted`; -1: none.
+inline int find_pair(const std::vector<ContactPair>& pairs, const ContactPair& wanted, int near) {
+  return find_near(pairs, wanted, near, comes_before);
+}
 
 /// Contact pairs with the positions of their nodes' records and forces in memory. A pair that is found again takes the
 /// place of the old one, or moves behind all others while there is room, so that the rest stays in place.
@@ -49,6 +51,8 @@ class PairTable {
   int count() const { return static_cast<int>(contact_pairs_.size()); }
   /// [contact pairs + 1] sums of the cost of their forces, in lanes of slave nodes and master segments.
   const std::vector<int>& cost() const { return cost_; }
+  /// [own bodies + 1] sums of the cost of gathering forces from their arcs, in arcs.
+  const std::vector<int>& gathering_cost() const { return gathering_cost_; }
 
   /// Replaces all contact pairs by these, in the order of their keys. The history follows. Returns those before.
   std::vector<ContactPair> lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history);
@@ -136,7 +140,7 @@ class PairTable {
   std::vector<std::array<int, 2>> moved_;  ///< first, count
   std::int64_t moved_from_ = none;
   ContactHistory spare_;                                   ///< memory for the next layout
-  std::vector<int> cost_;                                  ///< [contact pairs + 1] at the last full layout
+  std::vector<int> cost_, gathering_cost_;                 ///< at the last full layout
   std::vector<std::array<std::array<int, 2>, 2>> places_;  ///< scratch, [contact pairs][sides]: record, entry
   std::vector<int> arc_begin_;                             ///< [bodies + 1]
   std::vector<ArcEntries> arcs_;                           ///< of each body's contact pairs, in their order

@@ -29,7 +29,7 @@ Span8 within_reach(const SlaveSegments& slaves, const MasterSegment& m, double r
 }
 
 void add_pass(const PairView& view, const HalfPass& pass, int slave_side, const double (&factor)[2],
-              std::vector<double>& entries) {
+              LinedNumbers& entries) {
   const MasterWindow& window = view.window;
   const double stiffness = 0.5 * stiffness_of(view.contact_pair.law), reach = reach_of(view.contact_pair.law),
                skin = view.skin;
@@ -72,7 +72,7 @@ void add_pass(const PairView& view, const HalfPass& pass, int slave_side, const 
 
 }  // namespace
 
-void add_integrated_stiffness(const PairView& view, const double (&factor)[2], std::vector<double>& entries) {
+void add_integrated_stiffness(const PairView& view, const double (&factor)[2], LinedNumbers& entries) {
   for_each_half_pass(view, runs_in_table(view.contact_pair),
                      [&](const HalfPass& pass, int slave_side) { add_pass(view, pass, slave_side, factor, entries); });
 }

@@ -38,7 +38,7 @@ std::vector<int> StiffnessBound::update(const ContactSystem& contact, const std:
     const ContactPair& contact_pair = table.contact_pairs()[p];
     if (contact_pair.found <= seen_) return;
     found.push_back(p);
-    weighed_[p] = contact_pair;
+    if (!all) weighed_[p] = contact_pair;
     changed[contact_pair.first] = changed[contact_pair.second] = 1;
   };
   if (all || contact.refreshes() != seen_ + 1)

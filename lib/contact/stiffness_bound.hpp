@@ -36,8 +36,8 @@ class StiffnessBound {
   bool has_partners_elsewhere(int body) const { return model_.halo && model_.bodies[body].wall; }
 
   const Model& model_;
-  std::vector<double> entries_;       ///< in the order of the force buffers, N/m2
-  std::vector<double> spare_;         ///< memory for those of the next layout
+  LinedNumbers entries_;              ///< in the order of the force buffers, N/m2
+  LinedNumbers spare_;                ///< memory for those of the next layout
   std::vector<ContactPair> weighed_;  ///< as counted in the entries
   std::vector<double> on_walls_;      ///< [outline nodes] on walls, pairs of all processes, N/m2; empty without a halo
   std::int64_t layout_ = -1;          ///< PairTable::laid_out of the entries

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "contact/halo.hpp"
@@ -36,9 +37,9 @@ std::int64_t in_units(double displacement, double unit) {
 Blocks blocks_of(int count) { return {count, 64}; }
 
 std::vector<int> both_bodies(const std::vector<BodyPair>& pairs) {
-  std::vector<int> bodies;
-  bodies.reserve(2 * pairs.size());
-  for (const BodyPair& pair : pairs) bodies.push_back(pair.first), bodies.push_back(pair.second);
+  std::vector<int> bodies(2 * pairs.size());
+  parallel_for(static_cast<int>(pairs.size()),
+               [&](int p) { bodies[2 * p] = pairs[p].first, bodies[2 * p + 1] = pairs[p].second; });
   return bodies;
 }
 
@@ -75,18 +76,16 @@ VerletList::VerletList(const Model& model, double skin, double reach)
       margin_(reach + (1 + extra_skins) * skin),
       motion_(model.bodies.size()),
       pair_displacements_(model),
-      spare_(model),
+      spare_displacements_(model),
       grains_(static_cast<int>(std::ranges::count(model.bodies, false, &Body::wall))) {
   forget();
 }
 
 void VerletList::forget() {
-  reference_ = {};
+  reference_.x.clear(), reference_.y.clear();
   pairs_.clear();
   use_.clear();
-  excess_.clear();
-  gap_.clear(), watched_.clear();
-  image_.clear();
+  of_pairs_.resize(0, false);
   pair_displacements_.set_bodies({});
   since_sweep_.assign(model_.bodies.size(), unknown_displacement);
   swept_at_.assign(model_.bodies.size(), BodyPlace{0, 0, 0, -1});
@@ -96,9 +95,10 @@ void VerletList::loaded() {
   pair_displacements_.restore_bodies(both_bodies(pairs_));
   if (swept_at_.size() != motion_.size() || since_sweep_.size() != motion_.size())
     throw ArchiveError("displacements are those of other bodies");
-  if (excess_.size() != pairs_.size() || gap_.size() != pairs_.size() || watched_.size() != pairs_.size())
+  const auto& [excess, gap, watched, image] = of_pairs_;
+  if (excess.size() != pairs_.size() || gap.size() != pairs_.size() || watched.size() != pairs_.size())
     throw ArchiveError("displacements are those of other pairs");
-  if (image_.size() != (model_.scene.cell ? pairs_.size() : 0)) throw ArchiveError("images are those of other pairs");
+  if (image.size() != (model_.scene.cell ? pairs_.size() : 0)) throw ArchiveError("images are those of other pairs");
   use_.assign(pairs_.size(), search_again);
 }
 
@@ -168,17 +168,17 @@ double VerletList::come_out_of_place(int body, const OutlineField& now) const {
 /// Relative displacement of both bodies of a pair, the second one at its image.
 double VerletList::with_image(int pair, const DisplacementDisc& first, DisplacementDisc second,
                               const OutlineField& now) const {
-  if (!image_.empty()) {
+  if (!of_pairs_.image.empty()) {
     const Vec2 image = now.lattice.shift(pairs_[pair].images);
-    second.x += image.x() - image_[pair].x, second.y += image.y() - image_[pair].y;
+    second.x += image.x() - of_pairs_.image[pair].x, second.y += image.y() - of_pairs_.image[pair].y;
   }
   return relative_displacement(first, second);
 }
 
 void VerletList::note_image(int pair, const OutlineField& now) {
-  if (image_.empty()) return;
+  if (of_pairs_.image.empty()) return;
   const Vec2 image = now.lattice.shift(pairs_[pair].images);
-  image_[pair] = {image.x(), image.y()};
+  of_pairs_.image[pair] = {image.x(), image.y()};
 }
 
 /// Bound from the discs of the nodes' displacements: cheap, but an overestimate.
@@ -200,9 +200,9 @@ bool VerletList::stays_within(int pair, double limit, const OutlineField& now) c
 /// What a pair needs at these positions, after measure(). If the disc bound is below the skin, the pair is valid and an
 /// estimate suffices.
 VerletList::Use VerletList::use_of(int pair, const OutlineField& now) const {
-  if (!watched_[pair]) return keep;
+  if (!of_pairs_.watched[pair]) return keep;
   const double rough = displacement_bound(pair, now),
-               likely = rough < skin_ ? rough - excess_[pair] : displacement(pair, now);
+               likely = rough < skin_ ? rough - of_pairs_.excess[pair] : displacement(pair, now);
   return likely < search_threshold * skin_ ? keep : likely < (1 - rounded) * skin_ ? check : search_again;
 }
 
@@ -264,10 +264,10 @@ void VerletList::reset_references(const OutlineField& here, const OutlineField& 
 /// Pairs of the broad phase, those that this process computes. Their ghosts get their outlines.
 std::vector<BodyPair> VerletList::close_boxes(const OutlineField& here) {
   const std::vector<int>& own = model_.own.bodies;
-  std::vector<Box> boxes(model_.bodies.size());
-  parallel_for(static_cast<int>(own.size()), [&](int i) { boxes[own[i]] = bounding_box(model_, here, own[i]); });
-  if (model_.halo) model_.halo->gather_boxes(boxes);
-  std::vector<BodyPair> found = broad_phase(model_, boxes, margin_, here.lattice);
+  boxes_.resize(model_.bodies.size());
+  parallel_for(static_cast<int>(own.size()), [&](int i) { boxes_[own[i]] = bounding_box(model_, here, own[i]); });
+  if (model_.halo) model_.halo->gather_boxes(boxes_);
+  std::vector<BodyPair> found = broad_phase(model_, boxes_, margin_, here.lattice);
   if (model_.halo) {
     std::erase_if(found, [&](const BodyPair& pair) { return !model_.halo->computes(pair); });
     model_.halo->set_pairs(found);
@@ -316,31 +316,22 @@ bool VerletList::discs_are_apart(const BodyPair& pair, const OutlineField& here)
 void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   std::vector<char> stays(pairs_.size());
   parallel_for(count(), [&](int p) {
-    if (watched_[p])
-      stays[p] = gap_[p] <= margin_ - skin_ || gap_[p] + displacement(p, here) <= margin_;
+    const double gap = of_pairs_.gap[p];
+    if (of_pairs_.watched[p])
+      stays[p] = gap <= margin_ - skin_ || gap + displacement(p, here) <= margin_;
     else
-      stays[p] = gap_[p] - displacement(p, here) > margin_;
+      stays[p] = gap - displacement(p, here) > margin_;
   });
-  const std::vector<BodyPair> before = std::exchange(pairs_, std::move(found));
-  const std::vector<double> old_excess = std::exchange(excess_, std::vector<double>(pairs_.size(), 0.0));
-  const std::vector<double> old_gap = std::exchange(gap_, std::vector<double>(pairs_.size(), 0.0));
-  const std::vector<char> was_watched = std::exchange(watched_, std::vector<char>(pairs_.size(), 1));
-  const std::vector<ImageShift> old_image =
-      std::exchange(image_, std::vector<ImageShift>(model_.scene.cell ? pairs_.size() : 0));
-  std::swap(pair_displacements_, spare_);
+  std::swap(pairs_, found);
+  std::swap(of_pairs_, spare_of_pairs_), std::swap(pair_displacements_, spare_displacements_);
+  of_pairs_.resize(pairs_.size(), model_.scene.cell.has_value());
   pair_displacements_.set_bodies(both_bodies(pairs_));
-  std::vector<int> old_number(pairs_.size(), -1);
-  std::size_t old = 0;
-  for (int p = 0; p < count(); ++p) {
-    while (old < before.size() && before[old] < pairs_[p]) ++old;
-    if (old < before.size() && before[old] == pairs_[p] && stays[old]) old_number[p] = static_cast<int>(old);
-  }
   parallel_for(count(), [&](int p) {
-    const int from = old_number[p];
-    if (from < 0) return;
-    excess_[p] = old_excess[from], gap_[p] = old_gap[from], watched_[p] = was_watched[from];
-    if (!image_.empty()) image_[p] = old_image[from];
-    for (int side = 0; side < 2; ++side) pair_displacements_.copy_entry(2 * p + side, spare_, 2 * from + side);
+    const int old = find_near(found, pairs_[p], p, std::less{});
+    if (old < 0 || !stays[old]) return of_pairs_.reset(p);
+    of_pairs_.copy(p, spare_of_pairs_, old);
+    for (int side = 0; side < 2; ++side)
+      pair_displacements_.copy_entry(2 * p + side, spare_displacements_, 2 * old + side);
   });
 }
 
@@ -348,7 +339,7 @@ std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {
   parallel_for(count(), [&](int p) {
     if (use_[p] != check) return;
     const double exact = displacement(p, here);
-    excess_[p] = std::max(0.0, displacement_bound(p, here) - exact);
+    of_pairs_.excess[p] = std::max(0.0, displacement_bound(p, here) - exact);
     if (exact < search_threshold * skin_) use_[p] = keep;
   });
   std::vector<int> result;
@@ -358,14 +349,14 @@ std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {
 }
 
 bool VerletList::hold(const std::vector<int>& pairs, const OutlineField& trial) const {
-  const auto holds = [&](int p) { return !watched_[p] || stays_within(p, skin_, trial); };
+  const auto holds = [&](int p) { return !of_pairs_.watched[p] || stays_within(p, skin_, trial); };
   const bool hold = come_out_ < own_skin_ && std::ranges::all_of(pairs, holds);
   return model_.halo ? model_.halo->largest(hold ? 0 : 1) == 0 : hold;
 }
 
 void VerletList::searched(int pair, const OutlineField& now, double gap) {
-  excess_[pair] = 0, gap_[pair] = gap;
-  watched_[pair] = !(just_swept_ && gap > margin_);
+  of_pairs_.excess[pair] = 0, of_pairs_.gap[pair] = gap;
+  of_pairs_.watched[pair] = !(just_swept_ && gap > margin_);
   note_image(pair, now);
   for (int side = 0; side < 2; ++side) pair_displacements_.set_reference(2 * pair + side, displacements(now));
 }
@@ -373,8 +364,8 @@ void VerletList::searched(int pair, const OutlineField& now, double gap) {
 void VerletList::add(const BodyPair& pair, const OutlineField& now) {
   pairs_.push_back(pair);
   use_.push_back(keep);
-  excess_.push_back(0), gap_.push_back(0), watched_.push_back(1);
-  if (model_.scene.cell) image_.push_back({0, 0});
+  of_pairs_.resize(pairs_.size(), model_.scene.cell.has_value());
+  of_pairs_.reset(count() - 1);
   for (int body : {pair.first, pair.second}) pair_displacements_.append(body);
   searched(count() - 1, now, 0);
 }

@@ -52,9 +52,9 @@ class VerletList {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("reference", reference_);
-    visitor("pairs", pairs_), visitor("excess", excess_);
-    visitor("gap", gap_), visitor("watched", watched_);
-    visitor("image", image_), visitor("swept_lattice", swept_lattice_);
+    visitor("pairs", pairs_), visitor("excess", of_pairs_.excess);
+    visitor("gap", of_pairs_.gap), visitor("watched", of_pairs_.watched);
+    visitor("image", of_pairs_.image), visitor("swept_lattice", swept_lattice_);
     visitor("pair_ways", pair_displacements_), visitor("since_sweep", since_sweep_), visitor("swept_at", swept_at_);
   }
   void loaded();
@@ -88,19 +88,38 @@ class VerletList {
   bool just_swept_ = false;               ///< whether the last update ran the broad phase
   std::vector<Use> use_;                  ///< [pairs] what the last test of the skin asks for
   std::vector<BodyPair> pairs_;
-  /// [pairs] overestimate of the disc bound at the last exact check, m. It is subtracted from later bounds below the
-  /// skin, so that few pairs are checked node by node.
-  std::vector<double> excess_;
-  std::vector<double> gap_;               ///< [pairs] distance of the outlines at the last search, m
-  std::vector<char> watched_;             ///< [pairs] 0: beyond the margin at the last broad phase
-  NodeDisplacements pair_displacements_;  ///< [pairs][sides] since the last search
-  NodeDisplacements spare_;               ///< memory for those of the next list
   /// Vector from a body to its image, m.
   struct ImageShift {
     double x, y;
   };
-  std::vector<ImageShift> image_;  ///< [pairs] of the second body at the last search; empty unless periods move
-  Lattice swept_lattice_;          ///< at the last broad phase
+  /// What is known of each pair, [pairs].
+  struct OfPairs {
+    /// Overestimate of the disc bound at the last exact check, m. It is subtracted from later bounds below the skin, so
+    /// that few pairs are checked node by node.
+    std::vector<double> excess;
+    std::vector<double> gap;        ///< distance of the outlines at the last search, m
+    std::vector<char> watched;      ///< 0: beyond the margin at the last broad phase
+    std::vector<ImageShift> image;  ///< of the second body at the last search; empty unless periods move
+
+    void resize(std::size_t pairs, bool periods_move) {
+      excess.resize(pairs), gap.resize(pairs), watched.resize(pairs), image.resize(periods_move ? pairs : 0);
+    }
+    /// Of a pair that has not been searched.
+    void reset(int pair) {
+      excess[pair] = gap[pair] = 0, watched[pair] = 1;
+      if (!image.empty()) image[pair] = {0, 0};
+    }
+    void copy(int pair, const OfPairs& from, int old) {
+      excess[pair] = from.excess[old], gap[pair] = from.gap[old], watched[pair] = from.watched[old];
+      if (!image.empty()) image[pair] = from.image[old];
+    }
+  } of_pairs_;
+  NodeDisplacements pair_displacements_;  ///< [pairs][sides] since the last search
+  // Memory of the list before, for the next one:
+  OfPairs spare_of_pairs_;
+  NodeDisplacements spare_displacements_;
+  std::vector<Box> boxes_;
+  Lattice swept_lattice_;                               ///< at the last broad phase
   Eigen::Matrix2d swept_by_ = Eigen::Matrix2d::Zero();  ///< growth of the cell since, at the trial
   /// [bodies] displacements from the reference at the last broad phase
   std::vector<DisplacementDisc> since_sweep_;

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
+#include <utility>
 #include <vector>
 
 #if defined(__AVX512F__)
@@ -20,7 +22,8 @@ inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(64)));
 using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison results and bit patterns
 
-/// Allocator for arrays whose vectors begin at cache lines: others take two lines each.
+/// Allocator for arrays whose vectors begin at cache lines: others take two lines each. New entries have no value, so that
+/// the threads that use them write them first: the system then gives out pages to all of them at once, near to each.
 template <class T>
 struct LineAllocator : std::allocator<T> {
   LineAllocator() = default;
@@ -28,6 +31,14 @@ struct LineAllocator : std::allocator<T> {
   explicit LineAllocator(const LineAllocator<Other>&) {}
   T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
   void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
+  template <class U>
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* at, Arguments&&... arguments) {
+    std::construct_at(at, std::forward<Arguments>(arguments)...);
+  }
 
  private:
   static constexpr std::align_val_t alignment{64};
@@ -199,6 +210,16 @@ inline double largest(Lanes a) {
   a = max(a, __builtin_shufflevector(a, a, 4, 5, 6, 7, 0, 1, 2, 3));
   a = max(a, __builtin_shufflevector(a, a, 2, 3, 0, 1, 6, 7, 4, 5));
   return a[0] > a[1] ? a[0] : a[1];
+}
+
+/// Largest of these values and `least`, none of them NaN.
+inline double largest(std::span<const double> values, double least) {
+  Lanes worst = broadcast(least);
+  std::size_t i = 0;
+  for (; i + lane_count <= values.size(); i += lane_count) worst = max(load(&values[i]), worst);
+  double result = largest(worst);
+  for (; i < values.size(); ++i) result = values[i] > result ? values[i] : result;
+  return result;
 }
 
 }  // namespace pliant

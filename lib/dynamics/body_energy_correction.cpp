@@ -148,16 +148,16 @@ BodyEnergyCorrection::BodyEnergyCorrection(const Model& model) : model_(model) {
     else
       corrected_[body.batch][body.lane] = 1;
   }
+  if (!is_active()) return;
+  for (const int b : model.own.bodies)
+    if (const Body& body = model.bodies[b]; body.batch >= 0 && corrected_[body.batch][body.lane] > 0)
+      bodies_.push_back(b);
 }
 
 void BodyEnergyCorrection::add_work(const Trial& before, State& state) const {
   if (state.body_balance.work.empty()) return;
-  parallel_for(static_cast<int>(model_.own.bodies.size()), [&](int number) {
-    const int b = model_.own.bodies[number];
-    const Body& body = model_.bodies[b];
-    if (body.batch >= 0 && corrected_[body.batch][body.lane] > 0)
-      state.body_balance.work[b] += contact_work(model_, b, before, state);
-  });
+  parallel_for(static_cast<int>(bodies_.size()),
+               [&](int i) { state.body_balance.work[bodies_[i]] += contact_work(model_, bodies_[i], before, state); });
 }
 
 /// Kinetic, strain and gravitational energy of each body of a batch, J/m.

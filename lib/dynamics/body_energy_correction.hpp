@@ -46,6 +46,7 @@ class BodyEnergyCorrection {
   const Model& model_;
   /// [batches] 1, or 0 for bodies without correction and padding; empty: no body has it
   std::vector<Lanes> corrected_;
+  std::vector<int> bodies_;  ///< own bodies that are corrected
 };
 
 }  // namespace pliant

@@ -306,11 +306,7 @@ void Verlet::update_rigid(const State& state, double dt, int r) {
 }
 
 /// Largest dt^2 |a_new - a_old| / (6 d) of all nodes, independent of the direction of the axes.
-double Verlet::error(double dt) const {
-  double worst = 0;
-  for (double change : change_) worst = std::max(change, worst);
-  return dt * dt / 6 * worst;
-}
+double Verlet::error(double dt) const { return dt * dt / 6 * largest(change_, 0); }
 
 void Verlet::add_damping_work(const State& state, StepReport& report) {
   report.damping_work = 0.5 * report.dt * (state.damping_power + report.evaluation.damping_power);

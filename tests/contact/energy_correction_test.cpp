@@ -235,7 +235,7 @@ TEST(EnergyCorrection, forces_go_along_with_their_nodes) {
   ContactPair old, now;
   for (ContactPair* contact_pair : {&old, &now}) contact_pair->second = 1, contact_pair->entry[1] = room;
   for (int side : {0, 1}) old.segments[side] = {-1, n + 2}, now.segments[side] = {-4, n + 3};
-  PairForceBuffer before{LinedNumbers(2 * room), LinedNumbers(2 * room)}, after = before;
+  PairForceBuffer before{LinedNumbers(2 * room, 0.0), LinedNumbers(2 * room, 0.0)}, after = before;
   std::iota(before.x.begin(), before.x.end(), 1.0);
   carry_forces(model, old, before, now, after);
   for (int side : {0, 1}) EXPECT_EQ(on_nodes(model, now, side, after), on_nodes(model, old, side, before));

@@ -70,6 +70,29 @@ TEST(ContactHistory, TravelsWithTheBodies) {
   }
 }
 
+// EXACT: room for the forces stays while it suffices, so that memory is not given out anew at each search; it grows with
+// the arcs.
+TEST(ContactHistory, KeepsItsRoom) {
+  Scene scene = nodal_scene();
+  scene.contacts = {mohr_coulomb(100, 0.3)};
+  for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 3000), BodyKind::rigid, {1.999 * i, 0}, i);
+  ContactRig rig(scene);
+  rig.refresh();
+  const int room = rig.contact.table().entries();
+  const auto nodes = [&] { return rig.contact.contact_pairs()[0].forces(0).count; };
+  const int few = nodes();
+  for (int i = 0; i < 5; ++i) {
+    rig.move(1, {i % 2 == 0 ? -1e-3 : 1.1e-3, 0});
+    rig.refresh();
+    EXPECT_NE(nodes(), few);
+    EXPECT_EQ(rig.contact.table().entries(), room);
+  }
+  rig.move(1, {-0.3, 0});
+  rig.refresh();
+  EXPECT_GE(rig.contact.table().entries(), 2 * nodes());
+  EXPECT_GT(rig.contact.table().entries(), room);
+}
+
 // EXACT: a grain some whole periods away feels the same.
 TEST(ContactHistory, WholePeriodsChangeNothing) {
   const auto forces = [](double shift) {

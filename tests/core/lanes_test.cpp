@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace pliant {
 namespace {
@@ -89,6 +93,37 @@ TEST(Lanes, SumAndLargest) {
     EXPECT_EQ(largest(b), 5);
   }
   EXPECT_EQ(largest(-1.0 - counting), -1);
+}
+
+// EXACT, wherever the largest is, also in what is left after whole vectors.
+TEST(Lanes, LargestOfManyValues) {
+  EXPECT_EQ(largest({}, -3), -3);
+  for (std::size_t size = 1; size < 3 * lane_count; ++size)
+    for (std::size_t at = 0; at < size; ++at) {
+      std::vector<double> values(size);
+      std::iota(values.begin(), values.end(), -100.0);
+      EXPECT_EQ(largest(values, 7), 7);
+      values[at] = 9;
+      EXPECT_EQ(largest(values, 7), 9) << at << " of " << size;
+    }
+}
+
+// EXACT: the system has given out none of the pages inside a new array until a thread writes to it. The array is larger
+// than what the C library takes from memory in use (32 MB).
+TEST(Lanes, NewNumbersAreNotTouched) {
+  LinedNumbers numbers(std::size_t{1} << 23);
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const auto resident = [&](std::size_t at) {
+    void* start = reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(&numbers[at]) / page * page);
+    unsigned char in_memory = 0;
+    EXPECT_EQ(mincore(start, page, &in_memory), 0);
+    return (in_memory & 1) != 0;
+  };
+  for (std::size_t at = numbers.size() / 4; at < numbers.size(); at += numbers.size() / 4) {
+    EXPECT_FALSE(resident(at));
+    numbers[at] = 1;
+    EXPECT_TRUE(resident(at));
+  }
 }
 
 }  // namespace
