@@ -12,8 +12,8 @@
 namespace pliant {
 namespace {
 
-/// Capacity with spare room, for contact pairs that outgrow their places before the next layout. The present one is kept
-/// while it leaves some and is not far too large: memory of another size would be given out anew, page by page.
+/// Capacity with spare room, for contact pairs that outgrow their places before the next layout. The present one is
+/// kept while it leaves some and is not far too large: memory of another size would be given out anew, page by page.
 int with_spare(int needed, int present) {
   constexpr int few = 16 * lane_count;
   const bool fits = present >= needed + needed / 8 + few && present <= needed + needed / 2 + 4 * few;

@@ -22,8 +22,9 @@ inline constexpr int lane_count = 8;
 using Lanes = double __attribute__((vector_size(64)));
 using LaneBits = std::int64_t __attribute__((vector_size(64)));  ///< comparison results and bit patterns
 
-/// Allocator for arrays whose vectors begin at cache lines: others take two lines each. New entries have no value, so that
-/// the threads that use them write them first: the system then gives out pages to all of them at once, near to each.
+/// Allocator for arrays whose vectors begin at cache lines: others take two lines each. New entries have no value, so
+/// that the threads that use them write them first: the system then gives out pages to all of them at once, near to
+/// each.
 template <class T>
 struct LineAllocator : std::allocator<T> {
   LineAllocator() = default;

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Index of an entry in a list sorted by `before`; -1: there is none. The search goes outwards from the index `near`: two
-/// lists of much the same entries have them at much the same places.
+/// Index of an entry in a list sorted by `before`; -1: there is none. The search goes outwards from the index `near`:
+/// two lists of much the same entries have them at much the same places.
 template <class T, class Before>
 int find_near(const std::vector<T>& sorted, const T& wanted, int near, Before&& before) {
   const int size = static_cast<int>(sorted.size());

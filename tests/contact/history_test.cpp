@@ -70,8 +70,8 @@ TEST(ContactHistory, TravelsWithTheBodies) {
   }
 }
 
-// EXACT: room for the forces stays while it suffices, so that memory is not given out anew at each search; it grows with
-// the arcs.
+// EXACT: room for the forces stays while it suffices, so that memory is not given out anew at each search; it grows
+// with the arcs.
 TEST(ContactHistory, KeepsItsRoom) {
   Scene scene = nodal_scene();
   scene.contacts = {mohr_coulomb(100, 0.3)};
