@@ -207,6 +207,7 @@ void ContactSystem::carry_step(const std::vector<ContactPair>& old, StepForces& 
 void ContactSystem::make_room(StepForces& evaluated) const {
   const Blocks blocks{table_.entries() + lane_count, 4096};  // read in whole lanes
   for (LinedNumbers* numbers : {&evaluated.forces.x, &evaluated.forces.y}) {
+    numbers->clear();  // or those before would be copied
     numbers->resize(static_cast<std::size_t>(blocks.iterations));
     parallel_for(blocks.count(),
                  [&](int b) { std::fill(numbers->begin() + blocks[b].begin, numbers->begin() + blocks[b].end, 0.0); });
@@ -278,7 +279,7 @@ PairTotals ContactSystem::forces(const Outlines& outlines, const ContactHistory&
   const Blocks pairs{table_.count(), 256};
   block_totals_.assign(static_cast<std::size_t>(pairs.count()), {});
   const auto add_up = [&](int b) { pairs.for_each_in(b, [&](int p) { block_totals_[b].add(now.totals[p]); }); };
-  parallel_for(shares_by_cost(table_.gathering_cost()), gather, pairs.count(), add_up);
+  parallel_for(bodies, gather, pairs.count(), add_up);
   if (model_.halo) {
     const double* const entries[] = {now.forces.x.data(), now.forces.y.data()};
     double* const sums[] = {force.x.data(), force.y.data()};

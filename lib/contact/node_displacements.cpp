@@ -93,39 +93,44 @@ NodeDisplacements::Common NodeDisplacements::displacement_of_first(int body,
 
 bool NodeDisplacements::keeps_nodes(int entry) const { return model_->outline_of(body_[entry]).count <= small_outline; }
 
-/// Allocates memory for the nodes of all entries from `first` on.
-void NodeDisplacements::lay_out(int first) {
+/// Numbers that are stored of each component of an entry.
+int NodeDisplacements::room(int entry) const {
+  return keeps_nodes(entry) ? padded(model_->outline_of(body_[entry]).count) : 0;
+}
+
+/// Sets the places of all entries. Returns how many numbers they have.
+std::size_t NodeDisplacements::assign_places() {
   at_.resize(body_.size());
-  common_.resize(body_.size());
-  parallel_for(count() - first, [&](int i) {
-    const int e = first + i;
-    at_[e] = keeps_nodes(e) ? padded(model_->outline_of(body_[e]).count) : 0;
-  });
-  int at = first == 0 ? 0 : static_cast<int>(x_.size());
-  for (int e = first; e < count(); ++e) at_[e] = std::exchange(at, at + at_[e]);
-  x_.resize(static_cast<std::size_t>(at)), y_.resize(static_cast<std::size_t>(at));
+  parallel_for(count(), [&](int e) { at_[e] = room(e); });
+  std::size_t at = 0;
+  for (int& place : at_) place = static_cast<int>(std::exchange(at, at + static_cast<std::size_t>(place)));
+  return at;
 }
 
 void NodeDisplacements::set_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
-  start_.resize(body_.size());
+  start_.resize(body_.size()), common_.resize(body_.size());
   parallel_for(count(), [&](int e) { start_[e] = unknown_displacement; });
-  lay_out(0);
+  const std::size_t numbers = assign_places();
+  for (auto* of_nodes : {&x_, &y_}) of_nodes->clear(), of_nodes->resize(numbers);
 }
 
 void NodeDisplacements::restore_bodies(std::vector<int> bodies) {
   body_ = std::move(bodies);
   const int all = static_cast<int>(model_->bodies.size());
-  const bool fits =
-      start_.size() == body_.size() && std::ranges::all_of(body_, [&](int body) { return body >= 0 && body < all; });
+  const bool known = std::ranges::all_of(body_, [&](int body) { return body >= 0 && body < all; });
+  const std::size_t numbers = known ? assign_places() : 0;
+  const bool fits = known && start_.size() == body_.size() && common_.size() == body_.size() && x_.size() == numbers &&
+                    y_.size() == numbers;
   if (!fits) throw ArchiveError("displacements are those of other bodies");
-  lay_out(0);
 }
 
 void NodeDisplacements::append(int body) {
   body_.push_back(body);
-  start_.push_back(unknown_displacement);
-  lay_out(count() - 1);
+  start_.push_back(unknown_displacement), common_.push_back({0, 0});
+  at_.push_back(static_cast<int>(x_.size()));
+  const std::size_t numbers = x_.size() + static_cast<std::size_t>(room(count() - 1));
+  x_.resize(numbers), y_.resize(numbers);
 }
 
 void NodeDisplacements::copy_entry(int entry, const NodeDisplacements& from, int old_entry) {

@@ -68,7 +68,8 @@ class NodeDisplacements {
   };
   Common displacement_of_first(int body, const DisplacementsSoFar& displacements) const;
   bool keeps_nodes(int entry) const;
-  void lay_out(int first);
+  int room(int entry) const;
+  std::size_t assign_places();
 
   const Model* model_;
   std::vector<int> body_;

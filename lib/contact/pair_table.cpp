@@ -15,9 +15,10 @@ namespace {
 /// Capacity with spare room, for contact pairs that outgrow their places before the next layout. The present one is
 /// kept while it leaves some and is not far too large: memory of another size would be given out anew, page by page.
 int with_spare(int needed, int present) {
-  constexpr int few = 16 * lane_count;
-  const bool fits = present >= needed + needed / 8 + few && present <= needed + needed / 2 + 4 * few;
-  return fits ? present : padded(needed + needed / 4) + 2 * few;
+  constexpr int few = 32 * lane_count;
+  const int spare = present - needed;
+  const bool fits = spare >= needed / 5 + few / 2 && spare <= needed / 2 + 2 * few;
+  return fits ? present : padded(needed + needed / 4) + few;
 }
 
 /// Transfers the records of one side's nodes from another contact pair of the same bodies to cleared ones.
@@ -187,7 +188,10 @@ void PairTable::refuse_others() const {
              fits(contact_pair.entry[side], padded(contact_pair.forces(side).count), entry_room_);
     return good;
   };
-  const bool sound = 0 <= records_ && records_ <= record_room_ && 0 <= entries_ && entries_ <= entry_room_;
+  const auto has_room = [](int used, int room) {
+    return 0 <= used && used <= room && used % lane_count == 0 && room % lane_count == 0;
+  };
+  const bool sound = has_room(records_, record_room_) && has_room(entries_, entry_room_);
   if (!sound || !std::ranges::all_of(contact_pairs_, is_one)) throw ArchiveError("contacts are those of other bodies");
 }
 
@@ -217,11 +221,6 @@ void PairTable::index() {
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) arc_begin_[b + 1] += arc_begin_[b];
   std::vector<int> next(arc_begin_.begin(), arc_begin_.end() - 1);
   for (auto& [first, second] : slot_) first = next[first]++, second = next[second]++;
-  const std::vector<int>& own = model_.own.bodies;
-  gathering_cost_.resize(own.size() + 1);
-  gathering_cost_[0] = 0;
-  for (std::size_t i = 0; i < own.size(); ++i)
-    gathering_cost_[i + 1] = gathering_cost_[i] + 1 + arc_begin_[own[i] + 1] - arc_begin_[own[i]];
   arcs_.resize(2 * contact_pairs_.size());
   parallel_for(count(), [&](int p) {
     for (int side = 0; side < 2; ++side) arcs_[slot_[p][side]] = arc_of(contact_pairs_[p], side);

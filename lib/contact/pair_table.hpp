@@ -51,8 +51,6 @@ class PairTable {
   int count() const { return static_cast<int>(contact_pairs_.size()); }
   /// [contact pairs + 1] sums of the cost of their forces, in lanes of slave nodes and master segments.
   const std::vector<int>& cost() const { return cost_; }
-  /// [own bodies + 1] sums of the cost of gathering forces from their arcs, in arcs.
-  const std::vector<int>& gathering_cost() const { return gathering_cost_; }
 
   /// Replaces all contact pairs by these, in the order of their keys. The history follows. Returns those before.
   std::vector<ContactPair> lay_out(std::vector<ContactPair> contact_pairs, ContactHistory& history);
@@ -140,7 +138,7 @@ class PairTable {
   std::vector<std::array<int, 2>> moved_;  ///< first, count
   std::int64_t moved_from_ = none;
   ContactHistory spare_;                                   ///< memory for the next layout
-  std::vector<int> cost_, gathering_cost_;                 ///< at the last full layout
+  std::vector<int> cost_;                                  ///< [contact pairs + 1] at the last full layout
   std::vector<std::array<std::array<int, 2>, 2>> places_;  ///< scratch, [contact pairs][sides]: record, entry
   std::vector<int> arc_begin_;                             ///< [bodies + 1]
   std::vector<ArcEntries> arcs_;                           ///< of each body's contact pairs, in their order

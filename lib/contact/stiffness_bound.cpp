@@ -12,6 +12,7 @@ namespace pliant {
 /// what they can still reach before the next search.
 void StiffnessBound::follow_layout(const PairTable& table) {
   std::swap(entries_, spare_);
+  entries_.clear();  // or those before would be copied
   entries_.resize(static_cast<std::size_t>(table.entries() + lane_count));
   const Blocks blocks{static_cast<int>(entries_.size()), 4096};
   parallel_for(blocks.count(),

@@ -30,7 +30,13 @@ struct LineAllocator : std::allocator<T> {
   LineAllocator() = default;
   template <class Other>
   explicit LineAllocator(const LineAllocator<Other>&) {}
-  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), alignment)); }
+  T* allocate(std::size_t count) {
+    void* memory = ::operator new(count * sizeof(T), alignment);
+#ifndef NDEBUG
+    std::memset(memory, 0xff, count * sizeof(T));  // NaN, for what is read before it is written
+#endif
+    return static_cast<T*>(memory);
+  }
   void deallocate(T* memory, std::size_t) { ::operator delete(memory, alignment); }
   template <class U>
   void construct(U* at) {

@@ -55,12 +55,9 @@ void parallel_for(int count, Body&& body, const LoopPlace& place = LoopPlace::cu
 }
 
 /// The same in contiguous shares of equal cost; `cost`: [iterations + 1] sums of the cost of all iterations before.
-inline LoopShares shares_by_cost(const std::vector<int>& cost) {
-  return {static_cast<int>(cost.size()) - 1, 0, cost.data()};
-}
 template <class Body>
 void parallel_for_by_cost(const std::vector<int>& cost, Body&& body, const LoopPlace& place = LoopPlace::current()) {
-  const LoopShares loop = shares_by_cost(cost);
+  const LoopShares loop{static_cast<int>(cost.size()) - 1, 0, cost.data()};
 #pragma omp parallel
   for_own_share(loop, body, place);
   end_parallel_region();
@@ -69,19 +66,14 @@ void parallel_for_by_cost(const std::vector<int>& cost, Body&& body, const LoopP
 /// Two loops that do not wait for each other: a thread that has finished its share of the first continues with the
 /// second.
 template <class Body, class OtherBody>
-void parallel_for(const LoopShares& loop, Body&& body, int other_count, OtherBody&& other_body,
+void parallel_for(int count, Body&& body, int other_count, OtherBody&& other_body,
                   const LoopPlace& place = LoopPlace::current()) {
 #pragma omp parallel
   {
-    for_own_share(loop, body, place);
+    for_own_share({count}, body, place);
     for_own_share({other_count}, other_body, place);
   }
   end_parallel_region();
-}
-template <class Body, class OtherBody>
-void parallel_for(int count, Body&& body, int other_count, OtherBody&& other_body,
-                  const LoopPlace& place = LoopPlace::current()) {
-  parallel_for(LoopShares{count}, body, other_count, other_body, place);
 }
 
 /// As parallel_for, in chunks that threads take in turn: for work of uneven cost. Not schedule(dynamic): libomp 19,

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <type_traits>
 
 #include "core/archive.hpp"
 #include "support/contact_rig.hpp"
@@ -230,6 +232,13 @@ TEST(PairTable, refuses_other_bodies) {
   EXPECT_THROW(with([](ContactPair& p) { p.segments[1].count = -1; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.record[1] = 1 << 20; }).loaded(), ArchiveError);
   EXPECT_THROW(with([](ContactPair& p) { p.entry[0] = 3; }).loaded(), ArchiveError) << "not at an eight";
+  for (const char* of : {"record_room", "entry_room"}) {
+    PairTable table = rig.contact.table();
+    table.visit([&](const std::string& name, auto& value) {
+      if constexpr (std::is_same_v<decltype(value), int&>) value += name == of ? 3 : 0;
+    });
+    EXPECT_THROW(table.loaded(), ArchiveError) << of;
+  }
 }
 
 }  // namespace

@@ -194,10 +194,14 @@ TEST(NodeDisplacements, of_other_bodies_are_refused) {
   ContactRig rig(two_rows());
   NodeDisplacements displacements(rig.model);
   displacements.set_bodies({0, 1});
-  EXPECT_NO_THROW(displacements.restore_bodies({2, 3}));
+  EXPECT_NO_THROW(displacements.restore_bodies({5, 6})) << "of as many nodes";
   EXPECT_THROW(displacements.restore_bodies({0, 12}), ArchiveError) << "there are twelve";
   EXPECT_THROW(displacements.restore_bodies({-1, 0}), ArchiveError);
   EXPECT_THROW(displacements.restore_bodies({0}), ArchiveError) << "two are known";
+  displacements.visit([](const char* name, auto& values) {
+    if (name == std::string("x")) values.pop_back();
+  });
+  EXPECT_THROW(displacements.restore_bodies({0, 1}), ArchiveError) << "one number less";
 }
 
 }  // namespace

@@ -111,6 +111,9 @@ TEST(Lanes, LargestOfManyValues) {
 // EXACT: the system has given out none of the pages inside a new array until a thread writes to it. The array is larger
 // than what the C library takes from memory in use (32 MB).
 TEST(Lanes, NewNumbersAreNotTouched) {
+#ifndef NDEBUG
+  GTEST_SKIP() << "new numbers are NaN in this build";
+#endif
   LinedNumbers numbers(std::size_t{1} << 23);
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const auto resident = [&](std::size_t at) {

@@ -51,21 +51,6 @@ TEST(Parallel, VisitsEveryIndexOnce) {
     }
 }
 
-// EXACT: two loops in one region, the first in shares of equal cost.
-TEST(Parallel, TwoLoopsVisitEveryIndexOnce) {
-  for (const int threads : {1, 3, 7})
-    for (const int size : {0, 1, 5, 40}) {
-      std::vector<int> cost{0};
-      for (int i = 0; i < size; ++i) cost.push_back(cost.back() + (i == 2 ? 50 : 1));
-      const auto visited = with_threads(threads, [&] {
-        std::vector<int> count(static_cast<std::size_t>(size + 11), 0);
-        parallel_for(shares_by_cost(cost), [&](int i) { ++count[i]; }, 11, [&](int i) { ++count[size + i]; });
-        return count;
-      });
-      for (int c : visited) EXPECT_EQ(c, 1) << size << " indices, " << threads << " threads";
-    }
-}
-
 // EXACT: one share after the other, as equal as can be.
 TEST(Parallel, SharesAreContiguousAndEqual) {
   const auto owner = with_threads(3, [] {
