@@ -8,6 +8,7 @@
 #include "contact/halo.hpp"
 #include "core/archive.hpp"
 #include "core/parallel.hpp"
+#include "core/sorted_search.hpp"
 #include "geometry/lattice.hpp"
 
 namespace pliant {

@@ -9,6 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "contact/stiffness_bound.hpp"
 #include "core/archive.hpp"
 #include "support/contact_rig.hpp"
