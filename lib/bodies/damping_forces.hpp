@@ -13,7 +13,7 @@ double damping_coefficient(const RigidDof& dof, const Instant& at);
 void add_rigid_damping(const RigidBody& rigid, const Instant& at, const double* velocity, double* force);
 
 /// Adds the forces that resist the velocity of each degree of freedom alone: mass-proportional damping, - c times the
-/// momentum, and the dashpots beside the loads of rigid bodies. `velocity` as in a state (bodies/mass_correction.hpp).
+/// momentum, and the dashpots beside the loads of rigid bodies. `velocity` as in a state (bodies/reciprocal_mass.hpp).
 void add_mass_damping(const Model& model, const Instant& at, const Dofs& velocity, Dofs& force);
 
 /// Whether some degree of freedom, or one of a body, has mass damping at some time.

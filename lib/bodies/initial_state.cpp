@@ -1,6 +1,6 @@
 #include "bodies/initial_state.hpp"
 
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 
 #include <cmath>
 

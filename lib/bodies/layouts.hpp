@@ -63,8 +63,8 @@ struct LaneRows {
 struct SameTopologyShapes {
   std::vector<Lanes> mass_at_unit_density, inverse_mass_at_unit_density, nodal_distance;  ///< [nodes]
   LaneTable table;
-  LaneRows outline_rows, node_rows, mass_correction;
-  Lanes correction_bound{};
+  LaneRows outline_rows, node_rows, reciprocal_mass;
+  Lanes reciprocal_mass_bound{};
 };
 
 /// Shape of nodewise bodies. Its tables are ordered so that neighbours in space are neighbours in memory: slots, points

@@ -137,8 +137,8 @@ struct Model {
   std::vector<int> outline_offset;  ///< [bodies + 1], first node of each body in an OutlineField
   std::size_t compliant_size = 0;   ///< length of Dofs::compliant
   std::size_t material_memory = 0;  ///< length of Memory::material: 0 without internal variables
-  /// mass is corrected or scaled: states hold momentum over lumped mass (mass_correction.hpp)
-  bool corrected_mass = false;
+  /// mass is corrected or scaled: states hold momentum over lumped mass (reciprocal_mass.hpp)
+  bool has_reciprocal_mass = false;
   /// some force except mass damping (damping_forces.hpp) depends on velocities: else no rates are formed
   bool rates = false;
   bool outline_rates = false;  ///< likewise, on velocities of outline nodes

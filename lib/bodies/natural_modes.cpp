@@ -8,7 +8,7 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "core/errors.hpp"
 
 namespace pliant {
@@ -95,8 +95,8 @@ MatrixXd inverse_mass_of(const Model& model, const Body& body) {
   for (Index j = 0; j < nodes; ++j) {
     Lanes& unit = y[2 * static_cast<std::size_t>(j)];
     unit = broadcast(shape.inverse_mass_at_unit_density[static_cast<std::size_t>(j)] / batch.density[body.lane]);
-    if (model.corrected_mass)
-      correct_velocity(model, batch, y.data(), v.data());
+    if (model.has_reciprocal_mass)
+      apply_reciprocal_mass(model, batch, y.data(), v.data());
     else
       v = y;
     for (Index i = 0; i < nodes; ++i) result(i, j) = v[2 * static_cast<std::size_t>(i)][0];

@@ -65,11 +65,12 @@ SameTopologyShapes unite(Shapes shapes) {
       result.inverse_mass_at_unit_density[i][lane] = 1 / shapes[lane]->mass_at_unit_density[i];
       result.nodal_distance[i][lane] = shapes[lane]->nodal_distance[i];
     }
-  for (int lane = 0; lane < lane_count; ++lane) result.correction_bound[lane] = shapes[lane]->correction_bound;
+  for (int lane = 0; lane < lane_count; ++lane)
+    result.reciprocal_mass_bound[lane] = shapes[lane]->reciprocal_mass_bound;
   result.table = unite_tables(shapes);
   result.outline_rows = unite_rows(shapes, &Discretisation::outline_rows);
   result.node_rows = unite_rows(shapes, &Discretisation::node_rows);
-  result.mass_correction = unite_rows(shapes, &Discretisation::mass_correction);
+  result.reciprocal_mass = unite_rows(shapes, &Discretisation::reciprocal_mass);
   return result;
 }
 

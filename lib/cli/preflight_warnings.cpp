@@ -58,7 +58,7 @@ double largest_inertia_ratio(const Model& model) {
   double largest = 1;
   for (const CompliantShape& shape : model.shapes)
     largest = std::max(largest,
-                       inertia_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.mass_correction));
+                       inertia_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.reciprocal_mass));
   return largest;
 }
 

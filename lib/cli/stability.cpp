@@ -41,7 +41,7 @@ double slowed_by_mass_scaling(const Model& model) {
   if (model.scene.discretisation.mass_scaling > 1)
     for (const CompliantShape& shape : model.shapes)
       largest = std::max(
-          largest, stretching_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.mass_correction));
+          largest, stretching_ratio(shape.space.mesh, shape.space.mass_at_unit_density, shape.space.reciprocal_mass));
   return std::sqrt(largest) - 1;
 }
 

@@ -71,7 +71,7 @@ ShapeRows rows_of(const std::vector<std::map<int, double>>& matrix) {
 
 }  // namespace
 
-ShapeRows scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling) {
+ShapeRows scaled_reciprocal_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling) {
   std::vector<std::map<int, double>> rows(lumped.size());
   for (std::size_t i = 0; i < lumped.size(); ++i) rows[i][static_cast<int>(i)] = 1;
   const std::vector<std::vector<int>> outline_nodes = nearest_outline_nodes(mesh);
@@ -93,7 +93,7 @@ ShapeRows scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, 
   return rows_of(rows);
 }
 
-ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {
+ShapeRows corrected_reciprocal_mass(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {
   const MeshQuadrature quadrature = mesh_quadrature(mesh, 6);
   std::vector<std::map<int, double>> mass(lumped.size());
   for (std::size_t g = 0; g < quadrature.weight.size(); ++g) {
@@ -107,15 +107,15 @@ ShapeRows mass_correction(const FieldMesh& mesh, const Basis& basis, const std::
   return rows_of(mass);
 }
 
-double correction_bound(const ShapeRows& correction, const std::vector<double>& lumped) {
+double reciprocal_mass_bound(const ShapeRows& reciprocal_mass, const std::vector<double>& lumped) {
   constexpr std::size_t most_nodes = 1000;  // a dense eigenvalue problem of this size takes a tenth of a second
   const std::size_t n = lumped.size();
   if (n > most_nodes) return 2;
   Eigen::MatrixXd symmetric = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i)
-    for (int e = correction.start[i]; e < correction.start[i + 1]; ++e) {
-      const int j = correction.node[e];
-      symmetric(static_cast<Eigen::Index>(i), j) = correction.value[e] * std::sqrt(lumped[i] / lumped[j]);
+    for (int e = reciprocal_mass.start[i]; e < reciprocal_mass.start[i + 1]; ++e) {
+      const int j = reciprocal_mass.node[e];
+      symmetric(static_cast<Eigen::Index>(i), j) = reciprocal_mass.value[e] * std::sqrt(lumped[i] / lumped[j]);
     }
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
 }
@@ -123,17 +123,17 @@ double correction_bound(const ShapeRows& correction, const std::vector<double>& 
 namespace {
 
 /// Twice the kinetic energy y.D C y / 2 of these velocities C y at density 1.
-double twice_kinetic_energy(const std::vector<double>& lumped, const ShapeRows& correction,
+double twice_kinetic_energy(const std::vector<double>& lumped, const ShapeRows& reciprocal_mass,
                             const Eigen::MatrixX2d& velocity) {
   const Eigen::Index n = static_cast<Eigen::Index>(lumped.size());
   const Eigen::Map<const Eigen::VectorXd> mass(lumped.data(), n);
   Eigen::MatrixX2d y = velocity;
-  if (!correction.start.empty()) {
+  if (!reciprocal_mass.start.empty()) {
     Eigen::SparseMatrix<double> matrix(n, n);  // D C
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < n; ++i)
-      for (int e = correction.start[i]; e < correction.start[i + 1]; ++e)
-        entries.emplace_back(i, correction.node[e], lumped[i] * correction.value[e]);
+      for (int e = reciprocal_mass.start[i]; e < reciprocal_mass.start[i + 1]; ++e)
+        entries.emplace_back(i, reciprocal_mass.node[e], lumped[i] * reciprocal_mass.value[e]);
     matrix.setFromTriplets(entries.begin(), entries.end());
     y = Eigen::ConjugateGradient < Eigen::SparseMatrix<double>,
     Eigen::Lower | Eigen::Upper > (matrix).solve(mass.asDiagonal() * velocity);
@@ -150,17 +150,17 @@ Eigen::MatrixX2d linear_field(const FieldMesh& mesh, const Vec2& a, const Vec2& 
 
 }  // namespace
 
-double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
+double inertia_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& reciprocal_mass) {
   const Points outline(mesh.nodes.begin(), mesh.nodes.begin() + mesh.outline_count);
-  return twice_kinetic_energy(lumped, correction, linear_field(mesh, {0, 1}, {-1, 0})) /
+  return twice_kinetic_energy(lumped, reciprocal_mass, linear_field(mesh, {0, 1}, {-1, 0})) /
          polygon_properties(outline).polar_moment;
 }
 
-double stretching_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& correction) {
+double stretching_ratio(const FieldMesh& mesh, const std::vector<double>& lumped, const ShapeRows& reciprocal_mass) {
   double largest = 0;
   for (const Eigen::MatrixX2d& velocity : {linear_field(mesh, {1, 0}, {0, -1}), linear_field(mesh, {0, 1}, {1, 0})})
-    largest = std::max(largest,
-                       twice_kinetic_energy(lumped, correction, velocity) / twice_kinetic_energy(lumped, {}, velocity));
+    largest = std::max(
+        largest, twice_kinetic_energy(lumped, reciprocal_mass, velocity) / twice_kinetic_energy(lumped, {}, velocity));
   return largest;
 }
 

@@ -95,12 +95,12 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.mass_at_unit_density = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
   if (settings.mass_scaling > 1) {
-    result.mass_correction = scaled_mass(scaled, result.mass_at_unit_density, settings.mass_scaling);
-    result.correction_averages = true;
+    result.reciprocal_mass = scaled_reciprocal_mass(scaled, result.mass_at_unit_density, settings.mass_scaling);
+    result.reciprocal_mass_averages = true;
   }
   if (settings.mass == Mass::corrected) {
-    result.mass_correction = mass_correction(scaled, basis, result.mass_at_unit_density);
-    result.correction_bound = correction_bound(result.mass_correction, result.mass_at_unit_density);
+    result.reciprocal_mass = corrected_reciprocal_mass(scaled, basis, result.mass_at_unit_density);
+    result.reciprocal_mass_bound = reciprocal_mass_bound(result.reciprocal_mass, result.mass_at_unit_density);
   }
   MethodResult method = build(scaled, basis, result.outline_rows, settings);
   result.table = std::move(method.table);

@@ -38,12 +38,12 @@ struct Discretisation {
   std::vector<double> nodal_distance;        ///< [nodes], distance to the nearest other node, m
   /// Rows of C, which takes p/D to velocities, D the lumped mass: 2 I - D^-1 M of corrected mass, or that of mass
   /// scaling (docs/method.md 2). Empty: C = I.
-  ShapeRows mass_correction;
-  double correction_bound = 1;       ///< bound on its largest eigenvalue
-  bool correction_averages = false;  ///< whether it has no negative entries
-  double min_shape_value = 0;        ///< least phi at integration points and nodes (docs/method.md 2)
-  double condition = 1;              ///< largest condition number of the systems that the shape functions solve
-  double completeness_residual = 0;  ///< `mls`: largest relative residual of conditions (1) and (2)
+  ShapeRows reciprocal_mass;
+  double reciprocal_mass_bound = 1;       ///< bound on its largest eigenvalue
+  bool reciprocal_mass_averages = false;  ///< whether C has no negative entries
+  double min_shape_value = 0;             ///< least phi at integration points and nodes (docs/method.md 2)
+  double condition = 1;                   ///< largest condition number of the systems that the shape functions solve
+  double completeness_residual = 0;       ///< `mls`: largest relative residual of conditions (1) and (2)
 };
 
 /// Discretises a mesh as the scene says. Throws InputError if the limits of the discretisation are exceeded.

@@ -4,8 +4,8 @@
 
 #include "bodies/damping_forces.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "boundary/loads.hpp"
 #include "materials/with_law.hpp"
 
@@ -87,7 +87,7 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
       change += (q[i] - old_q[i] - mean_displacement[i % 2]) * (f[i] - old_f[i]);
     }
     const auto product = [&](const Lanes* a, const Lanes* b) {  // product of reduced momenta, weighted by mass
-      if (model.corrected_mass) correct_velocity(model, batch, b, scratch.data()), b = scratch.data();
+      if (model.has_reciprocal_mass) apply_reciprocal_mass(model, batch, b, scratch.data()), b = scratch.data();
       Lanes total{};
       for (std::size_t i = 0; i < size; ++i) total += nodes.mass_at_unit_density[i / 2] * (a[i] * b[i]);
       return total;

@@ -30,10 +30,10 @@ void multiply_absolute(const CompliantShape& shape, const Lanes* stiffness, cons
     for (int e = rows.start[k]; e < rows.start[k + 1]; ++e) product[rows.node[e]] += std::abs(rows.value[e]) * absolute;
   }
   for (std::size_t i = 0; i < x.size(); ++i) product[i] *= shape.inverse_mass_at_unit_density[i];
-  if (!shape.space.correction_averages) return;
+  if (!shape.space.reciprocal_mass_averages) return;
   thread_local std::vector<Lanes> lumped;  // memory is allocated once
   lumped = product;
-  const ShapeRows& c = shape.space.mass_correction;
+  const ShapeRows& c = shape.space.reciprocal_mass;
   for (std::size_t i = 0; i < product.size(); ++i) {
     product[i] = Lanes{};
     for (int e = c.start[i]; e < c.start[i + 1]; ++e) product[i] += c.value[e] * lumped[c.node[e]];
@@ -57,7 +57,7 @@ Lanes contact_frequencies(const CompliantShape& shape, const Lanes* stiffness) {
     const Lanes inverse = 1.0 / select(largest > 0.0, largest, broadcast(1));
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = blend * x[i] + product[i] * inverse;
   }
-  return shape.space.correction_bound * least;
+  return shape.space.reciprocal_mass_bound * least;
 }
 
 /// Largest w^2 of a rigid body whose outline nodes are tied by springs of equal normal and tangential stiffness. It

@@ -7,8 +7,8 @@
 
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "bodies/small_strain.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"

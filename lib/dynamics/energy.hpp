@@ -15,7 +15,7 @@ struct Energies {
   double mechanical() const { return kinetic + strain + contact + boundary; }
 };
 
-/// `velocity` as a state holds it: see bodies/mass_correction.hpp.
+/// `velocity` as a state holds it: see bodies/reciprocal_mass.hpp.
 double kinetic_energy(const Model& model, const Dofs& velocity);
 
 /// Sums and checks of one state: energies, and residuals of the balances of momentum.

@@ -5,8 +5,8 @@
 
 #include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "boundary/loads.hpp"
 #include "boundary/outline_loads.hpp"
 #include "contact/halo.hpp"

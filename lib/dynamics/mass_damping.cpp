@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bodies/damping_forces.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 
 namespace pliant {
 namespace {

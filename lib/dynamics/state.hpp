@@ -75,7 +75,7 @@ struct StateNumbers {
 /// State of a run. It enumerates itself (core/archive.hpp), so that hash, comparison and checkpoint cannot omit a part.
 struct State : StateNumbers {
   Dofs position;          ///< m
-  Dofs reduced_momentum;  ///< over lumped mass, m/s: the velocity, but with corrected mass (bodies/mass_correction.hpp)
+  Dofs reduced_momentum;  ///< over lumped mass, m/s: velocity if C = I (bodies/reciprocal_mass.hpp)
   Dofs force;             ///< N/m
   Memory memory;
   BodyBalance body_balance;

@@ -7,8 +7,8 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "boundary/loads.hpp"
 #include "dynamics/mass_damping.hpp"
 
@@ -135,7 +135,8 @@ void StepDoubling::find_start_force(const State& state, double half) {
 }
 
 Motion StepDoubling::motion(const Instant& at) const {
-  return {trial_.position, model_.corrected_mass ? moving_velocity_ : trial_.reduced_momentum, at.time, at.ends_step};
+  return {trial_.position, model_.has_reciprocal_mass ? moving_velocity_ : trial_.reduced_momentum, at.time,
+          at.ends_step};
 }
 
 /// Updates the trial's outlines, and makes candidates valid for them. `at`: the time of the loads. Laws that change at
@@ -161,12 +162,12 @@ bool StepDoubling::evaluate(const Instant& at, const PreviousHistory& from, Memo
 
 /// Writes v + half a, and u + half times that v, from `time` on, to the trial; the arguments may be the trial's own.
 void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half) {
-  const bool corrected = model_.corrected_mass;
+  const bool has_reciprocal_mass = model_.has_reciprocal_mass;
   for_each_dof(
       model_,
       [&](std::size_t i, Lanes inverse_mass) {
         trial_.reduced_momentum.compliant[i] = velocity.compliant[i] + half * inverse_mass * force.compliant[i];
-        if (!corrected)
+        if (!has_reciprocal_mass)
           trial_.position.compliant[i] = position.compliant[i] + half * trial_.reduced_momentum.compliant[i];
       },
       [&](std::size_t i, const RigidDof& dof) {
@@ -174,7 +175,7 @@ void StepDoubling::half_step(const Dofs& position, const Dofs& velocity, const D
         trial_.reduced_momentum.rigid[i] = dof.velocity_after(time, time + half, v);
         trial_.position.rigid[i] = dof.position_after(time, half, x, x + half * v);
       });
-  if (!corrected) return;
+  if (!has_reciprocal_mass) return;
   material_velocity(model_, trial_.reduced_momentum, moving_velocity_);
   for (std::size_t i = 0; i < position.compliant.size(); ++i)
     trial_.position.compliant[i] = position.compliant[i] + half * moving_velocity_.compliant[i];
@@ -192,11 +193,11 @@ void StepDoubling::find_difference(const Region& region, double dt) {
   });
 }
 
-void StepDoubling::correct_difference() {
-  uncorrected_ = difference_;
+void StepDoubling::apply_reciprocal_mass_to_difference() {
+  reduced_difference_ = difference_;
   for_each_batch(model_, [&](int b) {
     const Batch& batch = model_.batches[b];
-    correct_velocity(model_, batch, &uncorrected_[batch.offset], &difference_[batch.offset]);
+    apply_reciprocal_mass(model_, batch, &reduced_difference_[batch.offset], &difference_[batch.offset]);
   });
 }
 
@@ -250,7 +251,7 @@ double StepDoubling::rigid_error(std::size_t r, const State& state, double dt) c
 double StepDoubling::error(const State& state, double dt) {
   // A nodewise body's region needs the differences of its neighbours: all are computed first.
   parallel_for(static_cast<int>(model_.regions.size()), [&](int r) { find_difference(model_.regions[r], dt); });
-  if (model_.corrected_mass) correct_difference();
+  if (model_.has_reciprocal_mass) apply_reciprocal_mass_to_difference();
   const double compliant =
       parallel_max(static_cast<int>(model_.regions.size()), 0, [&](int r) { return region_error(model_.regions[r]); });
   return parallel_max(static_cast<int>(model_.rigid_bodies.size()), compliant,

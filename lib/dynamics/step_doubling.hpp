@@ -46,7 +46,7 @@ class StepDoubling {
   void half_step(const Dofs& position, const Dofs& velocity, const Dofs& force, double time, double half);
   double error(const State& state, double dt);
   void find_difference(const Region& region, double dt);
-  void correct_difference();
+  void apply_reciprocal_mass_to_difference();
   double region_error(const Region& region) const;
   double rigid_error(std::size_t rigid, const State& state, double dt) const;
 
@@ -54,14 +54,14 @@ class StepDoubling {
   const Model& model_;
   const bool has_mass_damping_;  ///< some degree of freedom has mass damping
   DampingLoss damping_loss_;
-  double wave_time_;                ///< time of a wave between nodes, s
-  Dofs moving_velocity_;            ///< scratch with corrected mass: C y
-  Dofs start_force_;                ///< for the first half step
-  Trial trial_;                     ///< at the half step, then at the end
-  Memory half_memory_;              ///< at the half step
-  OutlineField half_outlines_;      ///< likewise
-  std::vector<Lanes> difference_;   ///< u2 - u1 of the compliant degrees of freedom
-  std::vector<Lanes> uncorrected_;  ///< scratch: difference before C
+  double wave_time_;                       ///< time of a wave between nodes, s
+  Dofs moving_velocity_;                   ///< scratch with a reciprocal mass: C y
+  Dofs start_force_;                       ///< for the first half step
+  Trial trial_;                            ///< at the half step, then at the end
+  Memory half_memory_;                     ///< at the half step
+  OutlineField half_outlines_;             ///< likewise
+  std::vector<Lanes> difference_;          ///< u2 - u1 of the compliant degrees of freedom
+  std::vector<Lanes> reduced_difference_;  ///< scratch: difference before C
 };
 
 }  // namespace pliant

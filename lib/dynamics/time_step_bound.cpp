@@ -13,8 +13,8 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "contact/halo.hpp"
 #include "core/parallel.hpp"
 #include "dynamics/body_frame.hpp"
@@ -81,11 +81,11 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const Weight* weight, int slo
 }
 
 /// D C D^-1 of a force, so that the subsequent division by the lumped mass gives the acceleration W f.
-std::vector<Lanes> corrected(const Model& model, const Batch& batch, std::vector<Lanes> force) {
+std::vector<Lanes> times_reciprocal_mass(const Model& model, const Batch& batch, std::vector<Lanes> force) {
   std::vector<Lanes> result(force.size());
   with_nodes(model, batch, [&](const auto& nodes) {
     for (std::size_t i = 0; i < force.size(); ++i) force[i] *= nodes.inverse_mass_at_unit_density[i / 2];
-    correct_velocity(model, batch, force.data(), result.data());
+    apply_reciprocal_mass(model, batch, force.data(), result.data());
     for (std::size_t i = 0; i < force.size(); ++i) result[i] *= nodes.mass_at_unit_density[i / 2];
   });
   return result;
@@ -148,7 +148,7 @@ void TimeStepBound::iterate_batch(int b, BatchMotion motion, int iterations) {
     std::fill(response.begin(), response.end(), Lanes{});
     add_internal_forces(model_, batch, motion, response.data());
     for (std::size_t i = 0; i < size; ++i) response[i] = (at_rest[i] - response[i]) / step;
-    if (model_.corrected_mass) response = corrected(model_, batch, response);
+    if (model_.has_reciprocal_mass) response = times_reciprocal_mass(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
       const Lanes before = sum_over_body(batch, weighted_dot(u, u, nodes.mass_at_unit_density, batch.slots));
       const Lanes after = sum_over_body(
@@ -172,7 +172,7 @@ void TimeStepBound::iterate_viscous(int b, const Lanes* position, int iterations
     normalise(batch, v);
     std::fill(response.begin(), response.end(), Lanes{});
     add_internal_forces(model_, batch, {.position = position, .velocity = v, .elastic = false}, response.data());
-    if (model_.corrected_mass) response = corrected(model_, batch, response);
+    if (model_.has_reciprocal_mass) response = times_reciprocal_mass(model_, batch, response);
     with_nodes(model_, batch, [&](const auto& nodes) {
       const Lanes before = sum_over_body(batch, weighted_dot(v, v, nodes.mass_at_unit_density, batch.slots));
       const Lanes after = sum_over_body(

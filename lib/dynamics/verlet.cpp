@@ -9,8 +9,8 @@
 #include "bodies/damping_forces.hpp"
 #include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
-#include "bodies/mass_correction.hpp"
 #include "bodies/place_outlines.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "boundary/loads.hpp"
 #include "contact/halo.hpp"
 #include "dynamics/cell_motion.hpp"
@@ -156,7 +156,7 @@ void Verlet::predict(const State& state, double dt) {
                  free = x + dt * state.reduced_momentum.rigid[i] + half * dof.inverse_mass * state.force.rigid[i];
     trial_.position.rigid[i] = dof.position_after(state.time, dt, x, free);
   };
-  if (model_.corrected_mass) {
+  if (model_.has_reciprocal_mass) {
     move_by_momenta(state, dt, half);
     const std::vector<int>& own = model_.own.rigid_bodies;
     parallel_for(static_cast<int>(own.size()), [&](int number) { for_each_dof_of(model_, own[number], move_rigid); });
@@ -178,7 +178,7 @@ void Verlet::move_by_momenta(const State& state, double dt, double half) {
     const Batch& batch = model_.batches[b];
     thread_local std::vector<Lanes> scratch[2];  // memory is allocated once
     for (std::vector<Lanes>& one : scratch) one.resize(2 * static_cast<std::size_t>(batch.slots));
-    Lanes *uncorrected = scratch[0].data(), *displacement = scratch[1].data();  // of the calling thread
+    Lanes *reduced_displacement = scratch[0].data(), *displacement = scratch[1].data();  // of the calling thread
     const auto for_each_slot = [&](auto&& visit) {
       if (batch.layout == Layout::nodewise) return parallel_for(batch.slots, visit);
       for (int slot = 0; slot < batch.slots; ++slot) visit(slot);
@@ -188,11 +188,12 @@ void Verlet::move_by_momenta(const State& state, double dt, double half) {
         const Lanes inverse_mass = nodes.inverse_mass_at_unit_density[slot] * batch.inverse_density;
         for (int i = 2 * slot; i < 2 * slot + 2; ++i) {
           const std::size_t at = batch.offset + static_cast<std::size_t>(i);
-          uncorrected[i] = dt * state.reduced_momentum.compliant[at] + half * inverse_mass * state.force.compliant[at];
+          reduced_displacement[i] =
+              dt * state.reduced_momentum.compliant[at] + half * inverse_mass * state.force.compliant[at];
         }
       });
     });
-    correct_velocity(model_, batch, uncorrected, displacement);
+    apply_reciprocal_mass(model_, batch, reduced_displacement, displacement);
     for_each_slot([&](int slot) {
       for (int i = 2 * slot; i < 2 * slot + 2; ++i) {
         const std::size_t at = batch.offset + static_cast<std::size_t>(i);
@@ -227,7 +228,7 @@ void Verlet::predict_velocities(const State& state, double dt) {
         dof.imposed(state.time) ? (dof.position_after(state.time, dt, x, x) - x) / dt : v + damped.mean * change;
     end_velocity_.rigid[i] = dof.velocity_after(state.time, state.time + dt, v + damped.end * change);
   });
-  if (!model_.corrected_mass) return;
+  if (!model_.has_reciprocal_mass) return;
   material_velocity(model_, end_velocity_, moving_velocity_);
   std::swap(end_velocity_, moving_velocity_);
 }
@@ -254,8 +255,8 @@ void Verlet::update_region(const State& state, double dt, int r) {
   const Lanes* mean = batch.mass_damped ? &mean_velocity_.compliant[batch.offset] : nullptr;
   Lanes *velocity = &trial_.reduced_momentum.compliant[batch.offset], *force = &trial_.force.compliant[batch.offset];
   const Lanes z = dt * batch.mass_damping, rate = batch.mass_damping * batch.density;
-  const Lanes upper_inverse_density =
-      with_tables(model_, batch, [&](const auto& tables) { return tables.correction_bound * batch.inverse_density; });
+  const Lanes upper_inverse_density = with_tables(
+      model_, batch, [&](const auto& tables) { return tables.reciprocal_mass_bound * batch.inverse_density; });
   with_nodes(model_, batch, [&](const auto& nodes) {
     Lanes worst{}, any_nan{};  // squared
     for (int slot = region.first; slot < region.last; ++slot) {

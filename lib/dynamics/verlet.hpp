@@ -60,7 +60,7 @@ class Verlet {
   std::vector<RigidStep> rigid_steps_;
   Dofs mean_velocity_;          ///< of the step, where needed; a reduced momentum, as in a state
   Dofs end_velocity_;           ///< used by forces at the end of the step, where needed
-  Dofs moving_velocity_;        ///< scratch: of reduced momenta, with corrected mass
+  Dofs moving_velocity_;        ///< scratch: of reduced momenta, with a reciprocal mass
   std::vector<double> change_;  ///< [regions, rigid bodies] change of the acceleration over the nodal distance, 1/s2
 };
 

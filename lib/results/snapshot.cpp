@@ -5,7 +5,7 @@
 #include "bodies/for_each_dof.hpp"
 #include "bodies/initial_state.hpp"
 #include "bodies/internal_forces.hpp"
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "core/parallel.hpp"
 
 namespace pliant {
@@ -36,7 +36,7 @@ const std::vector<int>& Snapshot::fragment_numbers() const {
 }
 
 const Dofs& Snapshot::velocities() const {
-  if (!model().corrected_mass) return state().reduced_momentum;
+  if (!model().has_reciprocal_mass) return state().reduced_momentum;
   if (!velocities_) velocities_ = material_velocity(model(), state().reduced_momentum);
   return *velocities_;
 }

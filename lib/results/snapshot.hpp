@@ -27,7 +27,7 @@ class Snapshot {
   const std::vector<int>& contact_counts() const;  ///< [bodies] others that each touches; images count apiece
   const std::vector<Fragment>& fragments() const;
   const std::vector<int>& fragment_numbers() const;  ///< [bodies] -1 for walls
-  const Dofs& velocities() const;                    ///< see bodies/mass_correction.hpp
+  const Dofs& velocities() const;                    ///< see bodies/reciprocal_mass.hpp
   const Dofs& accelerations() const;                 ///< total force over mass; imposed ones by their histories
   const Dofs& internal_forces() const;               ///< on compliant degrees of freedom, N/m
   const EnergyBalance& energy_balance() const;

@@ -105,7 +105,7 @@ class Builder {
     make_batches(model_, options_.least_sparse_nodes);
     lay_out_outlines();
     const DiscretisationSettings& space = model_.scene.discretisation;
-    model_.corrected_mass = !model_.groups.empty() && (space.mass == Mass::corrected || space.mass_scaling > 1);
+    model_.has_reciprocal_mass = !model_.groups.empty() && (space.mass == Mass::corrected || space.mass_scaling > 1);
     apply_conditions(model_);
     model_.outline_rates |= depends_on_rates(model_.scene);
     model_.rates |= model_.outline_rates;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "bodies/initial_state.hpp"
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "dynamics/time_step_bound.hpp"
 #include "support/bench.hpp"
 #include "support/scenes.hpp"

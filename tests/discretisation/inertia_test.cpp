@@ -18,7 +18,7 @@ Discretisation disc_of_mass(int nodes, DiscretisationMethod method, Mass mass) {
 }
 
 double ratio(const Discretisation& space) {
-  return inertia_ratio(space.mesh, space.mass_at_unit_density, space.mass_correction);
+  return inertia_ratio(space.mesh, space.mass_at_unit_density, space.reciprocal_mass);
 }
 
 /// Row sums of linear triangles put a third of each triangle's mass on each of its corners.

@@ -40,9 +40,9 @@ Eigen::MatrixXd dense(const ShapeRows& rows) {
 TEST(MassScaling, couples_outline_nodes_to_the_nearest_inner_ones) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::es_t3}) {
     const Discretisation space = scaled_mass_disc(90, method);
-    const Eigen::MatrixXd c = dense(space.mass_correction);
+    const Eigen::MatrixXd c = dense(space.reciprocal_mass);
     EXPECT_GE(c.minCoeff(), 0);
-    EXPECT_TRUE(space.correction_averages);
+    EXPECT_TRUE(space.reciprocal_mass_averages);
     const auto n = c.rows();
     const Eigen::VectorXd lumped = Eigen::Map<const Eigen::VectorXd>(space.mass_at_unit_density.data(), n);
     Eigen::MatrixXd expected = lumped.asDiagonal();
@@ -70,7 +70,7 @@ TEST(MassScaling, stays_within_the_body) {
   DiscretisationSettings settings;
   settings.method = DiscretisationMethod::es_t3, settings.mass_scaling = scaling;
   const Discretisation space = discretise(make_field_mesh(shape), settings);
-  const Eigen::MatrixXd c = dense(space.mass_correction);
+  const Eigen::MatrixXd c = dense(space.reciprocal_mass);
   std::set<std::pair<int, int>> edges;
   for (const Triangle& t : space.mesh.triangles)
     for (const int a : t)
@@ -106,7 +106,7 @@ TEST(MassScaling, lets_grains_fall_as_before) {
 TEST(MassScaling, slows_smooth_motions_by_the_cube_of_the_node_distance) {
   const auto excess = [](int nodes) {
     const Discretisation space = scaled_mass_disc(nodes, DiscretisationMethod::t3);
-    return stretching_ratio(space.mesh, space.mass_at_unit_density, space.mass_correction) - 1;
+    return stretching_ratio(space.mesh, space.mass_at_unit_density, space.reciprocal_mass) - 1;
   };
   const double coarse = excess(168), fine = excess(672);
   EXPECT_GT(fine, 0);

@@ -42,10 +42,10 @@ MatrixXd scaled_stiffness(const Discretisation& d) {
 MatrixXd corrected(const Discretisation& d, const MatrixXd& stiffness) {
   MatrixXd c = MatrixXd::Zero(stiffness.rows(), stiffness.cols());
   for (int i = 0; i < static_cast<int>(d.mass_at_unit_density.size()); ++i)
-    for (int e = d.mass_correction.start[i]; e < d.mass_correction.start[i + 1]; ++e) {
-      const int j = d.mass_correction.node[e];
+    for (int e = d.reciprocal_mass.start[i]; e < d.reciprocal_mass.start[i + 1]; ++e) {
+      const int j = d.reciprocal_mass.node[e];
       const double value =
-          d.mass_correction.value[e] * std::sqrt(d.mass_at_unit_density[i] / d.mass_at_unit_density[j]);
+          d.reciprocal_mass.value[e] * std::sqrt(d.mass_at_unit_density[i] / d.mass_at_unit_density[j]);
       c.block<2, 2>(2 * i, 2 * j) = value * Matrix2d::Identity();
     }
   const MatrixXd l = c.llt().matrixL();
@@ -110,7 +110,7 @@ TEST(DiscModes, CorrectedMass) {
 }
 
 // EXACT: C is symmetric under D, keeps constants, and its eigenvalues lie in [1, bound], bound <= 2.
-TEST(MassCorrection, IsSymmetricKeepsMomentumAndIsBounded) {
+TEST(ReciprocalMass, IsSymmetricKeepsMomentumAndIsBounded) {
   for (const DiscretisationMethod method : {DiscretisationMethod::mls, DiscretisationMethod::mls_gauss,
                                             DiscretisationMethod::t3, DiscretisationMethod::es_t3}) {
     const Discretisation d =
@@ -118,8 +118,8 @@ TEST(MassCorrection, IsSymmetricKeepsMomentumAndIsBounded) {
     const auto n = static_cast<Eigen::Index>(d.mesh.nodes.size());
     MatrixXd c = MatrixXd::Zero(n, n);
     for (int i = 0; i < n; ++i)
-      for (int e = d.mass_correction.start[i]; e < d.mass_correction.start[i + 1]; ++e)
-        c(i, d.mass_correction.node[e]) = d.mass_correction.value[e];
+      for (int e = d.reciprocal_mass.start[i]; e < d.reciprocal_mass.start[i + 1]; ++e)
+        c(i, d.reciprocal_mass.node[e]) = d.reciprocal_mass.value[e];
     const Eigen::Map<const Eigen::VectorXd> mass(d.mass_at_unit_density.data(), n);
     const MatrixXd dc = mass.asDiagonal() * c;
     EXPECT_LT((dc - dc.transpose()).norm(), 1e-14 * dc.norm());
@@ -127,8 +127,8 @@ TEST(MassCorrection, IsSymmetricKeepsMomentumAndIsBounded) {
     const MatrixXd scaled = mass.cwiseSqrt().asDiagonal() * c * mass.cwiseSqrt().cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(scaled, Eigen::EigenvaluesOnly);
     EXPECT_NEAR(eigen.eigenvalues()[0], 1, 1e-12);  // constants: the smallest, as D^-1 M has no eigenvalue above 1
-    EXPECT_NEAR(eigen.eigenvalues()[n - 1], d.correction_bound, 1e-12);
-    EXPECT_LE(d.correction_bound, 2);
+    EXPECT_NEAR(eigen.eigenvalues()[n - 1], d.reciprocal_mass_bound, 1e-12);
+    EXPECT_LE(d.reciprocal_mass_bound, 2);
   }
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bodies/mass_correction.hpp"
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "dynamics/energy.hpp"
 #include "dynamics/verlet.hpp"
 #include "setup/build_model.hpp"

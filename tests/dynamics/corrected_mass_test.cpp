@@ -3,7 +3,7 @@
 
 #include "bodies/damping_forces.hpp"
 #include "bodies/for_each_dof.hpp"
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "setup/build_model.hpp"
 #include "support/simulations.hpp"
 #include "support/steered.hpp"

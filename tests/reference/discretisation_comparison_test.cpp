@@ -76,9 +76,9 @@ Eigen::SparseMatrix<double> engine_mass(const Discretisation& engine) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < nodes; ++i) {
     entries.emplace_back(i, i, 2 * engine.mass_at_unit_density[i]);
-    for (int e = engine.mass_correction.start[i]; e < engine.mass_correction.start[i + 1]; ++e)
-      entries.emplace_back(i, engine.mass_correction.node[e],
-                           -engine.mass_at_unit_density[i] * engine.mass_correction.value[e]);
+    for (int e = engine.reciprocal_mass.start[i]; e < engine.reciprocal_mass.start[i + 1]; ++e)
+      entries.emplace_back(i, engine.reciprocal_mass.node[e],
+                           -engine.mass_at_unit_density[i] * engine.reciprocal_mass.value[e]);
   }
   Eigen::SparseMatrix<double> mass(nodes, nodes);
   mass.setFromTriplets(entries.begin(), entries.end());

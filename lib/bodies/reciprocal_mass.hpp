@@ -6,10 +6,11 @@
 namespace pliant {
 
 /// With corrected or scaled mass a state holds y = p/D, momentum over lumped mass, in place of velocities. Positions
-/// move by v = C y, and kinetic energy is y.D C y / 2 (docs/method.md 2). Otherwise C = I, v = y.
+/// move by v = C y, where C D^-1 is the reciprocal mass matrix, and kinetic energy is y.D C y / 2 (docs/method.md 2).
+/// Otherwise C = I, v = y.
 
 /// v = C y of one batch, [slots x 2] each; y and v must be different arrays.
-void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v);
+void apply_reciprocal_mass(const Model& model, const Batch& batch, const Lanes* y, Lanes* v);
 
 /// Velocities of all degrees of freedom from the reduced momenta of a state.
 Dofs material_velocity(const Model& model, const Dofs& y);

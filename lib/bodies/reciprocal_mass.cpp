@@ -1,4 +1,4 @@
-#include "bodies/mass_correction.hpp"
+#include "bodies/reciprocal_mass.hpp"
 
 #include <span>
 
@@ -13,7 +13,7 @@ namespace {
 
 /// [x, y] sums of eight bodies, one per lane; Rows: ShapeRows or LaneRows.
 template <class Rows>
-void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
+void multiply_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
   Lanes x_sum{}, y_sum{};
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
     x_sum += rows.value[e] * y[2 * rows.node[e]];
@@ -24,7 +24,7 @@ void correct_lanes(const Rows& rows, int node, const Lanes* y, Lanes* v) {
 }
 
 /// The same for one body, whose nodes are at `offset`.
-void correct_nodewise(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
+void multiply_nodewise(const ShapeRows& rows, int node, const int* offset, const double* y, double* v) {
   double x_sum = 0, y_sum = 0;
   for (int e = rows.start[node]; e < rows.start[node + 1]; ++e) {
     x_sum += rows.value[e] * y[offset[rows.node[e]]];
@@ -36,7 +36,7 @@ void correct_nodewise(const ShapeRows& rows, int node, const int* offset, const 
 
 /// y of one body with scaled mass. C has blocks: the nodes of a row are those of its block.
 void solve_blocks(const Model& model, const Body& body, const Dofs& velocity, Dofs& y) {
-  const ShapeRows& rows = model.shape_of(body).space.mass_correction;
+  const ShapeRows& rows = model.shape_of(body).space.reciprocal_mass;
   const BodyOffsets offsets(model, body);
   const BodyView v(model, body, velocity);
   for (int i = 0; i + 1 < static_cast<int>(rows.start.size()); ++i) {
@@ -57,26 +57,26 @@ void solve_blocks(const Model& model, const Body& body, const Dofs& velocity, Do
 
 }  // namespace
 
-void correct_velocity(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
+void apply_reciprocal_mass(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
   const CompliantShape& shape = model.shape_of(batch);
   if (batch.layout != Layout::nodewise)
     return with_tables(model, batch, [&](const auto& tables) {
-      for (int i = 0; i < shape.nodes(); ++i) correct_lanes(tables.mass_correction, i, y, v);
+      for (int i = 0; i < shape.nodes(); ++i) multiply_lanes(tables.reciprocal_mass, i, y, v);
     });
-  const ShapeRows& rows = shape.space.mass_correction;
+  const ShapeRows& rows = shape.space.reciprocal_mass;
   v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
   const int* offset = model.nodewise_shape_of(batch).offset.data();
   parallel_for(shape.nodes(), [&](int i) {
-    correct_nodewise(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
+    multiply_nodewise(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
   });
 }
 
 const Dofs& material_velocity(const Model& model, const Dofs& y, Dofs& scratch) {
-  if (!model.corrected_mass) return y;
+  if (!model.has_reciprocal_mass) return y;
   scratch = y;
   for_each_batch(model, [&](int b) {
     const Batch& batch = model.batches[b];
-    correct_velocity(model, batch, &y.compliant[batch.offset], &scratch.compliant[batch.offset]);
+    apply_reciprocal_mass(model, batch, &y.compliant[batch.offset], &scratch.compliant[batch.offset]);
   });
   return scratch;
 }
@@ -88,7 +88,7 @@ Dofs material_velocity(const Model& model, const Dofs& y) {
 
 Dofs reduced_momentum(const Model& model, const Dofs& velocity) {
   Dofs y = velocity;
-  if (!model.corrected_mass) return y;
+  if (!model.has_reciprocal_mass) return y;
   if (model.scene.discretisation.mass == Mass::lumped) {
     parallel_for(static_cast<int>(model.bodies.size()), [&](int b) {
       if (model.bodies[b].kind == BodyKind::compliant) solve_blocks(model, model.bodies[b], velocity, y);
