@@ -97,10 +97,19 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   });
 }
 
-/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies.
+/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies. With velocities
+/// v = C y and u = v less its rigid motion of equal momenta, y becomes y - t u. This changes neither momentum nor angular
+/// momentum, leaves a rigid motion as it is, and takes t u.D u of kinetic energy for small t.
 void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State& state) {
   const Lanes* q = &state.position.compliant[batch.offset];
-  Lanes* v = &state.reduced_momentum.compliant[batch.offset];
+  Lanes* y = &state.reduced_momentum.compliant[batch.offset];
+  const Lanes* v = y;
+  thread_local std::vector<Lanes> scratch;  // memory is allocated once
+  if (model.has_reciprocal_mass) {
+    scratch.resize(2 * static_cast<std::size_t>(batch.slots));
+    apply_reciprocal_mass(model, batch, y, scratch.data());
+    v = scratch.data();
+  }
   with_nodes(model, batch, [&](const auto& nodes) {
     const RigidMotion rigid(batch, nodes, q, v);
     Lanes twice{};  // twice their kinetic energy
@@ -117,7 +126,7 @@ void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State
       const LaneVector shaking = rigid.without(&q[2 * i], &v[2 * i]);
       // 0 in padding
       const Lanes there = taken * (nodes.mass_at_unit_density[i] * nodes.inverse_mass_at_unit_density[i]);
-      v[2 * i] -= there * shaking.x(), v[2 * i + 1] -= there * shaking.y();
+      y[2 * i] -= there * shaking.x(), y[2 * i + 1] -= there * shaking.y();
     }
   });
 }
