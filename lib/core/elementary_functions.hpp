@@ -18,6 +18,10 @@ auto is_less(T a, T b) {
     return a < b;
 }
 
+/// Whether both comparisons hold.
+inline bool both(bool a, bool b) { return a && b; }
+inline LaneBits both(LaneBits a, LaneBits b) { return a & b; }
+
 /// Natural logarithm of any scalar, complex numbers for complex-step checks included.
 template <class T>
 T natural_log(T x) {

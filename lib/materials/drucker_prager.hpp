@@ -77,7 +77,7 @@ struct DruckerPrager {
     const T excess = q + friction * s - cohesion - hardening * old[4];
     T fall{}, plastic_volume{}, flow{};
     now = old;
-    const auto yields = is_less(T{}, excess) & is_less(T{}, flows);
+    const auto yields = both(is_less(T{}, excess), is_less(T{}, flows));
     if (any(yields)) {
       const T on_cone = excess / (3.0 * mu + bulk * friction * dilatancy + hardening);
       const T on_apex = (excess - q) / (bulk * friction * friction + hardening);

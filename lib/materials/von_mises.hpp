@@ -81,7 +81,7 @@ struct VonMises {
     const auto& [e, before, q, inverse_q] = trial;
     T shear = mu, loss{};
     now = old;
-    const auto yields = is_less<T>(before.stress, q) & is_less(T{}, flows);
+    const auto yields = both(is_less<T>(before.stress, q), is_less(T{}, flows));
     if (any(yields)) {
       const T flow = plastic_strain(select(yields, q, before.stress), before), fall = 3.0 * mu * flow;
       const T s = fall * inverse_q, now_q = q - fall;  // now_q: the yield stress without a rate

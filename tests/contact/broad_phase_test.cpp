@@ -101,7 +101,7 @@ TEST(BroadPhase, KnownPairsAcrossThePeriod) {
   in.boxes = {{9.5, 10.4, 0, 1}, {0.45, 1, 0, 1}, {-19.5, -19.3, 0, 1}};
   // The second, a period further, begins at 10.45; the third, three periods further, at 10.5; the second sees the third
   // two periods further.
-  const std::vector<BodyPair> expected = {{0, 1, 1}, {0, 2, 3}, {1, 2, 2}};
+  const std::vector<BodyPair> expected = {{0, 1, {1}}, {0, 2, {3}}, {1, 2, {2}}};
   EXPECT_TRUE(broad_phase(in.model, in.boxes, in.margin) == expected);
 }
 

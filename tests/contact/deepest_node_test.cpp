@@ -42,7 +42,7 @@ TEST(DeepestNode, knows_how_far_the_segment_is_squeezed) {
   const Model model = build_model(scene);
   OutlineField outlines = placed_outlines(model, initial_positions(model));
   for (int k = model.outline_offset[0]; k < model.outline_offset[1]; ++k) outlines.x[k] *= 0.3;
-  const DeepestNode deepest = deepest_node(model, outlines, {{0, 1, 0}});
+  const DeepestNode deepest = deepest_node(model, outlines, {{0, 1, {0}}});
   EXPECT_NEAR(deepest.depth, 0.02, 1e-12) << "EXACT: overlap";
   EXPECT_EQ(deepest.master, 0) << "EXACT: deeper over its shorter segments";
   EXPECT_NEAR(deepest.squeeze, 0.3, 1e-12) << "EXACT";

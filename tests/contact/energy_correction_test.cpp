@@ -194,7 +194,7 @@ double gained_by_letting_go(const AxisCondition& push) {
   scene.grains = {grains("held", "disc", BodyKind::rigid, {{0, 0}}, {}),
                   grains("pushed", "disc", BodyKind::rigid, {{2.01, 0.3}}, {})};
   BoundaryCondition hold, press;
-  hold.grains = "held", hold.x = hold.y = hold.angle = {AxisCondition::Mode::fixed};
+  hold.grains = "held", hold.x = hold.y = hold.angle = {.mode = AxisCondition::Mode::fixed, .history = {}};
   press.grains = "pushed", press.x = push;
   scene.boundary = {hold, press};
   scene.contacts = {frictionless(100)};

@@ -84,7 +84,7 @@ TEST(NarrowPhase, MissesNothingOnRandomOutlines) {
     }
     ContactRig rig(scene);
     press_together(rig, random, random.uniform(-0.1, 0.1));
-    const Pair pair(rig, {0, 1, 0}, random.uniform(0.01, 0.15));
+    const Pair pair(rig, {0, 1, {0}}, random.uniform(0.01, 0.15));
     near += pair.contact_pair.nodes[0].count > 0;
     EXPECT_EQ(missed(pair, 0), 0);
   }
@@ -107,9 +107,9 @@ TEST(NarrowPhase, MissesNothingOnWallsAndAcrossThePeriod) {
     scene.walls[0].asperities = Asperities{0.8, 5, 0.3, {0}, {random.uniform(0.4, 1.2)}};
     const ContactRig rig(scene);
     const double margin = random.uniform(0.05, 0.2);
-    EXPECT_EQ(missed(Pair(rig, {0, 1, 2}, margin), 0), 0);
+    EXPECT_EQ(missed(Pair(rig, {0, 1, {2}}, margin), 0), 0);
     for (int body = 0; body < 2; ++body)
-      for (int wall = 2; wall < 4; ++wall) EXPECT_EQ(missed(Pair(rig, {body, wall, 0}, margin), 5), 0);
+      for (int wall = 2; wall < 4; ++wall) EXPECT_EQ(missed(Pair(rig, {body, wall, {0}}, margin), 5), 0);
   }
 }
 
@@ -119,7 +119,7 @@ TEST(NarrowPhase, ArcsAreShort) {
   scene.contacts = {frictionless(1)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {1.99 * i, 0.3 * i});
   const ContactRig rig(scene);
-  const Pair pair(rig, {0, 1, 0}, 0.05);
+  const Pair pair(rig, {0, 1, {0}}, 0.05);
   for (int side = 0; side < 2; ++side)
     for (const Arc& arc : {pair.contact_pair.nodes[side], pair.contact_pair.segments[side]}) {
       EXPECT_GT(arc.count, 5);
@@ -133,7 +133,7 @@ TEST(NarrowPhase, NothingBetweenBodiesApart) {
   scene.contacts = {frictionless(1)};
   for (int i = 0; i < 2; ++i) add_body(scene, polygonal_disc("disc", 2, 100), BodyKind::rigid, {2.2 * i, 0});
   const ContactRig rig(scene);
-  const Pair pair(rig, {0, 1, 0}, 0.05);
+  const Pair pair(rig, {0, 1, {0}}, 0.05);
   for (int side = 0; side < 2; ++side) {
     EXPECT_EQ(pair.contact_pair.nodes[side].count, 0);
     EXPECT_EQ(pair.contact_pair.segments[side].count, 0);

@@ -140,7 +140,7 @@ TEST(DeepestNode, is_the_same_of_long_outlines) {
           deepest = std::max(deepest, depth);
         }
       }
-      const DeepestNode found = deepest_node(rig.model, at, {{0, 1, 0}});
+      const DeepestNode found = deepest_node(rig.model, at, {{0, 1, {0}}});
       EXPECT_NEAR(found.depth / found.segment_length, deepest, 1e-9 * deepest) << wall << ", " << x;
       EXPECT_GT(deepest, 0.1) << "they overlap";
     }
