@@ -97,9 +97,9 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   });
 }
 
-/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies. With velocities
-/// v = C y and u = v less its rigid motion of equal momenta, y becomes y - t u. This changes neither momentum nor angular
-/// momentum, leaves a rigid motion as it is, and takes t u.D u of kinetic energy for small t.
+/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies. The velocities
+/// are v = C y, and u is what their rigid motion leaves of them. y becomes y - t u. This changes neither momentum nor
+/// angular momentum, leaves a rigid motion as it is, and takes t u.D u of kinetic energy for small t.
 void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State& state) {
   const Lanes* q = &state.position.compliant[batch.offset];
   Lanes* y = &state.reduced_momentum.compliant[batch.offset];
