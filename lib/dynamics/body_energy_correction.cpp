@@ -23,7 +23,7 @@ bool is_corrected(const Model& model, int body) {
          std::ranges::none_of(model.supports, on_body);
 }
 
-/// Rigid motion of each body of a batch with its momentum and angular momentum, in the units of the batch.
+/// Rigid motion that fits the velocities `v` of each body of a batch best, weighted by lumped mass.
 struct RigidMotion {
   Lanes x{}, y{}, velocity_x{}, velocity_y{}, spin{};
 
@@ -97,7 +97,7 @@ Lanes shadow_kinetic_energy(const Model& model, const Batch& batch, const Trial&
   });
 }
 
-/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies. The velocities
+/// Removes the corrected share of the energy error `error`, J/m, from the vibrations of a batch's bodies. Velocities
 /// are v = C y, and u is what their rigid motion leaves of them. y becomes y - t u. This changes neither momentum nor
 /// angular momentum, leaves a rigid motion as it is, and takes t u.D u of kinetic energy for small t.
 void scale_vibrations(const Model& model, const Batch& batch, Lanes error, State& state) {
