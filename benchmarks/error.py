@@ -2,6 +2,7 @@
 
     ./pliant bench error                         all scenes: an hour, most of it the paper's scheme in the third body; results/bench/error.html, .json and .png
     ./pliant bench error --only oscillation impact
+    ./pliant bench error --resume                adds to the results of the same engine and processor in the folder
     ./pliant bench error --sizes 168 340         fewer nodes
     ./pliant bench error --keep                  writes what ./pliant check foretells too, and prints what it changes
 
@@ -22,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "scripts"), str(ROOT / "python")]
 
 from error_study import keep, report
-from error_study.choices import Choice, of_paper, of_reference, of_space, of_stiffness, of_time
+from error_study.choices import Choice, of_longer_steps, of_paper, of_reference, of_space, of_stiffness, of_time
 from error_study.measure import Measured, Programs, Runner
 from error_study.scenes import SCENES, Scene
 from history import machine
@@ -33,7 +34,8 @@ MIDDLE = 340  # nodes, of the study of steps
 
 def choices_of(scene: Scene, sizes: list[int]) -> Iterator[Choice]:
     """All that are compared on a scene, each once."""
-    found = [*of_space(sizes), *of_paper(sizes), *of_time(min(sizes, key=lambda n: abs(n - MIDDLE)))]
+    middle = min(sizes, key=lambda n: abs(n - MIDDLE))
+    found = [*of_space(sizes), *of_longer_steps(sizes), *of_paper(sizes), *of_time(middle)]
     if scene.free_stiffness:
         found += of_stiffness(sizes)
     found += of_reference([n for n in scene.reference_sizes if n in sizes])
@@ -46,6 +48,7 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--only", nargs="+", choices=names, default=names, metavar="SCENE", help=", ".join(names))
     parser.add_argument("--sizes", nargs="+", type=int, help="nodes of a body instead of each scene's own")
     parser.add_argument("--keep", action="store_true", help="write lib/cli/measured_errors.hpp")
+    parser.add_argument("--resume", action="store_true", help="keep what the folder has of the same engine and processor")
     parser.add_argument("--repetitions", type=int, default=2, help="the fastest counts")
     parser.add_argument("--engine", type=Path, default=ROOT / "build/release/pliant_engine")
     parser.add_argument("--reference", type=Path, default=ROOT / "build/release/pliant_reference_solver")
@@ -56,36 +59,40 @@ def parse_arguments(arguments: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def measured(runner: Runner, scene: Scene, sizes: list[int]) -> Iterator[Measured]:
-    """Says each as it comes."""
-    for choice in choices_of(scene, sizes):
-        row = runner.measure(scene, choice)
-        what = row.message or f"error {row.error:.2e}, {row.evaluations} evaluations, {row.seconds:.3f} s"
-        print(f"{scene.name}: {choice.family}, {choice.nodes} nodes: {what}", flush=True)
-        yield row
+def measure(runner: Runner, scenes: list[Scene], sizes: list[int] | None, rows: list[Measured], folder: Path, about: dict) -> None:
+    """Adds what is missing to the rows; says and stores each as it comes."""
+    known = {(row.scene, row.choice) for row in rows}
+    for scene in scenes:
+        for choice in choices_of(scene, sizes or scene.sizes):
+            if (scene.name, choice) in known:
+                continue
+            row = runner.measure(scene, choice)
+            what = row.message or f"error {row.error:.2e}, {row.evaluations} evaluations, {row.seconds:.3f} s"
+            print(f"{scene.name}: {choice.family}, {choice.nodes} nodes: {what}", flush=True)
+            rows.append(row)
+            report.write_data(folder, rows, about)
 
 
 def main(arguments: list[str] | None = None) -> int:
     options = parse_arguments(arguments)
     os.environ.setdefault("OMP_WAIT_POLICY", "passive")
-    chosen = [scene for scene in SCENES if scene.name in options.only]
+    code = WRITTEN
     rows: list[Measured] = []
-    code, version = WRITTEN, ""
-    with tempfile.TemporaryDirectory() as scratch:
-        runner = Runner(Programs(options.engine, options.reference), Path(scratch), options.repetitions)
-        try:
-            version = subprocess.run([options.engine, "--version"], capture_output=True, text=True, check=True).stdout
-            for scene in chosen:
-                for row in measured(runner, scene, options.sizes or scene.sizes):
-                    rows.append(row)
-        except (OSError, subprocess.CalledProcessError, KeyboardInterrupt) as error:
-            print(f"error: {error or 'interrupted'}", file=sys.stderr)
-            code = BAD_INPUT
+    try:
+        version = subprocess.run([options.engine, "--version"], capture_output=True, text=True, check=True).stdout
+        about = {"commit": version.strip(), "processor": machine()["cpu"], "repetitions": options.repetitions}
+        if options.resume:
+            rows = report.read(options.out, about)
+        with tempfile.TemporaryDirectory() as scratch:
+            runner = Runner(Programs(options.engine, options.reference), Path(scratch), options.repetitions)
+            measure(runner, [scene for scene in SCENES if scene.name in options.only], options.sizes, rows, options.out, about)
+    except (OSError, ValueError, subprocess.CalledProcessError, KeyboardInterrupt) as error:
+        print(f"error: {error or 'interrupted'}", file=sys.stderr)
+        code = BAD_INPUT
     if not rows:
         return code
-    about = {"commit": version.strip(), "processor": machine()["cpu"], "repetitions": options.repetitions}
     try:
-        files = report.write(options.out, chosen, rows, about)
+        files = report.write(options.out, [scene for scene in SCENES if any(row.scene == scene.name for row in rows)], rows, about)
         if options.keep and code == WRITTEN:
             keep.keep(rows)
     except OSError as error:

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
-from error_study.choices import DEFAULT, PAPER, TARGETS, Choice
+from error_study.choices import DEFAULT, MASS_SCALING, PAPER, TARGETS, Choice
 from error_study.measure import Measured
 from error_study.pareto import cost_at, front
 
 CORRECTED = Choice(mass="corrected")
 SMOOTHED = Choice(method="es-t3", mass="corrected")
-NAMED = {"default": DEFAULT, "default, corrected mass": CORRECTED, "es-t3, corrected mass": SMOOTHED}
+SCALED = Choice(mass_scaling=MASS_SCALING, safety=0.9)
+NAMED = {"default": DEFAULT, "default, corrected mass": CORRECTED, "es-t3, corrected mass": SMOOTHED,
+         "scaled mass, safety 0.9": SCALED}
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,12 @@ def paper_against_others(rows: list[Measured], scene: str) -> list[AtEqualError]
         ratios = {name: row.seconds / cost if cost else None for name, cost in costs.items()}
         found.append(AtEqualError(scene, choice.nodes, choice.bound, row.error, row.seconds, ratios))
     return sorted(found, key=lambda one: (TARGETS.index(one.target), one.nodes))
+
+
+def from_json(measured: list[dict]) -> list[Measured]:
+    """The rows of as_json()."""
+    return [Measured(row["scene"], Choice(**row["choice"]), *(math.nan if row[name] is None else row[name] for name in
+            ("error", "evaluations", "seconds", "memory")), row["message"]) for row in measured]
 
 
 def as_json(rows: list[Measured]) -> dict:

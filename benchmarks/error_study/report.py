@@ -19,21 +19,38 @@ from error_study import judge
 from error_study.choices import PAPER, Choice
 from error_study.measure import Measured
 from error_study.scenes import Scene
+from pliant.study.folder import replace
 from plots.curves import COLOURS
 
 HERE = Path(__file__).resolve().parent
 DRAWN = {**judge.NAMED, "t3": Choice(method="t3"), "the paper's way": PAPER}
-MARKERS = ["o", "s", "D", "^", "x"]
+MARKERS = ["o", "s", "D", "v", "^", "x"]
 
 
 def write(folder: Path, scenes: list[Scene], rows: list[Measured], about: dict) -> list[Path]:
     """`about`: commit, processor and the like. Returns the files."""
-    folder.mkdir(parents=True, exist_ok=True)
-    data, page, picture = (folder / name for name in ("error.json", "error.html", "error.png"))
-    data.write_text(json.dumps({"about": about, **judge.as_json(rows)}, indent=1) + "\n")
+    data, page, picture = write_data(folder, rows, about), folder / "error.html", folder / "error.png"
     page.write_text(_page(scenes, rows, about))
     _draw_all(picture, scenes, rows)
     return [data, page, picture]
+
+
+def write_data(folder: Path, rows: list[Measured], about: dict) -> Path:
+    file = folder / "error.json"
+    replace(file, json.dumps({"about": about, **judge.as_json(rows)}, indent=1) + "\n")
+    return file
+
+
+def read(folder: Path, about: dict) -> list[Measured]:
+    """What write_data() stored; nothing where there is no file. ValueError if it is about something else."""
+    file = folder / "error.json"
+    if not file.exists():
+        return []
+    stored = json.loads(file.read_text())
+    for name, value in about.items():
+        if stored["about"].get(name) != value:
+            raise ValueError(f"{file}: {name} was {stored['about'].get(name)}, now {value}; leave out --resume, or choose another --out")
+    return judge.from_json(stored["measured"])
 
 
 def _page(scenes: list[Scene], rows: list[Measured], about: dict) -> str:

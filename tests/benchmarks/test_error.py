@@ -57,6 +57,7 @@ def test_choices_reach_the_scene(scene: error.Scene) -> None:
     assert {key: made["time"][key] for key in ("integrator", "tolerance", "safety")} == \
         {"integrator": "verlet", "tolerance": 1e-3, "safety": 0.4}
     assert made["shapes"]["disc"]["nodes"] == 84
+    assert tomllib.loads(scene.text(judge.SCALED))["discretisation"]["mass_scaling"] == 3
     paper = tomllib.loads(scene.text(PAPER))
     assert paper["time"]["integrator"] == "step-doubling" and paper["time"]["target"] == 1e-4
     soft, stiff = (tomllib.loads(scene.text(Choice(stiffness=factor))) for factor in (1.0, 4.0))
@@ -79,7 +80,7 @@ def test_a_template_uses_all_that_it_gets() -> None:
 def test_each_choice_is_measured_once(scene: error.Scene) -> None:
     found = list(error.choices_of(scene, scene.sizes))
     assert len(found) == len(set(found))
-    assert {DEFAULT, PAPER, judge.CORRECTED, judge.SMOOTHED} <= {replace(choice, nodes=168) for choice in found}
+    assert {PAPER, *judge.NAMED.values()} <= {replace(choice, nodes=168) for choice in found}
 
 
 def test_families_tell_all_but_the_nodes() -> None:
@@ -110,6 +111,41 @@ def test_report_tells_failures_and_fronts(tmp_path: Path) -> None:
     assert stored["measured"][3]["error"] is None and stored["measured"][3]["message"] == "turned inside out"
     assert "turned inside out" in page.read_text() and "<svg" in page.read_text() and "commit: abc" in page.read_text()
     assert picture.stat().st_size > 1000
+
+
+def test_stored_rows_come_back(tmp_path: Path) -> None:
+    rows = [row(judge.SCALED, 1.5, 0.1), row(PAPER, float("nan"), float("nan"), "turned inside out")]
+    assert report.read(tmp_path, {"commit": "abc"}) == []
+    report.write_data(tmp_path, rows, {"commit": "abc"})
+    first, second = report.read(tmp_path, {"commit": "abc"})
+    assert first == rows[0]
+    assert second.choice == PAPER and math.isnan(second.error) and second.message == "turned inside out"
+    with pytest.raises(ValueError, match="commit was abc, now def"):
+        report.read(tmp_path, {"commit": "def"})
+
+
+def test_resume_measures_only_what_is_missing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = next(scene for scene in SCENES if scene.name == "impact")
+    asked: list[Choice] = []
+
+    def of(runner: Runner, scene: error.Scene, choice: Choice) -> Measured:
+        asked.append(choice)
+        return row(choice, 1.0, 0.1)
+
+    monkeypatch.setattr(Runner, "measure", of)
+    engine = tmp_path / "engine"
+    engine.write_text("#!/bin/sh\necho abc\n")
+    engine.chmod(0o755)
+    options = ["--only", "impact", "--engine", str(engine), "--out", str(tmp_path)]
+    assert error.main([*options, "--sizes", "40"]) == 0
+    before = list(asked)
+    asked.clear()
+    assert error.main([*options, "--sizes", "40", "84", "--resume"]) == 0
+    assert set(asked) == set(error.choices_of(scene, [40, 84])) - set(before)
+    stored = json.loads((tmp_path / "error.json").read_text())["measured"]
+    assert len(stored) == len(before) + len(asked)
+    asked.clear()
+    assert error.main([*options, "--repetitions", "1", "--resume"]) == 2 and not asked
 
 
 def test_bad_options() -> None:
