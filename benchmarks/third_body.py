@@ -51,7 +51,7 @@ def observables(layer: Layer) -> dict[str, object]:
     normal = -layer.between("force_lower.force_y", PRESSED, layer.end) / (PRESSURE * PERIOD)
     plateau = Mean(layer.plateau)
     summary = json.loads((layer.run.folder / "summary.json").read_text())
-    dt, error = layer.run.steps("dt"), layer.run.steps("error")
+    dt, error = of_all_steps(layer.run, "dt"), of_all_steps(layer.run, "error")
     frames = {f"{1e6 * time:.3g} us": i for i, time in enumerate(layer.frames.times)}
     at_random, deviation = like_fraction_at_random(layer.neighbours[-1], layer.kinds)
     return {
@@ -73,6 +73,12 @@ def observables(layer: Layer) -> dict[str, object]:
         "like neighbours at random": [round(at_random, 3), round(deviation, 3)],
         "clusters of compliant grains, mean size": {name: round(mean_size(layer, i), 1) for name, i in frames.items()},
     }
+
+
+def of_all_steps(run: Run, name: str) -> np.ndarray:
+    """A column of steps.csv with each row as often as it stands for steps: late ones are every tenth."""
+    steps = run.steps("evaluations") - run.steps("rejections")
+    return np.repeat(run.steps(name), np.diff(steps, prepend=steps[0] - 1).astype(int))
 
 
 def shares(seconds: dict[str, float]) -> dict[str, float]:

@@ -34,6 +34,13 @@ def test_series_are_means_of_50_ns(tmp_path: Path) -> None:
     np.testing.assert_allclose(values[:, 3], 1e-4 * (beginnings + 5 * SAMPLING), rtol=1e-5, atol=1e-4 * step)
 
 
+def test_each_step_counts_once() -> None:
+    """Three steps with a row each, then two rows for ten steps each; a rejected trial is no step."""
+    columns = {"evaluations": [2, 3, 5, 15, 25], "rejections": [0, 0, 1, 1, 1], "dt": [1.0, 2.0, 3.0, 4.0, 5.0]}
+    run = SimpleNamespace(steps=lambda name: np.array(columns[name], dtype=float))
+    np.testing.assert_array_equal(third_body.of_all_steps(run, "dt"), [1, 2, 3, *[4] * 10, *[5] * 10])
+
+
 def test_pictures_are_small(tmp_path: Path) -> None:
     figure, axes = plt.subplots(figsize=(9, 9))
     x = np.linspace(0, 50, 700)
