@@ -105,7 +105,7 @@ struct PairTotals {
   double work_before = 0;    ///< work of the forces at the step's start over its displacements, J/m
   double work = 0;           ///< work of the present forces over the same displacements, J/m
   double step_change = 0;    ///< energy that rigid bodies keep where the step changes or forces jump, J/m
-  double pressure_norm = 0;  ///< S_p: squared pressures over kn, integrated over length, J/m
+  double traction_norm = 0;  ///< S: p^2/kn + tau^2/kt, integrated over length, J/m
 
   /// Adds the sums of another contact pair, except those of the energy correction, which belong to one pair alone.
   void add(const PairTotals& other) {
@@ -118,7 +118,7 @@ struct PairTotals {
     visitor("stored", stored), visitor("dissipated", dissipated), visitor("damping_power", damping_power);
     visitor("deepest", deepest), visitor("contacts", contacts);
     visitor("work_before", work_before), visitor("work", work), visitor("step_change", step_change),
-        visitor("pressure_norm", pressure_norm);
+        visitor("traction_norm", traction_norm);
   }
 };
 

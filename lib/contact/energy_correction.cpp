@@ -30,8 +30,8 @@ void carry_forces(const Model& model, const ContactPair& old, const PairForceBuf
 
 double relative_correction(double error, double share, const PairTotals& now, double work_before) {
   const double square = std::max(now.work * now.work, work_before * work_before);
-  if (square == 0 || now.pressure_norm == 0) return 0;
-  const double limit = share / now.pressure_norm;
+  if (square == 0 || now.traction_norm == 0) return 0;
+  const double limit = share / now.traction_norm;
   return -std::clamp(error / square, -limit, limit) * now.work;
 }
 

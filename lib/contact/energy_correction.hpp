@@ -16,8 +16,8 @@ namespace pliant {
 /// it. They are multiplied by 1 - chi W1, where W1 is their work over the step's displacements. This removes chi W1^2,
 /// half in this step and half in the next.
 
-/// Upper bound b of the dashpot chi f f^T relative to the stiffness K of the contacts: chi <= b/S_p, because
-/// f K^-1 f is S_p, PairTotals::pressure_norm. The correction is small compared with the error that a step makes at
+/// Upper bound b of the dashpot chi f f^T relative to the stiffness K of the contacts: chi <= b/S, because f K^-1 f is
+/// at most S, PairTotals::traction_norm. The correction is small compared with the error that a step makes at
 /// contacts anyway. It vanishes at rest and in short steps. The dashpot uses the displacement of the step that led to
 /// it. With a = w^2 dt^2, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a is 4 safety^2
 /// at most. A correction that changes its sign from step to step can excite such a motion well below that limit. With
@@ -53,13 +53,13 @@ inline double kinetic_energy_gain(const PairTotals& now) {
 void carry_forces(const Model& model, const ContactPair& old, const PairForceBuffer& from, const ContactPair& now,
                   PairForceBuffer& to);
 
-/// Relative change -chi W1 of a contact pair's forces that corrects an energy error, J/m, with chi <= `share`/S_p.
+/// Relative change -chi W1 of a contact pair's forces that corrects an energy error, J/m, with chi <= `share`/S.
 /// `work_before`: work of the same law's forces in the last step. The larger work counts, because where the motion
 /// reverses the next displacement may be many times this one.
 double relative_correction(double error, double share, const PairTotals& now, double work_before = 0);
 /// Whether the energy error is so small that it may be rounding of energies. Each correction removes about half of the
 /// error, which would never end. `now`: totals of parting_law(), whose gaps are about half a spacing.
-inline bool is_rounding(double error, const PairTotals& now) { return std::abs(error) < 1e-15 * now.pressure_norm; }
+inline bool is_rounding(double error, const PairTotals& now) { return std::abs(error) < 1e-15 * now.traction_norm; }
 void scale_forces(const ContactPair& contact_pair, double factor, PairForceBuffer& forces);
 /// Law whose forces correct the energy error after a pair has separated, up to a skin beyond its own law's reach. Their
 /// magnitude does not matter.

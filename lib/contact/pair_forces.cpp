@@ -17,7 +17,7 @@ namespace {
 
 /// PairTotals before the lanes are added up.
 struct LaneTotals {
-  Lanes stored{}, dissipated{}, damping_power{}, pressure_norm{}, deepest{};
+  Lanes stored{}, dissipated{}, damping_power{}, pressures{}, shears{}, deepest{};  // pressures, shears: squared
   int contacts = 0;
 };
 
@@ -106,7 +106,8 @@ void compute_half_pass(const Law& law, const HalfPass& pass, const PairView& vie
     if (!any(touching)) continue;
     const Lanes pressure = select(touching, c.pressure, Lanes{}), shear = select(touching, c.shear, Lanes{});
     totals.stored += select(touching, half_length * c.energy, Lanes{});
-    totals.pressure_norm += half_length * pressure * pressure;
+    totals.pressures += half_length * pressure * pressure;
+    if constexpr (Law::has_shear) totals.shears += half_length * shear * shear;
     totals.deepest = max(totals.deepest, select(touching, -inverse_longest * p.gap, Lanes{}));
     const Force force = force_on(p, select(touching, half_length, Lanes{}), pressure, shear);
     reactions.add(p, force.x, force.y, force.couple);
@@ -146,7 +147,8 @@ PairTotals compute_half_passes(const Law& law, const PairView& view, const Force
   if constexpr (has_dashpot<Law>) damping_power = sum(totals.damping_power);
   PairTotals result{sum(totals.stored), sum(totals.dissipated), damping_power, largest(totals.deepest),
                     totals.contacts};
-  result.pressure_norm = sum(totals.pressure_norm) / law.normal_stiffness;
+  result.traction_norm = sum(totals.pressures) / law.normal_stiffness;
+  if constexpr (Law::has_shear) result.traction_norm += sum(totals.shears) / law.shear_stiffness;
   return result;
 }
 

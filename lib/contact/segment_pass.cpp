@@ -22,8 +22,8 @@ struct SegmentHalfPass {
 };
 
 struct Totals {
-  double stored = 0, dissipated = 0, damping_power = 0, pressure_norm = 0, deepest = 0;
-  int segments = 0;  ///< in contact
+  double stored = 0, dissipated = 0, damping_power = 0, pressures = 0, shears = 0, deepest = 0;  ///< squared tractions
+  int segments = 0;                                                                              ///< in contact
 };
 
 /// Adds forces to the nodes of both bodies. The reaction to a force at s goes to both nodes of the master's segment by
@@ -136,7 +136,7 @@ class TractionVisitor {
     for_each_lane(hit_, [&](int lane) {
       char& touched = scratch_.touched[static_cast<std::size_t>(pairs_->slave[lane])];
       totals_.segments += !touched, touched = 1;
-      totals_.stored += stored_[lane], totals_.pressure_norm += squares_[lane];
+      totals_.stored += stored_[lane], totals_.pressures += squares_[lane];
     });
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
@@ -221,6 +221,7 @@ void slide_nodes(const Law& law, const HalfPass& pass, const ContactHistory& fro
                        (old_weight * old_slip * old_slip - weight * slip * slip + gone * old_slip * motion);
     add_in_order(lost + weight * c.slip_work, totals.dissipated);
     add_in_order(weight * c.energy, totals.stored);
+    add_in_order(weight * c.shear * c.shear, totals.shears);  // not less than the integral of the linear traction
     store(&sums.shear[i], select(touching, c.shear, Lanes{}));
     after[ContactHistory::weight] = weight;
     after[ContactHistory::slip] = select(touching, c.slip, Lanes{});
@@ -284,7 +285,12 @@ PairTotals integrate_pair(const PairView& view, const ForceRuns& runs, const Con
   };
   std::visit(both_passes, view.contact_pair.law);
   PairTotals result{totals.stored, totals.dissipated, totals.damping_power, totals.deepest, totals.segments};
-  result.pressure_norm = totals.pressure_norm / normal_stiffness_of(view.contact_pair.law);
+  std::visit(
+      [&]<class Law>(const Law& law) {
+        result.traction_norm = totals.pressures / law.normal_stiffness;
+        if constexpr (Law::has_shear) result.traction_norm += totals.shears / law.shear_stiffness;
+      },
+      view.contact_pair.law);
   return result;
 }
 

@@ -119,20 +119,22 @@ Verdict Verlet::judge(const State& state, const StepControl& control, const Prop
 const RigidStep* Verlet::rigid_steps(const State& state) {
   if (!model_.scene.corrects_energy()) return nullptr;
   rigid_steps_.resize(model_.rigid_bodies.size());
-  const Vec2 gravity = model_.scene.gravity_at(state.time);
+  const bool jumps = std::ranges::binary_search(model_.switch_times, state.time);
+  if (jumps) {  // the change of the loads, in the force of the trial, which is not known yet
+    std::ranges::fill(trial_.force.rigid, 0.0);
+    const Dofs& velocity = material_velocity(model_, state.reduced_momentum, moving_velocity_);
+    add_load_change(model_, {state.position, velocity, state.time, true}, state.outlines, {state.time}, trial_.force);
+  }
   const double just_before = std::nextafter(state.time, -std::numeric_limits<double>::infinity());
   const auto set_step = [&](int r) {
     const double *from = &state.position.rigid[3 * r], *to = &trial_.position.rigid[3 * r];
     RigidStep& step = rigid_steps_[r] = {{from[0], from[1]}, {to[0], to[1]}, to[2] - from[2], {}, {}};
-    // Loads at the end of the previous step and at the start of this one.
-    double ended[3] = {}, begins[3] = {};
-    add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time, true}, ended);
-    add_rigid_loads(model_.rigid_bodies[r], gravity, {state.time}, begins);
     for (std::size_t c = 0; c < 3; ++c) {
       const RigidDof& dof = model_.rigid_bodies[r].dof[c];
       const double force = state.force.rigid[3 * r + c];
       step.acceleration[c] = dof.inverse_mass_at(state.time) * force;
-      step.acceleration_before[c] = dof.inverse_mass_at(just_before) * (force - begins[c] + ended[c]);
+      step.acceleration_before[c] =
+          dof.inverse_mass_at(just_before) * (jumps ? force - trial_.force.rigid[3 * r + c] : force);
     }
   };
   const std::vector<int>& own = model_.own.rigid_bodies;
