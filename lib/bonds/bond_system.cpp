@@ -151,6 +151,7 @@ bool BondSystem::make(const OutlineField& position, double time, BondHistory& hi
   if (bonds_.size() == before) return false;
   ++version_;
   index();
+  measure_turning(position);
   history.ends.resize(eights_.size());
   for (std::size_t i = before; i < eights_.size() * lane_count; ++i)
     for (BondEnd& end : history.ends[i / lane_count])
@@ -178,6 +179,7 @@ void BondSystem::index() {
   eights_.assign((bonds_.size() + lane_count - 1) / lane_count, Eight{});
   buffer_.assign(eights_.size() * forces_per_bond, Lanes{});
   totals_.assign(eights_.size(), {});
+  turning_.assign(eights_.size(), broadcast(1));
   for (std::size_t i = 0; i < eights_.size() * lane_count; ++i) add_to_eight(i);
   std::vector<std::vector<Receipt>> of_body(model_.bodies.size());
   for (std::size_t i = 0; i < bonds_.size(); ++i) {
@@ -187,8 +189,8 @@ void BondSystem::index() {
     const std::size_t first = i / lane_count * forces_per_bond * lane_count + i % lane_count;
     const auto add = [&](int body, int node, std::size_t vector, double share, int other) {
       const int base = model_.outline_offset[body] + node % model_.outline_of(body).count;
-      of_body[body].push_back(
-          {base, static_cast<std::int32_t>(first + 2 * vector * lane_count), share, share * stiffness, other});
+      of_body[body].push_back({base, static_cast<std::int32_t>(first + 2 * vector * lane_count), share,
+                               share * stiffness, other, static_cast<std::int32_t>(i)});
     };
     for (int end = 0; end < 2; ++end) {
       add(bond.slave, bond.segment + end, end, 1, bond.master);
@@ -223,22 +225,51 @@ void BondSystem::add_to_eight(std::size_t number) {
   set(eight.law, lane, law_of(bond));
 }
 
-BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& position, const BondHistory& from,
-                                       BondHistory& to) {
-  const Eight& eight = eights_[number];
+/// Frame of eight bonds, which turns with their middle lines, and the vectors from their ends to their masters.
+struct BondSystem::Frame {
+  PointLanes apart[2], tangent, normal;
+  Lanes inverse_length;  ///< of the middle lines, 1/m
+};
+
+BondSystem::Frame BondSystem::frame_of(const Eight& eight, const OutlineField& position) {
   const Lattice& lattice = position.lattice;
   const PointLanes shift{eight.shift[0] * lattice.ax + eight.shift[1] * lattice.bx,
                          eight.shift[0] * lattice.ay + eight.shift[1] * lattice.by};
-  PointLanes at[2], apart[2];
+  Frame frame;
+  PointLanes at[2];
   for (int end = 0; end < 2; ++end) {
     at[end] = points_of(position, eight.nodes.end[end]);
     const PointLanes first = points_of(position, eight.nodes.master[end]),
                      next = points_of(position, eight.nodes.next[end]);
-    apart[end] = first + eight.xi[end] * (next - first) + shift - at[end];
+    frame.apart[end] = first + eight.xi[end] * (next - first) + shift - at[end];
   }
-  const PointLanes middle = at[1] - at[0] + broadcast(0.5) * (apart[1] - apart[0]);
-  const Lanes inverse_length = inverse_sqrt(dot(middle, middle));
-  const PointLanes tangent = inverse_length * middle, normal{tangent.y, -tangent.x};
+  const PointLanes middle = at[1] - at[0] + broadcast(0.5) * (frame.apart[1] - frame.apart[0]);
+  frame.inverse_length = inverse_sqrt(dot(middle, middle));
+  frame.tangent = frame.inverse_length * middle, frame.normal = {frame.tangent.y, -frame.tangent.x};
+  return frame;
+}
+
+bool BondSystem::turn() const {
+  return std::ranges::any_of(model_.scene.bonds, [](const BondRule& rule) { return rule.gap > 0; });
+}
+
+/// A motion of a node along the normal turns the frame by half of it over the length of the middle line, and so moves
+/// either end of the bond by c of it, with c = sqrt(gap^2 + along^2)/(2 length). The row sums of |B|^T k |B| grow by
+/// (1 + 2 c)^2.
+void BondSystem::measure_turning(const OutlineField& position) {
+  if (!turn()) return;
+  parallel_for(static_cast<int>(eights_.size()), [&](int i) {
+    const Frame frame = frame_of(eights_[i], position);
+    const Lanes square = max(dot(frame.apart[0], frame.apart[0]), dot(frame.apart[1], frame.apart[1]));
+    const Lanes root = 1.0 + sqrt(square) * frame.inverse_length;
+    turning_[i] = select(eights_[i].law.bears_pressure > 0.0, root * root, broadcast(1));
+  });
+}
+
+BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& position, const BondHistory& from,
+                                       BondHistory& to) {
+  const Eight& eight = eights_[number];
+  const auto [apart, tangent, normal, inverse_length] = frame_of(eight, position);
   Lanes* force = &buffer_[number * forces_per_bond];
   Lanes turning{}, stored{}, loss{};  // turning: the derivative of the energy by the angle of the frame
   for (int end = 0; end < 2; ++end) {
@@ -295,7 +326,9 @@ void BondSystem::add_stiffness(int body, const std::vector<double>& compliance, 
   for (int i = receipt_begin_[body]; i < receipt_begin_[body + 1]; ++i) {
     const Receipt& receipt = receipts_[i];
     const double own = compliance[body], other = compliance[receipt.other];
-    if (own > 0) to[stride * (receipt.node - model_.outline_offset[body])] += (1 + other / own) * receipt.stiffness;
+    if (own > 0)
+      to[stride * (receipt.node - model_.outline_offset[body])] +=
+          (1 + other / own) * receipt.stiffness * turning_[receipt.bond / lane_count][receipt.bond % lane_count];
   }
 }
 

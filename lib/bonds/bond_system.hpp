@@ -41,6 +41,9 @@ class BondSystem {
   /// Adds the forces on outline nodes, N/m, and on the vectors of the periods; reads the history `from` and writes
   /// `to`.
   BondTotals add_forces(const OutlineField& position, const BondHistory& from, BondHistory& to, OutlineField& force);
+  /// Whether add_stiffness() depends on the positions of the last measure_turning(): bonds across a gap turn with it.
+  bool turn() const;
+  void measure_turning(const OutlineField& position);
   /// Adds a bound of the stiffness of a body's nodes, N/m2, to every `stride`-th number. `compliance` [bodies]: as
   /// StiffnessBound::update weighs the two sides of a contact.
   void add_stiffness(int body, const std::vector<double>& compliance, double* to, int stride) const;
@@ -77,7 +80,11 @@ class BondSystem {
     double share;
     double stiffness;    ///< N/m2
     std::int32_t other;  ///< body at the other side
+    std::int32_t bond;
   };
+
+  struct Frame;
+  static Frame frame_of(const Eight& eight, const OutlineField& position);
 
   void refuse_unfit(const BondRule& rule, const BondLaw<double>& law) const;
   void index();
@@ -97,6 +104,7 @@ class BondSystem {
   std::vector<int> receipt_begin_;  ///< [bodies + 1]
   std::vector<Receipt> receipts_;
   std::vector<BondTotals> totals_;  ///< [eights]
+  std::vector<Lanes> turning_;      ///< [eights] factors on the stiffness of bonds across a gap, 1 for others
 };
 
 }  // namespace pliant

@@ -80,6 +80,17 @@ Lanes weighted_dot(const Lanes* a, const Lanes* b, const Weight* weight, int slo
   return total;
 }
 
+/// Largest w^2 of a rigid body's rotation under a dead load, 1/s2. The moment sum r x f of its forces changes with the
+/// angle by -sum r.f, of which rotations reach |sum (r.f, r x f)|.
+double dead_load_frequency(const OutlinePressure& load, const RigidBody& rigid, const OutlineShape& outline) {
+  Vec2 turned(0, 0);
+  for (std::size_t i = 0; i < load.nodes.size(); ++i) {
+    const Vec2 &r = outline.points[load.nodes[i].node], &f = load.dead_load[i];
+    turned += Vec2(r.dot(f), r.x() * f.y() - r.y() * f.x());
+  }
+  return rigid.dof[2].inverse_mass * load.pressure.largest() * turned.norm();
+}
+
 /// D C D^-1 of a force, so that the subsequent division by the lumped mass gives the acceleration W f.
 std::vector<Lanes> times_reciprocal_mass(const Model& model, const Batch& batch, std::vector<Lanes> force) {
   std::vector<Lanes> result(force.size());
@@ -123,6 +134,9 @@ void TimeStepBound::bound_conditions() {
     support_[support.body] += support.stiffness * frequency;
     damping_[support.body] += support.damping * frequency;
   }
+  for (const OutlinePressure& load : model_.pressures)
+    if (const Body& body = model_.bodies[load.body]; body.kind == BodyKind::rigid && !load.dead_load.empty())
+      support_[load.body] += dead_load_frequency(load, model_.rigid_bodies[body.rigid], model_.outlines[body.outline]);
   if (std::any_of(model_.batches.begin(), model_.batches.end(), [](const Batch& batch) { return batch.viscous; })) {
     viscous_.assign(model_.batches.size(), Lanes{});
     viscous_direction_ = direction_;
@@ -199,7 +213,7 @@ void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, 
 
 void TimeStepBound::update_contact(const ContactSystem& contact, const BondSystem& bonds) {
   std::vector<int> changed = stiffness_.update(contact, compliance_);
-  if (bonds_seen_ != bonds.version()) {
+  if (bonds.turn() || bonds_seen_ != bonds.version()) {
     changed.resize(model_.bodies.size());
     std::iota(changed.begin(), changed.end(), 0);
     bonds_seen_ = bonds.version();

@@ -51,6 +51,12 @@ double History::slope(double t) const {
   return (value[i] - value[i - 1]) / (time[i] - time[i - 1]);
 }
 
+double History::largest() const {
+  double found = 0;
+  for (const double v : value) found = std::max(found, std::abs(v));
+  return found;
+}
+
 Eigen::Matrix2d CellSettings::gradient_at(double time) const {
   Eigen::Matrix2d f = Eigen::Matrix2d::Identity();
   for (int i = 0; i < 2; ++i)

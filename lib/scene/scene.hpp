@@ -63,6 +63,7 @@ struct History {
   double at(double t) const;
   double integral(double t0, double t1) const;  ///< exact integral of value over [t0, t1]
   double slope(double t) const;                 ///< 1/s; at a kink that of the piece after it
+  double largest() const;                       ///< absolute value at all times
 };
 
 /// When something acts: from <= t < until, s.

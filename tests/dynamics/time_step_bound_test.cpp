@@ -253,5 +253,54 @@ TEST(TimeStepBound, holds_for_the_retry_after_a_refresh) {
 
 INSTANTIATE_TEST_SUITE_P(Stiffnesses, ContactBound, ::testing::Values(10.0, 100.0, 3000.0));
 
+/// Two squares with cement in the gap between them.
+Scene cemented(BodyKind kind, double gap) {
+  Scene scene = empty_scene(1);
+  scene.shapes = {box_shape("square", 1, 1, 0.25)};
+  scene.grains = {grains("left", "square", kind, {{-0.5, 0}}), grains("right", "square", kind, {{0.5 + gap, 0}})};
+  scene.contacts = {frictionless(100)};
+  BondRule rule;
+  rule.first = rule.second = "all";
+  rule.gap = 1.01 * gap;
+  rule.stiffness = 1000, rule.strength = 1e6, rule.fracture_energy = 1e12;
+  scene.bonds = {rule};
+  return scene;
+}
+
+// INDEPENDENT: dense eigenvalues. The frame of a bond turns with its ends, and moves them the more the wider the gap.
+TEST(TimeStepBound, covers_cement_in_a_gap) {
+  for (const BodyKind kind : {BodyKind::compliant, BodyKind::rigid})
+    for (const double gap : {0.05, 0.25, 1.0, 4.0}) {
+      Bench bench(cemented(kind, gap));
+      ASSERT_FALSE(bench.forces.bonds().is_empty());
+      EXPECT_GE(bound_of(bench), largest_square_frequency(bench, 1e-7)) << gap;
+    }
+}
+
+/// A bar that dead loads pull at both ends: it swings about them as a needle does.
+Scene needle() {
+  Scene scene = empty_scene(1);
+  scene.shapes = {box_shape("bar", 2, 0.4, 0.2)};
+  scene.grains = {grains("bar", "bar", BodyKind::rigid, {{0.3, 0.1}})};
+  for (const double side : {-1.0, 1.0}) {
+    BoundaryCondition pull;
+    pull.kind = BoundaryCondition::Kind::pressure;
+    pull.grains = "bar";
+    pull.part = {.kind = OutlinePart::Kind::side, .side = {side, 0}};
+    pull.pressure = constant(-3);
+    pull.following = false;
+    scene.boundary.push_back(pull);
+  }
+  return scene;
+}
+
+// EXACT: w^2 = 2 F R/I with F = 3 x 0.4, R = 1, I = m (2^2 + 0.4^2)/12.
+TEST(TimeStepBound, covers_dead_loads_on_a_rigid_body) {
+  Bench bench(needle());
+  const double exact = 2 * 3 * 0.4 / (2 * 0.4 * (4 + 0.16) / 12);
+  EXPECT_NEAR(largest_square_frequency(bench, 1e-4), exact, 1e-6 * exact) << "finite differences";
+  EXPECT_NEAR(bound_of(bench), exact, 1e-12 * exact);
+}
+
 }  // namespace
 }  // namespace pliant::dynamics_tests
