@@ -63,7 +63,7 @@ struct LaneRows {
 struct SameTopologyShapes {
   std::vector<Lanes> mass_at_unit_density, inverse_mass_at_unit_density, nodal_distance;  ///< [nodes]
   LaneTable table;
-  LaneRows outline_rows, node_rows, reciprocal_mass;
+  LaneRows outline_rows, node_rows, reciprocal_mass, relative_mass;
   Lanes reciprocal_mass_bound{};
 };
 

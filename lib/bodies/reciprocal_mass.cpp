@@ -1,10 +1,5 @@
 #include "bodies/reciprocal_mass.hpp"
 
-#include <span>
-
-#include <Eigen/LU>
-
-#include "bodies/body_view.hpp"
 #include "bodies/node_arrays.hpp"
 
 namespace pliant {
@@ -34,41 +29,30 @@ void multiply_nodewise(const ShapeRows& rows, int node, const int* offset, const
   v[offset[node] + lane_count] = y_sum;
 }
 
-/// y of one body with scaled mass. C has blocks: the nodes of a row are those of its block.
-void solve_blocks(const Model& model, const Body& body, const Dofs& velocity, Dofs& y) {
-  const ShapeRows& rows = model.shape_of(body).space.reciprocal_mass;
-  const BodyOffsets offsets(model, body);
-  const BodyView v(model, body, velocity);
-  for (int i = 0; i + 1 < static_cast<int>(rows.start.size()); ++i) {
-    const std::span<const int> block(&rows.node[rows.start[i]],
-                                     &rows.node[rows.start[i]] + rows.start[i + 1] - rows.start[i]);
-    if (i != block[0]) continue;  // one of each block
-    const auto size = static_cast<Eigen::Index>(block.size());
-    Eigen::MatrixXd c(size, size);
-    Eigen::MatrixX2d of_block(size, 2);
-    for (Eigen::Index a = 0; a < size; ++a) {
-      of_block.row(a) = v[static_cast<std::size_t>(block[a])];
-      for (Eigen::Index e = 0; e < size; ++e) c(a, e) = rows.value[rows.start[block[a]] + e];
-    }
-    const Eigen::MatrixX2d solution = c.partialPivLu().solve(of_block);
-    for (Eigen::Index a = 0; a < size; ++a) set_node(offsets, static_cast<std::size_t>(block[a]), solution.row(a), y);
-  }
-}
-
-}  // namespace
-
-void apply_reciprocal_mass(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
+/// Sparse product of one batch; rows_of: of its tables.
+template <class RowsOf>
+void multiply(const Model& model, const Batch& batch, const RowsOf& rows_of, const Lanes* y, Lanes* v) {
   const CompliantShape& shape = model.shape_of(batch);
   if (batch.layout != Layout::nodewise)
     return with_tables(model, batch, [&](const auto& tables) {
-      for (int i = 0; i < shape.nodes(); ++i) multiply_lanes(tables.reciprocal_mass, i, y, v);
+      for (int i = 0; i < shape.nodes(); ++i) multiply_lanes(rows_of(tables), i, y, v);
     });
-  const ShapeRows& rows = shape.space.reciprocal_mass;
+  const ShapeRows& rows = rows_of(shape.space);
   v[2 * batch.slots - 2] = v[2 * batch.slots - 1] = Lanes{};  // padding
   const int* offset = model.nodewise_shape_of(batch).offset.data();
   parallel_for(shape.nodes(), [&](int i) {
     multiply_nodewise(rows, i, offset, reinterpret_cast<const double*>(y), reinterpret_cast<double*>(v));
   });
+}
+
+}  // namespace
+
+void apply_reciprocal_mass(const Model& model, const Batch& batch, const Lanes* y, Lanes* v) {
+  multiply(model, batch, [](const auto& tables) -> const auto& { return tables.reciprocal_mass; }, y, v);
+}
+
+void apply_relative_mass(const Model& model, const Batch& batch, const Lanes* v, Lanes* y) {
+  multiply(model, batch, [](const auto& tables) -> const auto& { return tables.relative_mass; }, v, y);
 }
 
 const Dofs& material_velocity(const Model& model, const Dofs& y, Dofs& scratch) {
@@ -90,8 +74,9 @@ Dofs reduced_momentum(const Model& model, const Dofs& velocity) {
   Dofs y = velocity;
   if (!model.has_reciprocal_mass) return y;
   if (model.scene.discretisation.mass == Mass::lumped) {
-    parallel_for(static_cast<int>(model.bodies.size()), [&](int b) {
-      if (model.bodies[b].kind == BodyKind::compliant) solve_blocks(model, model.bodies[b], velocity, y);
+    for_each_batch(model, [&](int b) {
+      const Batch& batch = model.batches[b];
+      apply_relative_mass(model, batch, &velocity.compliant[batch.offset], &y.compliant[batch.offset]);
     });
     return y;
   }

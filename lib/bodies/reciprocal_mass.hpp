@@ -12,6 +12,9 @@ namespace pliant {
 /// v = C y of one batch, [slots x 2] each; y and v must be different arrays.
 void apply_reciprocal_mass(const Model& model, const Batch& batch, const Lanes* y, Lanes* v);
 
+/// y = C^-1 v of one batch with scaled mass, as above.
+void apply_relative_mass(const Model& model, const Batch& batch, const Lanes* v, Lanes* y);
+
 /// Velocities of all degrees of freedom from the reduced momenta of a state.
 Dofs material_velocity(const Model& model, const Dofs& y);
 

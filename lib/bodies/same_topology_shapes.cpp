@@ -71,6 +71,7 @@ SameTopologyShapes unite(Shapes shapes) {
   result.outline_rows = unite_rows(shapes, &Discretisation::outline_rows);
   result.node_rows = unite_rows(shapes, &Discretisation::node_rows);
   result.reciprocal_mass = unite_rows(shapes, &Discretisation::reciprocal_mass);
+  result.relative_mass = unite_rows(shapes, &Discretisation::relative_mass);
   return result;
 }
 

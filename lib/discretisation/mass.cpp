@@ -71,9 +71,10 @@ ShapeRows rows_of(const std::vector<std::map<int, double>>& matrix) {
 
 }  // namespace
 
-ShapeRows scaled_reciprocal_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling) {
-  std::vector<std::map<int, double>> rows(lumped.size());
-  for (std::size_t i = 0; i < lumped.size(); ++i) rows[i][static_cast<int>(i)] = 1;
+ScaledMass scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling) {
+  std::vector<std::map<int, double>> reciprocal(lumped.size());
+  for (std::size_t i = 0; i < lumped.size(); ++i) reciprocal[i][static_cast<int>(i)] = 1;
+  std::vector<std::map<int, double>> relative = reciprocal;
   const std::vector<std::vector<int>> outline_nodes = nearest_outline_nodes(mesh);
   for (std::size_t i = static_cast<std::size_t>(mesh.outline_count); i < lumped.size(); ++i) {
     std::vector<int> node{static_cast<int>(i)};  // an inner node and the outline nodes that it is coupled to
@@ -88,9 +89,12 @@ ShapeRows scaled_reciprocal_mass(const FieldMesh& mesh, const std::vector<double
     }
     const Eigen::MatrixXd c = mass.ldlt().solve(Eigen::MatrixXd(diagonal.asDiagonal()));
     for (Eigen::Index a = 0; a < size; ++a)
-      for (Eigen::Index b = 0; b < size; ++b) rows[node[a]][node[b]] = c(a, b);
+      for (Eigen::Index b = 0; b < size; ++b) {
+        reciprocal[node[a]][node[b]] = c(a, b);
+        relative[node[a]][node[b]] = mass(a, b) / diagonal[a];
+      }
   }
-  return rows_of(rows);
+  return {rows_of(reciprocal), rows_of(relative)};
 }
 
 ShapeRows corrected_reciprocal_mass(const FieldMesh& mesh, const Basis& basis, const std::vector<double>& lumped) {

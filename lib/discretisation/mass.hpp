@@ -8,10 +8,16 @@ namespace pliant {
 /// whatever the integration points of the discretisation (docs/method.md 2). Throws InputError if one is not positive.
 std::vector<double> lumped_mass(const FieldMesh& mesh, const Basis& basis);
 
-/// Rows of C = (D + L)^-1 D, [nodes x nodes], sparse, for selective mass scaling (docs/method.md 2). L couples each
-/// outline node of mass m by (scaling - 1) m to the nearest inner node across an edge of the mesh, if there is one. C
-/// has no negative entries, keeps translations and the momentum, and its eigenvalues lie in (0, 1].
-ShapeRows scaled_reciprocal_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling);
+/// Scaled mass M = D + L, rows of [nodes x nodes], sparse.
+struct ScaledMass {
+  ShapeRows reciprocal;  ///< C = M^-1 D
+  ShapeRows relative;    ///< C^-1 = D^-1 M
+};
+
+/// Selective mass scaling (docs/method.md 2). L couples each outline node of mass m by (scaling - 1) m to the nearest
+/// inner node across an edge of the mesh, if there is one. C has no negative entries, keeps translations and the
+/// momentum, and its eigenvalues lie in (0, 1].
+ScaledMass scaled_mass(const FieldMesh& mesh, const std::vector<double>& lumped, double scaling);
 
 /// Rows of C = 2 I - D^-1 M, [nodes x nodes], sparse: M the consistent mass (6 Gauss points per triangle: exact for
 /// linear triangles), D the lumped one. W = C D^-1 is the inverse mass of docs/method.md 2, exact to first order in

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/errors.hpp"
 #include "discretisation/mass.hpp"
@@ -95,7 +96,8 @@ Discretisation discretised(const FieldMesh& mesh, const DiscretisationSettings& 
   result.mass_at_unit_density = lumped_mass(scaled, basis);
   result.nodal_distance = nearest_distances(mesh.nodes);
   if (settings.mass_scaling > 1) {
-    result.reciprocal_mass = scaled_reciprocal_mass(scaled, result.mass_at_unit_density, settings.mass_scaling);
+    ScaledMass mass = scaled_mass(scaled, result.mass_at_unit_density, settings.mass_scaling);
+    result.reciprocal_mass = std::move(mass.reciprocal), result.relative_mass = std::move(mass.relative);
     result.reciprocal_mass_averages = true;
   }
   if (settings.mass == Mass::corrected) {

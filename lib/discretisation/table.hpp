@@ -39,6 +39,7 @@ struct Discretisation {
   /// Rows of C, which takes p/D to velocities, D the lumped mass: 2 I - D^-1 M of corrected mass, or that of mass
   /// scaling (docs/method.md 2). Empty: C = I.
   ShapeRows reciprocal_mass;
+  ShapeRows relative_mass;                ///< rows of C^-1 = D^-1 M of scaled mass; empty otherwise
   double reciprocal_mass_bound = 1;       ///< bound on its largest eigenvalue
   bool reciprocal_mass_averages = false;  ///< whether C has no negative entries
   double min_shape_value = 0;             ///< least phi at integration points and nodes (docs/method.md 2)

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "bodies/node_arrays.hpp"
+#include "bodies/reciprocal_mass.hpp"
 #include "core/errors.hpp"
 #include "dynamics/cell_stress.hpp"
 #include "geometry/lattice.hpp"
@@ -13,20 +14,32 @@ namespace pliant {
 namespace {
 
 /// Adds the jump of a velocity gradient, 1/s, times the position to the velocities of one batch. Returns the growth of
-/// the bodies' kinetic energies, J/m; for a nodewise body the lanes add up to it.
+/// the bodies' kinetic energies, J/m; for a nodewise body the lanes add up to it. With scaled mass, velocities v + u
+/// have the reduced momenta y + C^-1 u, and the growth is C^-1 u . D (v + u/2).
 Lanes push_batch(const Model& model, const Batch& batch, const Eigen::Matrix2d& jump, State& state) {
+  thread_local std::vector<Lanes> scratch[3];  // memory is allocated once
+  for (std::vector<Lanes>& one : scratch) one.resize(2 * static_cast<std::size_t>(batch.slots));
   const Lanes* q = &state.position.compliant[batch.offset];
-  Lanes* v = &state.reduced_momentum.compliant[batch.offset];
+  Lanes* y = &state.reduced_momentum.compliant[batch.offset];
+  Lanes* u = scratch[0].data();
   const Lanes centre_x = batch.centre_x * batch.inverse_scale, centre_y = batch.centre_y * batch.inverse_scale;
   return with_nodes(model, batch, [&](const auto& nodes) {
-    Lanes gain{};
     for (int i = 0; i < batch.slots; ++i) {
-      const Lanes mass = Lanes{} + nodes.mass_at_unit_density[i], x = q[2 * i] + centre_x, y = q[2 * i + 1] + centre_y;
-      const LaneBits there = (batch.weight > 0.0) & (mass > 0.0);  // padding would move without end
-      const Lanes along_x = select(there, jump(0, 0) * x + jump(0, 1) * y, Lanes{}),
-                  along_y = select(there, jump(1, 0) * x + jump(1, 1) * y, Lanes{});
-      gain += mass * (along_x * (v[2 * i] + 0.5 * along_x) + along_y * (v[2 * i + 1] + 0.5 * along_y));
-      v[2 * i] += along_x, v[2 * i + 1] += along_y;
+      const Lanes at_x = q[2 * i] + centre_x, at_y = q[2 * i + 1] + centre_y;
+      // padding would move without end
+      const LaneBits there = (batch.weight > 0.0) & (Lanes{} + nodes.mass_at_unit_density[i] > 0.0);
+      u[2 * i] = select(there, jump(0, 0) * at_x + jump(0, 1) * at_y, Lanes{});
+      u[2 * i + 1] = select(there, jump(1, 0) * at_x + jump(1, 1) * at_y, Lanes{});
+    }
+    const Lanes *change = u, *v = y;
+    if (model.has_reciprocal_mass) {
+      apply_relative_mass(model, batch, u, scratch[1].data()), change = scratch[1].data();
+      apply_reciprocal_mass(model, batch, y, scratch[2].data()), v = scratch[2].data();
+    }
+    Lanes gain{};
+    for (int i = 0; i < 2 * batch.slots; ++i) {
+      gain += nodes.mass_at_unit_density[i / 2] * (change[i] * (v[i] + 0.5 * u[i]));
+      y[i] += change[i];
     }
     return gain * batch.density * batch.weight;
   });

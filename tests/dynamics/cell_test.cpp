@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bodies/reciprocal_mass.hpp"
 #include "core/errors.hpp"
 #include "dynamics/cell_motion.hpp"
 #include "dynamics/cell_stress.hpp"
@@ -278,6 +279,39 @@ TEST(Cell, that_gives_way_says_so) {
     ADD_FAILURE() << "nothing holds the grains together";
   } catch (const PhysicsError& error) {
     EXPECT_NE(std::string(error.what()).find("the cell gives way: its area is 4"), std::string::npos) << error.what();
+  }
+}
+
+/// A disc that touches nothing, in a cell that begins to stretch within the run.
+Scene stretched_disc(double scaling) {
+  Scene scene = empty_scene(1);
+  scene.discretisation.mass_scaling = scaling;
+  scene.shapes = {disc_shape("disc", 1, 60)};
+  scene.grains = {grains("disc", "disc", BodyKind::compliant, {{0.2, -0.1}})};
+  CellSettings cell;
+  cell.periods = {8, 8};
+  cell.gradient[0][0] = {{0, 0.5, 1}, {1, 1, 1.02}};
+  scene.cell = cell;
+  return scene;
+}
+
+// EXACT: matter gets the velocity L x with lumped as with scaled mass, and its kinetic energy is the work on the cell.
+// To rounding.
+TEST(Cell, gives_matter_of_scaled_mass_its_velocity) {
+  for (const double scaling : {1.0, 3.0, 10.0}) {
+    const Model model = build_model(stretched_disc(scaling));
+    Simulation simulation(model);
+    advance(simulation, 0.5);
+    const State& state = simulation.state();
+    const Dofs velocity = material_velocity(model, state.reduced_momentum);
+    const Body& body = model.bodies[0];
+    for (int node = 0; node < model.shape_of(body).nodes(); ++node) {
+      const Vec2 x = body.centre + node_value(model, body, state.position, node);
+      EXPECT_LT((node_value(model, body, velocity, node) - Vec2(0.04 * x.x(), 0)).norm(), 1e-14) << scaling;
+    }
+    const Energies energy = simulation.energy_balance().energy;
+    EXPECT_GT(energy.kinetic, 1e-6);
+    EXPECT_NEAR(energy.kinetic, energy.external_work, 1e-12 * energy.kinetic) << scaling;
   }
 }
 
