@@ -64,7 +64,10 @@ PairView ContactSystem::view(const ContactPair& contact_pair) const {
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) return false;
-  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !verlet_list_.skin_is_exceeded(position);
+  if (!has_fixed_refresh(model_.scene.contact)) return !verlet_list_.skin_is_exceeded(position);
+  if (period_is_over(clock)) return false;
+  warn_of_missed_contacts(position);
+  return true;
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {
@@ -130,7 +133,7 @@ bool ContactSystem::rebuild_list(const Outlines& outlines, const OutlineField& t
   refreshed_ = clock;
   ++refreshes_;
   const bool same_pairs = !verlet_list_.update(outlines.position, trial);
-  const std::vector<int> to_search = verlet_list_.pairs_to_search(outlines.position);
+  const std::vector<int> to_search = verlet_list_.pairs_to_search(trial);
   remember(outlines, to_search);
   const bool all_anew = !same_pairs && static_cast<int>(to_search.size()) == verlet_list_.count();
   std::vector<ContactPair> found = search(to_search, all_anew ? std::move(spare_pairs_) : std::vector<ContactPair>{});

@@ -336,11 +336,12 @@ void VerletList::follow(std::vector<BodyPair> found, const OutlineField& here) {
   });
 }
 
-std::vector<int> VerletList::pairs_to_search(const OutlineField& here) {
+/// The discs of the bound, the lattice and the nodes are those of one configuration, the trial's.
+std::vector<int> VerletList::pairs_to_search(const OutlineField& trial) {
   parallel_for(count(), [&](int p) {
     if (use_[p] != check) return;
-    const double exact = displacement(p, here);
-    of_pairs_.excess[p] = std::max(0.0, displacement_bound(p, here) - exact);
+    const double exact = displacement(p, trial);
+    of_pairs_.excess[p] = std::max(0.0, displacement_bound(p, trial) - exact);
     if (exact < search_threshold * skin_) use_[p] = keep;
   });
   std::vector<int> result;

@@ -38,7 +38,7 @@ class VerletList {
   const BodyPair& operator[](int pair) const { return pairs_[pair]; }
   /// Call once after each update. Returns the pairs whose candidates must be searched again; all others are valid for
   /// the trial.
-  std::vector<int> pairs_to_search(const OutlineField& here);
+  std::vector<int> pairs_to_search(const OutlineField& trial);
   /// Whether the candidates of pairs that were searched are valid for the trial.
   bool hold(const std::vector<int>& pairs, const OutlineField& trial) const;
   /// Gap beyond which pairs that the broad phase just found need no monitoring, m.

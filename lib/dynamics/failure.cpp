@@ -121,11 +121,17 @@ Failure lost_contact(const Forces& forces, const Outlines& outlines) {
   const Model& model = forces.model();
   const DeepestNode deepest = deepest_contact(forces, outlines);
   Failure failure;
+  failure.cause = Failure::Cause::contact_lost;
+  if (!(deepest.depth > 0)) {
+    failure.words =
+        "a contact is lost in the trial step, though no outline node is inside another body there: the step is too "
+        "long, or a contact acts beyond its gap; lower [time] safety";
+    return failure;
+  }
   failure.words =
       fmt::format("{} is lost: outline node {}{}, at {}, has a penetration of {:.3g} m, {:.2f} of a segment length; {}",
                   contact_of(model, deepest), deepest.node, deepest.slave == deepest.master ? "" : " of the first",
                   place(deepest.position), deepest.depth, deepest.depth / deepest.segment_length, advice(deepest));
-  failure.cause = Failure::Cause::contact_lost;
   failure.bodies = {deepest.slave, deepest.master};
   failure.node = deepest.node;
   failure.place = deepest.position;
