@@ -25,7 +25,8 @@ from pliant.results import Run, Table, read_json, read_run
 EQUAL, DIFFERENT, NOT_COMPARABLE = 0, 1, 2
 # Of the machine and the day, not of the run.
 NOT_OF_THE_RUN = {"preparation_seconds", "wall_seconds", "phase_seconds", "evaluations_per_second",
-                  "peak_memory_bytes", "threads", "resumed", "checkpoint_time", "commit", "compiler", "scene", "title"}
+                  "peak_memory_bytes", "threads", "resumed", "checkpoint_time", "commit", "compiler", "scene", "title",
+                  "warnings"}
 SAME_TIME = 1e-9  # relative: outputs of the same instant
 
 
@@ -207,11 +208,22 @@ def print_result(result: Comparison) -> None:
     print(f"{verdict} {limit}: {result.compared} figures, columns and fields compared, {equal} of them the same")
 
 
+def tolerance(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"'{text}' is no number from 0 on")
+    return value
+
+
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="pliant compare", description="Largest differences of two runs.",
                                      epilog="example: ./pliant compare results/one results/other --tolerance 1e-6")
     parser.add_argument("folders", type=Path, nargs=2, metavar="DIR", help="result folders of `pliant run`")
-    parser.add_argument("--tolerance", type=float, default=0.0, help="largest relative difference that counts as equal")
+    parser.add_argument("--tolerance", type=tolerance, default=0.0,
+                        help="largest relative difference that counts as equal")
     options = parser.parse_args(arguments)
     try:
         result = compare(*(read_run(folder) for folder in options.folders), options.tolerance)

@@ -143,7 +143,10 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     which.add_argument("--frame", type=int, metavar="N", help="number of the frame, from 0")
     parser.add_argument("--out", type=Path, metavar="FILE.vtu",
                         help="default: frame_N.vtu in the result folder; the outlines go to FILE_outlines.vtu")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.out is not None and options.out.suffix != ".vtu":
+        parser.error(f"argument --out: '{options.out}' must end with .vtu")
+    return options
 
 
 def main(arguments: list[str]) -> int:

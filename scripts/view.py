@@ -48,7 +48,10 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--every", type=count, default=1, metavar="N", help="every Nth frame alone")
     parser.add_argument("--fields", nargs="+", metavar="NAME", help="default: all that the frames hold")
     parser.add_argument("--times", type=float, nargs=2, metavar=("FROM", "TO"), help="frames between these times, in s")
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    if options.out is not None and options.out.suffix not in (".html", ".htm"):
+        parser.error(f"argument --out: '{options.out}' must end with .html")
+    return options
 
 
 def chosen_frames(times: np.ndarray, every: int, span: list[float] | None) -> list[int]:

@@ -1,7 +1,6 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <CLI/CLI.hpp>
 
@@ -12,6 +11,7 @@
 #include "cli/shape_function.hpp"
 #include "core/errors.hpp"
 #include "core/floating_point_traps.hpp"
+#include "core/warnings.hpp"
 #include "files/output_folder.hpp"
 #include "input/read_scene.hpp"
 #include "input/scene_keys.hpp"
@@ -21,6 +21,15 @@
 
 namespace pliant {
 namespace {
+
+/// Refuses an empty text, as of a shell variable that is not set: it would stand for no option.
+const CLI::Validator not_empty([](const std::string& text) { return std::string(text.empty() ? "is empty" : ""); },
+                               "TEXT");
+
+/// Another ending is likely to be that of the scene, which would be overwritten.
+const CLI::Validator json_file(
+    [](const std::string& text) { return std::string(text.ends_with(".json") ? "" : "must end with .json"); },
+    "FILE.json");
 
 struct Arguments {
   std::string scene, until, checkpoint_every;
@@ -70,7 +79,7 @@ CLI::App* add_modes(CLI::App& app, std::string& scene, ModesRequest& modes) {
       ->check(CLI::Range(1, 2 * most_modal_nodes));
   command->add_option("--body", modes.body,
                       "Grains, or one of a set as in \"grains 17\"; default all that are compliant");
-  command->add_option("--json", modes.json, "File for the same figures");
+  command->add_option("--json", modes.json, "File for the same figures")->check(json_file);
   command->add_option("--matrices", modes.matrices, "Folder for stiffness and inverse mass, Matrix Market format");
   return command;
 }
@@ -86,7 +95,8 @@ int main_program(int argc, char** argv) {
   check_command->add_option("scene", arguments.scene, "Scene file (TOML)")->required();
   run_command->add_option("scene", arguments.scene, "Scene file (TOML); with --resume and --out that of the folder");
   for (CLI::App* command : {run_command, check_command}) {
-    command->add_option("--until", arguments.until, "End time instead of the scene's, as in \"0.02 us\"");
+    command->add_option("--until", arguments.until, "End time instead of the scene's, as in \"0.02 us\"")
+        ->check(not_empty);
     command->add_option("--threads", arguments.run.threads, "Number of threads; results do not depend on it")
         ->check(CLI::Range(1, 1024));
   }
@@ -102,11 +112,13 @@ int main_program(int argc, char** argv) {
   shape_function_command->add_option("--nodes", shape_function.nodes, "Nodes of the disc")->check(CLI::Range(30, 5000));
   shape_function_command->add_option("--grid", shape_function.grid, "Points along either axis")
       ->check(CLI::Range(3, 2000));
-  run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>");
+  run_command->add_option("--out", arguments.run.out, "Output folder; default results/<scene name>")->check(not_empty);
   CLI::Option* force = run_command->add_flag("--force", arguments.run.force, "Overwrite results in the output folder");
   run_command->add_flag("--resume", arguments.run.resume, "Go on from the output folder's checkpoint")->excludes(force);
-  run_command->add_option("--checkpoint-every", arguments.checkpoint_every,
-                          "Wall time between checkpoints, as in \"10 min\", or never; default the scene's");
+  run_command
+      ->add_option("--checkpoint-every", arguments.checkpoint_every,
+                   "Wall time between checkpoints, as in \"10 min\", or never; default the scene's")
+      ->check(not_empty);
   run_command->add_flag("--quiet", arguments.run.quiet, "Print errors only");
   ModesRequest modes;
   CLI::App* modes_command = add_modes(app, arguments.scene, modes);
@@ -116,7 +128,7 @@ int main_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::bad_input);
   }
-  if (arguments.run.quiet) spdlog::set_level(spdlog::level::err);
+  if (arguments.run.quiet) write_errors_only();
   if (*run_command) run(arguments);
   if (*schema_command) print_schema();
   if (*check_command) print_check(load(arguments), arguments.run.threads);
@@ -130,8 +142,7 @@ int main_program(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   pliant::trap_floating_point_errors();
-  spdlog::set_default_logger(spdlog::stderr_logger_st("pliant"));
-  spdlog::set_pattern("%l: %v");
+  pliant::install_logger();
   try {
     return pliant::main_program(argc, argv);
   } catch (const pliant::Stopped& stopped) {

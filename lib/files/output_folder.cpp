@@ -132,7 +132,8 @@ void remove_temporary_files(const fs::path& folder) {
   });
 }
 
-bool killed_before_checkpoint(const fs::path& folder) {
+bool begins_anew(const fs::path& folder) {
+  if (!fs::exists(folder)) return true;
   if (!fs::is_directory(folder) || fs::exists(folder / "checkpoint.bin")) return false;
   return fs::exists(folder / "run.lock") || holds_nothing(folder);
 }

@@ -26,8 +26,8 @@ void tell_output_folder(const std::filesystem::path& folder);
 /// Removes what killed runs had begun to write and not yet put in place.
 void remove_temporary_files(const std::filesystem::path& folder);
 
-/// Whether a run that was to write to this folder was killed before its first checkpoint: its lock is there, or nothing
-/// at all is in the folder. What it wrote is of no use.
-bool killed_before_checkpoint(const std::filesystem::path& folder);
+/// Whether there is nothing to resume: no such folder, or its run was killed before its first checkpoint. Then its lock
+/// is there, or nothing at all is in the folder, and what it wrote is of no use.
+bool begins_anew(const std::filesystem::path& folder);
 
 }  // namespace pliant

@@ -89,12 +89,12 @@ struct Run {
   /// At the end, where the state is one to look at: to a later end the run goes on from before it, as if it were none.
   void see_end() {
     recorder.finish_progress();
+    warn_of_balance(simulation, simulation.energy_balance().energy);
     const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
     end_summary = recorder.summary(simulation, "finished");
     recorder.figures.checkpoint_time = before;
     write_start_file(options.out, scene_text, simulation);
     end_line = last_line(simulation, recorder.figures, options);
-    warn_of_balance(simulation, simulation.energy_balance().energy);
   }
   void write_end() {
     pliant::write_checkpoint(options.out, scene_text, simulation, recorder, simulation.model().scene.time.end);
@@ -163,6 +163,21 @@ std::string last_words(Run& run, const Error& error) {
                      time < 0 ? "no checkpoint yet" : fmt::format("last good checkpoint: t = {:.6g} s", time));
 }
 
+nlohmann::json summary_in(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  if (!fs::exists(file)) return nlohmann::json::object();
+  return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
+}
+
+/// Of an earlier process of the run, as its summary has them.
+std::vector<std::string> warnings_in(const nlohmann::json& summary) {
+  std::vector<std::string> texts;
+  if (!summary.is_object() || !summary.contains("warnings") || !summary["warnings"].is_array()) return texts;
+  for (const nlohmann::json& text : summary["warnings"])
+    if (text.is_string()) texts.push_back(text.get<std::string>());
+  return texts;
+}
+
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
   const std::unique_ptr<const StartFile> from = checkpoint ? nullptr : start_file_of(scene);
@@ -185,7 +200,10 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   files.write(options.out);
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
-  if (checkpoint) recorder.figures.checkpoint_time = checkpoint->time();
+  if (checkpoint) {
+    recorder.figures.checkpoint_time = checkpoint->time();
+    recorder.figures.warnings_before = warnings_in(summary_in(options.out));
+  }
   fs::remove(failure_file(options.out));
   fs::remove(options.out / start_file_name);  // of an earlier end
   if (!options.quiet)
@@ -203,12 +221,6 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
     throw OutputError(last_words(run, error));
   }
   if (!options.quiet) fmt::print("{}", run.end_line);
-}
-
-nlohmann::json summary_in(const fs::path& folder) {
-  const fs::path file = folder / "summary.json";
-  if (!fs::exists(file)) return nlohmann::json::object();
-  return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
 }
 
 /// Whether the folder's last run left it in order at this checkpoint. One that was killed after its last checkpoint,
@@ -257,7 +269,7 @@ void run_scene(const Scene& scene, const RunOptions& options) {
   const Clock::time_point start = Clock::now();
   set_threads(options.threads);
   if (!options.resume) return simulate(scene, options, nullptr, start);
-  if (killed_before_checkpoint(options.out)) {
+  if (begins_anew(options.out)) {
     if (!options.quiet) fmt::print("{}: has no checkpoint yet; starting anew\n", options.out.string());
     return simulate(with_kept_start(scene, options.out), options, nullptr, start);
   }
@@ -269,8 +281,9 @@ void run_scene(const Scene& scene, const RunOptions& options) {
 }
 
 Scene scene_of_folder(const fs::path& folder) {
+  if (!fs::exists(folder)) throw InputError(fmt::format("{}: no such folder; name the scene file", folder.string()));
   std::string name;
-  if (!killed_before_checkpoint(folder))
+  if (!begins_anew(folder))
     name = Checkpoint(folder).scene_name();
   else if (const nlohmann::json summary = summary_in(folder); summary.contains("scene"))
     name = summary.value("scene", "");

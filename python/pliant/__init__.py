@@ -24,14 +24,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pliant import engine
-from pliant.engine import BadScene, RunFailed
+from pliant.engine import BadScene, EngineWarning, RunFailed
 from pliant.frames import BadFolder, Contacts, Frames, Grid
 from pliant.results import Column, Run, Table, read_run
 
 if TYPE_CHECKING:
     from pliant.scene import Scene
 
-__all__ = ["BadFolder", "BadScene", "Column", "Contacts", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
+__all__ = ["BadFolder", "BadScene", "Column", "Contacts", "EngineWarning", "Frames", "Grid", "Run", "RunFailed", "Scene", "Table", "open", "run"]
 
 
 def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.open
@@ -39,11 +39,12 @@ def open(folder: str | Path) -> Run:  # noqa: A001: as h5py.File or PIL.Image.op
     return read_run(Path(folder))
 
 
-def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
-    """Runs a scene, or the one in a file, into a folder, over what is there, and opens it. BadScene, RunFailed."""
+def run(scene: Scene | str | Path, folder: str | Path, threads: int = 1) -> Run:
+    """Runs a scene, or the one in a file, into a folder, over what is there, and opens it. BadScene, RunFailed. What the
+    engine warns of comes as EngineWarning."""
     if isinstance(scene, (str, Path)):
-        return engine.run(Path(scene), Path(folder), threads, quiet)
-    return scene.run(folder, threads, quiet)
+        return engine.run(Path(scene), Path(folder), threads)
+    return scene.run(folder, threads)
 
 
 def __dir__() -> list[str]:

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +20,10 @@ ENGINE_SETTINGS = {"OMP_WAIT_POLICY": "passive", "OMP_PROC_BIND": "false"}  # ru
 
 class BadScene(Exception):
     """The engine refuses a scene; the message is its own."""
+
+
+class EngineWarning(UserWarning):
+    """What the engine warned of in a run: lost energy, deep contacts."""
 
 
 class RunFailed(Exception):
@@ -82,11 +87,14 @@ def check(file: Path, threads: int = 1) -> Estimate:
                     _quantity(text, "memory", _BYTES), _quantity(text, "output", _BYTES))
 
 
-def run(file: Path, folder: Path, threads: int = 1, quiet: bool = True) -> Run:
-    """Runs a scene in a file into a folder, over what is there, and opens it. BadScene, RunFailed."""
-    result = call("run", file, "--out", folder, "--force", "--threads", str(threads), *["--quiet"] * quiet)
+def run(file: Path, folder: Path, threads: int = 1) -> Run:
+    """Runs a scene in a file into a folder, over what is there, and opens it. BadScene, RunFailed; EngineWarning."""
+    result = call("run", file, "--out", folder, "--force", "--threads", str(threads), "--quiet")
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
     if result.returncode != 0:
         raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
-    return read_run(folder)
+    found = read_run(folder)
+    for text in found.warnings:
+        warnings.warn(text, EngineWarning, stacklevel=3)
+    return found

@@ -157,6 +157,12 @@ class Frames:
         return [name for name in self._file[f"{grid}/{0:06}"] if name != "position"] + sorted(self.constants[grid])
 
     def nearest(self, time: float) -> int:
+        """Index of the frame nearest to a time, s. BadFolder: the time is further from all than two frames are apart."""
+        if len(self.times) == 0:
+            raise BadFolder(f"{self.path}: the run has no frame yet")
+        apart = max(np.diff(self.times).max(initial=0.0), 1e-9 * abs(self.times[-1]))
+        if not self.times[0] - apart <= time <= self.times[-1] + apart:
+            raise BadFolder(f"{self.path}: no frame near {time:g} s; they are from {self.times[0]:g} to {self.times[-1]:g} s")
         return int(np.abs(self.times - time).argmin())
 
     @cached_property

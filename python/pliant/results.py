@@ -71,12 +71,13 @@ def is_finished(folder: Path) -> bool:
 
 
 def checkpoint_header(folder: Path) -> dict:
-    """The line of JSON of checkpoint.bin; {} without one."""
+    """The line of JSON of checkpoint.bin; {} without one, or if that is damaged."""
     try:
         with (folder / "checkpoint.bin").open("rb") as file:
-            return json.loads(file.readline() and file.readline())
+            header = json.loads(file.readline() and file.readline())
     except (OSError, ValueError):
         return {}
+    return header if isinstance(header, dict) and {"time", "steps", "written"} <= header.keys() else {}
 
 
 def read_table(file: Path) -> Table | None:
@@ -128,6 +129,11 @@ class Run:
     def summary(self) -> dict:
         """summary.json: how the run ended, what it cost, its energies; {} when there is none."""
         return read_json(self.folder / "summary.json")
+
+    @property
+    def warnings(self) -> list[str]:
+        """What the engine warned of in this run."""
+        return self.summary.get("warnings", [])
 
 
 def read_run(folder: Path) -> Run:

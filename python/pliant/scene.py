@@ -140,10 +140,10 @@ class Scene:
         with tempfile.TemporaryDirectory() as folder:
             return engine.check(self.write_whole(Path(folder)), threads)
 
-    def run(self, folder: str | Path, threads: int = 1, quiet: bool = True) -> Run:
+    def run(self, folder: str | Path, threads: int = 1) -> Run:
         """Into a folder, over what is there; opens it. BadScene, RunFailed."""
         with tempfile.TemporaryDirectory() as scratch:
-            return engine.run(self.write_whole(Path(scratch)), Path(folder), threads, quiet)
+            return engine.run(self.write_whole(Path(scratch)), Path(folder), threads)
 
 
 def _may_name_a_file(text: str, surely: bool) -> bool:

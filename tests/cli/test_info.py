@@ -119,6 +119,11 @@ def test_a_small_change_is_found_and_located(half) -> None:
     assert re.search(r"\* frames bodies/velocity .* t = \S+ s", text)
 
 
+@pytest.mark.parametrize("tolerance", ["-1", "nan", "inf", "small"])
+def test_bad_tolerance(half, tolerance: str) -> None:
+    compared(half, 2, "out", "out", "--tolerance", tolerance)
+
+
 def test_a_small_change_is_within_a_tolerance(desk) -> None:
     """Smaller than what steps would need to end at other times: their bound sees where bodies are."""
     for folder, speed in (("out", "20 m/s"), ("two", "20.0000001 m/s")):

@@ -79,6 +79,14 @@ def test_refused(desk, text: str, options: list[str], says: str) -> None:
     assert desk.content() == before
 
 
+def test_no_scene_is_overwritten(desk) -> None:
+    desk.write(TWO_DISCS)
+    before = desk.content()
+    result = desk.engine("modes", desk.scene, "--json", desk.scene)
+    assert result.returncode == 2 and "must end with .json" in result.stderr
+    assert desk.content() == before
+
+
 def test_a_folder_that_cannot_be_written(desk) -> None:
     desk.write(TWO_DISCS)
     assert desk.engine("modes", desk.scene, "--matrices", desk.scene / "matrices").returncode == 4

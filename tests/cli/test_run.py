@@ -122,6 +122,28 @@ def test_quiet_is_quiet(desk) -> None:  # EXACT
     assert result.stdout == "" and result.stderr == ""
 
 
+MISSED = TWO_DISCS.replace("[time]", '[contact]\nrefresh = "1 s"\n\n[time]')
+
+
+def test_warnings_stay_in_the_summary_when_quiet_and_after_a_stop(desk) -> None:  # EXACT
+    """The discs meet before the only search of contacts is repeated."""
+    desk.write(MISSED)
+    for options in (["--until", "10 ns"], ["--resume"]):
+        result = desk.run("--out", "out", "--quiet", *options)
+        assert result.returncode == 0 and not result.stderr, result.stderr
+        found = [text for text in desk.summary("out")["warnings"] if "contacts can be missed" in text]
+        assert len(found) == 1, desk.summary("out")["warnings"]
+    desk.write(TWO_DISCS)
+    assert desk.run("--out", "other", "--quiet").returncode == 0 and desk.summary("other")["warnings"] == []
+
+
+def test_resume_without_a_folder_starts_anew(desk) -> None:  # EXACT
+    desk.write(TWO_DISCS)
+    assert desk.run("--out", "out", "--until", "2 ns", "--resume", "--quiet").returncode == 0
+    result = desk.engine("run", "--resume", "--out", "nowhere")
+    assert result.returncode == 2 and "no such folder" in result.stderr
+
+
 def test_no_temporary_files_remain(finished) -> None:  # EXACT
     assert not [file for file in finished.content() if file.suffix in {".tmp", ".part"}]
 

@@ -139,19 +139,19 @@ TEST_F(TextFiles, EmptyingKeepsTheLockAndWhatIsNamed) {
 
 TEST_F(TextFiles, AKilledRunIsKnownByItsLockOrAnEmptyFolder) {
   const fs::path out = folder_ / "out";
-  EXPECT_FALSE(killed_before_checkpoint(out)) << "no folder";
+  EXPECT_TRUE(begins_anew(out)) << "no folder";
   fs::create_directory(out);
-  EXPECT_TRUE(killed_before_checkpoint(out)) << "before its first file";
+  EXPECT_TRUE(begins_anew(out)) << "before its first file";
   write_file_atomically(out / "trial.17.tmp", "x");
-  EXPECT_TRUE(killed_before_checkpoint(out));
+  EXPECT_TRUE(begins_anew(out));
   prepare_output_folder(out, false);
   write_file_atomically(out / "notes.tmp", "somebody's");
-  EXPECT_FALSE(killed_before_checkpoint(out)) << "not a name that a run gives";
+  EXPECT_FALSE(begins_anew(out)) << "not a name that a run gives";
   EXPECT_THROW(prepare_output_folder(out, false), OutputError);
   write_file_atomically(out / "run.lock", "");
-  EXPECT_TRUE(killed_before_checkpoint(out));
+  EXPECT_TRUE(begins_anew(out));
   write_file_atomically(out / "checkpoint.bin", "x");
-  EXPECT_FALSE(killed_before_checkpoint(out));
+  EXPECT_FALSE(begins_anew(out));
 }
 
 TEST_F(TextFiles, AFileIsNoOutputFolder) {

@@ -81,6 +81,14 @@ def test_the_engine_says_what_is_wrong(scene: Scene, tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+def test_warnings_of_the_engine_come_through(scene: Scene, tmp_path: Path) -> None:
+    scene["contact"] = {"refresh": "1 s"}
+    scene["time.end"] = "5 ns"
+    with pytest.warns(pliant.EngineWarning, match="contacts can be missed"):
+        run = pliant.run(scene, tmp_path / "out")
+    assert any("contacts can be missed" in text for text in run.warnings)
+
+
 def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
     """A run within a second is counted by `check`, to the three digits that it prints."""
     estimate = scene.check()

@@ -105,7 +105,8 @@ def test_out_names_both_files(folder: Path, tmp_path: Path) -> None:
     check(tmp_path / "a_outlines.vtu", folder, "outlines", 2)
 
 
-@pytest.mark.parametrize("options", [["--frame", 3], ["--frame", -1], ["--frame", 0, "--time", 0]])
+@pytest.mark.parametrize("options", [["--frame", 3], ["--frame", -1], ["--frame", 0, "--time", 0], ["--time", "nan"],
+                                     ["--time", 99], ["--out", "scene.toml"]])
 def test_bad_frame_is_bad_input(folder: Path, options: list[object]) -> None:
     before = set(folder.iterdir())
     result = export(folder, *options)

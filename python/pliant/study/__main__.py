@@ -192,6 +192,9 @@ def tell(folder: Folder) -> int:
     for row in bad:
         print(f"{row['run']}: {row['status']}: {'; '.join(filter(None, [row['message'], *row['problems']]))}",
               file=sys.stderr)
+    for row in table["rows"]:
+        for text in row["warnings"]:
+            print(f"{row['run']}: warning: {text}", file=sys.stderr)
     changed = [r for r in table.get("regression", []) if not r["good"]]
     for r in changed:
         if r["quantity"] == "-":

@@ -88,8 +88,10 @@ def gather(folder: Folder, name: str) -> None:
     values: dict[str, dict] = {}
     curves: dict[str, dict] = {}
     problems: list[str] = []
+    warned: list[str] = []
     if folder.outcome(name)["status"] == "finished":
         results = read_run(folder.results(name))
+        warned = results.warnings
         for quantity in folder.quantities():
             try:
                 values[quantity.name] = asdict(gathering.gather(quantity, results))
@@ -101,7 +103,7 @@ def gather(folder: Folder, name: str) -> None:
             except gathering.CannotGather as error:
                 problems.append(f"{curve.name}: {error}")
     replace(folder.run(name) / "quantities.json",
-            as_text({"values": values, "curves": curves, "problems": problems}))
+            as_text({"values": values, "curves": curves, "problems": problems, "warnings": warned}))
 
 
 def table(folder: Folder) -> None:

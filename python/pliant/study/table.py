@@ -13,12 +13,12 @@ from pliant.study.spec import number_of
 
 
 def rows_of(folder: Folder) -> list[dict[str, Any]]:
-    """Each with run, status, message, inputs and outputs by name."""
+    """Each with run, status, message, warnings, inputs and outputs by name."""
     rows = []
     for name in folder.read("study.json")["runs"]:
         outcome, gathered = folder.outcome(name), folder.read(f"runs/{name}/quantities.json")
         rows.append({"run": name, "status": outcome["status"], "message": outcome["message"],
-                     "problems": gathered["problems"], "inputs": folder.point(name).values,
+                     "problems": gathered["problems"], "warnings": gathered.get("warnings", []), "inputs": folder.point(name).values,
                      "outputs": gathered["values"]})
     return rows
 
