@@ -53,10 +53,10 @@ std::string describe_expected_errors(const Model& model) {
   std::string text = fmt::format(
       "discs of {} nodes were off by {} {:.2g} % of their swing after three periods, {:.2g} % of the force when "
       "squeezed "
-      "to 30 %, {:.2g} % of their speed in a fast bounce (docs/defaults.md, \"DiscretisationMethod, mass and nodes\")",
+      "to 30 %, {:.2g} % of their speed in a fast bounce (docs/defaults.md, \"Method, mass and nodes\")",
       nodes, likeness(nodes), 100 * errors->oscillation, 100 * errors->plates, 100 * errors->impact);
   if (const auto corrected = expected_errors(chosen.method, Mass::corrected, nodes);
-      chosen.mass == Mass::lumped && corrected->oscillation < 0.5 * errors->oscillation)
+      chosen.mass == Mass::lumped && !model.scene.cell && corrected->oscillation < 0.5 * errors->oscillation)
     text +=
         fmt::format("; with mass = \"corrected\" by {:.2g}, {:.2g} and {:.2g} %, for a quarter to a third more steps",
                     100 * corrected->oscillation, 100 * corrected->plates, 100 * corrected->impact);

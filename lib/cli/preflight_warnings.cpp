@@ -62,12 +62,13 @@ double largest_inertia_ratio(const Model& model) {
   return largest;
 }
 
-std::string of_inertia(double excess, const DiscretisationSettings& space) {
+std::string of_inertia(double excess, const Scene& scene) {
+  const DiscretisationSettings& space = scene.discretisation;
   return fmt::format("compliant grains have up to {:.2g} % more rotational inertia than their polygons{}", 100 * excess,
                      space.mass == Mass::corrected ? ""
-                     : space.mass_scaling > 1
-                         ? ", by lumped and scaled mass"
-                         : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
+                     : space.mass_scaling > 1      ? ", by lumped and scaled mass"
+                     : scene.cell                  ? ", by lumped mass"
+                                  : ", by lumped mass: [discretisation] mass = \"corrected\" leaves a tenth of it");
 }
 
 std::optional<double> least_restitution(const Scene& scene) {
@@ -94,7 +95,7 @@ std::vector<std::string> preflight_warnings(const Model& model) {
       restitution && has_round_rigid_grains(model))
     all.push_back(of_rolling(*restitution));
   if (const double excess = largest_inertia_ratio(model) - 1; excess > least_excess)
-    all.push_back(of_inertia(excess, model.scene.discretisation));
+    all.push_back(of_inertia(excess, model.scene));
   if (has_locking_triangles(model))
     all.emplace_back(
         "method \"t3\" locks where plastic flow keeps the volume: with 4 to 8 spacings across a part, forces were 2 % "

@@ -117,6 +117,10 @@ class Growth {
 void pack_randomly(std::vector<Placement>& grains, const std::vector<Points>& outlines, const Strip& region,
                    const std::vector<WallProfile>& walls, bool turn, std::uint64_t seed) {
   Growth growth(grains, outlines, region, walls, turn);
+  if (growth.solid_fraction() > 1)
+    throw InputError(
+        fmt::format("packing: {} grains have {:.3g} times the area of their region; take fewer or smaller grains",
+                    grains.size(), growth.solid_fraction()));
   double reached = 0;
   for (double share = growth.scatter(seed);;) {
     const bool free = growth.relax(share);

@@ -37,7 +37,7 @@ void read_target(TableReader& table, Condition& condition, const Scene& scene) {
     return;
   }
   condition.number.reset();
-  condition.grains = OneOf{"set of grains, or one of them as in \"grains 17\"", names_of(scene.grains)}(value);
+  condition.grains = OneOf{"set of grains", names_of(scene.grains)}(value);
 }
 
 OutlinePart read_part(TableReader table) {
@@ -121,6 +121,8 @@ void read_motion(TableReader& table, Condition& condition, const Scene& scene) {
   if (has_body(grains, BodyKind::compliant) && has_body(grains, BodyKind::rigid))
     table.fail("of", fmt::format("'{}' mixes rigid and compliant grains; allowed: a pressure, or grains of one kind",
                                  grains.name));
+  if (has_body(grains, BodyKind::compliant) && table.has("angle"))
+    table.fail("angle", fmt::format("'{}' is compliant; allowed: of rigid grains alone", grains.name));
   has_body(grains, BodyKind::rigid) ? read_axes(table, condition, scene) : read_support(table, condition);
   for (const AxisCondition* prescribed : {&condition.x, &condition.y, &condition.angle})
     if (prescribed->mode != AxisCondition::Mode::free) return;

@@ -43,9 +43,8 @@ toml::table of_bodies(const std::string& text) {
   if (toml::table* materials = table["materials"].as_table())
     for (auto&& [name, material] : *materials)
       if (toml::table* one = material.as_table())
-        for (const char* key :
-             {"density", "young", "poisson", "viscosity", "mass_damping", "branch_modulus", "relaxation_time"})
-          one->erase(key);
+        for (auto entry = one->begin(); entry != one->end();)
+          entry = entry->first.str() == "law" ? std::next(entry) : one->erase(entry);
   if (toml::array* walls = table["walls"].as_array())
     for (toml::node& wall : *walls)
       if (toml::table* one = wall.as_table())
@@ -82,7 +81,8 @@ bool same_quantity(const toml::node& a, const toml::node& b) {
     const std::optional<double> left = value_in(a, unit), right = value_in(b, unit);
     return left && right && std::abs(*left - *right) <= rounding * std::abs(*left);
   };
-  return std::ranges::any_of(std::array{"m", "rad", "1", "Pa", "s", "m/s", "rad/s", "kg/m3"}, same);
+  return std::ranges::any_of(
+      std::array{"m", "rad", "1", "Pa", "s", "m/s", "rad/s", "1/s", "kg/m3", "Pa/m", "1/Pa", "J/m2"}, same);
 }
 
 /// Of two nodes that are not both tables or both arrays. 1 and 1.0 are the same.
@@ -119,7 +119,12 @@ std::string array_difference(const std::string& path, const toml::array& before,
   return {};
 }
 
+/// Of a table that is only in one of both, the first key is named.
 std::string difference(const std::string& path, const toml::node* before, const toml::node* now, Same same) {
+  static const toml::table none;
+  const auto has_keys = [](const toml::node* node) { return node && node->is_table() && !node->as_table()->empty(); };
+  if (!before && has_keys(now)) before = &none;
+  if (!now && has_keys(before)) now = &none;
   if (before && now && before->is_table() && now->is_table())
     return table_difference(path, *before->as_table(), *now->as_table(), same);
   if (before && now && before->is_array() && now->is_array())

@@ -27,6 +27,10 @@ std::vector<std::string> late_conditions(const Scene& scene) {
   for (const BoundaryCondition& condition : scene.boundary)
     add_if_late(condition.where, condition.grains,
                 {condition.window, condition.x.window, condition.y.window, condition.angle.window}, end, texts);
+  for (const BondRule& rule : scene.bonds)
+    if (rule.from > 0 && rule.from >= end)
+      texts.push_back(fmt::format("{}: bonds between '{}' and '{}' are made at {:.6g} s, but the run ends at {:.6g} s",
+                                  rule.where, rule.first, rule.second, rule.from, end));
   return texts;
 }
 

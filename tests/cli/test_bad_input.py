@@ -109,7 +109,8 @@ def test_folder_instead_of_a_file(desk) -> None:
 
 
 @pytest.mark.parametrize("arguments", [["--until", "soon"], ["--until", "3 kg"], ["--until", "-1 us"],
-                                       ["--threads", "0"], ["--threads", "many"], ["--colour"]], ids=" ".join)
+                                       ["--threads", "0"], ["--threads", "many"], ["--colour"], ["--until", ""],
+                                       ["--out", ""], ["--checkpoint-every", ""], ["--until", "1 m"]], ids=" ".join)
 def test_bad_option(desk, arguments: list[str]) -> None:
     desk.write(TWO_DISCS)
     before = desk.content()

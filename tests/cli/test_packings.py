@@ -102,6 +102,14 @@ def test_body_with_a_hole(desk) -> None:
     expect_refusal(desk, "ring.msh:9: the outline has a hole")
 
 
+def test_more_grains_than_room(desk) -> None:
+    """EXACT: refused at once, and not after long growth."""
+    desk.write(GRAINS.replace("solid_fraction = 0.7", "count = 3000"))
+    (desk.folder / "wedge.csv").write_text(WEDGE)
+    result = desk.engine("check", desk.scene)
+    assert result.returncode == 2 and "times the area of their region" in result.stderr, result.stderr
+
+
 def test_too_dense_a_packing(desk) -> None:
     desk.write(GRAINS.replace("solid_fraction = 0.7", "solid_fraction = 0.97"))
     (desk.folder / "wedge.csv").write_text(WEDGE)

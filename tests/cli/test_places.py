@@ -40,6 +40,12 @@ thickness = "1 um"
 of = "grains"
 pressure = "1 kPa"
 from = "30 ns"
+
+[[bonds]]
+between = "all"
+from = "35 ns"
+strength = "1 MPa"
+fracture_energy = "10 J/m2"
 """
 
 
@@ -48,7 +54,8 @@ def test_what_sets_in_after_the_end_is_warned_of(desk) -> None:
     for command in ["run", "check"]:
         result = desk.engine(command, desk.scene)
         assert result.returncode == 0, result.stderr
-        assert result.stderr.count("warning") == 1, result.stderr
+        assert result.stderr.count("warning") == 2, result.stderr
+        assert "bonds between 'all' and 'all' are made at 3.5e-08 s, but the run ends at 2e-08 s" in result.stderr
         line = line_of(DRIVEN, "[[boundary]]")
         assert f"scene.toml:{line}:1: 'grains' is acted on from 3e-08 s, but the run ends at 2e-08 s" in result.stderr
     result = desk.run("--out", "longer", "--until", "40 ns")
