@@ -5,9 +5,9 @@
 
 namespace pliant {
 
-/// Installs the program's logger, which writes to stderr, and keeps the texts of warnings even where they are not shown.
+/// Installs the program's logger. It writes to stderr, and keeps the texts of warnings, also of those not shown.
 void install_logger();
-/// Whether to write errors only.
+/// From now on stderr gets errors only.
 void write_errors_only();
 /// Warnings of this process so far, each text once.
 const std::vector<std::string>& warnings_so_far();

@@ -144,8 +144,8 @@ def test_killed_before_a_checkpoint_the_folder_knows_its_scene(whole, out, prelo
             started_with_a_scene += 1
             assert_same(whole, folder)
         else:
-            assert result.returncode == 4
-            assert "name its scene file" in result.stderr or "cannot be read" in result.stderr
+            assert result.returncode == (4 if (whole.folder / folder).exists() else 2)
+            assert any(text in result.stderr for text in ("name its scene file", "cannot be read", "no such folder"))
     assert started_with_a_scene > 0
 
 
@@ -264,8 +264,10 @@ def fnv1a(content: bytes) -> int:
 
 def test_resume_needs_a_checkpoint_and_excludes_force(desk) -> None:
     desk.write(LAYER)
+    (desk.folder / "none").mkdir()
+    (desk.folder / "none/notes.txt").write_text("of someone else")
     assert desk.run("--out", "none", "--resume", "--quiet").returncode == 4
-    assert not (desk.folder / "none").exists()
+    assert [file.name for file in (desk.folder / "none").iterdir()] == ["notes.txt"]
     assert desk.run("--out", "none", "--resume", "--force", "--quiet").returncode == 2
 
 

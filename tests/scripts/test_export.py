@@ -89,7 +89,7 @@ def check(file: Path, folder: Path, grid: str, index: int) -> None:
         assert set(cells["types"]) == {5 if size == 3 else 3}
 
 
-@pytest.mark.parametrize("options, index", [([], 2), (["--frame", 0], 0), (["--time", 0.4], 1), (["--time", 9], 2)])
+@pytest.mark.parametrize("options, index", [([], 2), (["--frame", 0], 0), (["--time", 0.4], 1), (["--time", 1], 2)])
 def test_the_chosen_frame_is_written(folder: Path, options: list[object], index: int) -> None:
     result = export(folder, *options)
     assert result.returncode == 0, result.stderr
