@@ -122,6 +122,16 @@ def test_all_runs_come_into_table_and_report(desk: Desk) -> None:
     assert "4 runs of scene.toml, 4 finished" in report and "src=\"http" not in report
 
 
+def test_warnings_of_the_engine_are_told(desk: Desk) -> None:
+    scene = desk.folder / "scene.toml"
+    scene.write_text(scene.read_text() + '[[boundary]]\nof = "disc"\npressure = 1\nfrom = 99\n')
+    result = desk.call()
+    assert result.returncode == 0, result.stderr
+    assert result.stderr.count("warning: ") == 4 and "is acted on from 99 s" in result.stderr, result.stderr
+    report = (desk.out / "report.html").read_text()
+    assert report.count("is acted on from 99 s") == 4 and "Warnings of the engine" in report
+
+
 def test_only_what_changed_runs_again(desk: Desk) -> None:
     assert desk.call().returncode == 0
     before = desk.times()
