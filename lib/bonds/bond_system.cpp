@@ -151,12 +151,12 @@ bool BondSystem::make(const OutlineField& position, double time, BondHistory& hi
   if (bonds_.size() == before) return false;
   ++version_;
   index();
-  measure_turning(position);
   history.ends.resize(eights_.size());
   for (std::size_t i = before; i < eights_.size() * lane_count; ++i)
     for (BondEnd& end : history.ends[i / lane_count])
       end.damage[i % lane_count] = i < bonds_.size() ? 0 : 1,
                      end.opening[i % lane_count] = end.slip[i % lane_count] = 0;
+  measure_turning(position, history);
   return true;
 }
 
@@ -249,21 +249,28 @@ BondSystem::Frame BondSystem::frame_of(const Eight& eight, const OutlineField& p
   return frame;
 }
 
-bool BondSystem::turn() const {
-  return std::ranges::any_of(model_.scene.bonds, [](const BondRule& rule) { return rule.gap > 0; });
-}
-
 /// A motion of a node along the normal turns the frame by half of it over the length of the middle line, and so moves
 /// either end of the bond by c of it, with c = sqrt(gap^2 + along^2)/(2 length). The row sums of |B|^T k |B| grow by
-/// (1 + 2 c)^2.
-void BondSystem::measure_turning(const OutlineField& position) {
-  if (!turn()) return;
+/// (1 + 2 c)^2. A bond that is torn at both ends exerts no force any more.
+void BondSystem::measure_turning(const OutlineField& position, const BondHistory& history) {
+  turned_.clear();
+  std::vector<char> changed(eights_.size(), 0);
   parallel_for(static_cast<int>(eights_.size()), [&](int i) {
+    const LaneBits cement = eights_[i].law.bears_pressure > 0.0;
+    if (!any(cement)) return;
     const Frame frame = frame_of(eights_[i], position);
     const Lanes square = max(dot(frame.apart[0], frame.apart[0]), dot(frame.apart[1], frame.apart[1]));
     const Lanes root = 1.0 + sqrt(square) * frame.inverse_length;
-    turning_[i] = select(eights_[i].law.bears_pressure > 0.0, root * root, broadcast(1));
+    const auto& [first, second] = history.ends[i];
+    const LaneBits whole = min(first.damage, second.damage) < 1.0;
+    const Lanes now = select(cement, select(whole, root * root, Lanes{}), broadcast(1));
+    changed[i] = any(now != turning_[i]);
+    turning_[i] = now;
   });
+  std::set<int> bodies;
+  for (std::size_t i = 0; i < bonds_.size(); ++i)
+    if (changed[i / lane_count]) bodies.insert({bonds_[i].slave, bonds_[i].master});
+  turned_.assign(bodies.begin(), bodies.end());
 }
 
 BondTotals BondSystem::forces_of_eight(std::size_t number, const OutlineField& position, const BondHistory& from,

@@ -41,9 +41,11 @@ class BondSystem {
   /// Adds the forces on outline nodes, N/m, and on the vectors of the periods; reads the history `from` and writes
   /// `to`.
   BondTotals add_forces(const OutlineField& position, const BondHistory& from, BondHistory& to, OutlineField& force);
-  /// Whether add_stiffness() depends on the positions of the last measure_turning(): bonds across a gap turn with it.
-  bool turn() const;
-  void measure_turning(const OutlineField& position);
+  /// Bonds across a gap turn with it, which makes them stiffer: call this before add_stiffness() after each search of
+  /// contacts.
+  void measure_turning(const OutlineField& position, const BondHistory& history);
+  /// Bodies whose stiffness the last measure_turning() has changed.
+  const std::vector<int>& turned() const { return turned_; }
   /// Adds a bound of the stiffness of a body's nodes, N/m2, to every `stride`-th number. `compliance` [bodies]: as
   /// StiffnessBound::update weighs the two sides of a contact.
   void add_stiffness(int body, const std::vector<double>& compliance, double* to, int stride) const;
@@ -104,7 +106,8 @@ class BondSystem {
   std::vector<int> receipt_begin_;  ///< [bodies + 1]
   std::vector<Receipt> receipts_;
   std::vector<BondTotals> totals_;  ///< [eights]
-  std::vector<Lanes> turning_;      ///< [eights] factors on the stiffness of bonds across a gap, 1 for others
+  std::vector<Lanes> turning_;      ///< [eights] factors on the stiffness: 0 for torn bonds across a gap, 1 without one
+  std::vector<int> turned_;         ///< see turned()
 };
 
 }  // namespace pliant

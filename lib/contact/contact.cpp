@@ -64,10 +64,7 @@ PairView ContactSystem::view(const ContactPair& contact_pair) const {
 
 bool ContactSystem::candidates_hold(const OutlineField& position, const RunClock& clock) {
   if (!fresh_ || laws_.law_interval(clock.time) != laws_.law_interval(refreshed_.time)) return false;
-  if (!has_fixed_refresh(model_.scene.contact)) return !verlet_list_.skin_is_exceeded(position);
-  if (period_is_over(clock)) return false;
-  warn_of_missed_contacts(position);
-  return true;
+  return has_fixed_refresh(model_.scene.contact) ? !period_is_over(clock) : !verlet_list_.skin_is_exceeded(position);
 }
 
 bool ContactSystem::period_is_over(const RunClock& clock) const {

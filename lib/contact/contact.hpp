@@ -44,6 +44,8 @@ class ContactSystem {
   /// first search. With a fixed rebuild interval it returns false when the interval is over; contacts that come earlier
   /// are missed. It also returns false when laws change: see LawTable::law_interval.
   bool candidates_hold(const OutlineField& position, const RunClock& clock = {});
+  /// With a fixed rebuild interval: warns once if contacts may be missed at these positions.
+  void warn_of_missed_contacts(const OutlineField& position);
   /// Rebuilds all contact pairs and transfers the history, which must belong to these outlines. New contacts get their
   /// surface coordinates. Throws InputError if a body with self-contact overlaps itself at the start.
   void find_candidates(const Outlines& outlines, ContactHistory& history, const RunClock& clock = {});
@@ -106,7 +108,6 @@ class ContactSystem {
                     const RunClock& clock);
   void remember(const Outlines& outlines, const std::vector<int>& pairs);
   bool period_is_over(const RunClock& clock) const;
-  void warn_of_missed_contacts(const OutlineField& position);
   std::vector<ContactPair> search(const std::vector<int>& pairs, std::vector<ContactPair> found);
   std::vector<ContactPair> found_or_kept(std::vector<ContactPair> found);
   void lay_out_anew(std::vector<ContactPair> found, ContactHistory& history);

@@ -47,7 +47,7 @@ Forces::ListCheck Forces::ensure_candidates(State& accepted, const OutlineField&
   const RunClock clock{time, accepted.steps};
   const bool bonded = bonds_.make(accepted.outlines.position, accepted.time, accepted.memory.bonds);
   if (contact_.candidates_hold(trial, clock)) return {bonded};
-  bonds_.measure_turning(accepted.outlines.position);
+  if (!bonds_.is_empty()) bonds_.measure_turning(accepted.outlines.position, accepted.memory.bonds);
   bool hold = false;
   phases_.apart(Phase::candidates,
                 [&] { hold = contact_.renew_candidates(accepted.outlines, accepted.memory.contact, clock, &trial); });

@@ -63,6 +63,8 @@ class Forces {
   Evaluation evaluate_and_update(const Motion& motion, const Outlines& outlines, const PreviousHistory& from,
                                  const Output& to, const BodyUpdates& update);
 
+  /// With a fixed rebuild interval: warns once per run if contacts may be missed in this state.
+  void warn_of_missed_contacts(const State& state) { contact_.warn_of_missed_contacts(state.outlines.position); }
   /// Warns once per run of deep contacts, after an evaluation that is accepted.
   void warn_of_depth(const Evaluation& evaluation, double time);
 

@@ -25,7 +25,10 @@ class Simulation {
   /// One accepted step that ends at `until` at the latest. An observer sees its samples within the step. If it is done
   /// then, no step is taken, and the report has dt = 0.
   StepReport step(double until, const Observer* observer = nullptr);
-  EnergyBalance energy_balance() { return auditor_->audit(state_); }
+  EnergyBalance energy_balance() {
+    forces_.warn_of_missed_contacts(state_);
+    return auditor_->audit(state_);
+  }
   double energy_gained(const Energies& energy) const { return auditor_->energy_gained(energy); }
   double balance_error(const Energies& energy) const { return auditor_->balance_error(energy); }
 

@@ -213,7 +213,9 @@ void TimeStepBound::update_internal(const Dofs& position, const Memory& memory, 
 
 void TimeStepBound::update_contact(const ContactSystem& contact, const BondSystem& bonds) {
   std::vector<int> changed = stiffness_.update(contact, compliance_);
-  if (bonds.turn() || bonds_seen_ != bonds.version()) {
+  for (const int b : bonds.turned())
+    if (std::ranges::find(changed, b) == changed.end()) changed.push_back(b);
+  if (bonds_seen_ != bonds.version()) {
     changed.resize(model_.bodies.size());
     std::iota(changed.begin(), changed.end(), 0);
     bonds_seen_ = bonds.version();

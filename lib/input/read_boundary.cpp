@@ -122,7 +122,7 @@ void read_motion(TableReader& table, Condition& condition, const Scene& scene) {
     table.fail("of", fmt::format("'{}' mixes rigid and compliant grains; allowed: a pressure, or grains of one kind",
                                  grains.name));
   if (has_body(grains, BodyKind::compliant) && table.has("angle"))
-    table.fail("angle", fmt::format("'{}' is compliant; allowed: of rigid grains alone", grains.name));
+    table.fail("angle", fmt::format("'{}' is compliant; 'angle' is for rigid grains only", grains.name));
   has_body(grains, BodyKind::rigid) ? read_axes(table, condition, scene) : read_support(table, condition);
   for (const AxisCondition* prescribed : {&condition.x, &condition.y, &condition.angle})
     if (prescribed->mode != AxisCondition::Mode::free) return;

@@ -42,6 +42,7 @@ class Recorder {
     visitor("wall_seconds", figures.wall_seconds);
     visitor("resumed", figures.resumed);
     visitor("started_from", figures.started_from);
+    visitor("warnings", figures.warnings);
   }
   void loaded();
 

@@ -55,10 +55,9 @@ std::string summary_json(Simulation& simulation, const RunFigures& figures, cons
   if (!figures.started_from.empty()) json["started_from"] = nlohmann::ordered_json::parse(figures.started_from);
   json["resumed"] = figures.resumed;
   json["checkpoint_time"] = figures.checkpoint_time < 0 ? nlohmann::json() : nlohmann::json(figures.checkpoint_time);
-  json["warnings"] = figures.warnings_before;
+  json["warnings"] = figures.warnings;
   for (const std::string& text : warnings_so_far())
-    if (std::ranges::find(figures.warnings_before, text) == figures.warnings_before.end())
-      json["warnings"].push_back(text);
+    if (std::ranges::find(figures.warnings, text) == figures.warnings.end()) json["warnings"].push_back(text);
   return json.dump(2) + "\n";
 }
 

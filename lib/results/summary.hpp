@@ -14,10 +14,10 @@ struct RunFigures {
   double process_seconds = 0;       ///< of these, of this process
   double worst_momentum_error = 0;  ///< over all audits of the run
   int threads = 1;
-  std::string started_from{};                  ///< JSON of the state that the run started from; empty: none
-  int resumed = 0;                             ///< times that the run went on from a checkpoint
-  double checkpoint_time = -1;                 ///< s of the scene; -1: none yet
-  std::vector<std::string> warnings_before{};  ///< of the processes before this one
+  std::string started_from{};           ///< JSON of the state that the run started from; empty: none
+  int resumed = 0;                      ///< times that the run went on from a checkpoint
+  double checkpoint_time = -1;          ///< s of the scene; -1: none yet
+  std::vector<std::string> warnings{};  ///< of its steps; those of its start and its end are each process's own
 };
 
 /// summary.json: what a run was, what it cost and how well its energy balance closes. `status`: "running" (at the last

@@ -18,6 +18,7 @@
 #include "bodies/short_edges.hpp"
 #include "core/errors.hpp"
 #include "core/stop_signals.hpp"
+#include "core/warnings.hpp"
 #include "files/atomic_file.hpp"
 #include "files/folder_lock.hpp"
 #include "files/output_folder.hpp"
@@ -75,9 +76,15 @@ struct Run {
   Simulation& simulation;
   Recorder& recorder;
   Clock::time_point last_checkpoint = Clock::now();
-  std::string end_summary = {}, end_line = {};  ///< once the end was seen
+  std::string end_summary = {}, end_line = {};    ///< once the end was seen
+  std::size_t warned = warnings_so_far().size();  ///< of these none is of a step that is not noted yet
 
+  /// Keeps the warnings of the steps since the last call for the processes that go on.
+  void note_warnings() {
+    for (; warned < warnings_so_far().size(); ++warned) recorder.figures.warnings.push_back(warnings_so_far()[warned]);
+  }
   void write_checkpoint(const std::string& status) {
+    note_warnings();
     simulation.phases().apart(Phase::output, [&] {
       pliant::write_checkpoint(options.out, scene_text, simulation, recorder, simulation.state().time);
       recorder.write_summary(simulation, status);
@@ -89,7 +96,10 @@ struct Run {
   /// At the end, where the state is one to look at: to a later end the run goes on from before it, as if it were none.
   void see_end() {
     recorder.finish_progress();
-    warn_of_balance(simulation, simulation.energy_balance().energy);
+    const Energies energy = simulation.energy_balance().energy;
+    note_warnings();
+    warn_of_balance(simulation, energy);
+    warned = warnings_so_far().size();
     const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
     end_summary = recorder.summary(simulation, "finished");
     recorder.figures.checkpoint_time = before;
@@ -169,15 +179,6 @@ nlohmann::json summary_in(const fs::path& folder) {
   return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
 }
 
-/// Of an earlier process of the run, as its summary has them.
-std::vector<std::string> warnings_in(const nlohmann::json& summary) {
-  std::vector<std::string> texts;
-  if (!summary.is_object() || !summary.contains("warnings") || !summary["warnings"].is_array()) return texts;
-  for (const nlohmann::json& text : summary["warnings"])
-    if (text.is_string()) texts.push_back(text.get<std::string>());
-  return texts;
-}
-
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
   const std::unique_ptr<const StartFile> from = checkpoint ? nullptr : start_file_of(scene);
@@ -200,10 +201,7 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
   files.write(options.out);
   recorder.figures.threads = omp_get_max_threads();
   recorder.figures.preparation_seconds = seconds_since(start);
-  if (checkpoint) {
-    recorder.figures.checkpoint_time = checkpoint->time();
-    recorder.figures.warnings_before = warnings_in(summary_in(options.out));
-  }
+  if (checkpoint) recorder.figures.checkpoint_time = checkpoint->time();
   fs::remove(failure_file(options.out));
   fs::remove(options.out / start_file_name);  // of an earlier end
   if (!options.quiet)

@@ -153,7 +153,7 @@ double parse_time(const char* option, const std::string& text) {
   try {
     if (!plain) time = parse_quantity(text, "s");
   } catch (const UnitError& failure) {
-    throw InputError(fmt::format("{0} {1}: {2}; allowed: a time, as in {0} \"0.02 us\"", option, text, failure.what()));
+    throw InputError(fmt::format("{0} {1}: {2}; allowed: a positive time with a unit", option, text, failure.what()));
   }
   if (std::isfinite(time) && time > 0) return time;
   throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));

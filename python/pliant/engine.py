@@ -10,7 +10,7 @@ import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
-from pliant.results import Run, read_run
+from pliant.results import Run, read_json, read_run
 
 BUILT = Path(__file__).resolve().parents[2] / "build/release/pliant_engine"  # in a checkout
 INSTALLED = Path(__file__).resolve().parents[4] / "bin/pliant_engine"  # as cmake/install.cmake lays it out
@@ -92,9 +92,8 @@ def run(file: Path, folder: Path, threads: int = 1) -> Run:
     result = call("run", file, "--out", folder, "--force", "--threads", str(threads), "--quiet")
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
+    for text in read_json(folder / "summary.json").get("warnings", []):
+        warnings.warn(text, EngineWarning, stacklevel=3)
     if result.returncode != 0:
         raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
-    found = read_run(folder)
-    for text in found.warnings:
-        warnings.warn(text, EngineWarning, stacklevel=3)
-    return found
+    return read_run(folder)

@@ -122,7 +122,7 @@ def test_quiet_is_quiet(desk) -> None:  # EXACT
     assert result.stdout == "" and result.stderr == ""
 
 
-MISSED = TWO_DISCS.replace("[time]", '[contact]\nrefresh = "1 s"\n\n[time]')
+MISSED = TWO_DISCS.replace("[time]", "[contact]\nrefresh = \"1 s\"\n\n[time]")
 
 
 def test_warnings_stay_in_the_summary_when_quiet_and_after_a_stop(desk) -> None:  # EXACT
@@ -133,8 +133,12 @@ def test_warnings_stay_in_the_summary_when_quiet_and_after_a_stop(desk) -> None:
         assert result.returncode == 0 and not result.stderr, result.stderr
         found = [text for text in desk.summary("out")["warnings"] if "contacts can be missed" in text]
         assert len(found) == 1, desk.summary("out")["warnings"]
-    desk.write(TWO_DISCS)
-    assert desk.run("--out", "other", "--quiet").returncode == 0 and desk.summary("other")["warnings"] == []
+    late = '[[boundary]]\nof = "grains"\npressure = "1 kPa"\nfrom = "15 ns"\n'
+    desk.write(TWO_DISCS + late)
+    assert desk.run("--out", "other", "--quiet", "--until", "10 ns").returncode == 0
+    assert any("it never is" in text for text in desk.summary("other")["warnings"])
+    assert desk.run("--out", "other", "--quiet", "--resume").returncode == 0
+    assert desk.summary("other")["warnings"] == [], "of an end that is none any more"
 
 
 def test_resume_without_a_folder_starts_anew(desk) -> None:  # EXACT

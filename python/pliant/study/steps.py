@@ -11,7 +11,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from pliant.engine import start
-from pliant.results import checkpoint_header, is_finished, read_run
+from pliant.results import checkpoint_header, is_finished, read_json, read_run
 from pliant.scene import Scene
 from pliant.study import gather as gathering
 from pliant.study.folder import Folder, as_text, copy_if_other, replace, state_beside
@@ -88,10 +88,9 @@ def gather(folder: Folder, name: str) -> None:
     values: dict[str, dict] = {}
     curves: dict[str, dict] = {}
     problems: list[str] = []
-    warned: list[str] = []
+    warned = read_json(folder.results(name) / "summary.json").get("warnings", [])
     if folder.outcome(name)["status"] == "finished":
         results = read_run(folder.results(name))
-        warned = results.warnings
         for quantity in folder.quantities():
             try:
                 values[quantity.name] = asdict(gathering.gather(quantity, results))
