@@ -347,8 +347,8 @@ Scene oblique_impact(ContactQuadrature quadrature, bool corrected) {
 }
 
 // FROZEN: here the correction leaves a three-hundredth of the error at nodes, and less than half of it over segments.
-// Its dashpot must stay below the stiffness of all tractions. Bounded by the pressures alone it multiplied the energy by
-// ten over segments, and by more than a thousand at nodes.
+// Its dashpot must stay below the stiffness of all tractions. Bounded by the pressures alone it multiplied the energy
+// by ten over segments, and by more than a thousand at nodes.
 TEST(EnergyCorrection, helps_where_cohesion_bears_more_shear_than_pressure) {
   for (const ContactQuadrature quadrature : {ContactQuadrature::nodes, ContactQuadrature::segments}) {
     double left[2], dissipated = 0;
