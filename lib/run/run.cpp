@@ -173,12 +173,6 @@ std::string last_words(Run& run, const Error& error) {
                      time < 0 ? "no checkpoint yet" : fmt::format("last good checkpoint: t = {:.6g} s", time));
 }
 
-nlohmann::json summary_in(const fs::path& folder) {
-  const fs::path file = folder / "summary.json";
-  if (!fs::exists(file)) return nlohmann::json::object();
-  return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
-}
-
 /// Simulates until the end; `checkpoint`: where to start, or nullptr.
 void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* checkpoint, Clock::time_point start) {
   const std::unique_ptr<const StartFile> from = checkpoint ? nullptr : start_file_of(scene);
@@ -219,6 +213,12 @@ void simulate(const Scene& scene, const RunOptions& options, const Checkpoint* c
     throw OutputError(last_words(run, error));
   }
   if (!options.quiet) fmt::print("{}", run.end_line);
+}
+
+nlohmann::json summary_in(const fs::path& folder) {
+  const fs::path file = folder / "summary.json";
+  if (!fs::exists(file)) return nlohmann::json::object();
+  return nlohmann::json::parse(read_text_file(file, "a summary (summary.json)"), nullptr, false);
 }
 
 /// Whether the folder's last run left it in order at this checkpoint. One that was killed after its last checkpoint,
