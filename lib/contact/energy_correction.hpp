@@ -20,10 +20,8 @@ namespace pliant {
 /// at most S, PairTotals::traction_norm. The correction is small compared with the error that a step makes at
 /// contacts anyway. It vanishes at rest and in short steps. The dashpot uses the displacement of the step that led to
 /// it. With a = w^2 dt^2, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a is 4 safety^2
-/// at most. A correction that changes its sign from step to step can excite such a motion well below that limit. With
-/// nine tenths of the limit no contact at rest was seen to chatter, with all of it one was
-/// (docs/notes/energy_correction.md).
-inline double largest_correction(double safety) { return std::clamp(0.5 * (0.9 / (safety * safety) - 1), 0.0, 0.25); }
+/// at most.
+inline double largest_correction(double safety) { return std::clamp(0.5 * (1 / (safety * safety) - 1), 0.0, 0.25); }
 
 /// Motion of a rigid body in a step.
 struct RigidStep {
