@@ -44,7 +44,7 @@ Scene load(const Arguments& arguments) {
   if (arguments.checkpoint_every == "never")
     scene.checkpoint_period.reset();
   else if (!arguments.checkpoint_every.empty())
-    scene.checkpoint_period = parse_time("--checkpoint-every", arguments.checkpoint_every);
+    scene.checkpoint_period = parse_time("--checkpoint-every", arguments.checkpoint_every, ", or never");
   for (const std::string& text : scene.warnings) spdlog::warn(text);
   for (const std::string& text : late_conditions(scene)) spdlog::warn(text);
   return scene;

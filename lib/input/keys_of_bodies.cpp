@@ -92,7 +92,7 @@ SceneTable shape_table() {
           {"nodes", Integer{7, SceneLimits::nodes_per_shape}, "none", "Number of field nodes, unless `spacing`"},
           {"spacing", length, "none", "Nodal distance, unless `nodes`"},
           {"outline_nodes", Integer{3, SceneLimits::nodes_per_shape}, "none",
-           "Number of outline nodes; otherwise from `nodes` or `spacing`"},
+           "Number of outline nodes, at least the corners or 6; otherwise from `nodes` or `spacing`"},
       }};
 }
 

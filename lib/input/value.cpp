@@ -50,7 +50,7 @@ std::string Value::found() const {
                                        : fmt::format("{:?}...", all.substr(0, longest_shown));
   }
   if (const auto* number = node.as_integer()) return fmt::format("the integer {}", number->get());
-  if (const auto* number = node.as_floating_point()) return fmt::format("the number {}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("the number {:#}", number->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   if (node.is_table()) return "a table";
   if (const auto* array = node.as_array()) return fmt::format("an array of {} elements", array->size());

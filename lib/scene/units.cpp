@@ -146,17 +146,18 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   return converted;
 }
 
-double parse_time(const char* option, const std::string& text) {
+double parse_time(const char* option, const std::string& text, const char* also) {
   double time = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), time);
   const bool plain = error == std::errc() && end == text.data() + text.size();
   try {
     if (!plain) time = parse_quantity(text, "s");
   } catch (const UnitError& failure) {
-    throw InputError(fmt::format("{0} {1}: {2}; allowed: a positive time with a unit", option, text, failure.what()));
+    throw InputError(
+        fmt::format("{} {}: {}; allowed: a positive time with a unit{}", option, text, failure.what(), also));
   }
   if (std::isfinite(time) && time > 0) return time;
-  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"", option, text));
+  throw InputError(fmt::format("{0} {1}: must be a positive time, as in {0} \"0.02 us\"{2}", option, text, also));
 }
 
 }  // namespace pliant

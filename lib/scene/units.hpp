@@ -20,7 +20,7 @@ double parse_quantity(const std::string& text, const std::string& unit);
 bool is_angle(const std::string& text);
 
 /// A positive time of a command line option, such as "0.02 us"; a plain number means seconds, as in scene files. Throws
-/// InputError, which names the option.
-double parse_time(const char* option, const std::string& text);
+/// InputError, which names the option. `also`: what else the caller allows, for the message.
+double parse_time(const char* option, const std::string& text, const char* also = "");
 
 }  // namespace pliant

@@ -28,8 +28,8 @@ void deform(Scene& scene, const Vec2& periods, double rate, double until) {
 
 constexpr int cell_columns = 3, cell_rows = 3;
 
-/// Discs of both kinds that nearly touch, out of order in their cell. `shift`: of all; `images`: each disc by up to three
-/// times this number of periods.
+/// Discs of both kinds that nearly touch, out of order in their cell. `shift`: of all; `images`: each disc by up to
+/// three times this number of periods.
 Scene packed_cell(double end, double rate, const Vec2& shift = {0, 0}, int images = 0) {
   Scene scene = empty_scene(end);
   scene.shapes = {disc_shape("disc", 1, 60), disc_shape("small", 0.9, 40)};

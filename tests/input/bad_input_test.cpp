@@ -29,7 +29,7 @@ const std::vector<Bad> bad_values{
     {"MissingTable", "[time]\nend = '2 us'\ntolerance = 1e-2\n", "", "title", "missing key 'time' ... [time]"},
     {"WrongTypeString", "young = '2 GPa'", "young = true", "true", "'young' in [materials.soft] ... found true ... Pa"},
     {"WrongTypeTable", "period = '0.1 us'", "period = { a = 1 }", "{ a = 1 }", "found a table ... in s"},
-    {"WrongTypeInteger", "nodes = 168", "nodes = 168.0", "168.0", "found the number 168 ... an integer from 7"},
+    {"WrongTypeInteger", "nodes = 168", "nodes = 168.0", "168.0", "found the number 168.0 ... an integer from 7"},
     {"SettingsAsRules", "[contact]", "[[contact]]", "[[contact]]", "'contact' in the scene ... a table [contact]"},
     {"WrongTypeTitle", "title = 'Good'", "title = 3", "3", "found the integer 3 ... a string"},
     {"WrongTypeArray", "gravity = ['0 m/s2', -9.81]", "gravity = -9.81", "-9.81", "found the number -9.81 ... [x, y]"},
