@@ -1,6 +1,7 @@
 #include "contact/narrow_phase.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "contact/half_pass.hpp"
@@ -14,9 +15,10 @@ struct ContactSide {
   const OutlineShape* shape;
   const double* x;
   const double* y;
-  Vec2 shift;                 ///< to the image
-  int first_turn, last_turn;  ///< turns of the outline to search: 0 to 0 for a closed one
+  Vec2 shift;  ///< to the image
+  Box box;     ///< of the image
   double longest_segment;
+  int first_turn = 0, last_turn = 0;  ///< turns of the outline to search: 0 to 0 for a closed one
 
   Vec2 point(int turn, int i) const { return {x[i] + shift.x() + turn * shape->turn_shift, y[i] + shift.y()}; }
 };
@@ -37,12 +39,11 @@ bool inside(const Box& box, const Vec2& p) {
 }
 
 /// Finds the turns of a wall's outline that cover [x_min, x_max] of the target.
-void find_turns(ContactSide& side, const Box& own, const Box& target) {
-  side.first_turn = side.last_turn = 0;
+void find_turns(ContactSide& side, const Box& target) {
   if (side.shape->turn_shift == 0) return;
   const double period = std::abs(side.shape->turn_shift);
-  const int low = static_cast<int>(std::floor((target.x_min - own.x_max) / period));
-  const int high = static_cast<int>(std::ceil((target.x_max - own.x_min) / period));
+  const int low = static_cast<int>(std::floor((target.x_min - side.box.x_max) / period));
+  const int high = static_cast<int>(std::ceil((target.x_max - side.box.x_min) / period));
   const bool reversed = side.shape->turn_shift < 0;
   side.first_turn = reversed ? -high : low;
   side.last_turn = reversed ? -low : high;
@@ -105,32 +106,32 @@ Vec2 direction(const Model& model, const ContactPair& pair, const Box& a, const 
 
 ContactSide make_side(const Model& model, const OutlineField& outlines, int body, const Vec2& shift) {
   const OutlineShape& shape = model.outline_of(body);
-  ContactSide side{
-      &shape, &outlines.x[model.outline_offset[body]], &outlines.y[model.outline_offset[body]], shift, 0, 0, 0};
-  side.longest_segment = longest_segment(shape, side.x, side.y);
-  return side;
+  const double *x = &outlines.x[model.outline_offset[body]], *y = &outlines.y[model.outline_offset[body]];
+  Box box = bounding_box(model, outlines, body);
+  box.x_min += shift.x(), box.x_max += shift.x(), box.y_min += shift.y(), box.y_max += shift.y();
+  return {&shape, x, y, shift, box, longest_segment(shape, x, y)};
 }
 
 /// Arcs that contain everything within the margin, by boxes and by planes across the line of centres that bound the
 /// bodies.
-void find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, Box box_a, Box box_b,
-                     const ContactPair& pair, double margin, Arc (&arcs)[2]) {
-  arcs[0] = arcs[1] = {};
+std::array<Arc, 2> find_rough_arcs(const Model& model, const ContactSide& a, ContactSide& b, const ContactPair& pair,
+                                   double margin) {
   // One more segment, because that end of a touched segment which is beyond the plane may be the far one.
   const double reach_a = margin + a.longest_segment, reach_b = margin + b.longest_segment;
-  find_turns(b, box_b, inflated(box_a, reach_b));
-  const Box region_a = model.bodies[pair.second].wall ? Box{-1e300, 1e300, box_b.y_min - reach_a, box_b.y_max + reach_a}
-                                                      : inflated(box_b, reach_a);
-  const Box region_b = inflated(box_a, reach_b);
-  const Vec2 d = direction(model, pair, box_a, box_b);
+  const Box region_b = inflated(a.box, reach_b);
+  find_turns(b, region_b);
+  Box region_a = inflated(b.box, reach_a);
+  if (model.bodies[pair.second].wall) region_a.x_min = -1e300, region_a.x_max = 1e300;
+  const Vec2 d = direction(model, pair, a.box, b.box);
   const Box everywhere{-1e300, 1e300, -1e300, 1e300};
   const auto extent_a = extent(a, everywhere, d);
   const auto extent_b =
       extent(b, model.bodies[pair.second].wall ? inflated(region_b, b.longest_segment) : everywhere, d);
-  if (extent_b.first > extent_b.second) return;
-  arcs[0] = select_arc(a, region_a, d, extent_b.first - margin);
-  arcs[1] = select_arc(b, region_b, -d, -(extent_a.second + margin));
+  if (extent_b.first > extent_b.second) return {};
+  return {select_arc(a, region_a, d, extent_b.first - margin),
+          select_arc(b, region_b, -d, -(extent_a.second + margin))};
 }
+
 /// Shortest arc of the entries marked so far.
 struct Span {
   int begin = 1 << 30, end = -(1 << 30);
@@ -180,11 +181,17 @@ class Near {
   Span span_;
 };
 
+/// Nodes of a side and segments of the other that can touch.
+struct Touchable {
+  Arc nodes, segments;
+  double distance;  ///< least one between a node and a segment, m
+};
+
 /// Narrows one side's nodes, and the other's segments, given as `window`, to those that can touch. A node outside can
 /// move to a depth of the skin, one inside a skin deeper. To find the nearest face then, all segments within two skins
-/// of the present reach must be known. Returns the least distance between a node and a segment.
-double narrow(const ContactSide& slave, const ContactSide& master, const Arc& candidates, const MasterWindow& window,
-              int first_segment, const Margins& margins, Arc& nodes, Arc& segments) {
+/// of the present reach must be known.
+Touchable narrow(const ContactSide& slave, const ContactSide& master, const Arc& candidates, const MasterWindow& window,
+                 int first_segment, const Margins& margins) {
   thread_local std::vector<char> node_flags, segment_flags;  // so that memory is allocated once
   const bool itself = &slave == &master;
   Near near_nodes(*slave.shape, itself, node_flags), near_segments(*master.shape, itself, segment_flags);
@@ -210,9 +217,7 @@ double narrow(const ContactSide& slave, const ContactSide& master, const Arc& ca
     for (int row = 0; row < window.count(); ++row)
       if (any(chosen & (abs(signed_distance(window[row], px, py)) <= reach))) near_segments.add(first_segment + row);
   }
-  nodes = near_nodes.arc();
-  segments = near_segments.arc();
-  return -largest(-least);
+  return {near_nodes.arc(), near_segments.arc(), -largest(-least)};
 }
 
 /// Segments at the nodes of an arc. A wall against a wall is searched some way beyond the end of the period, so that
@@ -285,15 +290,10 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
   const Vec2 shift = outlines.lattice.shift(contact_pair.images);
   ContactSide sides[2] = {make_side(model, outlines, contact_pair.first, {0, 0}),
                           make_side(model, outlines, contact_pair.second, shift)};
-  const Box box_a = bounding_box(model, outlines, contact_pair.first);
-  Box box_b = bounding_box(model, outlines, contact_pair.second);
-  box_b.x_min += shift.x(), box_b.x_max += shift.x();
-  box_b.y_min += shift.y(), box_b.y_max += shift.y();
-  Arc rough[2];
   const double longest = std::max(sides[0].longest_segment, sides[1].longest_segment);
   double gap =
       std::max({distance, margin + 2 * skin, longest + 4 * skin});  // lower bound for all that is not in rough arcs
-  find_rough_arcs(model, sides[0], sides[1], box_a, box_b, contact_pair, gap, rough);
+  const std::array<Arc, 2> rough = find_rough_arcs(model, sides[0], sides[1], contact_pair, gap);
   if (rough[0].count == 0 || rough[1].count == 0) return gap;
   const bool two_walls = model.bodies[contact_pair.first].wall && model.bodies[contact_pair.second].wall;
   for (int slave = 0; slave < 2; ++slave) {
@@ -302,9 +302,9 @@ double find_arcs(const Model& model, const OutlineField& outlines, ContactPair& 
     scratch.fill(*master.shape, master.x, master.y, segments, master.shift, skin);
     // The depth follows from the whole outline: the part that boxes let in depends on the axes.
     const Margins margins{margin, skin, master.longest_segment + skin};
-    const double least = narrow(sides[slave], master, rough[slave], scratch, segments.begin, margins,
-                                contact_pair.nodes[slave], contact_pair.segments[1 - slave]);
-    gap = std::min(gap, least);
+    const Touchable found = narrow(sides[slave], master, rough[slave], scratch, segments.begin, margins);
+    contact_pair.nodes[slave] = found.nodes, contact_pair.segments[1 - slave] = found.segments;
+    gap = std::min(gap, found.distance);
     // Walls meet along the whole period: one image of each node suffices. A body as wide as the period may touch two
     // images.
     if (two_walls)
@@ -331,8 +331,8 @@ void find_self_pairs(const Model& model, const OutlineField& outlines, const Con
     ContactPair contact_pair = of_body;
     contact_pair.part = begin;
     const Margins margins{margin, skin, scratch.depth()};
-    narrow(side, side, nodes, scratch, segments.begin, margins, contact_pair.nodes[0], contact_pair.segments[1]);
-    contact_pair.window[1] = contact_pair.segments[1];
+    const Touchable found = narrow(side, side, nodes, scratch, segments.begin, margins);
+    contact_pair.nodes[0] = found.nodes, contact_pair.segments[1] = contact_pair.window[1] = found.segments;
     if (contact_pair.nodes[0].count == 0) continue;
     if (contact_pair.integrated) {
       contact_pair.nodes[0] = nodes, contact_pair.slave_segments[0] = nodes.count - 1;

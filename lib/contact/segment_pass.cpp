@@ -26,16 +26,28 @@ struct Totals {
   int segments = 0;                                                                              ///< in contact
 };
 
+/// Eight pairs of segments with forces.
+struct LoadedPairs {
+  LaneBits hit, slave, row;  ///< those in contact; as in SegmentPairs
+  Linear xi;                 ///< on the master's segment
+  PairForces forces;         ///< on the slave's nodes
+};
+
+/// Couple of shears: forces on the second node of the master's segment, and the opposite ones on the first.
+struct Couple {
+  Lanes x{}, y{};
+};
+
 /// Adds forces to the nodes of both bodies. The reaction to a force at s goes to both nodes of the master's segment by
-/// xi. `turn_x`, `turn_y`: the couple of shears, added to the second of these nodes and subtracted from the first.
-void add_forces(const SegmentHalfPass& at, LaneBits slave, LaneBits row, LaneBits hit, const PairForces& f,
-                const Linear& xi, Lanes turn_x, Lanes turn_y) {
+/// xi.
+void add_forces(const SegmentHalfPass& at, const LoadedPairs& pairs, const PairForces& f, const Couple& couple) {
+  const Linear& xi = pairs.xi;
   const Lanes all_x = f.x[0] + f.x[1], all_y = f.y[0] + f.y[1], change = xi.at1 - xi.at0;
-  const Lanes far_x = xi.at0 * all_x + change * f.x[1] - turn_x, far_y = xi.at0 * all_y + change * f.y[1] - turn_y;
+  const Lanes far_x = xi.at0 * all_x + change * f.x[1] - couple.x, far_y = xi.at0 * all_y + change * f.y[1] - couple.y;
   const Lanes near_x = all_x - far_x, near_y = all_y - far_y;
-  for_each_lane(hit, [&](int lane) {
-    const auto first = static_cast<std::size_t>(at.pass.slave_force + slave[lane]),
-               near = static_cast<std::size_t>(at.pass.master_force + row[lane]);
+  for_each_lane(pairs.hit, [&](int lane) {
+    const auto first = static_cast<std::size_t>(at.pass.slave_force + pairs.slave[lane]),
+               near = static_cast<std::size_t>(at.pass.master_force + pairs.row[lane]);
     double *x = &at.forces.x[first], *y = &at.forces.y[first];
     x[0] += f.x[0][lane], x[1] += f.x[1][lane], y[0] += f.y[0][lane], y[1] += f.y[1][lane];
     x = &at.forces.x[near], y = &at.forces.y[near];
@@ -45,13 +57,10 @@ void add_forces(const SegmentHalfPass& at, LaneBits slave, LaneBits row, LaneBit
 
 /// Eight pairs with shear: their normal forces, integrals of tangents times powers of s, and integrals of gaps. From
 /// these the shear tractions of nodes make forces.
-struct ShearingPairs {
-  LaneBits hit, slave, row;
+struct ShearingPairs : LoadedPairs {
   Lanes tangent_x, tangent_y, inverse_length;  ///< of the master's segment
-  Linear xi;
-  PairForces forces;
-  Lanes shear_x[3], shear_y[3];  ///< m
-  Moments gap;                   ///< m2
+  Lanes shear_x[3], shear_y[3];                ///< m
+  Moments gap;                                 ///< m2
 
   /// Adds forces for shear tractions at both ends, linear between them.
   void put_out(const SegmentHalfPass& at, Lanes shear0, Lanes shear1) const {
@@ -63,7 +72,7 @@ struct ShearingPairs {
     f.x[0] += all_x - second_x, f.x[1] += second_x, f.y[0] += all_y - second_y, f.y[1] += second_y;
     // Shears act at the gap's distance from the master.
     const Lanes couple = (shear0 * gap.plain + change * gap.times_s) * inverse_length;
-    add_forces(at, slave, row, hit, f, xi, couple * tangent_y, -couple * tangent_x);
+    add_forces(at, *this, f, {couple * tangent_y, -couple * tangent_x});
   }
 };
 
@@ -141,9 +150,13 @@ class TractionVisitor {
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
     const HatSums on_segments = HatSums(pressure_);
-    const PairForces forces{
-        {in_fans_.x[0] + tangent_y * on_segments.first, in_fans_.x[1] + tangent_y * on_segments.second},
-        {in_fans_.y[0] - tangent_x * on_segments.first, in_fans_.y[1] - tangent_x * on_segments.second}};
+    const LoadedPairs loaded{
+        hit_,
+        pairs_->slave,
+        pairs_->row,
+        xi_,
+        {{in_fans_.x[0] + tangent_y * on_segments.first, in_fans_.x[1] + tangent_y * on_segments.second},
+         {in_fans_.y[0] - tangent_x * on_segments.first, in_fans_.y[1] - tangent_x * on_segments.second}}};
     if constexpr (Law::has_shear) {
       const Moments weight{weight_.plain + on_segments_[0], weight_.times_s + on_segments_[1]};
       HatSums(weight).add_to(scratch_.sums.weight, *pairs_, hit_);
@@ -151,14 +164,14 @@ class TractionVisitor {
       if (at_.moved) HatSums(slip_).add_to(scratch_.sums.motion, *pairs_, hit_);
       if (scratch_.shearing.size() == scratch_.shearing_count) scratch_.shearing.emplace_back();
       ShearingPairs& s = scratch_.shearing[scratch_.shearing_count++];
-      s.hit = hit_, s.slave = pairs_->slave, s.row = pairs_->row, s.xi = xi_, s.forces = forces, s.gap = gap_;
+      static_cast<LoadedPairs&>(s) = loaded, s.gap = gap_;
       s.tangent_x = tangent_x, s.tangent_y = tangent_y, s.inverse_length = pairs_->inverse_length;
       for (int power = 0; power < 3; ++power) {
         s.shear_x[power] = shear_x_[power] + tangent_x * on_segments_[power];
         s.shear_y[power] = shear_y_[power] + tangent_y * on_segments_[power];
       }
     } else {
-      add_forces(at_, pairs_->slave, pairs_->row, hit_, forces, xi_, Lanes{}, Lanes{});
+      add_forces(at_, loaded, loaded.forces, {});
     }
   }
 
