@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,13 +88,21 @@ def check(file: Path, threads: int = 1) -> Estimate:
                     _quantity(text, "memory", _BYTES), _quantity(text, "output", _BYTES))
 
 
+def _depth_in_package() -> int:
+    """Calls from the user's line to the one that asks: a warning with it as `stacklevel` names the user's line."""
+    depth, frame = 1, sys._getframe(1)
+    while frame.f_back and frame.f_globals.get("__name__", "").partition(".")[0] == "pliant":
+        depth, frame = depth + 1, frame.f_back
+    return depth
+
+
 def run(file: Path, folder: Path, threads: int = 1) -> Run:
     """Runs a scene in a file into a folder, over what is there, and opens it. BadScene, RunFailed; EngineWarning."""
     result = call("run", file, "--out", folder, "--force", "--threads", str(threads), "--quiet")
     if result.returncode == BAD_INPUT:
         raise BadScene(result.stderr.strip())
     for text in read_json(folder / "summary.json").get("warnings", []):
-        warnings.warn(text, EngineWarning, stacklevel=3)
+        warnings.warn(text, EngineWarning, stacklevel=_depth_in_package())
     if result.returncode != 0:
         raise RunFailed(result.stderr.strip() or f"{folder}: the engine ended with {result.returncode}")
     return read_run(folder)

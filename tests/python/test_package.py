@@ -84,9 +84,13 @@ def test_the_engine_says_what_is_wrong(scene: Scene, tmp_path: Path) -> None:
 def test_warnings_of_the_engine_come_through(scene: Scene, tmp_path: Path) -> None:
     scene["contact"] = {"refresh": "1 s"}
     scene["time.end"] = "5 ns"
-    with pytest.warns(pliant.EngineWarning, match="contacts can be missed"):
+    with pytest.warns(pliant.EngineWarning, match="contacts can be missed") as found:
         run = pliant.run(scene, tmp_path / "out")
+        scene.run(tmp_path / "again")
+        (tmp_path / "scene.toml").write_text(scene.text())
+        pliant.run(tmp_path / "scene.toml", tmp_path / "of_a_file")
     assert any("contacts can be missed" in text for text in run.warnings)
+    assert {warning.filename for warning in found} == {__file__}  # they name the user's line, whatever the call
 
 
 def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
