@@ -19,9 +19,9 @@ namespace pliant {
 /// Upper bound b of the dashpot chi f f^T relative to the stiffness K of the contacts: chi <= b/S, because f K^-1 f is
 /// at most S, PairTotals::traction_norm. The correction is small compared with the error that a step makes at
 /// contacts anyway. It vanishes at rest and in short steps. The dashpot uses the displacement of the step that led to
-/// it. With a = w^2 dt^2, x+ - 2 x + x- + a x + a b (x - x-) = 0 is stable up to a (1 + 2 b) = 4, and a is 4 safety^2
-/// at most.
-inline double largest_correction(double safety) { return std::clamp(0.5 * (1 / (safety * safety) - 1), 0.0, 0.25); }
+/// it. With a = w^2 dt^2, x+ - 2 x + x- + a x + a b (x - x-) = 0 is critically damped by b = 2/sqrt(a) - 1, and a is 4
+/// safety^2 at most. A larger b damps that mode less, and none of it at the limit of stability, a (1 + 2 b) = 4.
+inline double largest_correction(double safety) { return std::clamp(1 / safety - 1, 0.0, 0.25); }
 
 /// Motion of a rigid body in a step.
 struct RigidStep {

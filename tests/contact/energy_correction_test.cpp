@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numeric>
 #include <vector>
@@ -383,6 +385,25 @@ Scene released_block(bool by_pressure) {
   scene.boundary = {load};
   without_error_control(scene, 0.8);
   return scene;
+}
+
+/// Factor a step of the slower of both solutions of x+ - 2 x + x- + a x + a b (x - x-) = 0, in size.
+double slower_decay(double a, double b) {
+  const double sum = 2 - a - a * b, product = 1 - a * b;
+  const std::complex<double> root = std::sqrt(std::complex<double>(sum * sum - 4 * product));
+  return std::max(std::abs(sum + root), std::abs(sum - root)) / 2;
+}
+
+// EXACT: a dashpot a hundredth stiffer or softer than the limit damps the fastest mode of a step less.
+TEST(EnergyCorrection, has_the_limit_that_damps_the_fastest_mode_most) {
+  for (const double safety : {0.8, 0.85, 0.9, 0.95, 0.99}) {
+    const double a = 4 * safety * safety, limit = largest_correction(safety), least = slower_decay(a, limit);
+    EXPECT_GT(slower_decay(a, 0.99 * limit), least + 1e-5) << safety;
+    EXPECT_GT(slower_decay(a, 1.01 * limit), least + 1e-5) << safety;
+  }
+  EXPECT_EQ(largest_correction(0.8), 0.25);
+  EXPECT_EQ(largest_correction(0.4), 0.25);
+  EXPECT_EQ(largest_correction(1), 0);
 }
 
 // EXACT: one load in two ways; where it ends, the energy that rigid bodies keep counts the same. To rounding.
