@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 """The paper's third body, run whole: its observables beside the paper's, and its figures 7 to 12.
 
-    ./pliant run cases/third_body.toml              # hours
     benchmarks/third_body.py results/third_body     # writes benchmarks/results/third_body and docs/pictures/third_body_*
 
-A run that has not come to its end is told of as far as it went. The paper: G. Mollon 2018, doi 10.1007/s40571-018-0187-6, section 7, read from its figures
-to 0.02.
+docs/third_body.md says how to make the run. A run that has not come to its end is told of as far as it went. The paper: G.
+Mollon 2018, doi 10.1007/s40571-018-0187-6, section 7, read from its figures to 0.02.
 """
 
 from __future__ import annotations
@@ -52,7 +51,7 @@ def observables(layer: Layer) -> dict[str, object]:
     plateau = Mean(layer.plateau)
     summary = json.loads((layer.run.folder / "summary.json").read_text())
     dt, error = of_all_steps(layer.run, "dt"), of_all_steps(layer.run, "error")
-    frames = {f"{1e6 * time:.3g} us": i for i, time in enumerate(layer.frames.times)}
+    frames = {f"{round(1e6 * time)} us": i for i, time in enumerate(layer.frames.times) if is_whole(1e6 * time)}
     at_random, deviation = like_fraction_at_random(layer.neighbours[-1], layer.kinds)
     return {
         "end, us": 1e6 * layer.end,
@@ -73,6 +72,10 @@ def observables(layer: Layer) -> dict[str, object]:
         "like neighbours at random": [round(at_random, 3), round(deviation, 3)],
         "clusters of compliant grains, mean size": {name: round(mean_size(layer, i), 1) for name, i in frames.items()},
     }
+
+
+def is_whole(number: float) -> bool:
+    return abs(number - round(number)) < 1e-6
 
 
 def of_all_steps(run: Run, name: str) -> np.ndarray:
