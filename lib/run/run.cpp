@@ -30,6 +30,7 @@
 #include "run/checkpoint.hpp"
 #include "run/default_threads.hpp"
 #include "run/failure_report.hpp"
+#include "run/fold_warning.hpp"
 #include "run/start_file.hpp"
 #include "scene/line_reader.hpp"
 #include "setup/build_model.hpp"
@@ -98,6 +99,8 @@ struct Run {
     recorder.finish_progress();
     const Energies energy = simulation.energy_balance().energy;
     note_warnings();
+    const std::vector<Fold> folds = find_folds(simulation.model(), simulation.state().outlines.position);
+    if (!folds.empty()) spdlog::warn("{}", fold_warning(simulation.model(), folds));
     warn_of_balance(simulation, energy);
     warned = warnings_so_far().size();
     const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
