@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "run/fold_warning.hpp"
-
 namespace pliant {
 namespace {
 
@@ -92,8 +90,6 @@ std::string diagnosis(const Simulation& simulation, double error, bool feeds) {
   if (overlap.share > deep && overlap.share >= 0.9 * seen.deepest)
     return fmt::format("bodies overlapped by {:.2g} of a segment at the start: {}", overlap.share,
                        remedy(overlap, model));
-  if (!find_folds(model, simulation.state().outlines.position).empty())
-    return "bodies have folded through themselves, where contact is wrong";
   if (seen.deepest > deep) return against_depth(model.scene.time, seen);
   if (!traits_of(model.scene.time.integrator).is_bounded) return against_error_control(model.scene.time, feeds);
   return seen.contacts == 0 ? against_free_motion(simulation, error) : against_jumps(simulation, feeds);

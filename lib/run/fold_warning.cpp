@@ -41,8 +41,8 @@ std::string fold_warning(const Model& model, const std::vector<Fold>& folds) {
                              : folds.size() == 2 ? ", and another body has"
                                                  : fmt::format(", and {} other bodies have", folds.size() - 1);
   return fmt::format(
-      "{} has folded through itself near ({:.4g}, {:.4g}) m{}: contact there is wrong; take [contact] self_contact = "
-      "true",
+      "{} has folded through itself near ({:.4g}, {:.4g}) m{}: it overlaps itself there, and contact is wrong; more "
+      "outline nodes or [contact] self_contact = true may help (docs/limits.md, \"Creases\")",
       model.bodies[body].name, place.x(), place.y(), others);
 }
 

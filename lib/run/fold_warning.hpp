@@ -14,8 +14,8 @@ struct Fold {
   Vec2 place;  ///< start of a segment that crosses another one, m
 };
 
-/// All such bodies. Material overlaps there, which no Jacobian shows. None with self-contact, whose overlaps are as
-/// small as those of any contact.
+/// All such bodies. Material overlaps there, which no Jacobian shows. None with self-contact: the overlaps that it needs
+/// cannot be told from folds that are too narrow for it.
 std::vector<Fold> find_folds(const Model& model, const OutlineField& position);
 
 /// Names such bodies and says what to change; empty without any.
