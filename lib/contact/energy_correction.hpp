@@ -20,7 +20,8 @@ namespace pliant {
 /// at most S, PairTotals::traction_norm. The correction is small compared with the error that a step makes at
 /// contacts anyway. It vanishes at rest and in short steps. The dashpot uses the displacement of the step that led to
 /// it. With a = w^2 dt^2, x+ - 2 x + x- + a x + a b (x - x-) = 0 is critically damped by b = 2/sqrt(a) - 1, and a is 4
-/// safety^2 at most. A larger b damps that mode less, and none of it at the limit of stability, a (1 + 2 b) = 4.
+/// safety^2 at most. A larger b damps that mode less, and none of it at the limit of stability, a (1 + 2 b) = 4. Below
+/// safety 0.8 b stays 1/4, so that the correction remains small.
 inline double largest_correction(double safety) { return std::clamp(1 / safety - 1, 0.0, 0.25); }
 
 /// Motion of a rigid body in a step.

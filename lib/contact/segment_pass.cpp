@@ -26,11 +26,11 @@ struct Totals {
   int segments = 0;                                                                              ///< in contact
 };
 
-/// Eight pairs of segments with forces.
-struct LoadedPairs {
-  LaneBits hit, slave, row;  ///< those in contact; as in SegmentPairs
-  Linear xi;                 ///< on the master's segment
-  PairForces forces;         ///< on the slave's nodes
+/// Nodes on which the forces of eight pairs of segments act.
+struct ForcePlaces {
+  LaneBits hit;         ///< pairs in contact
+  LaneBits slave, row;  ///< as in SegmentPairs
+  Linear xi;            ///< on the master's segment
 };
 
 /// Couple of shears: forces on the second node of the master's segment, and the opposite ones on the first.
@@ -38,16 +38,16 @@ struct Couple {
   Lanes x{}, y{};
 };
 
-/// Adds forces to the nodes of both bodies. The reaction to a force at s goes to both nodes of the master's segment by
-/// xi.
-void add_forces(const SegmentHalfPass& at, const LoadedPairs& pairs, const PairForces& f, const Couple& couple) {
-  const Linear& xi = pairs.xi;
+/// Adds forces to the nodes of both bodies. `f`: on the slave's nodes. The reaction to a force at s goes to both nodes
+/// of the master's segment by xi.
+void add_forces(const SegmentHalfPass& at, const ForcePlaces& places, const PairForces& f, const Couple& couple) {
+  const Linear& xi = places.xi;
   const Lanes all_x = f.x[0] + f.x[1], all_y = f.y[0] + f.y[1], change = xi.at1 - xi.at0;
   const Lanes far_x = xi.at0 * all_x + change * f.x[1] - couple.x, far_y = xi.at0 * all_y + change * f.y[1] - couple.y;
   const Lanes near_x = all_x - far_x, near_y = all_y - far_y;
-  for_each_lane(pairs.hit, [&](int lane) {
-    const auto first = static_cast<std::size_t>(at.pass.slave_force + pairs.slave[lane]),
-               near = static_cast<std::size_t>(at.pass.master_force + pairs.row[lane]);
+  for_each_lane(places.hit, [&](int lane) {
+    const auto first = static_cast<std::size_t>(at.pass.slave_force + places.slave[lane]),
+               near = static_cast<std::size_t>(at.pass.master_force + places.row[lane]);
     double *x = &at.forces.x[first], *y = &at.forces.y[first];
     x[0] += f.x[0][lane], x[1] += f.x[1][lane], y[0] += f.y[0][lane], y[1] += f.y[1][lane];
     x = &at.forces.x[near], y = &at.forces.y[near];
@@ -57,7 +57,9 @@ void add_forces(const SegmentHalfPass& at, const LoadedPairs& pairs, const PairF
 
 /// Eight pairs with shear: their normal forces, integrals of tangents times powers of s, and integrals of gaps. From
 /// these the shear tractions of nodes make forces.
-struct ShearingPairs : LoadedPairs {
+struct ShearingPairs {
+  ForcePlaces places;
+  PairForces forces;
   Lanes tangent_x, tangent_y, inverse_length;  ///< of the master's segment
   Lanes shear_x[3], shear_y[3];                ///< m
   Moments gap;                                 ///< m2
@@ -72,7 +74,7 @@ struct ShearingPairs : LoadedPairs {
     f.x[0] += all_x - second_x, f.x[1] += second_x, f.y[0] += all_y - second_y, f.y[1] += second_y;
     // Shears act at the gap's distance from the master.
     const Lanes couple = (shear0 * gap.plain + change * gap.times_s) * inverse_length;
-    add_forces(at, *this, f, {couple * tangent_y, -couple * tangent_x});
+    add_forces(at, places, f, {couple * tangent_y, -couple * tangent_x});
   }
 };
 
@@ -150,13 +152,10 @@ class TractionVisitor {
     if constexpr (has_dashpot<Law>) add_in_order(damping_power_, totals_.damping_power);
     const Lanes tangent_x = pairs_->tangent_x, tangent_y = pairs_->tangent_y;
     const HatSums on_segments = HatSums(pressure_);
-    const LoadedPairs loaded{
-        hit_,
-        pairs_->slave,
-        pairs_->row,
-        xi_,
-        {{in_fans_.x[0] + tangent_y * on_segments.first, in_fans_.x[1] + tangent_y * on_segments.second},
-         {in_fans_.y[0] - tangent_x * on_segments.first, in_fans_.y[1] - tangent_x * on_segments.second}}};
+    const ForcePlaces places{hit_, pairs_->slave, pairs_->row, xi_};
+    const PairForces forces{
+        {in_fans_.x[0] + tangent_y * on_segments.first, in_fans_.x[1] + tangent_y * on_segments.second},
+        {in_fans_.y[0] - tangent_x * on_segments.first, in_fans_.y[1] - tangent_x * on_segments.second}};
     if constexpr (Law::has_shear) {
       const Moments weight{weight_.plain + on_segments_[0], weight_.times_s + on_segments_[1]};
       HatSums(weight).add_to(scratch_.sums.weight, *pairs_, hit_);
@@ -164,14 +163,14 @@ class TractionVisitor {
       if (at_.moved) HatSums(slip_).add_to(scratch_.sums.motion, *pairs_, hit_);
       if (scratch_.shearing.size() == scratch_.shearing_count) scratch_.shearing.emplace_back();
       ShearingPairs& s = scratch_.shearing[scratch_.shearing_count++];
-      static_cast<LoadedPairs&>(s) = loaded, s.gap = gap_;
+      s.places = places, s.forces = forces, s.gap = gap_;
       s.tangent_x = tangent_x, s.tangent_y = tangent_y, s.inverse_length = pairs_->inverse_length;
       for (int power = 0; power < 3; ++power) {
         s.shear_x[power] = shear_x_[power] + tangent_x * on_segments_[power];
         s.shear_y[power] = shear_y_[power] + tangent_y * on_segments_[power];
       }
     } else {
-      add_forces(at_, loaded, loaded.forces, {});
+      add_forces(at_, places, forces, {});
     }
   }
 
@@ -258,7 +257,7 @@ void integrate_half_pass(const Law& law, const SegmentHalfPass& at, const Contac
     if (whole) sums.shear[pass.segments] = sums.shear[0];
     const double* shear = sums.shear.data();
     for (const ShearingPairs& s : std::span(scratch.shearing).first(scratch.shearing_count))
-      s.put_out(at, gather(shear, s.slave), gather(shear + 1, s.slave));
+      s.put_out(at, gather(shear, s.places.slave), gather(shear + 1, s.places.slave));
   }
 }
 

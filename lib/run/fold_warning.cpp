@@ -1,6 +1,5 @@
 #include "run/fold_warning.hpp"
 
-#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -8,18 +7,6 @@
 #include "geometry/polygon_rules.hpp"
 
 namespace pliant {
-namespace {
-
-std::optional<Vec2> first_crossing(const Points& outline) {
-  const std::size_t n = outline.size();
-  const auto end_of = [&](std::size_t i) -> const Vec2& { return outline[i + 1 < n ? i + 1 : 0]; };
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 2; j < (i == 0 ? n - 1 : n); ++j)  // neighbours share a node
-      if (segments_meet(outline[i], end_of(i), outline[j], end_of(j))) return outline[i];
-  return std::nullopt;
-}
-
-}  // namespace
 
 std::vector<Fold> find_folds(const Model& model, const OutlineField& position) {
   std::vector<Fold> folds;
@@ -29,13 +16,13 @@ std::vector<Fold> find_folds(const Model& model, const OutlineField& position) {
     if (model.bodies[b].rigid >= 0) continue;
     outline.clear();
     for (int i = 0; i < model.outline_of(b).count; ++i) outline.push_back(position.at(model.outline_offset[b] + i));
-    if (const std::optional<Vec2> place = first_crossing(outline)) folds.push_back({b, *place});
+    if (const PolygonDefect defect = polygon_defect(outline); !defect.text.empty())
+      folds.push_back({b, outline[defect.point]});
   }
   return folds;
 }
 
 std::string fold_warning(const Model& model, const std::vector<Fold>& folds) {
-  if (folds.empty()) return {};
   const auto& [body, place] = folds.front();
   const std::string others = folds.size() == 1   ? ""
                              : folds.size() == 2 ? ", and another body has"

@@ -11,14 +11,14 @@ namespace pliant {
 /// A compliant body whose outline crosses itself.
 struct Fold {
   int body;
-  Vec2 place;  ///< start of a segment that crosses another one, m
+  Vec2 place;  ///< node beside the crossing, m
 };
 
-/// All such bodies. Material overlaps there, which no Jacobian shows. None with self-contact: the overlaps that it needs
-/// cannot be told from folds that are too narrow for it.
+/// All such bodies. Their material overlaps itself there, although J > 0. None with self-contact: the overlaps that a
+/// penalty needs look like folds that are too narrow for it.
 std::vector<Fold> find_folds(const Model& model, const OutlineField& position);
 
-/// Names such bodies and says what to change; empty without any.
+/// Text that names the first of these bodies, at least one, and says what to change.
 std::string fold_warning(const Model& model, const std::vector<Fold>& folds);
 
 }  // namespace pliant
