@@ -144,8 +144,10 @@ Parts<GridTopology> FrameRecorder::outlines_topology() const {
 
 double FrameRecorder::next_time() const { return file_ ? count_ * period_ : std::numeric_limits<double>::infinity(); }
 
-void FrameRecorder::record_due(Simulation& simulation) {
-  if (simulation.state().time >= next_time() * (1 - 1e-12)) record(simulation);
+bool FrameRecorder::record_due(Simulation& simulation) {
+  const bool due = simulation.state().time >= next_time() * (1 - 1e-12);
+  if (due) record(simulation);
+  return due;
 }
 
 void FrameRecorder::record_last(Simulation& simulation) {

@@ -14,8 +14,8 @@ namespace pliant {
 class FrameRecorder {
  public:
   FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);
-  double next_time() const;  ///< infinite without frames
-  void record_due(Simulation& simulation);
+  double next_time() const;                 ///< infinite without frames
+  bool record_due(Simulation& simulation);  ///< whether one was
   /// One of now, unless the last one is.
   void record_last(Simulation& simulation);
   int count() const { return count_; }

@@ -16,9 +16,9 @@ Recorder::Recorder(const Model& model, const std::filesystem::path& folder, bool
 
 double Recorder::next_output() const { return std::min(probes_.next_time(), frames_.next_time()); }
 
-void Recorder::record_outputs(Simulation& simulation) {
+bool Recorder::record_outputs(Simulation& simulation) {
   probes_.record_due(simulation);
-  frames_.record_due(simulation);
+  return frames_.record_due(simulation);
 }
 
 void Recorder::record_step(Simulation& simulation, const StepReport& report) {

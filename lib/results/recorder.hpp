@@ -18,8 +18,9 @@ class Recorder {
   Recorder(const Model& model, const std::filesystem::path& folder, bool quiet, Opening opening);
 
   void begin(const Simulation& simulation) { progress_.begin(simulation); }
-  double next_output() const;                   ///< s
-  void record_outputs(Simulation& simulation);  ///< those that are due
+  double next_output() const;  ///< s
+  /// Those that are due. Returns whether there is a new frame.
+  bool record_outputs(Simulation& simulation);
   /// A frame of now, if there are frames, whether due or not: a run that goes on from a checkpoint cuts it off.
   void record_last_frame(Simulation& simulation) { frames_.record_last(simulation); }
   void record_step(Simulation& simulation, const StepReport& report);
@@ -43,6 +44,7 @@ class Recorder {
     visitor("resumed", figures.resumed);
     visitor("started_from", figures.started_from);
     visitor("warnings", figures.warnings);
+    visitor("warned_of_folds", figures.warned_of_folds);
   }
   void loaded();
 

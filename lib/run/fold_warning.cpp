@@ -22,15 +22,15 @@ std::vector<Fold> find_folds(const Model& model, const OutlineField& position) {
   return folds;
 }
 
-std::string fold_warning(const Model& model, const std::vector<Fold>& folds) {
+std::string fold_warning(const Model& model, const std::vector<Fold>& folds, double time) {
   const auto& [body, place] = folds.front();
   const std::string others = folds.size() == 1   ? ""
                              : folds.size() == 2 ? ", and another body has"
                                                  : fmt::format(", and {} other bodies have", folds.size() - 1);
   return fmt::format(
-      "{} has folded through itself near ({:.4g}, {:.4g}) m{}: it overlaps itself there, and contact is wrong; more "
-      "outline nodes or [contact] self_contact = true may help (docs/limits.md, \"Creases\")",
-      model.bodies[body].name, place.x(), place.y(), others);
+      "{} has folded through itself near ({:.4g}, {:.4g}) m by t = {:.6g} s{}: it overlaps itself there, and contact "
+      "is wrong; more outline nodes or [contact] self_contact = true may help (docs/limits.md, \"Creases\")",
+      model.bodies[body].name, place.x(), place.y(), time, others);
 }
 
 }  // namespace pliant

@@ -18,7 +18,7 @@ struct Fold {
 /// penalty needs look like folds that are too narrow for it.
 std::vector<Fold> find_folds(const Model& model, const OutlineField& position);
 
-/// Text that names the first of these bodies, at least one, and says what to change.
-std::string fold_warning(const Model& model, const std::vector<Fold>& folds);
+/// Text that names the first of these bodies, at least one, and says what to change. `time`: of the simulation, s.
+std::string fold_warning(const Model& model, const std::vector<Fold>& folds, double time);
 
 }  // namespace pliant

@@ -84,6 +84,17 @@ struct Run {
   void note_warnings() {
     for (; warned < warnings_so_far().size(); ++warned) recorder.figures.warnings.push_back(warnings_so_far()[warned]);
   }
+  /// Warns of bodies that have folded through themselves by now. Returns whether there are any.
+  bool warn_of_folds() const {
+    const std::vector<Fold> folds = find_folds(simulation.model(), simulation.state().outlines.position);
+    if (!folds.empty()) spdlog::warn("{}", fold_warning(simulation.model(), folds, simulation.state().time));
+    return !folds.empty();
+  }
+  /// Those that are due. Frames are looked at until one has a fold.
+  void write_outputs() {
+    if (recorder.record_outputs(simulation) && !recorder.figures.warned_of_folds)
+      recorder.figures.warned_of_folds = warn_of_folds();
+  }
   void write_checkpoint(const std::string& status) {
     note_warnings();
     simulation.phases().apart(Phase::output, [&] {
@@ -99,8 +110,7 @@ struct Run {
     recorder.finish_progress();
     const Energies energy = simulation.energy_balance().energy;
     note_warnings();
-    const std::vector<Fold> folds = find_folds(simulation.model(), simulation.state().outlines.position);
-    if (!folds.empty()) spdlog::warn("{}", fold_warning(simulation.model(), folds));
+    if (!recorder.figures.warned_of_folds) warn_of_folds();
     warn_of_balance(simulation, energy);
     warned = warnings_so_far().size();
     const double before = std::exchange(recorder.figures.checkpoint_time, simulation.state().time);
@@ -137,7 +147,7 @@ void advance(Run& run) {
   const Observer outputs{[&] { return std::min(end, run.recorder.next_output()); },
                          [&] {
                            simulation.phases().apart(Phase::output, [&] {
-                             run.recorder.record_outputs(simulation);
+                             run.write_outputs();
                              if (simulation.state().time >= end) run.see_end();
                            });
                            return !run.has_ended();

@@ -141,6 +141,67 @@ def test_warnings_stay_in_the_summary_when_quiet_and_after_a_stop(desk) -> None:
     assert desk.summary("other")["warnings"] == [], "of an end that is none any more"
 
 
+# A pressure bends the thin arm of a clip into the thick one.
+CLIP = """\
+[time]
+end = 10
+
+[materials.soft]
+law = "neo-hookean"
+density = 1
+young = 2.8
+poisson = 0.4
+mass_damping = 1
+
+[shapes.clip]
+kind = "polygon"
+points = [[-1, -0.4], [1, -0.4], [1, 1.5], [0, 1.5], [0, 0], [-0.5, 0], [-0.5, 1.5], [-1, 1.5]]
+spacing = 0.2
+
+[[grains]]
+name = "clip"
+shape = "clip"
+body = "compliant"
+material = "soft"
+packing = { kind = "positions", positions = [[0, 0]] }
+
+[[boundary]]
+of = "clip"
+part = { side = "bottom" }
+x = "fixed"
+y = "fixed"
+
+[[boundary]]
+of = "clip"
+part = { side = "left" }
+pressure = [[0, 0], [10, 0.15]]
+
+[[contacts]]
+between = "all"
+law = "frictionless"
+"""
+
+
+def folds(desk, out: str) -> list[str]:
+    return [text for text in desk.summary(out)["warnings"] if "folded through itself" in text]
+
+
+def test_a_fold_is_told_of_once_at_the_first_frame_that_shows_it(desk) -> None:  # EXACT
+    """However often the run was interrupted; without frames at its end."""
+    desk.write(CLIP)
+    assert desk.run("--out", "unseen", "--quiet").returncode == 0
+    assert len(folds(desk, "unseen")) == 1 and "m by t = 10 s: " in folds(desk, "unseen")[0]
+    desk.write(CLIP + '[frames]\nperiod = 1\nfields = []\n')
+    assert desk.run("--out", "whole", "--quiet").returncode == 0
+    told = folds(desk, "whole")
+    assert len(told) == 1, told
+    time = int(re.findall("m by t = ([0-9]+) s: ", told[0])[0])
+    assert 1 < time < 9
+    for end, expected in [(time - 1, []), (time + 1.5, told), (10, told)]:
+        assert desk.run("--out", "parts", "--quiet", "--until", str(end), "--resume").returncode == 0
+        assert folds(desk, "parts") == expected
+
+
 def test_resume_without_a_folder_starts_anew(desk) -> None:  # EXACT
     desk.write(TWO_DISCS)
     assert desk.run("--out", "out", "--until", "2 ns", "--resume", "--quiet").returncode == 0

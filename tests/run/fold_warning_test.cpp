@@ -47,11 +47,12 @@ TEST(FoldWarning, finds_bodies_whose_outline_crosses_itself) {
 
 TEST(FoldWarning, names_the_body_and_the_remedy) {
   const Model model = build_model(three_discs(false));
-  const std::string one = fold_warning(model, {{0, {1, 2}}});
-  EXPECT_TRUE(one.starts_with("soft 0 has folded through itself near (1, 2) m: ")) << one;
+  const std::string one = fold_warning(model, {{0, {1, 2}}}, 5);
+  EXPECT_TRUE(one.starts_with("soft 0 has folded through itself near (1, 2) m by t = 5 s: ")) << one;
   EXPECT_NE(one.find("self_contact = true may help"), std::string::npos) << one;
-  const std::string two = fold_warning(model, {{0, {1, 2}}, {1, {3, 4}}});
-  EXPECT_NE(two.find("soft 0 has folded through itself near (1, 2) m, and another body has: "), std::string::npos);
+  const std::string two = fold_warning(model, {{0, {1, 2}}, {1, {3, 4}}}, 5);
+  EXPECT_NE(two.find("soft 0 has folded through itself near (1, 2) m by t = 5 s, and another body has: "),
+            std::string::npos);
 }
 
 }  // namespace
