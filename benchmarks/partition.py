@@ -408,8 +408,8 @@ def read(options: argparse.Namespace) -> tuple[list[Packing], list[float], float
     if options.lattice:
         return [lattice(*options.lattice)], [0.0], options.skin, options.reach
     run = read_run(options.folder)
-    if run.frames is None or "outlines" not in run.frames.grids:
-        raise BadFolder(f"{options.folder}: holds no frames with outlines; give the scene a [frames] period")
+    if "outlines" not in run.frames.grids:
+        raise BadFolder(f"{options.folder}: its frames have no outlines")
     if run.frames.in_cell:
         raise BadFolder(f"{options.folder}: has two periods; this program cuts domains with one period or none")
     chosen = chosen_frames(run.frames, options.frames)

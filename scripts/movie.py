@@ -120,7 +120,7 @@ class Progress:
 
 
 def chosen_frames(run: Run, times: list[float] | None) -> list[int]:
-    if run.frames is None or "bodies" not in run.frames.grids:
+    if not run.has_frames or "bodies" not in run.frames.grids:
         raise BadInput(f"{run.folder}: the run has no frames; its scene asks for them with [frames]")
     all_times = run.frames.times
     start, end = times or (-math.inf, math.inf)
@@ -146,7 +146,7 @@ def chosen_colours(run: Run, name: str, indices: list[int]) -> fields.Kinds | fi
 
 
 def chosen_curve(run: Run, name: str | None, indices: list[int]) -> Curve | None:
-    columns = run.probes.columns if run.probes is not None else []
+    columns = run.probes.columns
     start, end = (float(run.frames.times[index]) for index in (indices[0], indices[-1]))
     if name is None:
         curves = (curve_of(run, c, start, end) for c in columns if c.name == "friction_factor")

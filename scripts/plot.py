@@ -57,7 +57,7 @@ def parse_arguments(arguments: list[str]) -> argparse.Namespace:
 
 def chosen_frames(run: Run, times: list[float] | None) -> list[int]:
     """Indices of the frames that maps show, in order, each once."""
-    if run.frames is None:
+    if not run.has_frames:
         return []
     count = len(run.frames.times)
     wanted = [run.frames.nearest(t) for t in times] if times else np.linspace(0, count - 1, 4).round().astype(int)
@@ -67,7 +67,7 @@ def chosen_frames(run: Run, times: list[float] | None) -> list[int]:
 def pictures(run: Run, times: list[float] | None) -> dict[str, tuple[Callable[[], Figure | None], str]]:
     """For each file what draws it, and what it needs."""
     chosen = chosen_frames(run, times)
-    frames = run.frames is not None and "bodies" in run.frames.grids
+    frames = run.has_frames and "bodies" in run.frames.grids
     return {
         "grains.png": (lambda: maps.grains(run, chosen) if frames else None, "frames"),
         "velocity.png": (lambda: maps.velocity(run, chosen) if frames else None, "frames with velocity"),

@@ -74,7 +74,7 @@ def chosen_fields(held: dict[str, Field], names: list[str] | None) -> list[Field
 
 
 def pack(run: Run, options: argparse.Namespace) -> Packing:
-    if run.frames is None:
+    if not run.has_frames:
         raise BadInput("the run has no frame yet, or stores none: its scene needs [frames] period")
     chosen = chosen_frames(run.frames.times, options.every, options.times)
     return Packing(run.frames, chosen, chosen_fields(fields_of(run.frames, chosen[0]), options.fields))

@@ -90,7 +90,6 @@ def fragments_at_10(run: Run) -> float:
 
 def sizes(run: Run, frame: int) -> np.ndarray:
     """Diameters of the fragments, of circles of the same area, over DIAMETER; sorted."""
-    assert run.frames is not None
     number = run.frames.field("bodies", frame, "fragment").astype(int)
     corners = run.frames.positions("bodies", frame)[run.frames.grids["bodies"].cells]
     one, two = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
@@ -101,7 +100,6 @@ def sizes(run: Run, frame: int) -> np.ndarray:
 
 def shares(run: Run, over_strength: float) -> tuple[np.ndarray, np.ndarray]:
     """Sizes of fragments and the share of the mass up to each, in the first frame at this pressure."""
-    assert run.probes is not None and run.frames is not None
     time = np.append(smooth(run.probes.time), np.inf)[reached(run, over_strength)]
     found = sizes(run, min(int(np.searchsorted(run.frames.times, time)), len(run.frames.times) - 1))
     return found, np.cumsum(found**2) / (found**2).sum()

@@ -18,7 +18,6 @@ def smooth(values: np.ndarray) -> np.ndarray:
 
 
 def sheared(run: Run) -> np.ndarray:
-    assert run.probes is not None
     return run.probes.time > SHEARED
 
 

@@ -14,7 +14,6 @@ NEIGHBOUR = 1.3e-6  # m between centres, of discs of 1 um
 
 def _friction(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Times, s, and friction factors during shear, positive in the direction of the upper wall; means of 50 ns."""
-    assert run.probes is not None
     column = {axis: run.probes.column(f"force_lower.force_{axis}") for axis in "xy"}
     times, along = run.probes.sampled(column["x"])
     _, across = run.probes.sampled(column["y"])
@@ -35,7 +34,6 @@ def peak_time(run: Run) -> float:
 
 def kept(run: Run) -> float:
     """Share of the first neighbours that are still neighbours at the end."""
-    assert run.frames is not None
     grains = run.frames.bodies("grain")
     first, last = (neighbours(run.frames.centres(i)[grains], NEIGHBOUR, run.period) for i in (0, -1 + len(run.frames.times)))
     return kept_fraction(first, last)
@@ -43,7 +41,6 @@ def kept(run: Run) -> float:
 
 def like(run: Run) -> float:
     """Share of neighbours of one kind at the end."""
-    assert run.frames is not None
     grains = run.frames.bodies("grain")
     last = neighbours(run.frames.centres(len(run.frames.times) - 1)[grains], NEIGHBOUR, run.period)
     return like_fraction(last, run.frames.kinds[grains])

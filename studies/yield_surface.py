@@ -14,7 +14,6 @@ LEVELS = [2e-4, 1e-3, 5e-3]  # plastic work over the yield stress and the area o
 
 def stresses(run: Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pressure and shear stress over the yield stress of the discs, and the level of plastic work; on the strain path."""
-    assert run.probes is not None
     path = run.probes.time >= RELIEVED - 1e-9
     along, across = (run.values(f"cell.stress_{axis}")[path] / YIELD for axis in ("xx", "yy"))
     work = run.values("works.dissipated_by_plasticity")[path]
@@ -59,7 +58,6 @@ def shear_3(run: Run) -> float:
 
 def relieved(run: Run) -> float:
     """Solid fraction when the strain path begins."""
-    assert run.probes is not None
     return float(np.interp(RELIEVED, run.probes.time, run.values("packing.solid_fraction")))
 
 

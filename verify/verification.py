@@ -80,8 +80,6 @@ class Run:
         return self._sampled(name)[0]
 
     def _sampled(self, name: str) -> tuple[np.ndarray, np.ndarray]:
-        if self._probes is None:
-            raise KeyError(f"{self.folder}: no probes")
         return self._probes.sampled(self._probes.column(name))
 
     def at(self, name: str, times: np.ndarray) -> np.ndarray:
@@ -95,8 +93,6 @@ class Run:
     def steps(self, name: str) -> np.ndarray:
         """A column of steps.csv such as "dt", or "time"."""
         table = read_table(self.folder / "steps.csv")
-        if table is None:
-            raise KeyError(f"{self.folder}: no steps")
         return table.time if name == "time" else table.column(name).values
 
     @property

@@ -33,8 +33,9 @@ class Column:
 
 @dataclass
 class Table:
-    """A CSV file: a time for each row, and the other columns."""
+    """A CSV file: a time for each row, and the other columns. A file that is absent or has no row yet has none."""
 
+    file: Path
     time: np.ndarray
     columns: list[Column]
 
@@ -42,8 +43,15 @@ class Table:
         """Of a name such as "lower.force_x"; KeyError: there is none."""
         found = [c for c in self.columns if c.full_name == full_name]
         if not found:
-            raise KeyError(f"no column {full_name}; there are {', '.join(c.full_name for c in self.columns)}")
+            raise KeyError(f"{self.file}: no column {full_name}; {self._content()}")
         return found[0]
+
+    def _content(self) -> str:
+        if not self.file.exists():
+            return "there is no such file"
+        if not self.columns:
+            return "the file has no rows"
+        return f"there are {', '.join(c.full_name for c in self.columns)}"
 
     def get(self, name: str, source: str | None = None) -> Column | None:
         found = (c for c in self.columns if c.name == name and source in (None, c.source))
@@ -80,13 +88,11 @@ def checkpoint_header(folder: Path) -> dict:
     return header if isinstance(header, dict) and {"time", "steps", "written"} <= header.keys() else {}
 
 
-def read_table(file: Path) -> Table | None:
-    """The CSV file, empty cells as NaN; None when there is none or it has no row yet."""
-    if not file.exists():
-        return None
-    header, _, rows = file.read_text().partition("\n")
+def read_table(file: Path) -> Table:
+    """The CSV file, empty cells as NaN."""
+    header, _, rows = file.read_text().partition("\n") if file.exists() else ("", "", "")
     if not rows.strip():
-        return None
+        return Table(file, np.empty(0), [])
     names = [name.strip('"') for name in header.split(",")]
     filled = re.sub(r"(?<=,)(?=[,\n])", "nan", rows)
     try:
@@ -96,7 +102,7 @@ def read_table(file: Path) -> Table | None:
     if data.shape[1] != len(names):
         raise BadFolder(f"{file}: {len(names)} names in the header, {data.shape[1]} columns below")
     columns = [_column(name, values) for name, values in zip(names, data.T)]
-    return Table(columns[0].values, columns[1:])
+    return Table(file, columns[0].values, columns[1:])
 
 
 def _column(text: str, values: np.ndarray) -> Column:
@@ -107,7 +113,7 @@ def _column(text: str, values: np.ndarray) -> Column:
 
 @dataclass
 class Run:
-    """All that a result folder holds; None for what it lacks."""
+    """All that a result folder holds."""
 
     folder: Path
     title: str
@@ -115,14 +121,23 @@ class Run:
     tolerance: float | None  # of the error estimate, where the scene gives it
     probe_of: dict[str, str]  # what a probe looks at: {"force_lower": "lower"}
     probe_quantity: dict[str, str]  # what it measures: {"force_lower": "force"}
-    probes: Table | None
-    steps: Table | None
-    frames: Frames | None
+    probes: Table
+    steps: Table
+    stored_frames: Frames | None  # None: there is no frame
+
+    @property
+    def has_frames(self) -> bool:
+        return self.stored_frames is not None
+
+    @property
+    def frames(self) -> Frames:
+        """BadFolder: there is no frame."""
+        if self.stored_frames is None:
+            raise BadFolder(f"{self.folder}: the run has no frames; its scene asks for them with [frames]")
+        return self.stored_frames
 
     def values(self, column: str) -> np.ndarray:
         """[rows] of a column of probes.csv, as in "energy.kinetic", in the unit of its header."""
-        if self.probes is None:
-            raise BadFolder(f"{self.folder}: holds no probes.csv")
         return self.probes.column(column).values
 
     @cached_property

@@ -21,7 +21,6 @@ WIDEST = 0.35  # of the mean branch: line of the largest force
 
 def chains(run: Run, indices: list[int]) -> Figure | None:
     """Forces between bodies at several times; blue where they press, red where they pull; one scale for all."""
-    assert run.frames is not None
     if any(run.frames.contacts(index) is None for index in indices):
         return None
     networks = [of_frame(run.frames, index) for index in indices]

@@ -16,7 +16,6 @@ FEWEST = 50  # grains, that cells say something
 
 def coarse(run: Run, indices: list[int]) -> Figure | None:
     """None for few grains, and in a cell with two periods, which leans."""
-    assert run.frames is not None
     if run.frames.in_cell:
         return None
     index = indices[-1]
@@ -41,7 +40,6 @@ def coarse(run: Run, indices: list[int]) -> Figure | None:
 
 def _mean_diameter(run: Run, index: int) -> float:
     """Of grains, of discs of the same area, from the triangles."""
-    assert run.frames is not None
     corners = run.frames.positions("bodies", index)[run.frames.grids["bodies"].cells]
     (ax, ay), (bx, by) = (np.moveaxis(corners[:, k] - corners[:, 0], 1, 0) for k in (1, 2))
     area = 0.5 * np.abs(ax * by - ay * bx).sum() / len(run.frames.bodies("grain"))

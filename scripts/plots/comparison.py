@@ -19,7 +19,7 @@ def comparison(runs: list[Run]) -> Figure | None:
     """A panel for each column of probes that two of the runs have, those that differ most first, and their time steps."""
     columns = sorted(_shared(runs), key=lambda name: -_difference(runs, name))
     shown = columns[:MOST_PANELS]
-    stepped = [run for run in runs if run.steps is not None and run.steps.get("dt") is not None]
+    stepped = [run for run in runs if run.steps.get("dt") is not None]
     if not shown:
         return None
     figure, axes, factor = panels(len(shown) + (len(stepped) > 1), f"{runs[0].title}: {len(runs)} runs", _longest(runs))
@@ -48,18 +48,18 @@ def labels(runs: list[Run]) -> list[str]:
 
 def _longest(runs: list[Run]) -> np.ndarray:
     """s"""
-    return max((run.probes.time for run in runs if run.probes is not None), key=lambda time: time[-1])
+    return max((run.probes.time for run in runs), key=lambda time: time.max(initial=-np.inf))
 
 
 def _column(run: Run, name: str) -> Column | None:
-    return next((c for c in run.probes.columns if c.full_name == name), None) if run.probes is not None else None
+    return next((c for c in run.probes.columns if c.full_name == name), None)
 
 
 def _shared(runs: list[Run]) -> list[str]:
     """Names that two runs have with any value but 0."""
     found: dict[str, int] = {}
     for run in runs:
-        for column in run.probes.columns if run.probes is not None else []:
+        for column in run.probes.columns:
             if np.any(np.nan_to_num(column.values) != 0):
                 found[column.full_name] = found.get(column.full_name, 0) + 1
     return [name for name, count in found.items() if count > 1]
@@ -67,8 +67,7 @@ def _shared(runs: list[Run]) -> list[str]:
 
 def _difference(runs: list[Run], name: str) -> float:
     """Largest from the first run that has it, over its largest magnitude, at the times of the coarser one."""
-    sampled = [run.probes.sampled(column) for run in runs
-               if run.probes is not None and (column := _column(run, name)) is not None]
+    sampled = [run.probes.sampled(column) for run in runs if (column := _column(run, name)) is not None]
     sampled = [(time, values) for time, values in sampled if len(time) > 0]
     scale = max((np.abs(values).max() for _, values in sampled), default=0.0)
     if scale == 0.0:
@@ -84,7 +83,7 @@ def _draw(axes: Axes, runs: list[Run], time_factor: float, name: str) -> None:
     largest = max(float(np.nanmax(np.abs(column.values), initial=0.0)) for column in there)
     factor, unit = units.scale(largest, there[0].unit)
     for column, run, colour, style in zip(columns, runs, COLOURS, STYLES):
-        if column is None or run.probes is None:
+        if column is None:
             continue
         time, values = run.probes.sampled(column)
         draw_history(axes, time * time_factor, values * factor, colour, style=style)
@@ -92,7 +91,7 @@ def _draw(axes: Axes, runs: list[Run], time_factor: float, name: str) -> None:
 
 
 def _draw_steps(axes: Axes, runs: list[Run], time_factor: float) -> None:
-    steps = [(run.steps, run.steps.get("dt") if run.steps is not None else None) for run in runs]
+    steps = [(run.steps, run.steps.get("dt")) for run in runs]
     factor, unit = units.scale(max(float(np.median(dt.values)) for _, dt in steps if dt is not None), "s")
     for (table, dt), colour, style in zip(steps, COLOURS, STYLES):
         if dt is not None:

@@ -57,8 +57,8 @@ def steps(run: Run) -> Figure | None:
     """Error estimate, time step, rejections and contacts against time (the paper's figure 8)."""
     table = run.steps
     wanted = {"error": "error estimate", "dt": "time step", "rejections": "rejections so far", "contacts": "contacts"}
-    columns = [] if table is None else [c for name in wanted if (c := table.get(name)) is not None and _tells(c)]
-    if table is None or not columns:
+    columns = [c for name in wanted if (c := table.get(name)) is not None and _tells(c)]
+    if not columns:
         return None
     figure, axes, factor = panels(len(columns), f"{run.title}: steps", table.time)
     for panel, column, colour in zip(axes, columns, COLOURS):
@@ -114,8 +114,8 @@ def _caption(name: str, unit: str, time: np.ndarray, values: np.ndarray) -> str:
 def forces(run: Run) -> Figure | None:
     """Normal and tangential force and friction factor of each wall with a force probe (the paper's figure 9)."""
     table = run.probes
-    sources = [] if table is None else force_sources(table)
-    if table is None or not sources:
+    sources = force_sources(table)
+    if not sources:
         return None
     rubbed = [source for source in sources if _friction_matters(run, table, source)]
     figure, axes, factor = panels(len(sources) + len(rubbed), f"{run.title}: forces", table.time)
@@ -165,8 +165,8 @@ def _draw_friction(axes: Axes, run: Run, table: Table, source: str, time_factor:
 def energy(run: Run) -> Figure | None:
     """Booked energies, and below them the errors of the balances of energy and momentum."""
     table = run.probes
-    kinetic = None if table is None else table.get("kinetic")
-    if table is None or kinetic is None:
+    kinetic = table.get("kinetic")
+    if kinetic is None:
         return None
     columns = [c for c in table.columns if c.source == kinetic.source]
     errors = [c for c in columns if c.name.endswith("_error") and np.any(np.abs(c.values) > 0)]
@@ -214,8 +214,6 @@ def _draw_error(axes: Axes, table: Table, column: Column, time_factor: float, co
 def probes(run: Run) -> Figure | None:
     """What forces and energies leave over; a panel for each quantity and unit, whatever number of probes it has."""
     table = run.probes
-    if table is None:
-        return None
     kinetic = table.get("kinetic")
     taken = set(force_sources(table)) | ({kinetic.source} if kinetic is not None else set())
     shown = {run.probe_of.get(source, source) for source in force_sources(table)}  # their friction is in forces.png

@@ -183,5 +183,4 @@ def _norm(vectors: np.ndarray) -> np.ndarray:
 
 def names(run: Run) -> list[str]:
     """All that colours can show of a run with frames."""
-    assert run.frames is not None
     return [KINDS, *(name for grid in run.frames.grids for name in run.frames.names(grid))]

@@ -40,7 +40,6 @@ class Curve:
 def curve_of(run: Run, column: Column, start: float, end: float) -> Curve | None:
     """None: it has no values there. A friction factor counts where its wall is pressed."""
     table = run.probes
-    assert table is not None
     time, values = table.sampled(column)
     of = run.probe_of.get(column.source, "")
     if column.name == "friction_factor":
@@ -63,7 +62,6 @@ class Film:
     def __init__(self, run: Run, indices: Sequence[int], camera: Camera, shown: Kinds | Field, curve: Curve | None,
                  width: int) -> None:
         self._run, self._indices, self._camera, self._shown = run, indices, camera, shown
-        assert run.frames is not None
         self._times = run.frames.times[list(indices)]
         self._factor, self._unit = units.scale(float(self._times[-1]), "s")
         self._decimals = _decimals(self._times * self._factor)

@@ -17,7 +17,6 @@ FEWEST = 50  # contacts that a distribution needs
 def network(run: Run, indices: list[int]) -> Figure | None:
     """At the last of the times: density of forces by their mean, with the exponential of the same mean; roses of
     normals, each contact once and by its force."""
-    assert run.frames is not None
     index = indices[-1]
     if run.frames.contacts(index) is None:
         return None

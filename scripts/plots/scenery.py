@@ -28,7 +28,6 @@ class Scenery:
 def scenery(run: Run, index: int, box: Box | None = None, origin: Sequence[float] = (0.0, 0.0)) -> Scenery:
     """What is to be seen in `box`, which is placed at `origin`: all of it, in one period, without a box."""
     frames = run.frames
-    assert frames is not None
     if box is None:
         box = (0.0, run.period, -np.inf, np.inf) if run.period is not None else (-np.inf, np.inf, -np.inf, np.inf)
         box = whole_box(run, [index]) if frames.in_cell else box
@@ -87,7 +86,6 @@ def extent(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Lower and upper corner of all grains and walls, where they are: not put into one period. Of a cell with two
     periods its own."""
     frames = run.frames
-    assert frames is not None
     if frames.in_cell:
         corners = cell_corners(frames.periods(index))
         return corners.min(axis=0), corners.max(axis=0)

@@ -64,7 +64,6 @@ def facts(run: Run, packing: Packing) -> list[tuple[str, str]]:
 def _box(run: Run, packing: Packing) -> list[float]:
     """Left, right, low, high of all frames; of a periodic scene one period, or all its cells."""
     (left, low), (right, high) = packing.box
-    assert run.frames is not None
     if run.frames.in_cell:
         corners = np.concatenate([[[0, 0], a, b, a + b] for a, b in map(run.frames.periods, packing.chosen)])
         (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
@@ -75,7 +74,6 @@ def _box(run: Run, packing: Packing) -> list[float]:
 
 def _cell(run: Run, index: int) -> list[float]:
     """ax, ay, bx, by of its sides, m."""
-    assert run.frames is not None
     return [float(x) for x in run.frames.periods(index).ravel()]
 
 
@@ -113,8 +111,8 @@ def _probe(column: Column) -> dict[str, Any]:
     return {"name": column.full_name, **measure(largest, column.unit)}
 
 
-def _shown(table: Table | None) -> list[Column]:
-    return [] if table is None else [column for column in table.columns if np.isfinite(column.values).any()]
+def _shown(table: Table) -> list[Column]:
+    return [column for column in table.columns if np.isfinite(column.values).any()]
 
 
 def thinned(time: np.ndarray, values: np.ndarray, kept: np.ndarray) -> np.ndarray:
@@ -130,7 +128,6 @@ def thinned(time: np.ndarray, values: np.ndarray, kept: np.ndarray) -> np.ndarra
 def _curves(run: Run, times: np.ndarray) -> Iterator[tuple[str, str]]:
     """A chunk for each column of the probes: times, then values, in single precision."""
     for number, column in enumerate(_shown(run.probes)):
-        assert run.probes is not None
         time, values = run.probes.sampled(column)
         rows = thinned(time, values, times)
         yield f"probe-{number}", as_text(np.concatenate([time[rows], values[rows]]).astype("<f4").tobytes())
@@ -138,11 +135,10 @@ def _curves(run: Run, times: np.ndarray) -> Iterator[tuple[str, str]]:
 
 def about(run: Run, packing: Packing) -> dict[str, Any]:
     """All that the scripts need beside the chunks."""
-    assert run.frames is not None
     times, box = run.frames.times[packing.chosen], _box(run, packing)
     fields = [_field(field) for field in packing.fields]
     step = packing.shapes.step
-    latest = max(float(np.abs(times).max()), float(run.probes.time.max()) if run.probes is not None else 0.0)
+    latest = max(float(np.abs(times).max()), float(run.probes.time.max(initial=0.0)))
     return {
         "title": run.title, "times": [float(t) for t in times], "frames": packing.chosen, "period": run.period,
         "cells": [_cell(run, index) for index in packing.chosen] if run.frames.in_cell else None,
@@ -158,7 +154,6 @@ def about(run: Run, packing: Packing) -> dict[str, Any]:
 
 def parts(run: Run, packing: Packing) -> Iterator[str]:
     """The page in pieces."""
-    assert run.frames is not None
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined)
     chunks = ((name, Markup(text)) for part in (packing.chunks(), _curves(run, run.frames.times[packing.chosen]))

@@ -49,7 +49,7 @@ class Desk:
 
     def table(self, file: str | Path) -> Table:
         table = read_table(self.folder / file)
-        assert table is not None, f"{file} has no row"
+        assert len(table.time) > 0, f"{file} has no row"
         return table
 
     def content(self) -> set[Path]:

@@ -88,7 +88,6 @@ Values = dict[str, np.ndarray]  # by name; [times, ...]
 def probes_of(folder: Path) -> Values:
     """Of a probe all columns together: they have one unit, but for angles."""
     table = read_table(folder / "probes.csv")
-    assert table is not None
     values = {}
     for number, probe in enumerate(PROBES):
         columns = [c.values for c in table.columns if c.source == f"p{number}" and "error" not in c.name]

@@ -111,6 +111,21 @@ def test_a_run_is_as_estimated_and_opens(scene: Scene, tmp_path: Path) -> None:
         pliant.open(tmp_path)
 
 
+def test_what_a_run_did_not_write_is_named(tmp_path: Path) -> None:  # EXACT
+    (tmp_path / "steps.csv").write_text("time [s],dt [s]\n")
+    run = pliant.open(tmp_path)
+    assert not run.has_frames
+    with pytest.raises(pliant.BadFolder, match=r"the run has no frames; its scene asks for them with \[frames\]"):
+        run.frames.nearest(0)
+    with pytest.raises(KeyError, match=r"probes\.csv: no column energy\.kinetic; there is no such file"):
+        run.probes.column("energy.kinetic")
+    with pytest.raises(KeyError, match=r"steps\.csv: no column dt; the file has no rows"):
+        run.steps.column("dt")
+    (tmp_path / "probes.csv").write_text("time [s],energy.strain [J/m]\n0,1\n")
+    with pytest.raises(KeyError, match="no column energy.kinetic; there are energy.strain"):
+        pliant.open(tmp_path).values("energy.kinetic")
+
+
 def test_files_that_a_scene_names_go_along(tmp_path: Path) -> None:
     text = (ROOT / "docs/keys/grains.toml").read_text()
     for name in ["outline.csv", "grains.csv", "two_parts.msh"]:

@@ -100,7 +100,6 @@ def test_unwritable_picture_is_an_output_error(tmp_path: Path) -> None:
 def test_table_with_empty_cells(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("time [s],wall.force_x [N/m],e.kinetic [J/m],count\n0,,1,2\n1,5,,\n")
     table = read_table(tmp_path / "a.csv")
-    assert table is not None
     assert [(c.source, c.name, c.unit) for c in table.columns] == [
         ("wall", "force_x", "N/m"), ("e", "kinetic", "J/m"), ("", "count", "-")]
     force = table.get("force_x", "wall")

@@ -42,7 +42,7 @@ def _check(study: Study, quantity: Quantity, run: Run) -> None:
 
 
 def _check_probe(place: str, column: str, run: Run) -> None:
-    names = [known.full_name for known in run.probes.columns] if run.probes else []
+    names = [known.full_name for known in run.probes.columns]
     if column not in names:
         raise BadStudy(f"{place}: the scene has no probe '{column}'{nearest(column, names)}")
 
