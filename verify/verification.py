@@ -93,6 +93,8 @@ class Run:
     def steps(self, name: str) -> np.ndarray:
         """A column of steps.csv such as "dt", or "time"."""
         table = read_table(self.folder / "steps.csv")
+        if len(table.time) == 0:
+            raise KeyError(f"{table.file}: no steps")
         return table.time if name == "time" else table.column(name).values
 
     @property

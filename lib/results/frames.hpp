@@ -15,7 +15,7 @@ class FrameRecorder {
  public:
   FrameRecorder(const Model& model, const std::filesystem::path& folder, Opening opening = Opening::create);
   double next_time() const;                 ///< infinite without frames
-  bool record_due(Simulation& simulation);  ///< whether one was
+  bool record_due(Simulation& simulation);  ///< whether a frame was due
   /// One of now, unless the last one is.
   void record_last(Simulation& simulation);
   int count() const { return count_; }

@@ -18,7 +18,7 @@ struct RunFigures {
   int resumed = 0;                      ///< times that the run went on from a checkpoint
   double checkpoint_time = -1;          ///< s of the scene; -1: none yet
   std::vector<std::string> warnings{};  ///< of its steps; those of its start and its end are each process's own
-  bool warned_of_folds = false;         ///< in a frame: folds are not looked for any more
+  bool warned_of_folds = false;         ///< that a frame showed; no further frame is searched for them
 };
 
 /// summary.json: what a run was, what it cost and how well its energy balance closes. `status`: "running" (at the last

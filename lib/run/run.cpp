@@ -90,7 +90,7 @@ struct Run {
     if (!folds.empty()) spdlog::warn("{}", fold_warning(simulation.model(), folds, simulation.state().time));
     return !folds.empty();
   }
-  /// Those that are due. Frames are looked at until one has a fold.
+  /// Outputs that are due. Each frame is searched for folds until one has a fold.
   void write_outputs() {
     if (recorder.record_outputs(simulation) && !recorder.figures.warned_of_folds)
       recorder.figures.warned_of_folds = warn_of_folds();
